@@ -1,0 +1,3 @@
+//! Hybrid automata as typed values: the graph, the executor, trajectories and diagrams.
+
+pub mod network;

@@ -1,0 +1,146 @@
+//! What observers see of a mission: one snapshot a control period, and events between them.
+//!
+//! Nodes are numbered from 0: robots first, then access points.
+
+use nalgebra::Point2;
+use pleach_discrete::network::{Phase, Role};
+
+/// The observers' view of one instant, just before the robots move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot {
+    /// k: the number of the control period that begins here.
+    pub step: usize,
+    /// t_k in seconds.
+    pub time: f64,
+    /// x_i of every robot.
+    pub positions: Vec<Point2<f64>>,
+    /// The role of every robot.
+    pub roles: Vec<Role>,
+    /// Where the mission stands.
+    pub phase: Phase,
+    /// The robots that may move in this period, ascending.
+    pub active: Vec<usize>,
+    /// The active team 𝒜, in its own order (a subgroup of Σ or the primary team); others that
+    /// may move are settling on their posts.
+    pub active_team: Vec<usize>,
+    /// The primary team 𝒫, from p₁ to the leader.
+    pub primary_team: Vec<usize>,
+    /// The path Σ while a secondary team is at work, from the recruit to p₁ (or the leader).
+    pub path: Vec<usize>,
+    /// c_i of every robot, eq. (5).
+    pub residuals: Vec<f64>,
+    /// λ_i of every robot.
+    pub multipliers: Vec<f64>,
+    /// The routes in use: only those with T_ij > 0.
+    pub routes: Vec<Route>,
+    /// Tree edges (child, parent), redundant robots included, by ascending child.
+    pub tree: Vec<(usize, usize)>,
+    /// The task being pursued.
+    pub task: Option<usize>,
+    /// The tasks serviced so far, each with the robot that is answerable for it now.
+    pub serviced: Vec<(usize, usize)>,
+    /// Fixed posts: reference position, the robot that holds it, and whether it is a junction.
+    pub posts: Vec<PostView>,
+}
+
+/// A route in use, from robot `from` to node `to`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Route {
+    /// The sending robot.
+    pub from: usize,
+    /// The receiving robot or access point.
+    pub to: usize,
+    /// T_ij: the share of time.
+    pub share: f64,
+    /// R_ij: the reliability of the link.
+    pub reliability: f64,
+}
+
+/// A fixed post of the tree as an observer sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PostView {
+    /// Where the post is.
+    pub reference: Point2<f64>,
+    /// The robot that holds it.
+    pub holder: usize,
+    /// The task serviced from it.
+    pub task: Option<usize>,
+    /// Whether branches part here.
+    pub junction: bool,
+}
+
+/// Something that happened, with the identities it concerns.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)] // the fields are identities: robots, tasks, nodes
+pub enum MissionEvent {
+    /// A user announced a task.
+    TaskAnnounced { task: usize },
+    /// A leader is elected (Algorithm 1); with a conflict, it must first be released (L_b = 1).
+    LeaderElected { task: usize, robot: usize, conflict: bool },
+    /// The primary team is at a local stationary point; `robot` is p₁.
+    Stationary { robot: usize, team: Vec<usize> },
+    /// A recruit is elected (Remark 5.4), with the path Σ and the break points 𝓑.
+    RecruitElected { robot: usize, path: Vec<usize>, break_points: Vec<usize> },
+    /// Subgroup S_β starts to move.
+    SubgroupStarted { subgroup: usize, robots: Vec<usize> },
+    /// Every member of S_β has arrived, eq. (26).
+    SubgroupArrived { subgroup: usize, robots: Vec<usize> },
+    /// A robot joins the primary team.
+    JoinedPrimary { robot: usize, team: Vec<usize> },
+    /// The leader is released from its past duties.
+    Released { robot: usize },
+    /// A robot changes its role.
+    RoleChanged { robot: usize, from: Role, to: Role },
+    /// A task is serviced, eq. (2).
+    TaskServiced { task: usize, robot: usize },
+    /// No routing carries the rates: the residual of `robot` falls below −c_min.
+    RouteInfeasible { robot: usize },
+    /// A mover and the robot in its way exchange duties.
+    DutiesExchanged { mover: usize, parked: usize },
+    /// p₁ hangs itself on another node of the tree (Remark 5.6).
+    Reattached { robot: usize, parent: usize },
+    /// The leader's tree has no recruit left; the election is repeated among the others.
+    ElectionRepeated { task: usize },
+}
+
+/// How a mission ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct End {
+    /// The kind of end.
+    pub outcome: Outcome,
+    /// A sentence that a person understands.
+    pub reason: String,
+    /// The task concerned.
+    pub task: Option<usize>,
+}
+
+/// The kinds of end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Every task is serviced.
+    Serviced,
+    /// No recruit is left (Assumption 1 does not hold).
+    InsufficientRobots,
+    /// No robot can come within δ of the task.
+    UnreachableTask,
+    /// The mission took more control periods than allowed.
+    StepLimit,
+    /// The robots cannot go on, and a recruit would not help.
+    Blocked,
+    /// A monitored property failed.
+    InvariantViolated,
+}
+
+impl Outcome {
+    /// The name used in traces.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Outcome::Serviced => "serviced",
+            Outcome::InsufficientRobots => "insufficient_robots",
+            Outcome::UnreachableTask => "unreachable_task",
+            Outcome::StepLimit => "step_limit",
+            Outcome::Blocked => "blocked",
+            Outcome::InvariantViolated => "invariant_violated",
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! Link reliability, routing and the motion controller of the robot network.

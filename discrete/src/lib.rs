@@ -1,0 +1,3 @@
+//! Locations, events and transition tables: the discrete layer, pure and small.
+
+pub mod network;

@@ -1,0 +1,5 @@
+//! The discrete layer of the robot network.
+
+pub mod role;
+
+pub use role::{Phase, Role};

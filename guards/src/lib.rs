@@ -1,0 +1,1 @@
+//! Predicates over states, with a signed margin.

@@ -1,0 +1,3 @@
+//! Properties stated once, and monitors over trajectories.
+
+pub mod network;
