@@ -10,6 +10,7 @@ pub mod lineage;
 pub mod path;
 pub mod post;
 pub mod role;
+pub mod tables;
 
 pub use agreement::Agreement;
 pub use bulletin::Bulletin;
@@ -20,6 +21,7 @@ pub use lineage::Lineage;
 pub use path::{Hop, Path, Subgroup};
 pub use post::{Anchor, Post, PostId, PostKind};
 pub use role::{Phase, Role};
+pub use tables::{MISSION, MissionStep, ROLES, RoleEvent};
 
 /// A node of the network: robots are numbered first, from 0, then access points.
 pub type NodeId = usize;
