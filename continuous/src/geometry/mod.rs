@@ -1,1 +1,5 @@
 //! Free space, geodesics and cells.
+
+pub mod shape;
+
+pub use shape::{Disc, HalfPlane};
