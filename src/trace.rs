@@ -115,7 +115,7 @@ impl<R: BufRead> TraceReader<R> {
             Line::Header { format, version, .. } if format != FORMAT || version != VERSION => {
                 Err(TraceError::OtherFormat { format, version })
             }
-            Line::Header { scenario, .. } => Ok(Self { scenario, lines, number: 1 }),
+            Line::Header { scenario, .. } => Ok(Self { scenario: *scenario, lines, number: 1 }),
             _ => Err(TraceError::Misplaced { line: 1, wanted: "the header" }),
         }
     }

@@ -32,7 +32,7 @@ pub(super) enum Line {
     Header {
         format: String,
         version: u32,
-        scenario: Scenario,
+        scenario: Box<Scenario>,
     },
     Event {
         k: usize,
