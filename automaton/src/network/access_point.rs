@@ -201,6 +201,7 @@ impl AccessPoint {
             None => Notice::Ended {
                 outcome: Outcome::Serviced,
                 reason: format!("all {next} tasks are serviced").into(),
+                task: None,
             },
         };
         self.issue(notice);
@@ -221,7 +222,11 @@ impl AccessPoint {
                 "no robot can come within the service radius of task {task}: it lies in a wall, \
                  too near to one, or in a part of the workspace that no robot can enter"
             );
-            self.issue(Notice::Ended { outcome: Outcome::UnreachableTask, reason: reason.into() });
+            self.issue(Notice::Ended {
+                outcome: Outcome::UnreachableTask,
+                reason: reason.into(),
+                task: Some(task),
+            });
         }
     }
 

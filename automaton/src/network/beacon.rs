@@ -56,6 +56,8 @@ pub enum Notice {
         outcome: Outcome,
         /// Why, in a sentence.
         reason: Arc<str>,
+        /// The task concerned.
+        task: Option<usize>,
     },
 }
 

@@ -1,4 +1,19 @@
 //! The robot network: one robot's automaton, the network composed of them, and their medium.
 
+pub mod access_point;
+pub mod automata;
+pub mod beacon;
+pub mod duty;
+pub mod medium;
+mod network;
+pub mod observer;
 pub mod record;
+pub mod robot;
 pub mod scenario;
+pub mod site;
+
+pub use automata::{mission_automaton, role_automaton};
+pub use medium::{Medium, Radio};
+pub use network::{KernelTimes, Network, NetworkError, NetworkJump};
+pub use robot::Robot;
+pub use site::{Site, SiteError};

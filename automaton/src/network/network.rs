@@ -15,7 +15,7 @@ use pleach_continuous::Point;
 use pleach_discrete::network::{MissionStep, NodeId, Phase, Role, RoleEvent};
 
 use crate::executor::{Round, System};
-use crate::trajectory::Jump;
+use crate::automaton::Jump;
 
 use super::access_point::AccessPoint;
 use super::automata::{MissionAutomaton, RoleAutomaton, mission_automaton, role_automaton};
@@ -23,7 +23,7 @@ use super::beacon::{Beacon, Notice};
 use super::medium::{Medium, Radio};
 use super::record::{End, MissionEvent, Outcome};
 use super::robot::{Objection, Proposal, Robot};
-use super::scenario::{RoutingMethod, Scenario};
+use super::scenario::Scenario;
 use super::site::{Site, SiteError};
 
 /// Rounds in which proposals are checked and halved; whoever still meets an objection in the last
@@ -33,10 +33,8 @@ const NEGOTIATION_ROUNDS: usize = 8;
 /// Where a control period stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// Messages are exchanged; so many rounds remain.
+    /// Messages are exchanged; so many rounds remain, and then routes are computed.
     Exchange(usize),
-    /// Routes are computed.
-    Route,
     /// Moves are proposed and certified.
     Move,
     /// Time passes.
@@ -182,6 +180,7 @@ impl<M: Medium> Network<M> {
     // ---- The joint jumps of a control period -------------------------------------------------
 
     fn begin_period(&mut self) {
+        self.events.clear();
         for robot in &mut self.robots {
             robot.restart_clock();
         }
@@ -245,7 +244,7 @@ impl<M: Medium> Network<M> {
 
     fn exchange_multipliers(&mut self) {
         let multipliers: Vec<f64> = self.robots.iter().map(Robot::multiplier).collect();
-        self.broadcast(&multipliers, Robot::hear_multiplier);
+        self.broadcast(&multipliers, |robot, from, &told| robot.hear_multiplier(from, told));
     }
 
     fn exchange_flows(&mut self) {
@@ -272,7 +271,7 @@ impl<M: Medium> Network<M> {
     /// parent, once it has heard from all its children.
     fn sweep(&mut self) {
         let mut awaited: Vec<usize> =
-            self.robots.iter().map(|robot| robot.tree_children().count()).collect();
+            self.robots.iter().map(Robot::tree_degree).collect();
         let mut ready: Vec<NodeId> =
             (0..self.robots.len()).filter(|&robot| awaited[robot] == 0).collect();
         while let Some(robot) = ready.pop() {
@@ -381,7 +380,7 @@ impl<M: Medium> Network<M> {
                 self.times.coordination += begin.elapsed();
                 NetworkJump::Sample
             }
-            Stage::Exchange(0) | Stage::Route => {
+            Stage::Exchange(0) => {
                 self.route();
                 self.stage = Stage::Move;
                 self.times.routing += begin.elapsed();
@@ -462,6 +461,3 @@ impl<M: Medium> System for Network<M> {
         Ok(())
     }
 }
-
-/// Which routing methods a network can use.
-pub const ROUTING_METHODS: [RoutingMethod; 2] = [RoutingMethod::Dual, RoutingMethod::Adal];

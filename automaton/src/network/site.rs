@@ -3,7 +3,7 @@
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
-use pleach_continuous::network::reliability::{CubicReliability, LinkReliability, RangeError};
+use pleach_continuous::network::reliability::{CubicReliability, LinkReliability, ReliabilityError};
 
 use super::scenario::{Scenario, Settings};
 
@@ -39,7 +39,7 @@ pub enum SiteError {
     FreeSpace(#[from] FreeSpaceError),
     /// The radio's ranges make no sense.
     #[error(transparent)]
-    Range(#[from] RangeError),
+    Range(#[from] ReliabilityError),
 }
 
 impl Site {

@@ -67,6 +67,10 @@ facts! {
     still,
     /// Control periods after which a team that stands still is at a stationary point.
     window,
+    /// Control periods for which this robot has been kept from going on, other than by its links.
+    stalled,
+    /// Control periods after which a robot that is kept from going on gives up.
+    patience,
     /// A member of the team has room to move.
     slack,
     /// p₁ is still on its way to the robot that it joined.
@@ -94,18 +98,20 @@ facts! {
 }
 
 impl Robot {
-    /// Measures the facts; says whether any has changed.
+    /// Measures the facts; says whether a guard may hold that did not hold before.
     pub fn measure(&mut self) -> bool {
         let facts = self.facts_now();
-        let changed = facts != self.facts;
+        let may_jump = facts != self.facts || !self.is_quiet;
         self.facts = facts;
-        changed
+        self.is_quiet = true;
+        may_jump
     }
 
     fn facts_now(&self) -> Facts {
         let yes = |holds: bool| if holds { 1.0 } else { 0.0 };
         let mut facts = Facts {
             window: f64::from(STATIONARY_WINDOW),
+            patience: self.patience(),
             reach: self.reach(),
             distance: f64::INFINITY,
             ..Facts::default()
@@ -167,7 +173,10 @@ impl Robot {
 
     fn measure_shift(&self, facts: &mut Facts) {
         match (self.subgroups.get(self.subgroup), self.duty, &self.path) {
-            (Some(active), _, _) => {
+            (Some(active), duty, _) => {
+                if matches!(duty, Duty::Shift { .. }) && !self.has_arrived() {
+                    facts.stalled = f64::from(self.still_periods);
+                }
                 let arrived = self
                     .agreement
                     .as_ref()
@@ -192,6 +201,9 @@ impl Robot {
         }
         facts.first = if self.is_first() { 1.0 } else { 0.0 };
         facts.pending = if self.is_pending() { 1.0 } else { 0.0 };
+        if facts.first > 0.0 && facts.slack + facts.pending > 0.0 {
+            facts.stalled = facts.still;
+        }
         if self.duty.post().is_some_and(|post| post.is_leading())
             && let Some(task) = self.tasks.last()
         {
@@ -212,6 +224,17 @@ impl Robot {
         }
     }
 }
+
+impl Robot {
+    /// A robot on Σ may have to wait until the others of its subgroup have gone their way.
+    fn patience(&self) -> f64 {
+        let walk = self.site.hard_length / self.site.settings.step_radius;
+        PATIENCE * f64::from(STATIONARY_WINDOW).max(walk)
+    }
+}
+
+/// How many times the longest regular wait a robot is patient.
+const PATIENCE: f64 = 4.0;
 
 /// Control periods without motion that make a stationary point.
 const STATIONARY_WINDOW: u32 = 8;

@@ -42,7 +42,7 @@ impl Robot {
     }
 
     /// The robots that hang on this one now.
-    pub fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
+    pub(super) fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
         self.neighbours.iter().filter(|neighbour| {
             neighbour
                 .beacon
@@ -51,6 +51,11 @@ impl Robot {
                 .and_then(|duty| self.parent_of(duty, neighbour.position()))
                 == Some(self.id)
         })
+    }
+
+    /// How many robots hang on this one now.
+    pub fn tree_degree(&self) -> usize {
+        self.tree_children().count()
     }
 
     /// Links are made within d_build; those of the primary team stay so, and d_hard is never

@@ -255,7 +255,11 @@ impl Robot {
              {wanted} more robots are needed",
             task.number
         );
-        self.issue(Notice::Ended { outcome: Outcome::InsufficientRobots, reason: reason.into() });
+        self.issue(Notice::Ended {
+            outcome: Outcome::InsufficientRobots,
+            reason: reason.into(),
+            task: Some(task.number),
+        });
     }
 
     // ---- The path Σ and its subgroups (Sec. V-B, V-C) ----------------------------------------
@@ -530,14 +534,24 @@ impl Robot {
         }
     }
 
-    /// The primary team cannot move although it has room: a recruit would not help.
+    /// The active team cannot go on, and a recruit would not help.
     pub fn end_blocked(&mut self) {
-        let who = self.team.and_then(|team| team.slack).unwrap_or(self.id);
-        let task = self.tasks.last().map_or(0, |task| task.number);
-        let reason = format!(
-            "the team of task {task} stands still although robot {who} has room on its link: \
-             something stands in its way, and a recruit would not help"
-        );
-        self.issue(Notice::Ended { outcome: Outcome::Blocked, reason: reason.into() });
+        let task = self.tasks.last().map(|task| task.number);
+        let reason = match (self.duty.place(), self.team.and_then(|team| team.slack)) {
+            (Some(_), _) => format!(
+                "robot {} cannot get to the place of Σ that it should take: something stands in \
+                 its way",
+                self.id
+            ),
+            (None, Some(slack)) => format!(
+                "the primary team stands still although robot {slack} has room on its link: \
+                 something stands in its way, and a recruit would not help"
+            ),
+            (None, None) => format!(
+                "robot {} has joined the primary team but cannot reach the robot that it follows",
+                self.id
+            ),
+        };
+        self.issue(Notice::Ended { outcome: Outcome::Blocked, reason: reason.into(), task });
     }
 }

@@ -21,14 +21,17 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Bulletin, Election, Exchange, IdSet, Lineage, NodeId, Phase, Post, PostId, Reply,
-    Role, Subgroup,
+    Agreement, Bulletin, Election, Exchange, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
+    PostId, Reply, Role, RoleEvent, Subgroup,
 };
 
 pub use facts::{Facts, VARIABLES};
 pub use motion::{Objection, Proposal};
 pub use routing::{FlowReport, RouteLink};
 
+use crate::automaton::{GuardError, Jump};
+
+use super::automata::{MissionAutomaton, RoleAutomaton};
 use super::beacon::{Beacon, Notice, TeamReport};
 use super::duty::{Duty, Hop, Path, Station};
 use super::record::MissionEvent;
@@ -52,6 +55,7 @@ pub struct Robot {
     role: Role,
     phase: Phase,
     facts: Facts,
+    is_quiet: bool,
 
     // Its duty, and the exchange of duties that it is engaged in.
     duty: Duty,
@@ -122,6 +126,7 @@ impl Robot {
             role: Role::Redundant,
             phase: Phase::Idle,
             facts: Facts::default(),
+            is_quiet: false,
             duty: Duty::Hold(Station { post, reference: position }),
             left_post: None,
             offer: None,
@@ -216,9 +221,72 @@ impl Robot {
         self.bulletin.notice()
     }
 
+    /// The number of the newest word on the mission that it knows.
+    pub fn word_number(&self) -> u32 {
+        self.bulletin.sequence()
+    }
+
+    /// The task announced last, as far as it knows.
+    pub fn current_task(&self) -> Option<usize> {
+        self.tasks.last().map(|task| task.number)
+    }
+
+    /// The station that it is answerable for: the one it holds, or the one that it has left and
+    /// whose new holder has not shown up yet.
+    pub fn answers_for(&self) -> Option<&Station> {
+        let handed_over = self.reply.as_ref().and_then(|reply| reply.accepted.as_ref());
+        handed_over.unwrap_or(&self.duty).station()
+    }
+
     /// c_i at the last sample.
     pub const fn residual(&self) -> f64 {
         self.residual
+    }
+
+    /// A control period begins: what is looked at once a period.
+    pub fn begin_period(&mut self) {
+        self.retire_if_barren();
+        self.consider_exchange();
+    }
+
+    /// After each round of messages: the robot puts together what it has heard.
+    pub fn deliberate(&mut self) {
+        self.handle_exchange();
+        self.keep_place();
+        self.reattach();
+        self.hear_word();
+    }
+
+    /// Takes at most one transition of the mission automaton.
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn step_mission(
+        &mut self,
+        automaton: &MissionAutomaton,
+    ) -> Result<Option<Jump<Phase, MissionStep>>, GuardError> {
+        let mut phase = self.phase;
+        let Some(step) = automaton.enabled(phase, self)? else { return Ok(None) };
+        let jump = step.jump();
+        self.phase = jump.target;
+        step.fire(&mut phase, self);
+        self.is_quiet = false;
+        Ok(Some(jump))
+    }
+
+    /// Takes at most one transition of the role automaton.
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn step_role(
+        &mut self,
+        automaton: &RoleAutomaton,
+    ) -> Result<Option<Jump<Role, RoleEvent>>, GuardError> {
+        let mut role = self.role;
+        let jump = automaton.step(&mut role, self)?;
+        self.role = role;
+        self.is_quiet &= jump.is_none();
+        Ok(jump)
     }
 
     /// Takes what it has told observers since the last call.

@@ -109,7 +109,7 @@ impl Robot {
     pub fn propose(&mut self) {
         self.proposal = None;
         let Some(goal) = self.goal() else { return };
-        if self.residual < -self.site.settings.residual_tolerance - ROUNDING {
+        if self.is_infeasible() {
             return;
         }
         let Some(waypoint) = self.first_waypoint(goal) else { return };

@@ -7,7 +7,9 @@
 
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::reliability::LinkReliability;
-use pleach_continuous::network::routing::{self, LinkOffer, Share};
+use pleach_continuous::network::routing::dual::{DualState, LinkCurvature, safe_step};
+use pleach_continuous::network::routing::local::{LinkOffer, local_minimiser, weight};
+use pleach_continuous::network::routing::repair::{Share, meet_demand};
 use pleach_discrete::network::NodeId;
 
 use super::Robot;
@@ -21,8 +23,11 @@ const BUDGET: f64 = 0.9;
 /// Shares below this are not used.
 const LEAST_SHARE: f64 = 1e-6;
 
+/// Residuals are sums of a few flows; this much of them is rounding.
+const RESIDUAL_ROUNDING: f64 = 1e-9;
+
 /// λ_i and what an accelerated iteration remembers.
-pub(super) type Multiplier = routing::DualState;
+pub(super) type Multiplier = DualState;
 
 /// A link over which the robot may send.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +75,7 @@ impl Robot {
             self.links.push(RouteLink {
                 to,
                 reliability,
-                weight: routing::weight(aversion, &self.site.link, neighbour.distance),
+                weight: weight(aversion, &self.site.link, neighbour.distance),
                 multiplier: known.map_or(0.0, |link| link.multiplier),
                 share: 0.0,
             });
@@ -101,7 +106,7 @@ impl Robot {
             })
             .collect();
         let mut shares = Vec::with_capacity(offers.len());
-        routing::local_minimiser(self.multiplier(), &offers, BUDGET, &mut shares);
+        local_minimiser(self.multiplier(), &offers, BUDGET, &mut shares);
         for (link, share) in self.links.iter_mut().zip(shares) {
             link.share = if share < LEAST_SHARE { 0.0 } else { share };
         }
@@ -141,39 +146,47 @@ impl Robot {
     pub fn step_multiplier(&mut self) {
         let reserve = self.site.settings.routing_reserve;
         let residual = self.outflow() - self.inflow - self.rate;
-        let degree: f64 = self.links.iter().map(|link| link.reliability.powi(2)).sum();
-        let step = routing::safe_step(1.0, 2.0 * degree);
-        self.multiplier.step(step, residual, reserve);
+        let robots = self.site.robots;
+        let step = safe_step(self.links.iter().map(|link| LinkCurvature {
+            reliability: link.reliability,
+            weight: link.weight,
+            to_access_point: link.to >= robots,
+        }));
+        self.multiplier = self.multiplier.step(step, residual, reserve);
     }
 
-    /// The sweep: sends over the tree link what is missing for c_i ≥ η. Returns the parent and
-    /// the flow to it.
-    pub fn meet_demand(&mut self) -> Option<(NodeId, f64)> {
-        let parent = self.tree_parent()?;
-        let tree_link = self.links.iter().position(|link| link.to == parent)?;
+    /// The sweep: sends over the tree link what is missing for c_i ≥ η. Returns by how much the
+    /// flow to the parent has risen.
+    pub fn meet_demand(&mut self) -> f64 {
+        let Some(parent) = self.tree_parent() else { return 0.0 };
+        let Some(tree_link) = self.links.iter().position(|link| link.to == parent) else {
+            return 0.0;
+        };
         let demand = self.inflow + self.rate + self.site.settings.routing_reserve;
+        if self.outflow() >= demand {
+            return 0.0;
+        }
+        let before = self.links[tree_link].flow();
         let mut shares: Vec<Share> = self
             .links
             .iter()
             .map(|link| Share { reliability: link.reliability, share: link.share })
             .collect();
-        if self.outflow() < demand {
-            routing::meet_demand(demand, &mut shares, tree_link);
-            for (link, repaired) in self.links.iter_mut().zip(shares) {
-                link.share = repaired.share;
-            }
+        meet_demand(demand, &mut shares, tree_link);
+        for (link, repaired) in self.links.iter_mut().zip(shares) {
+            link.share = repaired.share;
         }
-        Some((parent, self.links[tree_link].flow()))
-    }
-
-    /// The flow to a neighbour.
-    pub fn flow_to(&self, to: NodeId) -> f64 {
-        self.links.iter().find(|link| link.to == to).map_or(0.0, RouteLink::flow)
+        self.links[tree_link].flow() - before
     }
 
     /// A tree child has raised its flow by so much in the sweep.
     pub fn expect_more(&mut self, flow: f64) {
         self.inflow += flow;
+    }
+
+    /// Whether the routes cannot carry the rates: c_i < −c_min.
+    pub fn is_infeasible(&self) -> bool {
+        self.residual < -self.site.settings.residual_tolerance - RESIDUAL_ROUNDING
     }
 
     /// All flows are known: eq. (5).

@@ -1,0 +1,177 @@
+//! What observers see: snapshots of the whole network, put together from the robots' states.
+//!
+//! No robot reads any of this.
+
+use pleach_discrete::network::{NodeId, Phase, PostKind};
+
+use super::beacon::Notice;
+use super::duty::Duty;
+use super::medium::Medium;
+use super::network::Network;
+use super::record::{MissionEvent, PostView, Route, Snapshot};
+use super::robot::Robot;
+
+impl<M: Medium> Network<M> {
+    /// The observers' view of this instant, just before the robots move.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            step: self.step,
+            time: self.step as f64 * self.site.settings.period,
+            positions: self.robots.iter().map(Robot::position).collect(),
+            roles: self.robots.iter().map(Robot::role).collect(),
+            phase: self.phase(),
+            active: self.robots_where(Robot::is_active),
+            active_team: self.active_team(),
+            primary_team: self.primary_team(),
+            path: self.path(),
+            residuals: self.robots.iter().map(Robot::residual).collect(),
+            multipliers: self.robots.iter().map(Robot::multiplier).collect(),
+            routes: self.routes(),
+            tree: self.tree(),
+            task: self.task(),
+            serviced: self.serviced(),
+            posts: self.posts(),
+        }
+    }
+
+    /// What has happened in this control period, in order.
+    pub fn events(&self) -> Vec<MissionEvent> {
+        let mut events = self.events.clone();
+        for event in &mut events {
+            self.complete(event);
+        }
+        events
+    }
+
+    /// A robot reports what it knows; the members of its team are the observers' knowledge.
+    fn complete(&self, event: &mut MissionEvent) {
+        match event {
+            MissionEvent::Stationary { team, .. } | MissionEvent::JoinedPrimary { team, .. } => {
+                *team = self.primary_team();
+            }
+            _ => {}
+        }
+    }
+
+    fn robots_where(&self, holds: impl Fn(&Robot) -> bool) -> Vec<NodeId> {
+        (0..self.robots.len()).filter(|&id| holds(&self.robots[id])).collect()
+    }
+
+    /// Where the mission stands for the robot that knows the newest word.
+    fn phase(&self) -> Phase {
+        self.newest().map_or(Phase::Idle, Robot::phase)
+    }
+
+    fn newest(&self) -> Option<&Robot> {
+        self.robots.iter().max_by_key(|robot| robot.word_number())
+    }
+
+    fn task(&self) -> Option<usize> {
+        let robot = self.newest()?;
+        match robot.notice() {
+            Notice::Quiet | Notice::Serviced { .. } => None,
+            Notice::Task { task, .. } => Some(*task),
+            Notice::Ended { task, .. } => *task,
+            _ => robot.current_task(),
+        }
+    }
+
+    /// The primary team 𝒫 from p₁ to the leader, or the leader alone before it is released.
+    pub fn primary_team(&self) -> Vec<NodeId> {
+        let member = |robot: &Robot| robot.duty().post().filter(|post| post.is_primary()).copied();
+        let leads = |robot: &Robot| member(robot).is_some_and(|post| post.is_leading());
+        let Some(leader) = self.robots.iter().position(leads) else { return Vec::new() };
+        let mut team = vec![leader];
+        let mut ahead = member(&self.robots[leader]);
+        while let Some(post) = ahead {
+            let follows = PostKind::Primary { follows: Some(post.id) };
+            let next = (0..self.robots.len()).find(|&id| {
+                !team.contains(&id)
+                    && member(&self.robots[id]).is_some_and(|other| other.kind == follows)
+            });
+            team.extend(next);
+            ahead = next.and_then(|id| member(&self.robots[id]));
+        }
+        team.reverse();
+        team
+    }
+
+    fn active_team(&self) -> Vec<NodeId> {
+        match self.phase() {
+            Phase::Advance => self.primary_team(),
+            Phase::Shift => {
+                let mut members: Vec<(usize, NodeId)> = (0..self.robots.len())
+                    .filter_map(|id| match *self.robots[id].duty() {
+                        Duty::Shift { place } => Some((place, id)),
+                        _ => None,
+                    })
+                    .collect();
+                members.sort_unstable();
+                members.into_iter().map(|(_, id)| id).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The robots that wait on Σ or are on their way along it, by place.
+    fn path(&self) -> Vec<NodeId> {
+        let mut places: Vec<(usize, NodeId)> = (0..self.robots.len())
+            .filter_map(|id| Some((self.robots[id].duty().place()?, id)))
+            .collect();
+        places.sort_unstable();
+        places.into_iter().map(|(_, id)| id).collect()
+    }
+
+    fn routes(&self) -> Vec<Route> {
+        let of = |(from, robot): (NodeId, &Robot)| -> Vec<Route> {
+            robot
+                .routes()
+                .map(|link| Route {
+                    from,
+                    to: link.to,
+                    share: link.share,
+                    reliability: link.reliability,
+                })
+                .collect()
+        };
+        self.robots.iter().enumerate().flat_map(of).collect()
+    }
+
+    fn tree(&self) -> Vec<(NodeId, NodeId)> {
+        let edge = |(id, robot): (NodeId, &Robot)| Some((id, robot.tree_parent()?));
+        self.robots.iter().enumerate().filter_map(edge).collect()
+    }
+
+    fn serviced(&self) -> Vec<(usize, NodeId)> {
+        let mut serviced: Vec<(usize, NodeId)> = self
+            .robots
+            .iter()
+            .enumerate()
+            .filter_map(|(id, robot)| Some((robot.answers_for()?.post.task?, id)))
+            .collect();
+        serviced.sort_unstable();
+        serviced.dedup_by_key(|(task, _)| *task);
+        serviced
+    }
+
+    fn posts(&self) -> Vec<PostView> {
+        self.robots
+            .iter()
+            .enumerate()
+            .filter_map(|(holder, robot)| {
+                let station = robot.answers_for().filter(|station| station.post.is_fixed())?;
+                let children = self.robots.iter().filter(|child| {
+                    child.answers_for().is_some_and(|held| {
+                        held.post.hangs_on(station.post.id) && !held.post.is_redundant()
+                    })
+                });
+                Some(PostView {
+                    reference: station.reference,
+                    holder,
+                    task: station.post.task,
+                    junction: children.count() > 1,
+                })
+            })
+            .collect()
+    }
+}
