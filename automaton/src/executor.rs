@@ -21,6 +21,54 @@
 //! Transitions that only *may* be taken are up to the system, in its rounds.
 //!
 //! Every run ends with a [`Reason`]. Nothing in it depends on clocks, threads or chance.
+//!
+//! # Example
+//!
+//! A metronome: its clock flows by τ̇ = 1, and where τ = 0.5 it ticks and resets the clock.
+//!
+//! ```
+//! use std::convert::Infallible;
+//! use pleach_automaton::{Executor, Reason, Round, System, Trace};
+//!
+//! const PERIOD: f64 = 0.5;
+//!
+//! struct Metronome { clock: f64, ticks: u32 }
+//!
+//! impl System for Metronome {
+//!     type Jump = &'static str;
+//!     type Finish = Infallible;
+//!     type Error = Infallible;
+//!
+//!     fn finished(&self) -> Option<Infallible> {
+//!         None
+//!     }
+//!
+//!     fn jump(&mut self, round: &mut Round<'_, &'static str>) -> Result<(), Infallible> {
+//!         if self.clock >= PERIOD {
+//!             (self.clock, self.ticks) = (0.0, self.ticks + 1);
+//!             round.jumped(0, "tick");
+//!         }
+//!         Ok(())
+//!     }
+//!
+//!     fn time_to_jump(&self) -> Result<Option<f64>, Infallible> {
+//!         Ok(Some(PERIOD - self.clock))
+//!     }
+//!
+//!     fn flow(&mut self, duration: f64) -> Result<(), Infallible> {
+//!         self.clock += duration;
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let (mut metronome, mut trace) = (Metronome { clock: 0.0, ticks: 0 }, Trace::new());
+//! let ending = Executor::new(2.25, 1)?.run(&mut metronome, &mut trace)?;
+//!
+//! assert_eq!(ending.reason, Reason::Horizon);
+//! assert_eq!((metronome.clock, metronome.ticks), (0.25, 4));
+//! assert_eq!(trace.entries()[3].at.to_string(), "(2 s, 3)");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use std::ops::ControlFlow;
 
@@ -50,7 +98,8 @@ pub trait System {
     fn jump(&mut self, round: &mut Round<'_, Self::Jump>) -> Result<(), Self::Error>;
 
     /// How many seconds the current flow takes until a transition that has to be taken becomes
-    /// enabled; `None` if it never will. Asked only when no transition is enabled.
+    /// enabled, or until it would leave an invariant, whichever is first; `None` if it never will.
+    /// Asked only when no transition is enabled.
     ///
     /// # Errors
     ///
