@@ -1,0 +1,284 @@
+//! The executor: it runs any [`System`] over hybrid time.
+//!
+//! # Semantics
+//!
+//! A run alternates between jumps, which take no time, and flows, which let time pass. From hybrid
+//! time (0, 0) on, the executor repeats:
+//!
+//! 1. **Finished?** If the system says that it is, the run ends.
+//! 2. **A round of jumps.** The system takes the transitions that are enabled now, in a total
+//!    order: first a transition that all components share, and if there is none, at most one
+//!    transition of each component, by ascending index. Jumps are never simultaneous: the state
+//!    x⁻ that a jump finds is the state x⁺ that the jump before it leaves, and a jump at (t, j) leads
+//!    to (t, j + 1). After a round with a jump the executor begins again at 1, so that a guard
+//!    which is true on entering a location is seen at that same instant.
+//! 3. **A flow.** When nothing is enabled any more, time passes up to the instant at which the next
+//!    transition that has to be taken becomes enabled, and not beyond it. The flow lands on the
+//!    side of the guard where the transition can be taken; so an event on the boundary between two
+//!    flows happens once, at the end of the first.
+//!
+//! The run covers the closed interval from 0 to the horizon: jumps at the horizon itself are taken.
+//! Transitions that only *may* be taken are up to the system, in its rounds.
+//!
+//! Every run ends with a [`Reason`]. Nothing in it depends on clocks, threads or chance.
+//!
+//! # Example
+//!
+//! A metronome: its clock flows by τ̇ = 1, and where τ = 0.5 it ticks and resets the clock.
+//!
+//! ```
+//! use std::convert::Infallible;
+//! use pleach_automaton::{Executor, Reason, Round, System, Trace};
+//!
+//! const PERIOD: f64 = 0.5;
+//!
+//! struct Metronome { clock: f64, ticks: u32 }
+//!
+//! impl System for Metronome {
+//!     type Jump = &'static str;
+//!     type Finish = Infallible;
+//!     type Error = Infallible;
+//!
+//!     fn finished(&self) -> Option<Infallible> {
+//!         None
+//!     }
+//!
+//!     fn jump(&mut self, round: &mut Round<'_, &'static str>) -> Result<(), Infallible> {
+//!         if self.clock >= PERIOD {
+//!             (self.clock, self.ticks) = (0.0, self.ticks + 1);
+//!             round.jumped(0, "tick");
+//!         }
+//!         Ok(())
+//!     }
+//!
+//!     fn time_to_jump(&self) -> Result<Option<f64>, Infallible> {
+//!         Ok(Some(PERIOD - self.clock))
+//!     }
+//!
+//!     fn flow(&mut self, duration: f64) -> Result<(), Infallible> {
+//!         self.clock += duration;
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let (mut metronome, mut trace) = (Metronome { clock: 0.0, ticks: 0 }, Trace::new());
+//! let ending = Executor::new(2.25, 1)?.run(&mut metronome, &mut trace)?;
+//!
+//! assert_eq!(ending.reason, Reason::Horizon);
+//! assert_eq!((metronome.clock, metronome.ticks), (0.25, 4));
+//! assert_eq!(trace.entries()[3].at.to_string(), "(2 s, 3)");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use std::ops::ControlFlow;
+
+use thiserror::Error;
+
+use crate::time::HybridTime;
+use crate::trajectory::{Participants, TraceEntry};
+
+/// What the executor runs: components with their states and whatever they share.
+pub trait System {
+    /// A jump as traces record it.
+    type Jump;
+    /// How a run can end by itself.
+    type Finish;
+    /// What can go wrong.
+    type Error;
+
+    /// Whether the run is over.
+    fn finished(&self) -> Option<Self::Finish>;
+
+    /// Takes one round of the transitions enabled now, each component at most one of its own, in
+    /// the order of the [module](self), and tells `round` of each jump as it is taken.
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the system from going on.
+    fn jump(&mut self, round: &mut Round<'_, Self::Jump>) -> Result<(), Self::Error>;
+
+    /// How many seconds the current flow takes until a transition that has to be taken becomes
+    /// enabled, or until it would leave an invariant, whichever is first; `None` if it never will.
+    /// Asked only when no transition is enabled.
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the system from going on.
+    fn time_to_jump(&self) -> Result<Option<f64>, Self::Error>;
+
+    /// Lets `duration` > 0 seconds pass, at most [`time_to_jump`](Self::time_to_jump). If it is
+    /// exactly that, the transition must be enabled afterwards, whatever rounding does: the flow
+    /// lands on the crossed side.
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the system from going on.
+    fn flow(&mut self, duration: f64) -> Result<(), Self::Error>;
+}
+
+/// Someone who looks on while a system runs.
+pub trait Observer<S: System + ?Sized> {
+    /// A jump has been taken.
+    fn jumped(&mut self, _entry: TraceEntry<S::Jump>) {}
+
+    /// `duration` seconds are about to pass from `now` on; the system is in the state x⁺ of the
+    /// last jump. A break ends the run here.
+    fn flows(&mut self, _system: &S, _now: HybridTime, _duration: f64) -> ControlFlow<S::Finish> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// Nobody looks on.
+impl<S: System + ?Sized> Observer<S> for () {}
+
+/// A round of jumps while it is under way.
+pub struct Round<'a, J> {
+    now: HybridTime,
+    report: &'a mut dyn FnMut(TraceEntry<J>),
+}
+
+impl<J> Round<'_, J> {
+    /// The hybrid time of the next jump.
+    pub fn now(&self) -> HybridTime {
+        self.now
+    }
+
+    /// `component` has jumped by itself.
+    pub fn jumped(&mut self, component: usize, jump: J) {
+        self.record(Participants::One(component), jump);
+    }
+
+    /// All components have jumped together: this is one jump.
+    pub fn jumped_together(&mut self, jump: J) {
+        self.record(Participants::All, jump);
+    }
+
+    fn record(&mut self, by: Participants, jump: J) {
+        (self.report)(TraceEntry { at: self.now, by, jump });
+        self.now = self.now.after_jump();
+    }
+}
+
+/// How far a run may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Executor {
+    horizon: f64,
+    round_limit: u32,
+}
+
+/// When and why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ending<F> {
+    /// The hybrid time reached.
+    pub at: HybridTime,
+    /// The reason.
+    pub reason: Reason<F>,
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Reason<F> {
+    /// The system said so.
+    Finished(F),
+    /// The observer said so.
+    Interrupted(F),
+    /// The time allowed has passed.
+    Horizon,
+    /// A timelock: a transition is due, so that time cannot pass, and none can be taken. It also
+    /// stands for a time to the next jump that is too short to change t, negative, or NaN.
+    Blocked,
+    /// More rounds of jumps at one instant than allowed.
+    JumpLimit,
+}
+
+/// The limits of an [`Executor`] make no sense.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum InvalidLimit {
+    /// The horizon is negative, infinite or NaN.
+    #[error("the horizon is {0} s: it must be finite and at least 0")]
+    Horizon(f64),
+    /// Not a single round is allowed.
+    #[error("the limit of rounds at one instant is 0: it must be at least 1")]
+    NoRound,
+}
+
+impl Executor {
+    /// Runs up to `horizon` seconds, finite and ≥ 0, with at most `round_limit` ≥ 1 rounds of jumps
+    /// at one instant. A component jumps at most once a round, so that the limit does not depend on
+    /// how many components there are.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidLimit`] outside these ranges.
+    pub fn new(horizon: f64, round_limit: u32) -> Result<Self, InvalidLimit> {
+        if !(horizon.is_finite() && horizon >= 0.0) {
+            return Err(InvalidLimit::Horizon(horizon));
+        }
+        if round_limit == 0 {
+            return Err(InvalidLimit::NoRound);
+        }
+        Ok(Executor { horizon, round_limit })
+    }
+
+    /// Runs `system` from hybrid time (0, 0) to its end, by the semantics of the [module](self).
+    ///
+    /// # Errors
+    ///
+    /// The first error of the system.
+    pub fn run<S: System>(
+        &self,
+        system: &mut S,
+        observer: &mut impl Observer<S>,
+    ) -> Result<Ending<S::Finish>, S::Error> {
+        let mut now = HybridTime::START;
+        let mut rounds = 0;
+        let reason = loop {
+            if let Some(finish) = system.finished() {
+                break Reason::Finished(finish);
+            }
+            let before = now;
+            now = take_round(system, observer, now)?;
+            if now > before {
+                rounds += 1;
+                if rounds > self.round_limit {
+                    break Reason::JumpLimit;
+                }
+                continue;
+            }
+            let left = self.horizon - now.t;
+            if left <= 0.0 {
+                break Reason::Horizon;
+            }
+            let wait = system.time_to_jump()?.unwrap_or(f64::INFINITY);
+            let duration = wait.min(left);
+            let passes = wait > 0.0 && now.t + duration > now.t;
+            if !passes {
+                break Reason::Blocked;
+            }
+            if let ControlFlow::Break(finish) = observer.flows(system, now, duration) {
+                break Reason::Interrupted(finish);
+            }
+            system.flow(duration)?;
+            now = if wait < left { now.after_flow(wait) } else { self.at_horizon(now) };
+            rounds = 0;
+        };
+        Ok(Ending { at: now, reason })
+    }
+
+    /// Set and not added up, so that rounding cannot leave a rest.
+    fn at_horizon(&self, now: HybridTime) -> HybridTime {
+        HybridTime { t: self.horizon, ..now }
+    }
+}
+
+/// Returns the hybrid time after the jumps of the round.
+fn take_round<S: System>(
+    system: &mut S,
+    observer: &mut impl Observer<S>,
+    now: HybridTime,
+) -> Result<HybridTime, S::Error> {
+    let mut round = Round { now, report: &mut |entry| observer.jumped(entry) };
+    system.jump(&mut round)?;
+    Ok(round.now)
+}
