@@ -1,0 +1,109 @@
+//! Straight motions of one control period, and how near they come to each other.
+//!
+//! Between two snapshots the command is constant (eq. (23)), so a robot moves on a segment at
+//! constant speed. All robots share the fraction s ∈ [0, 1] of the period that has passed. What
+//! holds at every instant follows in closed form; nothing is sampled.
+
+use pleach_continuous::Point;
+
+/// The straight motion of a robot during one period.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Where it is at s = 0.
+    pub from: Point,
+    /// Where it is at s = 1.
+    pub to: Point,
+}
+
+impl Motion {
+    /// The motion of something that stands still.
+    pub fn rest(place: Point) -> Self {
+        Motion { from: place, to: place }
+    }
+
+    /// Where the robot is when the fraction s of the period has passed.
+    pub fn at(&self, fraction: f64) -> Point {
+        self.from + (self.to - self.from) * fraction
+    }
+
+    /// How far the robot travels.
+    pub fn length(&self) -> f64 {
+        (self.to - self.from).norm()
+    }
+}
+
+/// The smallest distance between two motions, and when it occurs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// The distance then.
+    pub distance: f64,
+    /// s ∈ [0, 1]: the fraction of the period that has passed.
+    pub fraction: f64,
+}
+
+/// The closest approach of two simultaneous motions.
+///
+/// Their offset is d + s·v with d the offset at the start and v the difference of the
+/// displacements; |d + s·v|² is a parabola with its vertex at s = −d·v / |v|², so its minimum
+/// over [0, 1] lies at the vertex clamped to that interval.
+///
+/// ```
+/// use pleach_verify::network::motion::{Motion, closest_approach};
+/// use nalgebra::point;
+///
+/// let eastward = Motion { from: point![0.0, 0.0], to: point![2.0, 0.0] };
+/// let westward = Motion { from: point![2.0, 0.5], to: point![0.0, 0.5] };
+/// let approach = closest_approach(&eastward, &westward);
+/// assert_eq!((approach.distance, approach.fraction), (0.5, 0.5));
+/// ```
+pub fn closest_approach(first: &Motion, second: &Motion) -> Approach {
+    let offset = second.from - first.from;
+    let relative = (second.to - second.from) - (first.to - first.from);
+    let squared = relative.norm_squared();
+    let fraction =
+        if squared > 0.0 { (-offset.dot(&relative) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    Approach { distance: (offset + relative * fraction).norm(), fraction }
+}
+
+/// The largest distance of two simultaneous motions.
+///
+/// The norm of an affine function of s is convex, so the maximum lies at one of the two ends.
+pub fn farthest_distance(first: &Motion, second: &Motion) -> f64 {
+    (second.from - first.from).norm().max((second.to - first.to).norm())
+}
+
+/// The fractions of the period during which a motion is within `radius` of a place: an interval
+/// [s₀, s₁] within [0, 1], or nothing.
+pub fn interval_within(motion: &Motion, place: Point, radius: f64) -> Option<(f64, f64)> {
+    let (start_inside, end_inside) =
+        ((motion.from - place).norm() <= radius, (motion.to - place).norm() <= radius);
+    if start_inside && end_inside {
+        return Some((0.0, 1.0));
+    }
+    // The disc is convex: what is left is one chord, whose ends solve |d + s·v|² = radius².
+    let nearest = closest_approach(motion, &Motion::rest(place));
+    if nearest.distance > radius {
+        return None;
+    }
+    let direction = motion.to - motion.from;
+    let vertex = (place - motion.from).dot(&direction) / direction.norm_squared();
+    let foot = (motion.at(vertex) - place).norm();
+    let half_chord = ((radius - foot) * (radius + foot)).max(0.0).sqrt() / direction.norm();
+    let start = if start_inside { 0.0 } else { (vertex - half_chord).clamp(0.0, 1.0) };
+    let end = if end_inside { 1.0 } else { (vertex + half_chord).clamp(0.0, 1.0) };
+    Some((start, end))
+}
+
+/// The first fraction of the period that none of the intervals covers, if there is one.
+pub fn first_gap(intervals: &mut [(f64, f64)]) -> Option<f64> {
+    intervals.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut covered = 0.0;
+    for &(start, end) in intervals.iter() {
+        if start > covered {
+            return Some(covered);
+        }
+        covered = f64::max(covered, end);
+    }
+    // An empty list covers nothing, not even s = 0.
+    (intervals.is_empty() || covered < 1.0).then_some(covered)
+}
