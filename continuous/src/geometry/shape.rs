@@ -1,0 +1,61 @@
+//! Discs and half-planes.
+
+use nalgebra::Unit;
+
+use super::Segment;
+use crate::{Point, Vector};
+
+/// The points within `radius` of `center`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disc {
+    /// The centre.
+    pub center: Point,
+    /// The radius, a length; a disc of negative radius is empty.
+    pub radius: f64,
+}
+
+impl Disc {
+    /// Whether `point` lies in the disc, its rim included.
+    pub fn contains(&self, point: Point) -> bool {
+        (point - self.center).norm() <= self.radius
+    }
+
+    /// Distance from the rim to the nearest point of `segment`; negative where the segment enters
+    /// the disc.
+    pub fn gap(&self, segment: &Segment) -> f64 {
+        segment.distance(self.center) - self.radius
+    }
+}
+
+/// The points `q` with `normal · q ≤ offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfPlane {
+    /// Direction that leads out of the half-plane.
+    pub normal: Unit<Vector>,
+    /// Signed distance from the origin to the border, along the normal.
+    pub offset: f64,
+}
+
+impl HalfPlane {
+    /// The half-plane with `point` on its border, which `outward` leads out of; `None` if
+    /// `outward` has no direction.
+    pub fn through(point: Point, outward: Vector) -> Option<HalfPlane> {
+        let normal = Unit::try_new(outward, 0.0)?;
+        Some(HalfPlane { normal, offset: normal.dot(&point.coords) })
+    }
+
+    /// Signed distance from `point` to the border: positive inside, negative outside.
+    pub fn margin(&self, point: Point) -> f64 {
+        self.offset - self.normal.dot(&point.coords)
+    }
+
+    /// Whether `point` lies in the half-plane, its border included.
+    pub fn contains(&self, point: Point) -> bool {
+        self.margin(point) >= 0.0
+    }
+
+    /// The smallest half-plane with the same border direction that contains this one and `point`.
+    pub fn widened_to(self, point: Point) -> HalfPlane {
+        HalfPlane { offset: self.offset.max(self.normal.dot(&point.coords)), ..self }
+    }
+}
