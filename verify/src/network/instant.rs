@@ -1,7 +1,7 @@
 //! What holds at the instant of a snapshot.
 //!
-//! Each function checks one [`Property`], or a few that belong together, over the pure
-//! functions of [`link`](super::link), [`tree`] and [`team`], and names the offenders.
+//! Each function checks one [`Property`], or a few that belong together, with the pure
+//! functions of the modules [`link`], [`mod@tree`] and [`team`], and names the offenders.
 
 use pleach_automaton::network::record::Snapshot;
 use pleach_continuous::Point;
@@ -205,7 +205,7 @@ pub fn residual(snapshot: &Snapshot, limits: &Limits) -> Result<Option<Extreme>,
     let Some((robot, &value)) = smallest else { return Ok(None) };
     let (instant, bound) = (Instant::of(snapshot), limits.least_residual());
     if value < bound - SLACK {
-        let sentence = format!("the residual of robot {robot} is {value:.6}, less than {bound}");
+        let sentence = format!("the residual of robot {robot} is {value:.6}, less than {bound:.6}");
         return Err(instant.violation(Property::Residual, &[robot], (value, bound), sentence));
     }
     Ok(Some(Extreme { value, instant, robots: vec![robot] }))
@@ -310,7 +310,9 @@ pub fn service(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violation> {
                 Property::Service,
                 &[robot],
                 (distance, bound),
-                format!("robot {robot} services task {task} from {distance:.6}, more than {bound}"),
+                format!(
+                    "robot {robot} services task {task} from {distance:.6}, more than {bound:.6}"
+                ),
             ));
         }
     }
@@ -333,7 +335,7 @@ pub fn occupancy(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violation> 
                 (distance, bound),
                 format!(
                     "robot {} is {distance:.6} away from the post ({:.6}, {:.6}) that it holds, \
-                     more than {bound}",
+                     more than {bound:.6}",
                     post.holder, post.reference.x, post.reference.y
                 ),
             ));

@@ -2,6 +2,7 @@
 
 use pleach_automaton::network::scenario::Scenario;
 use pleach_continuous::Point;
+use pleach_continuous::geometry::{Workspace, WorkspaceError};
 use thiserror::Error;
 
 /// How far a measured value may lie beyond its bound: in the scenario's unit of length for
@@ -11,21 +12,28 @@ use thiserror::Error;
 /// a ten-thousandth of the smallest clearance (0.01) in the studies.
 pub const SLACK: f64 = 1e-6;
 
-/// A scenario's number that no mission can be held against.
+/// Why no mission can be held against a scenario.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{name} is {value}; it must be {requirement}")]
-pub struct LimitError {
-    /// The key in the scenario.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// What would be right.
-    pub requirement: &'static str,
+pub enum LimitError {
+    /// A number is not what it must be.
+    #[error("{name} is {value}; it must be {requirement}")]
+    Number {
+        /// The key in the scenario.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What would be right.
+        requirement: &'static str,
+    },
+    /// The polygons bound no workspace.
+    #[error(transparent)]
+    Workspace(#[from] WorkspaceError),
 }
 
 /// The bounds of a mission, valid by construction.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Limits {
+    workspace: Workspace,
     clearance: f64,
     service_radius: f64,
     step_radius: f64,
@@ -43,8 +51,8 @@ impl Limits {
     ///
     /// # Errors
     ///
-    /// A length or rate that is not finite, negative, or zero where it must be positive, or
-    /// ranges l ≥ u.
+    /// A length or rate that is not finite, negative, or zero where it must be positive, ranges
+    /// l ≥ u, or polygons that bound no workspace.
     pub fn of(scenario: &Scenario) -> Result<Self, LimitError> {
         let (link, control) = (&scenario.link, &scenario.control);
         let (full_range, max_range) = (link.full_range, link.max_range);
@@ -65,7 +73,12 @@ impl Limits {
         for robot in &scenario.robot {
             not_negative("robot.rate", robot.rate)?;
         }
+        let outline = &scenario.workspace;
+        let polygon =
+            |vertices: &Vec<[f64; 2]>| vertices.iter().copied().map(Point::from).collect();
+        let holes = outline.holes.iter().map(polygon).collect();
         Ok(Limits {
+            workspace: Workspace::new(polygon(&outline.boundary), holes)?,
             clearance,
             service_radius,
             step_radius,
@@ -76,6 +89,11 @@ impl Limits {
             access_points: places(scenario.access_point.iter().map(|point| point.position))?,
             tasks: places(scenario.task.iter().map(|task| task.position))?,
         })
+    }
+
+    /// 𝒲: where the robots are.
+    pub fn workspace(&self) -> &Workspace {
+        &self.workspace
     }
 
     /// ρ: the distance kept from walls.
@@ -139,16 +157,16 @@ impl Limits {
     }
 }
 
-fn error(name: &str, value: f64, requirement: &'static str) -> LimitError {
-    LimitError { name: name.to_owned(), value, requirement }
+fn error(name: &'static str, value: f64, requirement: &'static str) -> LimitError {
+    LimitError::Number { name, value, requirement }
 }
 
-fn positive(name: &str, value: f64) -> Result<(), LimitError> {
+fn positive(name: &'static str, value: f64) -> Result<(), LimitError> {
     let valid = value.is_finite() && value > 0.0;
     if valid { Ok(()) } else { Err(error(name, value, "a positive number")) }
 }
 
-fn not_negative(name: &str, value: f64) -> Result<(), LimitError> {
+fn not_negative(name: &'static str, value: f64) -> Result<(), LimitError> {
     let valid = value.is_finite() && value >= 0.0;
     if valid { Ok(()) } else { Err(error(name, value, "a number that is not negative")) }
 }
@@ -184,9 +202,14 @@ mod tests {
         assert_eq!(message, "link.full_range is 0.5; it must be less than link.max_range");
         let mut scenario = sample::scenario();
         scenario.control.clearance = Some(f64::NAN);
-        assert_eq!(Limits::of(&scenario).unwrap_err().name, "control.clearance");
+        let message = Limits::of(&scenario).unwrap_err().to_string();
+        assert_eq!(message, "control.clearance is NaN; it must be a positive number");
         let mut scenario = sample::scenario();
         scenario.robot[0].rate = -0.1;
-        assert_eq!(Limits::of(&scenario).unwrap_err().name, "robot.rate");
+        let message = Limits::of(&scenario).unwrap_err().to_string();
+        assert_eq!(message, "robot.rate is -0.1; it must be a number that is not negative");
+        let mut scenario = sample::scenario();
+        scenario.workspace.boundary.truncate(2);
+        assert!(matches!(Limits::of(&scenario), Err(LimitError::Workspace(_))));
     }
 }

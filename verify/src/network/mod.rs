@@ -15,6 +15,61 @@
 //! 3. the [`Monitor`] that runs every check over a mission, and [`audit`] over a recorded one.
 //!
 //! The [`Limits`] come from the scenario; the only numerical slack is [`SLACK`].
+//!
+//! A robot that stands alone in a square and sends to an access point, and then leaps:
+//!
+//! ```
+//! use nalgebra::point;
+//! use pleach_automaton::network::record::{Route, Snapshot};
+//! use pleach_automaton::network::scenario::{
+//!     AccessPoint, Control, LinkRanges, RobotStart, Scenario, WorkspaceOutline,
+//! };
+//! use pleach_discrete::network::{Phase, Role};
+//! use pleach_verify::network::{Monitor, Property};
+//!
+//! let scenario = Scenario {
+//!     name: "alone".to_owned(),
+//!     description: None,
+//!     workspace: WorkspaceOutline {
+//!         boundary: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+//!         holes: Vec::new(),
+//!     },
+//!     link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+//!     control: Control::default(),
+//!     access_point: vec![AccessPoint { position: [0.5, 0.2] }],
+//!     robot: vec![RobotStart { position: [0.5, 0.5], rate: 0.075 }],
+//!     task: Vec::new(),
+//! };
+//! let mut snapshot = Snapshot {
+//!     step: 0,
+//!     time: 0.0,
+//!     positions: vec![point![0.5, 0.5]],
+//!     roles: vec![Role::Redundant],
+//!     phase: Phase::Idle,
+//!     active: vec![0],
+//!     active_team: Vec::new(),
+//!     primary_team: Vec::new(),
+//!     path: Vec::new(),
+//!     residuals: vec![0.025],
+//!     multipliers: vec![0.0],
+//!     routes: vec![Route { from: 0, to: 1, share: 0.1, reliability: 1.0 }],
+//!     tree: vec![(0, 1)],
+//!     task: None,
+//!     serviced: Vec::new(),
+//!     posts: Vec::new(),
+//! };
+//! let any_role_change = |_, _| true;
+//! let mut monitor = Monitor::new(&scenario, any_role_change)?;
+//! monitor.observe(&snapshot)?;
+//! assert_eq!(monitor.extremes().clearance.as_ref().map(|extreme| extreme.value), Some(0.5));
+//!
+//! (snapshot.step, snapshot.time) = (1, 1.0);
+//! snapshot.positions[0].x = 0.52; // the trust region is a tenth of u − l: 0.01
+//! let violation = monitor.observe(&snapshot).unwrap_err();
+//! assert_eq!(violation.property, Property::StepLength);
+//! println!("{violation}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod duty;
 pub mod instant;
@@ -37,6 +92,6 @@ mod violation;
 
 pub use extremes::{Extreme, Extremes};
 pub use limits::{LimitError, Limits, SLACK};
-pub use monitor::{Monitor, RoleTable, SegmentClearance, audit};
+pub use monitor::{Monitor, RoleTable, audit};
 pub use property::Property;
 pub use violation::{Instant, Violation};

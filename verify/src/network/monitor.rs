@@ -4,7 +4,6 @@ use std::fmt;
 
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::Scenario;
-use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
 use super::duty::{self, RoleRelation};
@@ -15,10 +14,6 @@ use super::property::Property;
 use super::violation::{Instant, Violation};
 use super::{instant, period, team};
 
-/// The smallest distance to the walls on the segment between two places; not positive where
-/// the segment leaves the free space.
-pub type SegmentClearance<'a> = Box<dyn Fn(Point, Point) -> f64 + 'a>;
-
 /// Whether a role may turn into another in one transition.
 pub type RoleTable<'a> = Box<dyn Fn(Role, Role) -> bool + 'a>;
 
@@ -28,7 +23,6 @@ pub type RoleTable<'a> = Box<dyn Fn(Role, Role) -> bool + 'a>;
 /// costs O(N log N) for bounded neighbours, path lengths and depth of the tree.
 pub struct Monitor<'a> {
     limits: Limits,
-    segment_clearance: SegmentClearance<'a>,
     role_table: RoleTable<'a>,
     role_relation: RoleRelation,
     previous: Option<Snapshot>,
@@ -36,20 +30,19 @@ pub struct Monitor<'a> {
 }
 
 impl<'a> Monitor<'a> {
-    /// A monitor that has seen nothing yet.
+    /// A monitor that has seen nothing yet; `role_table` tells whether a role may turn into
+    /// another in one transition.
     ///
     /// # Errors
     ///
-    /// A number in the scenario that no mission can be held against.
+    /// What makes the scenario one that no mission can be held against.
     pub fn new(
         scenario: &Scenario,
-        segment_clearance: impl Fn(Point, Point) -> f64 + 'a,
         role_table: impl Fn(Role, Role) -> bool + 'a,
     ) -> Result<Self, LimitError> {
         Ok(Monitor {
             limits: Limits::of(scenario)?,
             role_relation: duty::closure(&role_table),
-            segment_clearance: Box::new(segment_clearance),
             role_table: Box::new(role_table),
             previous: None,
             extremes: Extremes::default(),
@@ -77,8 +70,7 @@ impl<'a> Monitor<'a> {
     fn observe_period(&mut self, period: &Period) -> Result<(), Violation> {
         let Monitor { limits, extremes, .. } = self;
         keep_smaller(&mut extremes.pair_distance, period::separation(period, limits)?);
-        let clearance = period::clearance(period, limits, &self.segment_clearance)?;
-        keep_smaller(&mut extremes.clearance, clearance);
+        keep_smaller(&mut extremes.clearance, period::clearance(period, limits)?);
         period::step_length(period, limits)?;
         period::standstill(period)?;
         keep_larger(&mut extremes.load, period::load(period, limits)?);

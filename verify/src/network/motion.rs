@@ -107,3 +107,78 @@ pub fn first_gap(intervals: &mut [(f64, f64)]) -> Option<f64> {
     // An empty list covers nothing, not even s = 0.
     (intervals.is_empty() || covered < 1.0).then_some(covered)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::point;
+    use proptest::prelude::*;
+
+    const SAMPLES: u32 = 1000;
+
+    fn fractions() -> impl Iterator<Item = f64> {
+        (0..=SAMPLES).map(|sample| f64::from(sample) / f64::from(SAMPLES))
+    }
+
+    fn place() -> impl Strategy<Value = Point> {
+        (-1.0..1.0, -1.0..1.0).prop_map(|(x, y)| point![x, y])
+    }
+
+    fn motion() -> impl Strategy<Value = Motion> {
+        (place(), place()).prop_map(|(from, to)| Motion { from, to })
+    }
+
+    proptest! {
+        #[test]
+        fn the_closest_approach_is_what_dense_sampling_tends_to(
+            first in motion(),
+            second in motion(),
+        ) {
+            let approach = closest_approach(&first, &second);
+            let distance_at = |s: f64| (first.at(s) - second.at(s)).norm();
+            let sampled = fractions().map(distance_at).fold(f64::INFINITY, f64::min);
+            // The relative speed is at most 2·√8 < 6, and a sample lies within half a step.
+            prop_assert!(approach.distance <= sampled + 1e-12);
+            prop_assert!(sampled - approach.distance <= 3.0 / f64::from(SAMPLES));
+            prop_assert!((distance_at(approach.fraction) - approach.distance).abs() < 1e-12);
+        }
+
+        #[test]
+        fn the_farthest_distance_is_never_exceeded(first in motion(), second in motion()) {
+            let farthest = farthest_distance(&first, &second);
+            for s in fractions() {
+                prop_assert!((first.at(s) - second.at(s)).norm() <= farthest + 1e-12);
+            }
+        }
+
+        #[test]
+        fn a_robot_is_near_exactly_within_its_interval(
+            motion in motion(),
+            place in place(),
+            radius in 0.01..1.0,
+        ) {
+            let interval = interval_within(&motion, place, radius);
+            for s in fractions() {
+                let depth = radius - (motion.at(s) - place).norm();
+                let is_inside = interval.is_some_and(|(start, end)| start <= s && s <= end);
+                prop_assert!(depth.abs() < 1e-9 || is_inside == (depth > 0.0), "{s} {depth}");
+            }
+        }
+    }
+
+    #[test]
+    fn parallel_motions_keep_their_distance() {
+        let first = Motion { from: point![0.0, 0.0], to: point![1.0, 0.0] };
+        let second = Motion { from: point![0.0, 0.3], to: point![1.0, 0.3] };
+        assert_eq!(closest_approach(&first, &second), Approach { distance: 0.3, fraction: 0.0 });
+    }
+
+    #[test]
+    fn a_gap_is_found_where_cover_ends() {
+        assert_eq!(first_gap(&mut [(0.4, 1.0), (0.0, 0.5)]), None);
+        assert_eq!(first_gap(&mut [(0.6, 1.0), (0.0, 0.5)]), Some(0.5));
+        assert_eq!(first_gap(&mut [(0.1, 1.0)]), Some(0.0));
+        assert_eq!(first_gap(&mut [(0.0, 0.7), (0.0, 0.2)]), Some(0.7));
+        assert_eq!(first_gap(&mut []), Some(0.0));
+    }
+}

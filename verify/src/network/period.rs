@@ -5,7 +5,6 @@
 //! the two ends; the same goes for loads (see [`link`]).
 
 use pleach_automaton::network::record::{Route, Snapshot};
-use pleach_continuous::Point;
 
 use super::duty::{self, RoleRelation};
 use super::extremes::Extreme;
@@ -80,7 +79,7 @@ pub fn separation(period: &Period, limits: &Limits) -> Result<Option<Extreme>, V
     let robots = vec![pair.first, pair.second];
     if value < bound - SLACK {
         let sentence = format!(
-            "robots {} and {} come within {value:.6} of each other, less than {bound}",
+            "robots {} and {} come within {value:.6} of each other, less than {bound:.6}",
             pair.first, pair.second
         );
         return Err(instant.violation(Property::Separation, &robots, (value, bound), sentence));
@@ -90,20 +89,16 @@ pub fn separation(period: &Period, limits: &Limits) -> Result<Option<Extreme>, V
 
 /// [`Property::Clearance`]; the smallest clearance, for the summary.
 ///
-/// `segment_clearance` gives the smallest distance to the walls on the segment between two
-/// places, not positive where it leaves the free space. The instant reported is the start of
-/// the period.
+/// Exact for the whole segment; outside the workspace it is not positive. The instant reported
+/// is the start of the period.
 ///
 /// # Errors
 ///
 /// The robot with the smallest clearance, if that is less than ρ.
-pub fn clearance(
-    period: &Period,
-    limits: &Limits,
-    segment_clearance: &dyn Fn(Point, Point) -> f64,
-) -> Result<Option<Extreme>, Violation> {
+pub fn clearance(period: &Period, limits: &Limits) -> Result<Option<Extreme>, Violation> {
     let bound = limits.clearance();
-    let clearances = period.motions.iter().map(|motion| segment_clearance(motion.from, motion.to));
+    let of_motion = |motion: &Motion| limits.workspace().segment_clearance(motion.from, motion.to);
+    let clearances = period.motions.iter().map(of_motion);
     let smallest = clearances.enumerate().min_by(|one, other| one.1.total_cmp(&other.1));
     let Some((robot, value)) = smallest else { return Ok(None) };
     let instant = period.start();
@@ -111,7 +106,7 @@ pub fn clearance(
         let (from, to) = (period.motions[robot].from, period.motions[robot].to);
         let sentence = format!(
             "robot {robot} comes within {value:.6} of a wall between ({:.6}, {:.6}) and ({:.6}, \
-             {:.6}), less than {bound}",
+             {:.6}), less than {bound:.6}",
             from.x, from.y, to.x, to.y
         );
         return Err(instant.violation(Property::Clearance, &[robot], (value, bound), sentence));
@@ -133,7 +128,7 @@ pub fn step_length(period: &Period, limits: &Limits) -> Result<(), Violation> {
             Property::StepLength,
             &[robot],
             (length, bound),
-            format!("robot {robot} travels {length:.6} in one period, more than {bound}"),
+            format!("robot {robot} travels {length:.6} in one period, more than {bound:.6}"),
         )),
     }
 }
@@ -217,26 +212,28 @@ fn load_sentence(routes: &[&Route], load: f64) -> String {
 ///
 /// The first edge that is not.
 pub fn tree_range(period: &Period, limits: &Limits) -> Result<(), Violation> {
-    let Period { before, after, .. } = period;
+    let Period { before, after, motions } = period;
     let bound = limits.max_range();
-    let fixed = |node: usize| limits.access_points().get(node - period.motions.len());
     let motion_of = |node: usize| {
-        let robot = period.motions.get(node).copied();
-        robot.or_else(|| fixed(node).copied().map(Motion::rest))
+        let fixed = || Motion::rest(limits.access_points()[node - motions.len()]);
+        motions.get(node).copied().unwrap_or_else(fixed)
     };
-    for &(child, parent) in before.tree.iter().chain(&after.tree) {
-        let is_old = before.tree.contains(&(child, parent));
-        let (Some(one), Some(other)) = (motion_of(child), motion_of(parent)) else { continue };
-        let distance =
-            if is_old { farthest_distance(&one, &other) } else { (one.to - other.to).norm() };
-        if distance >= bound {
-            return Err(period.end().violation(
-                Property::TreeRange,
-                &[child, parent],
-                (distance, bound),
-                format!("the tree edge {child} → {parent} has the length {distance:.6}; R = 0"),
-            ));
+    let check = |&(child, parent): &(usize, usize), distance: f64| {
+        if distance < bound {
+            return Ok(());
         }
+        Err(period.end().violation(
+            Property::TreeRange,
+            &[child, parent],
+            (distance, bound),
+            format!("the tree edge {child} → {parent} has the length {distance:.6}; R = 0"),
+        ))
+    };
+    for edge in &before.tree {
+        check(edge, farthest_distance(&motion_of(edge.0), &motion_of(edge.1)))?;
+    }
+    for edge in &after.tree {
+        check(edge, (motion_of(edge.0).to - motion_of(edge.1).to).norm())?;
     }
     Ok(())
 }
@@ -304,7 +301,9 @@ pub fn service(period: &Period, limits: &Limits) -> Result<(), Violation> {
                 Property::Service,
                 &[robot],
                 (distance, bound),
-                format!("robot {robot} leaves task {task}, and no robot is within {bound} of it"),
+                format!(
+                    "robot {robot} leaves task {task}, and no robot is within {bound:.6} of it"
+                ),
             ));
         }
     }
@@ -329,11 +328,76 @@ pub fn occupancy(period: &Period, limits: &Limits) -> Result<(), Violation> {
                 (distance, bound),
                 format!(
                     "robot {} leaves the post ({:.6}, {:.6}) that it holds: it is {distance:.6} \
-                     away, more than {bound}",
+                     away, more than {bound:.6}",
                     post.holder, post.reference.x, post.reference.y
                 ),
             ));
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::sample;
+    use nalgebra::{Point2, point};
+    use proptest::prelude::*;
+
+    const SAMPLES: u32 = 400;
+
+    /// The distance of a place to a wall, by projection.
+    fn distance_to_wall(place: Point2<f64>, from: Point2<f64>, to: Point2<f64>) -> f64 {
+        let wall = to - from;
+        let share = ((place - from).dot(&wall) / wall.norm_squared()).clamp(0.0, 1.0);
+        (from + wall * share - place).norm()
+    }
+
+    fn place() -> impl Strategy<Value = Point2<f64>> {
+        (-0.9..1.9, -0.9..0.9).prop_map(|(x, y)| point![x, y])
+    }
+
+    proptest! {
+        #[test]
+        fn clearance_is_what_dense_sampling_tends_to(from in place(), to in place()) {
+            let hole = [[0.4, -0.3], [0.9, -0.1], [0.6, 0.4]];
+            let mut scenario = sample::scenario();
+            scenario.workspace.holes = vec![hole.to_vec()];
+            scenario.control.clearance = Some(1e-9);
+            let limits = Limits::of(&scenario).unwrap();
+            let polygons = [&scenario.workspace.boundary[..], &hole];
+            let walls: Vec<_> = polygons
+                .iter()
+                .flat_map(|polygon| {
+                    let next = polygon.iter().cycle().skip(1);
+                    polygon.iter().zip(next).map(|(&one, &other)| (one.into(), other.into()))
+                })
+                .collect();
+            let motion = Motion { from, to };
+            let sampled = (0..=SAMPLES)
+                .map(|sample| motion.at(f64::from(sample) / f64::from(SAMPLES)))
+                .flat_map(|place| walls.iter().map(move |w| distance_to_wall(place, w.0, w.1)))
+                .fold(f64::INFINITY, f64::min);
+
+            let mut snapshot = sample::snapshot(0);
+            snapshot.positions = vec![from];
+            let period = Period { before: &snapshot, after: &snapshot, motions: vec![motion] };
+            // A sample lies within half a step of the nearest instant.
+            let spacing = motion.length() / f64::from(SAMPLES) / 2.0;
+            match clearance(&period, &limits) {
+                Ok(smallest) => {
+                    let smallest = smallest.unwrap().value;
+                    prop_assert!(smallest <= sampled + 1e-12);
+                    prop_assert!(sampled - smallest <= spacing + 1e-12);
+                }
+                // It starts inside the hole, ends there or passes through: the walls are met,
+                // or both ends lie inside.
+                Err(violation) => {
+                    prop_assert!(violation.measured <= 0.0);
+                    let inside = |place| !limits.workspace().contains(place);
+                    prop_assert!(sampled <= spacing + 1e-12 || inside(from) && inside(to));
+                }
+            }
+        }
+    }
 }

@@ -4,8 +4,8 @@ use std::fmt;
 
 /// A property of the robot network that holds at every instant of a mission.
 ///
-/// Each is stated once: in a sentence by [`statement`](Property::statement), and as pure
-/// functions in the module that [`Property`]'s variants link to.
+/// Each is stated once: as a sentence by [`statement`](Property::statement), and as the pure
+/// function that its variant links to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Property {
     /// See [`instant::record`](super::instant::record).
@@ -60,7 +60,7 @@ pub enum Property {
 }
 
 impl Property {
-    /// Every property, in the order of declaration, which is the order of checking.
+    /// Every property, in the order of declaration.
     pub const ALL: [Property; 24] = [
         Property::Record,
         Property::Separation,

@@ -9,7 +9,6 @@ use pleach_automaton::network::record::{PostView, Route, Snapshot};
 use pleach_automaton::network::scenario::{
     AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
 };
-use pleach_continuous::Point;
 use pleach_discrete::network::{Phase, Role};
 
 use super::link::{Places, reliability, residuals};
@@ -31,13 +30,6 @@ pub(super) fn scenario() -> Scenario {
         robot: robots.into_iter().map(|position| RobotStart { position, rate: RATE }).collect(),
         task: vec![Task { position: [0.3, 0.02] }, Task { position: [1.5, 0.0] }],
     }
-}
-
-/// The distance to the nearest side of the rectangle, exact for segments as it is convex.
-pub(super) fn segment_clearance(from: Point, to: Point) -> f64 {
-    let clearance =
-        |place: Point| f64::min(1.0 - place.y.abs(), f64::min(place.x + 1.0, 2.0 - place.x));
-    clearance(from).min(clearance(to))
 }
 
 /// Every transition but those out of a leaf other than to leader, and back to recruit.
