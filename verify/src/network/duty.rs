@@ -58,6 +58,7 @@ mod tests {
     fn a_duty_is_neither_lost_nor_doubled() {
         assert!(are_conserved(&[1, 2, 2], &[2, 1, 2]));
         assert!(!are_conserved(&[1, 2], &[2]));
+        assert!(!are_conserved(&[2], &[1, 2]));
         assert!(!are_conserved(&[1, 2, 2], &[1, 1, 2]));
         assert!(are_conserved::<u8>(&[], &[]));
     }

@@ -124,6 +124,14 @@ mod tests {
     }
 
     #[test]
+    fn a_subgroup_has_members_that_follow_each_other() {
+        assert!(is_run_of_path(&[2, 9], &[4, 2, 9, 5]));
+        assert!(!is_run_of_path(&[9, 2], &[4, 2, 9, 5]));
+        assert!(!is_run_of_path(&[], &[4, 2, 9, 5]));
+        assert!(!is_run_of_path(&[4], &[]));
+    }
+
+    #[test]
     fn the_secondary_team_is_apart_from_the_primary() {
         assert!(teams_are_disjoint(&[1, 2, 7], &[7, 8]));
         assert!(!teams_are_disjoint(&[1, 8, 7], &[7, 8]));
@@ -165,5 +173,6 @@ mod tests {
                 assert_eq!(partitions, cuts == chosen, "{break_points:?} {subgroups:?}");
             }
         }
+        assert!(!subgroups_partition(&path, &[5, 6], &[&[5, 3]]), "a gap before the last");
     }
 }

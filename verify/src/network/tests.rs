@@ -51,6 +51,8 @@ fn a_sound_mission_passes_and_its_extremes_are_told() {
     assert!((residual.value - 0.025).abs() < 1e-12);
     let load = extremes.load.unwrap();
     assert_eq!((load.value, load.robots), (0.3, vec![0]));
+    let busier = keeps(|before, _| before.routes[0].share = 0.3 + 1e-7);
+    assert_eq!(busier.load.unwrap().value, 0.3 + 1e-7);
 }
 
 #[test]
@@ -65,6 +67,7 @@ fn a_snapshot_that_is_not_well_formed() {
     breaks(Property::Record, |_, after| after.tree[0] = (0, 0));
     breaks(Property::Record, |_, after| after.serviced.push((2, 0)));
     breaks(Property::Record, |_, after| after.posts[0].reference.y = f64::INFINITY);
+    breaks(Property::Record, |_, after| after.posts[0].holder = 4);
     breaks(Property::Record, |_, after| after.path = vec![2, 0, 2]);
     keeps(|_, after| after.time = 1.5);
 }
@@ -223,6 +226,11 @@ fn a_robot_whose_information_goes_in_a_circle() {
     let limits = super::Limits::of(&scenario()).unwrap();
     let violation = super::instant::connectivity(&circling, &limits).unwrap_err();
     assert_eq!((violation.property, violation.robots), (Property::Connectivity, vec![2]));
+    let mut tolerant = scenario();
+    tolerant.control.residual_tolerance = Some(0.2);
+    let mut monitor = Monitor::new(&tolerant, role_table).unwrap();
+    let violation = monitor.observe(&circling).unwrap_err();
+    assert_eq!(violation.property, Property::Connectivity);
     keeps(circle(0.2));
 }
 
@@ -240,6 +248,19 @@ fn a_tree_edge_out_of_range() {
     // Robot 1 is 0.61 away from the access point.
     let violation = breaks(Property::TreeRange, |before, _| before.tree[1] = (1, 4));
     assert_eq!(violation.robots, [1, 4]);
+    breaks(Property::TreeRange, |_, after| after.tree[1] = (1, 4));
+    // An edge that leaves the range during the period is missed by neither snapshot's tree.
+    let limits = super::Limits::of(&scenario()).unwrap();
+    let range = |end: f64| {
+        let (mut before, mut after) = (snapshot(1), snapshot(2));
+        before.tree[1] = (1, 4);
+        before.positions[1].x = 0.495;
+        after.positions[1].x = end;
+        let period = super::period::Period::between(&before, &after).unwrap();
+        super::period::tree_range(&period, &limits)
+    };
+    assert_eq!(range(0.5).unwrap_err().property, Property::TreeRange);
+    assert_eq!(range(0.4999), Ok(()));
     // Robot 2 at (0.1, 0.2) is 0.45 away from robot 3 in the beginning and nears it.
     keeps(|_, after| after.tree[2] = (2, 3));
 }
@@ -346,6 +367,7 @@ fn a_robot_that_leaves_its_task() {
         let monitor = Monitor::new(&scenario, role_table).unwrap();
         audit(monitor, [&opening, &before, &after])
     };
+    breaks(Property::Service, |_, after| after.serviced = vec![(0, 2)]);
     // The task is at height 0.02.
     let violation = audit_lifted(0.0501).unwrap_err();
     assert_eq!((violation.property, violation.robots), (Property::Service, vec![0]));
@@ -381,6 +403,11 @@ fn a_junction_or_task_whose_holder_leaves() {
     keeps(|before, _| before.posts[0].reference.y = 0.029);
     // The same for who takes over: the new holder must have arrived.
     breaks(Property::Occupancy, |_, after| after.posts[0].holder = 3);
+    // Who held a junction when the period began stays until its end, handed over or not.
+    breaks(Property::Occupancy, |before, _| {
+        before.posts[1].junction = true;
+        before.posts[1].reference = point![0.2, -0.22];
+    });
     // The post of a mere node may be approached.
     keeps(|_, after| after.posts[1].reference.y = 0.5);
     breaks(Property::Occupancy, |_, after| after.posts[1].junction = true);
