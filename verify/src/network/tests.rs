@@ -338,6 +338,7 @@ fn a_role_that_changes_outside_the_table() {
 fn a_task_that_is_forgotten_or_serviced_twice() {
     breaks(Property::Duties, |_, after| after.serviced.clear());
     breaks(Property::Duties, |_, after| after.serviced.push((0, 3)));
+    breaks(Property::Duties, |_, after| after.serviced.extend([(1, 1), (1, 3)]));
     // A task that is serviced from the last snapshot on was not serviced before.
     let mut snapshots = [0, 1, 2].map(snapshot);
     snapshots[..2].iter_mut().for_each(|snapshot| snapshot.serviced.clear());
