@@ -5,7 +5,6 @@
 
 use pleach_automaton::network::record::Snapshot;
 use pleach_continuous::Point;
-use pleach_discrete::network::Phase;
 
 use super::extremes::Extreme;
 use super::limits::{Limits, SLACK};
@@ -272,7 +271,8 @@ pub fn teams(snapshot: &Snapshot) -> Result<(), Violation> {
     if !team::has_at_most_one_leader(roles) {
         return fault(Property::SingleLeader, &[], "more than one robot leads".to_owned());
     }
-    if !team::leader_comes_last(roles, primary_team, snapshot.phase == Phase::Advance) {
+    let primary_is_active = !active_team.is_empty() && active_team == primary_team;
+    if !team::leader_comes_last(roles, primary_team, primary_is_active) {
         let sentence = format!("the leader is not the last of the primary team {primary_team:?}");
         return fault(Property::LeaderLast, primary_team, sentence);
     }

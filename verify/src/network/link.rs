@@ -108,8 +108,10 @@ impl Places<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::motion::Motion;
     use nalgebra::point;
+    use pleach_continuous::geometry::Segment;
+    use pleach_continuous::network::acceptance::worst_load;
+    use pleach_continuous::network::{CubicReliability, LinkReliability};
     use proptest::prelude::*;
 
     #[test]
@@ -136,8 +138,8 @@ mod tests {
         (-0.3..0.3, -0.3..0.3).prop_map(|(x, y)| point![x, y])
     }
 
-    fn motion() -> impl Strategy<Value = Motion> {
-        (place(), place()).prop_map(|(from, to)| Motion { from, to })
+    fn motion() -> impl Strategy<Value = Segment> {
+        (place(), place()).prop_map(|(from, to)| Segment { from, to })
     }
 
     proptest! {
@@ -162,6 +164,30 @@ mod tests {
             for sample in 1..200 {
                 prop_assert!(load_at(f64::from(sample) / 200.0) <= ends + 1e-12);
             }
+        }
+    }
+
+    proptest! {
+        /// The radio of the robots, and their acceptance of moves, against the statements here.
+        #[test]
+        fn the_robots_reckon_alike(
+            sender in motion(),
+            receivers in prop::collection::vec((motion(), 0.0..0.3), 1..5),
+        ) {
+            let (l, u) = (0.3, 0.9);
+            let radio = CubicReliability::new(l, u).unwrap();
+            let (mut accepted, mut held) = (Vec::new(), [Vec::new(), Vec::new()]);
+            for (receiver, flow) in receivers {
+                accepted.push((flow, receiver));
+                for (end, share) in [0.0, 1.0].into_iter().enumerate() {
+                    let distance = (sender.at(share) - receiver.at(share)).norm();
+                    let stated = reliability(distance, l, u);
+                    prop_assert!((stated - radio.reliability(distance)).abs() < 1e-12);
+                    held[end].push(HeldFlow { flow, distance });
+                }
+            }
+            let worst = held.iter().map(|held| load(held, l, u)).fold(0.0, f64::max);
+            prop_assert!(worst <= worst_load(sender, &accepted, &radio) + 1e-12);
         }
     }
 

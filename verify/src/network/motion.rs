@@ -1,36 +1,11 @@
 //! Straight motions of one control period, and how near they come to each other.
 //!
 //! Between two snapshots the command is constant (eq. (23)), so a robot moves on a segment at
-//! constant speed. All robots share the fraction s ∈ [0, 1] of the period that has passed. What
-//! holds at every instant follows in closed form; nothing is sampled.
+//! constant speed: when the fraction s ∈ [0, 1] of the period has passed, it is at the share s of
+//! its [`Segment`]. What holds at every instant follows in closed form; nothing is sampled.
 
 use pleach_continuous::Point;
-
-/// The straight motion of a robot during one period.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
-    /// Where it is at s = 0.
-    pub from: Point,
-    /// Where it is at s = 1.
-    pub to: Point,
-}
-
-impl Motion {
-    /// The motion of something that stands still.
-    pub fn rest(place: Point) -> Self {
-        Motion { from: place, to: place }
-    }
-
-    /// Where the robot is when the fraction s of the period has passed.
-    pub fn at(&self, fraction: f64) -> Point {
-        self.from + (self.to - self.from) * fraction
-    }
-
-    /// How far the robot travels.
-    pub fn length(&self) -> f64 {
-        (self.to - self.from).norm()
-    }
-}
+use pleach_continuous::geometry::Segment;
 
 /// The smallest distance between two motions, and when it occurs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,17 +23,18 @@ pub struct Approach {
 /// over [0, 1] lies at the vertex clamped to that interval.
 ///
 /// ```
-/// use pleach_verify::network::motion::{Motion, closest_approach};
+/// use pleach_continuous::geometry::Segment;
+/// use pleach_verify::network::motion::closest_approach;
 /// use nalgebra::point;
 ///
-/// let eastward = Motion { from: point![0.0, 0.0], to: point![2.0, 0.0] };
-/// let westward = Motion { from: point![2.0, 0.5], to: point![0.0, 0.5] };
+/// let eastward = Segment { from: point![0.0, 0.0], to: point![2.0, 0.0] };
+/// let westward = Segment { from: point![2.0, 0.5], to: point![0.0, 0.5] };
 /// let approach = closest_approach(&eastward, &westward);
 /// assert_eq!((approach.distance, approach.fraction), (0.5, 0.5));
 /// ```
-pub fn closest_approach(first: &Motion, second: &Motion) -> Approach {
+pub fn closest_approach(first: &Segment, second: &Segment) -> Approach {
     let offset = second.from - first.from;
-    let relative = (second.to - second.from) - (first.to - first.from);
+    let relative = second.vector() - first.vector();
     let squared = relative.norm_squared();
     let fraction =
         if squared > 0.0 { (-offset.dot(&relative) / squared).clamp(0.0, 1.0) } else { 0.0 };
@@ -68,24 +44,24 @@ pub fn closest_approach(first: &Motion, second: &Motion) -> Approach {
 /// The largest distance of two simultaneous motions.
 ///
 /// The norm of an affine function of s is convex, so the maximum lies at one of the two ends.
-pub fn farthest_distance(first: &Motion, second: &Motion) -> f64 {
+pub fn farthest_distance(first: &Segment, second: &Segment) -> f64 {
     (second.from - first.from).norm().max((second.to - first.to).norm())
 }
 
 /// The fractions of the period during which a motion is within `radius` of a place: an interval
 /// [s₀, s₁] within [0, 1], or nothing.
-pub fn interval_within(motion: &Motion, place: Point, radius: f64) -> Option<(f64, f64)> {
+pub fn interval_within(motion: &Segment, place: Point, radius: f64) -> Option<(f64, f64)> {
     let (start_inside, end_inside) =
         ((motion.from - place).norm() <= radius, (motion.to - place).norm() <= radius);
     if start_inside && end_inside {
         return Some((0.0, 1.0));
     }
     // The disc is convex: what is left is one chord, whose ends solve |d + s·v|² = radius².
-    let nearest = closest_approach(motion, &Motion::rest(place));
+    let nearest = closest_approach(motion, &Segment::still(place));
     if nearest.distance > radius {
         return None;
     }
-    let direction = motion.to - motion.from;
+    let direction = motion.vector();
     let vertex = (place - motion.from).dot(&direction) / direction.norm_squared();
     let foot = (motion.at(vertex) - place).norm();
     let half_chord = ((radius - foot) * (radius + foot)).max(0.0).sqrt() / direction.norm();
@@ -124,8 +100,8 @@ mod tests {
         (-1.0..1.0, -1.0..1.0).prop_map(|(x, y)| point![x, y])
     }
 
-    fn motion() -> impl Strategy<Value = Motion> {
-        (place(), place()).prop_map(|(from, to)| Motion { from, to })
+    fn motion() -> impl Strategy<Value = Segment> {
+        (place(), place()).prop_map(|(from, to)| Segment { from, to })
     }
 
     proptest! {
@@ -168,8 +144,8 @@ mod tests {
 
     #[test]
     fn parallel_motions_keep_their_distance() {
-        let first = Motion { from: point![0.0, 0.0], to: point![1.0, 0.0] };
-        let second = Motion { from: point![0.0, 0.3], to: point![1.0, 0.3] };
+        let first = Segment { from: point![0.0, 0.0], to: point![1.0, 0.0] };
+        let second = Segment { from: point![0.0, 0.3], to: point![1.0, 0.3] };
         assert_eq!(closest_approach(&first, &second), Approach { distance: 0.3, fraction: 0.0 });
     }
 

@@ -5,12 +5,13 @@
 //! the two ends; the same goes for loads (see [`link`]).
 
 use pleach_automaton::network::record::{Route, Snapshot};
+use pleach_continuous::geometry::Segment;
 
 use super::duty::{self, RoleRelation};
 use super::extremes::Extreme;
 use super::limits::{Limits, SLACK};
 use super::link::{self, HeldFlow, Places};
-use super::motion::{Motion, farthest_distance, first_gap, interval_within};
+use super::motion::{farthest_distance, first_gap, interval_within};
 use super::property::Property;
 use super::separation::closest_pair;
 use super::violation::{Instant, Violation};
@@ -21,7 +22,7 @@ use super::violation::{Instant, Violation};
 pub struct Period<'a> {
     before: &'a Snapshot,
     after: &'a Snapshot,
-    motions: Vec<Motion>,
+    motions: Vec<Segment>,
 }
 
 impl<'a> Period<'a> {
@@ -44,13 +45,13 @@ impl<'a> Period<'a> {
             ));
         }
         let ends = before.positions.iter().zip(&after.positions);
-        let motions = ends.map(|(&from, &to)| Motion { from, to }).collect();
+        let motions = ends.map(|(&from, &to)| Segment { from, to }).collect();
         Ok(Period { before, after, motions })
     }
 
     /// The opening of a mission: a period without duration in which every robot rests.
     pub fn opening(snapshot: &'a Snapshot) -> Self {
-        let motions = snapshot.positions.iter().copied().map(Motion::rest).collect();
+        let motions = snapshot.positions.iter().copied().map(Segment::still).collect();
         Period { before: snapshot, after: snapshot, motions }
     }
 
@@ -97,7 +98,7 @@ pub fn separation(period: &Period, limits: &Limits) -> Result<Option<Extreme>, V
 /// The robot with the smallest clearance, if that is less than ρ.
 pub fn clearance(period: &Period, limits: &Limits) -> Result<Option<Extreme>, Violation> {
     let bound = limits.clearance();
-    let of_motion = |motion: &Motion| limits.workspace().segment_clearance(motion.from, motion.to);
+    let of_motion = |motion: &Segment| limits.workspace().segment_clearance(motion.from, motion.to);
     let clearances = period.motions.iter().map(of_motion);
     let smallest = clearances.enumerate().min_by(|one, other| one.1.total_cmp(&other.1));
     let Some((robot, value)) = smallest else { return Ok(None) };
@@ -121,7 +122,7 @@ pub fn clearance(period: &Period, limits: &Limits) -> Result<Option<Extreme>, Vi
 /// The first robot that travels too far.
 pub fn step_length(period: &Period, limits: &Limits) -> Result<(), Violation> {
     let bound = limits.step_radius();
-    let mut lengths = period.motions.iter().map(Motion::length).enumerate();
+    let mut lengths = period.motions.iter().map(Segment::length).enumerate();
     match lengths.find(|(_, length)| *length > bound + SLACK) {
         None => Ok(()),
         Some((robot, length)) => Err(period.end().violation(
@@ -215,7 +216,7 @@ pub fn tree_range(period: &Period, limits: &Limits) -> Result<(), Violation> {
     let Period { before, after, motions } = period;
     let bound = limits.max_range();
     let motion_of = |node: usize| {
-        let fixed = || Motion::rest(limits.access_points()[node - motions.len()]);
+        let fixed = || Segment::still(limits.access_points()[node - motions.len()]);
         motions.get(node).copied().unwrap_or_else(fixed)
     };
     let check = |&(child, parent): &(usize, usize), distance: f64| {
@@ -289,13 +290,13 @@ pub fn service(period: &Period, limits: &Limits) -> Result<(), Violation> {
     let bound = limits.service_radius();
     for &(task, robot) in &period.before.serviced {
         let place = limits.tasks()[task];
-        let within = |motion: &Motion| interval_within(motion, place, bound + SLACK);
+        let within = |motion: &Segment| interval_within(motion, place, bound + SLACK);
         if within(&period.motions[robot]) == Some((0.0, 1.0)) {
             continue;
         }
         let mut intervals: Vec<_> = period.motions.iter().filter_map(within).collect();
         if let Some(fraction) = first_gap(&mut intervals) {
-            let nearest = |motion: &Motion| (motion.at(fraction) - place).norm();
+            let nearest = |motion: &Segment| (motion.at(fraction) - place).norm();
             let distance = period.motions.iter().map(nearest).fold(f64::INFINITY, f64::min);
             return Err(period.at(fraction).violation(
                 Property::Service,
@@ -319,7 +320,7 @@ pub fn service(period: &Period, limits: &Limits) -> Result<(), Violation> {
 pub fn occupancy(period: &Period, limits: &Limits) -> Result<(), Violation> {
     let bound = limits.service_radius();
     for post in period.before.posts.iter().filter(|post| post.junction || post.task.is_some()) {
-        let rest = Motion::rest(post.reference);
+        let rest = Segment::still(post.reference);
         let distance = farthest_distance(&period.motions[post.holder], &rest);
         if distance > bound + SLACK {
             return Err(period.end().violation(
@@ -364,6 +365,7 @@ mod tests {
             let mut scenario = sample::scenario();
             scenario.workspace.holes = vec![hole.to_vec()];
             scenario.control.clearance = Some(1e-9);
+            scenario.robot.truncate(1);
             let limits = Limits::of(&scenario).unwrap();
             let polygons = [&scenario.workspace.boundary[..], &hole];
             let walls: Vec<_> = polygons
@@ -373,7 +375,7 @@ mod tests {
                     polygon.iter().zip(next).map(|(&one, &other)| (one.into(), other.into()))
                 })
                 .collect();
-            let motion = Motion { from, to };
+            let motion = Segment { from, to };
             let sampled = (0..=SAMPLES)
                 .map(|sample| motion.at(f64::from(sample) / f64::from(SAMPLES)))
                 .flat_map(|place| walls.iter().map(move |w| distance_to_wall(place, w.0, w.1)))

@@ -164,8 +164,8 @@ impl Property {
             Property::TreeRange => "At every instant every edge of the tree has R > 0.",
             Property::SingleLeader => "At most one robot is the leader.",
             Property::LeaderLast => {
-                "A leader is the last of the primary team, and while the primary team advances \
-                 its last robot is the leader."
+                "A leader is the last of the primary team, and while that is the active team its \
+                 last robot is the leader."
             }
             Property::ActiveTeam => {
                 "The active team is the primary team or one subgroup of the path Σ, and its \

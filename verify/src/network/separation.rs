@@ -2,7 +2,9 @@
 
 use std::cmp::Ordering;
 
-use super::motion::{Approach, Motion, closest_approach};
+use pleach_continuous::geometry::Segment;
+
+use super::motion::{Approach, closest_approach};
 
 /// The pair of robots that come nearest to each other during a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,11 +24,11 @@ pub struct ClosestPair {
 /// side, and only neighbouring cells are compared. If no pair is that near, `reach` is doubled:
 /// then all robots are more than the old `reach` apart and few share a cell, so every round
 /// costs O(N log N), and O(log(extent / reach)) rounds suffice. Ties go to the lower numbers.
-pub fn closest_pair(motions: &[Motion], reach: f64) -> Option<ClosestPair> {
+pub fn closest_pair(motions: &[Segment], reach: f64) -> Option<ClosestPair> {
     if motions.len() < 2 {
         return None;
     }
-    let longest = motions.iter().map(Motion::length).fold(0.0, f64::max);
+    let longest = motions.iter().map(Segment::length).fold(0.0, f64::max);
     let extent = extent(motions);
     let mut reach = reach.max(extent * SMALLEST_REACH);
     loop {
@@ -45,7 +47,7 @@ pub fn closest_pair(motions: &[Motion], reach: f64) -> Option<ClosestPair> {
 const SMALLEST_REACH: f64 = 1e-6;
 
 /// A length that no distance between two places of the motions exceeds.
-fn extent(motions: &[Motion]) -> f64 {
+fn extent(motions: &[Segment]) -> f64 {
     let places = || motions.iter().flat_map(|motion| [motion.from, motion.to]);
     let spread = |coordinate: usize| {
         let values = || places().map(|place| place[coordinate]);
@@ -61,7 +63,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(motions: &[Motion], side: f64) -> Self {
+    fn new(motions: &[Segment], side: f64) -> Self {
         let cell = |coordinate: f64| (coordinate / side).floor() as i64;
         let mut entries: Vec<_> = motions
             .iter()
@@ -76,7 +78,7 @@ impl Grid {
     }
 
     /// The closest pair among robots of the same or of neighbouring cells.
-    fn closest_pair(&self, motions: &[Motion]) -> Option<ClosestPair> {
+    fn closest_pair(&self, motions: &[Segment]) -> Option<ClosestPair> {
         let mut closest: Option<ClosestPair> = None;
         for (place, &(row, column, robot)) in self.entries.iter().enumerate() {
             // Each pair once: the rest of this row, then the row above.
@@ -123,7 +125,7 @@ mod tests {
     use nalgebra::point;
     use proptest::prelude::*;
 
-    fn by_brute_force(motions: &[Motion]) -> f64 {
+    fn by_brute_force(motions: &[Segment]) -> f64 {
         let mut closest = f64::INFINITY;
         for first in 0..motions.len() {
             for second in 0..first {
@@ -134,9 +136,9 @@ mod tests {
         closest
     }
 
-    fn motion() -> impl Strategy<Value = Motion> {
+    fn motion() -> impl Strategy<Value = Segment> {
         (-3.0..3.0, -3.0..3.0, -0.4..0.4, -0.4..0.4)
-            .prop_map(|(x, y, dx, dy)| Motion { from: point![x, y], to: point![x + dx, y + dy] })
+            .prop_map(|(x, y, dx, dy)| Segment { from: point![x, y], to: point![x + dx, y + dy] })
     }
 
     proptest! {
@@ -153,12 +155,12 @@ mod tests {
 
     #[test]
     fn one_robot_has_no_pair() {
-        assert_eq!(closest_pair(&[Motion::rest(point![0.0, 0.0])], 1.0), None);
+        assert_eq!(closest_pair(&[Segment::still(point![0.0, 0.0])], 1.0), None);
     }
 
     #[test]
     fn robots_at_one_place_are_a_pair() {
-        let motions = [Motion::rest(point![1.0, 1.0]); 3];
+        let motions = [Segment::still(point![1.0, 1.0]); 3];
         let pair = closest_pair(&motions, 0.0).unwrap();
         assert_eq!((pair.first, pair.second, pair.approach.distance), (0, 1, 0.0));
     }

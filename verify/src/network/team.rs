@@ -8,17 +8,16 @@ pub fn has_at_most_one_leader(roles: &[Role]) -> bool {
     roles.iter().filter(|&&role| role == Role::Leader).count() <= 1
 }
 
-/// Whether a leader, if there is one, is the last of the primary team; and, if the team is
-/// `advancing`, whether its last robot is the leader (Sec. V-A3).
+/// Whether a leader, if there is one, is the last of the primary team; and, if that team is
+/// `active`, whether its last robot is the leader (Sec. V-A3).
 ///
 /// A robot elected while it has another duty is no leader yet: it becomes one when it is
-/// released (L_b = 1), before the team advances.
-pub fn leader_comes_last(roles: &[Role], primary_team: &[usize], advancing: bool) -> bool {
+/// released (L_b = 1), before the team moves.
+pub fn leader_comes_last(roles: &[Role], primary_team: &[usize], active: bool) -> bool {
     let last = primary_team.last().copied();
     let led = last.is_some_and(|robot| roles.get(robot) == Some(&Role::Leader));
     let mut numbered = roles.iter().enumerate();
-    numbered.all(|(robot, role)| *role != Role::Leader || last == Some(robot))
-        && (led || !advancing)
+    numbered.all(|(robot, role)| *role != Role::Leader || last == Some(robot)) && (led || !active)
 }
 
 /// Whether a team is a subgroup of Σ as far as Σ alone tells: robots that follow each other on

@@ -277,7 +277,7 @@ fn teams_with_two_leaders_or_one_in_the_wrong_place() {
     });
     keeps(|_, after| {
         after.roles[1] = Role::Leaf;
-        after.phase = Phase::Idle;
+        after.active_team.clear();
     });
     keeps(|_, after| {
         after.primary_team = vec![3, 1];
