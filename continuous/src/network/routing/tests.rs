@@ -41,7 +41,7 @@ fn accelerated_methods_need_far_fewer_iterations_on_a_chain_of_thirteen() {
         let count = |method| Rounds::new(&problem, method).run(tolerance, 2000).unwrap();
         let [plain, accelerated, adal] = methods().map(count);
         println!("rate {rate}, {tolerance}: {plain}, accelerated {accelerated}, ADAL {adal}");
-        assert!(5 * accelerated < plain && 5 * adal < plain);
+        assert!(7 * accelerated < plain && 5 * adal < plain);
     }
 }
 
@@ -56,7 +56,7 @@ fn agrees_with_clarabel(problem: &RoutingProblem, method: Method) -> Result<(), 
     // Close to the limit of what can be carried multipliers are large and every method slow.
     prop_assume!(oracle.multipliers.iter().all(|multiplier| *multiplier < 20.0));
     let mut rounds = Rounds::new(problem, method);
-    let ended = rounds.run(1e-5, 20_000);
+    let ended = rounds.run(1e-4, 200_000);
     prop_assert!(ended.is_some(), "{method:?} still misses by {}", rounds.miss());
     let objective = problem.objective(rounds.shares());
     prop_assert!((objective - oracle.objective).abs() < 1e-3, "{objective} {oracle:?}");
@@ -70,7 +70,7 @@ fn agrees_with_clarabel(problem: &RoutingProblem, method: Method) -> Result<(), 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(3000))]
 
     #[test]
     fn every_method_finds_the_routes_that_clarabel_finds(problem in networks()) {
