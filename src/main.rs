@@ -1,3 +1,10 @@
 //! The command-line program.
 
-fn main() {}
+mod cli;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::carry_out(cli::Arguments::parse())
+}

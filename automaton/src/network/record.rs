@@ -4,6 +4,7 @@
 
 use nalgebra::Point2;
 use pleach_discrete::network::{Phase, Role};
+use serde::{Deserialize, Serialize};
 
 /// The observers' view of one instant, just before the robots move.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +71,11 @@ pub struct PostView {
 }
 
 /// Something that happened, with the identities it concerns.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Written out, as in traces, it is a table whose `event` is the name of the variant in snake
+/// case, with the fields beside it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
 #[allow(missing_docs)] // the fields are identities: robots, tasks, nodes
 pub enum MissionEvent {
     /// A user announced a task.
@@ -90,7 +95,13 @@ pub enum MissionEvent {
     /// The leader is released from its past duties.
     Released { robot: usize },
     /// A robot changes its role.
-    RoleChanged { robot: usize, from: Role, to: Role },
+    RoleChanged {
+        robot: usize,
+        #[serde(with = "role_by_name")]
+        from: Role,
+        #[serde(with = "role_by_name")]
+        to: Role,
+    },
     /// A task is serviced, eq. (2).
     TaskServiced { task: usize, robot: usize },
     /// No routing carries the rates: the residual of `robot` falls below −c_min.
@@ -115,7 +126,8 @@ pub struct End {
 }
 
 /// The kinds of end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// Every task is serviced.
     Serviced,
@@ -142,5 +154,23 @@ impl Outcome {
             Outcome::Blocked => "blocked",
             Outcome::InvariantViolated => "invariant_violated",
         }
+    }
+}
+
+/// Roles written by their names; the discrete layer knows nothing of formats.
+mod role_by_name {
+    use pleach_discrete::network::Role;
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub(super) fn serialize<S: Serializer>(role: &Role, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(role.name())
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Role, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        (Role::ALL.into_iter().find(|role| role.name() == name))
+            .ok_or_else(|| D::Error::custom(format!("no role is called {name:?}")))
     }
 }

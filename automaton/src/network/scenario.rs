@@ -1,4 +1,17 @@
 //! What a mission starts from: workspace, radio, control settings, robots and tasks.
+//!
+//! A [`Scenario`] is plain data, as its file states it. [`Scenario::validate`] says everything
+//! that is wrong with it, [`Settings`] fills in what it leaves to the defaults.
+
+mod fault;
+mod key_path;
+mod placement;
+mod settings;
+mod validation;
+
+pub use fault::{Fault, Problem};
+pub use key_path::{KeyPath, KeyStep};
+pub use settings::Settings;
 
 use serde::{Deserialize, Serialize};
 

@@ -1,61 +1,72 @@
-//! The two convex shapes that bound a robot's next position: half-planes and discs.
-//!
-//! Each measures a point by its signed *margin*: the distance to the shape's boundary, positive
-//! inside and negative outside.
+//! Discs and half-planes.
 
+use nalgebra::Unit;
+
+use super::Segment;
 use crate::{Point, Vector};
 
-/// A closed half-plane {q : normal·q ≤ offset}.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HalfPlane {
-    /// Outward normal of unit length.
-    pub normal: Vector,
-    /// Signed distance of the boundary line from the origin along the normal.
-    pub offset: f64,
-}
-
-impl HalfPlane {
-    /// The half-plane normal·q ≤ offset, scaled such that its normal has length 1.
-    ///
-    /// A normal of length zero has no direction and is kept as it is: the set is then the whole
-    /// plane if `offset` ≥ 0, and empty otherwise.
-    pub fn new(normal: Vector, offset: f64) -> Self {
-        let length = normal.norm();
-        if length > 0.0 {
-            Self { normal: normal / length, offset: offset / length }
-        } else {
-            Self { normal, offset }
-        }
-    }
-
-    /// Signed distance from `point` to the boundary line, positive inside.
-    pub fn margin(&self, point: &Point) -> f64 {
-        self.offset - self.normal.dot(&point.coords)
-    }
-
-    /// Whether `point` lies inside or on the boundary.
-    pub fn contains(&self, point: &Point) -> bool {
-        self.margin(point) >= 0.0
-    }
-}
-
-/// A closed disc {q : ‖q − center‖ ≤ radius}.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The points within `radius` of `center`.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
-    /// Its center.
+    /// The centre.
     pub center: Point,
-    /// Its radius.
+    /// The radius, a length; a disc of negative radius is empty.
     pub radius: f64,
 }
 
 impl Disc {
-    /// Signed distance from `point` to the circle, positive inside.
-    pub fn margin(&self, point: &Point) -> f64 {
+    /// Whether `point` lies in the disc, its rim included.
+    pub fn contains(&self, point: Point) -> bool {
+        (point - self.center).norm() <= self.radius
+    }
+
+    /// Signed distance from `point` to the rim: positive inside, negative outside.
+    pub fn margin(&self, point: Point) -> f64 {
         self.radius - (point - self.center).norm()
     }
 
-    /// Whether `point` lies inside or on the circle.
-    pub fn contains(&self, point: &Point) -> bool {
+    /// Distance from the rim to the nearest point of `segment`; negative where the segment enters
+    /// the disc.
+    pub fn gap(&self, segment: &Segment) -> f64 {
+        segment.distance(self.center) - self.radius
+    }
+}
+
+/// The points `q` with `normal · q ≤ offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfPlane {
+    /// Direction that leads out of the half-plane.
+    pub normal: Unit<Vector>,
+    /// Signed distance from the origin to the border, along the normal.
+    pub offset: f64,
+}
+
+impl HalfPlane {
+    /// The half-plane with `point` on its border, which `outward` leads out of; `None` if
+    /// `outward` has no direction.
+    pub fn through(point: Point, outward: Vector) -> Option<HalfPlane> {
+        let normal = Unit::try_new(outward, 0.0)?;
+        Some(HalfPlane { normal, offset: normal.dot(&point.coords) })
+    }
+
+    /// The half-plane `normal · q ≤ offset`, for a normal of any length but zero.
+    pub fn new(normal: Vector, offset: f64) -> HalfPlane {
+        let (normal, length) = Unit::new_and_get(normal);
+        HalfPlane { normal, offset: offset / length }
+    }
+
+    /// Signed distance from `point` to the border: positive inside, negative outside.
+    pub fn margin(&self, point: Point) -> f64 {
+        self.offset - self.normal.dot(&point.coords)
+    }
+
+    /// Whether `point` lies in the half-plane, its border included.
+    pub fn contains(&self, point: Point) -> bool {
         self.margin(point) >= 0.0
+    }
+
+    /// The smallest half-plane with the same border direction that contains this one and `point`.
+    pub fn widened_to(self, point: Point) -> HalfPlane {
+        HalfPlane { offset: self.offset.max(self.normal.dot(&point.coords)), ..self }
     }
 }

@@ -38,41 +38,7 @@
 
 use super::reliability::LinkReliability;
 use crate::Point;
-
-/// A proposed move on a straight line; a fixed place has equal ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
-    /// x: where the move starts.
-    pub from: Point,
-    /// y: where it would end.
-    pub to: Point,
-}
-
-impl Segment {
-    /// The move of something that stays, such as an access point.
-    pub fn still(place: Point) -> Self {
-        Self { from: place, to: place }
-    }
-
-    /// The first half of the move.
-    pub fn halved(&self) -> Self {
-        Self { from: self.from, to: nalgebra::center(&self.from, &self.to) }
-    }
-
-    /// Length of the move.
-    pub fn length(&self) -> f64 {
-        (self.to - self.from).norm()
-    }
-
-    /// Where the move is at a share of it, 0 at the start and 1 at the end.
-    pub fn at(&self, share: f64) -> Point {
-        self.from + (self.to - self.from) * share
-    }
-
-    fn ends(&self) -> [Point; 2] {
-        [self.from, self.to]
-    }
-}
+pub use crate::geometry::Segment;
 
 /// h_i: the time share that a sender at `own` needs to carry its flows, given as pairs of a flow
 /// F_ij and the place of the receiver. Infinite if a receiver of a flow cannot be reached.
@@ -106,12 +72,17 @@ pub fn worst_load(
         receivers
             .iter()
             .map(|&(flow, receiver)| {
-                let [start, end] = receiver.ends();
+                let [start, end] = ends(&receiver);
                 term(flow, &place, &start, reliability).max(term(flow, &place, &end, reliability))
             })
             .sum()
     };
     worst_from(own.from).max(worst_from(own.to))
+}
+
+/// A convex function of a move is largest at one of its ends.
+fn ends(segment: &Segment) -> [Point; 2] {
+    [segment.from, segment.to]
 }
 
 /// F/R: what one flow adds to the load. A flow of zero adds nothing, however far the receiver.
@@ -126,8 +97,8 @@ fn term(flow: f64, sender: &Point, receiver: &Point, reliability: &impl LinkReli
 /// or not at all: the largest of the four distances between the ends.
 pub fn worst_separation(one: Segment, other: Segment) -> f64 {
     let squared = |a: &Point, b: &Point| (a - b).norm_squared();
-    let [start, end] = other.ends();
-    one.ends()
+    let [start, end] = ends(&other);
+    ends(&one)
         .iter()
         .map(|place| squared(place, &start).max(squared(place, &end)))
         .fold(0.0, f64::max)

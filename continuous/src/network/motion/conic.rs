@@ -53,7 +53,7 @@ fn cone_program(problem: &MotionProblem, goal: Vector) -> Option<Vector> {
         // margin − normal·z ≥ 0.
         entries.push(bounds.len(), 0, line.normal.x);
         entries.push(bounds.len(), 1, line.normal.y);
-        bounds.push(line.margin(&problem.position) / unit);
+        bounds.push(line.margin(problem.position) / unit);
     }
     if !bounds.is_empty() {
         cones.push(NonnegativeConeT(bounds.len()));

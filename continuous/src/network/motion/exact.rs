@@ -90,10 +90,10 @@ fn relevant_constraints(problem: &MotionProblem) -> Vec<Constraint> {
         }
     }
     for line in &problem.half_planes {
-        let redundant = smallest.is_some_and(|(_, disc)| line.margin(&disc.center) >= disc.radius);
+        let redundant = smallest.is_some_and(|(_, disc)| line.margin(disc.center) >= disc.radius);
         if !redundant {
-            let margin = line.margin(&problem.position);
-            constraints.push(Constraint::Line { normal: line.normal, margin });
+            let margin = line.margin(problem.position);
+            constraints.push(Constraint::Line { normal: line.normal.into_inner(), margin });
         }
     }
     constraints
@@ -192,9 +192,9 @@ impl MotionProblem {
                 break;
             }
             for line in &self.half_planes {
-                let margin = line.margin(&point);
+                let margin = line.margin(point);
                 if margin < 0.0 {
-                    point += line.normal * margin;
+                    point += line.normal.into_inner() * margin;
                 }
             }
             for disc in &self.discs {

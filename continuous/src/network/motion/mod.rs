@@ -93,8 +93,8 @@ impl MotionProblem {
 
     /// The smallest margin of a point over all constraints; infinite if there are none.
     pub fn smallest_margin(&self, point: &Point) -> f64 {
-        let lines = self.half_planes.iter().map(|half_plane| half_plane.margin(point));
-        let circles = self.discs.iter().map(|disc| disc.margin(point));
+        let lines = self.half_planes.iter().map(|half_plane| half_plane.margin(*point));
+        let circles = self.discs.iter().map(|disc| disc.margin(*point));
         // A margin that is not a number counts as broken, which f64::min would hide.
         lines.chain(circles).fold(f64::INFINITY, |least, margin| {
             if margin < least || margin.is_nan() { margin } else { least }
@@ -145,7 +145,7 @@ const USABLE_TOLERANCE: f64 = 0.5 * FEASIBILITY_TOLERANCE;
 /// The share of a displacement that stays within a half-plane up to the tolerance.
 fn line_reach(line: &HalfPlane, start: &Point, displacement: &Vector) -> f64 {
     let approach = line.normal.dot(displacement);
-    let room = line.margin(start) + USABLE_TOLERANCE;
+    let room = line.margin(*start) + USABLE_TOLERANCE;
     if approach > 0.0 { (room / approach).clamp(0.0, 1.0) } else { 1.0 }
 }
 

@@ -48,12 +48,12 @@ fn is_optimal(problem: &MotionProblem, target: Point, active_within: f64) -> boo
     let lines = problem
         .half_planes
         .iter()
-        .filter(|line| line.margin(&target) <= active_within)
-        .map(|line| line.normal);
+        .filter(|line| line.margin(target) <= active_within)
+        .map(|line| line.normal.into_inner());
     let circles = problem
         .discs
         .iter()
-        .filter(|disc| disc.margin(&target) <= active_within)
+        .filter(|disc| disc.margin(target) <= active_within)
         .map(|disc| (target - disc.center).normalize());
     let normals: Vec<Vector> = lines.chain(circles).collect();
     let along = |normal: &Vector| (pull - normal * pull.dot(normal).max(0.0)).norm() <= allowed;
@@ -156,5 +156,5 @@ fn a_long_slide_along_a_wall_does_not_wear_through_it() {
         assert!((motion.target - position).norm() > 0.0099, "{motion:?} from {position}");
         position = motion.target;
     }
-    assert!(wall.margin(&position) >= -FEASIBILITY_TOLERANCE);
+    assert!(wall.margin(position) >= -FEASIBILITY_TOLERANCE);
 }

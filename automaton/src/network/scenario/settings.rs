@@ -1,0 +1,201 @@
+//! The control settings with every default filled in.
+
+use super::{Control, LinkRanges, MotionSolver, RoutingMethod, Scenario};
+
+/// The settings of the control scheme, none of them left open.
+///
+/// Each field is the key of the same name in [`Control`], or its default. Lengths are in the
+/// scenario's unit, times in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The two distances of the radio, eq. (27).
+    pub link: LinkRanges,
+    /// ρ: distance kept from walls; robots keep 2ρ from each other.
+    pub clearance: f64,
+    /// δ: how close a robot must be to service a task, eq. (2).
+    pub service_radius: f64,
+    /// σ: radius of the trust region, eq. (21).
+    pub step_radius: f64,
+    /// c_min: residuals stay ≥ −c_min.
+    pub residual_tolerance: f64,
+    /// Control periods after which the mission is given up.
+    pub max_steps: usize,
+    /// Δt in seconds.
+    pub period: f64,
+    /// Rounds of coordination messages in a control period.
+    pub rounds_per_period: usize,
+    /// How routes are computed.
+    pub routing_method: RoutingMethod,
+    /// Iterations of the routing method in a control period.
+    pub routing_iterations: usize,
+    /// η: the residual that routes aim at.
+    pub routing_reserve: f64,
+    /// κ: how strongly traffic avoids links whose reliability changes with distance.
+    pub slope_aversion: f64,
+    /// Reliability that a link of the tree never falls below.
+    pub tree_reliability: f64,
+    /// How the motion problem is solved.
+    pub motion_solver: MotionSolver,
+}
+
+impl Settings {
+    /// ρ = l/40: in Study I a hundredth of the unit, some 300 times smaller than its workspace.
+    const CLEARANCES_PER_FULL_RANGE: f64 = 40.0;
+    /// δ = 3ρ: a replacer 2ρ behind the robot it relieves services as well, with room to spare.
+    const SERVICE_RADIUS_IN_CLEARANCES: f64 = 3.0;
+    /// σ = (u − l)/10: a link changes its reliability by at most 0.3 in one step.
+    const STEPS_PER_SLOPE: f64 = 10.0;
+    const RESIDUAL_TOLERANCE: f64 = 0.0;
+    const MAX_STEPS: usize = 20_000;
+    const PERIOD: f64 = 1.0;
+    const ROUNDS_PER_PERIOD: usize = 8;
+    const ROUTING_ITERATIONS: usize = 5;
+    const ROUTING_RESERVE: f64 = 0.02;
+    const SLOPE_AVERSION: f64 = 10.0;
+    const TREE_RELIABILITY: f64 = 0.8;
+
+    /// The settings of `scenario`: what its `[control]` states, defaults for the rest.
+    pub fn resolve(scenario: &Scenario) -> Self {
+        let &Scenario { link, control, .. } = scenario;
+        let clearance =
+            control.clearance.unwrap_or(link.full_range / Self::CLEARANCES_PER_FULL_RANGE);
+        Self {
+            link,
+            clearance,
+            service_radius: control
+                .service_radius
+                .unwrap_or(Self::SERVICE_RADIUS_IN_CLEARANCES * clearance),
+            step_radius: control
+                .step_radius
+                .unwrap_or((link.max_range - link.full_range) / Self::STEPS_PER_SLOPE),
+            residual_tolerance: control.residual_tolerance.unwrap_or(Self::RESIDUAL_TOLERANCE),
+            max_steps: control.max_steps.unwrap_or(Self::MAX_STEPS),
+            period: control.period.unwrap_or(Self::PERIOD),
+            rounds_per_period: control.rounds_per_period.unwrap_or(Self::ROUNDS_PER_PERIOD),
+            routing_method: control.routing_method.unwrap_or_default(),
+            routing_iterations: control.routing_iterations.unwrap_or(Self::ROUTING_ITERATIONS),
+            routing_reserve: control.routing_reserve.unwrap_or(Self::ROUTING_RESERVE),
+            slope_aversion: control.slope_aversion.unwrap_or(Self::SLOPE_AVERSION),
+            tree_reliability: control.tree_reliability.unwrap_or(Self::TREE_RELIABILITY),
+            motion_solver: control.motion_solver.unwrap_or_default(),
+        }
+    }
+
+    /// The length that no link of the tree exceeds, measured along geodesics:
+    /// R⁻¹(tree reliability).
+    pub fn longest_tree_link(&self) -> f64 {
+        self.link.distance_of(self.tree_reliability)
+    }
+
+    /// The length up to which a link may be added to the tree. Both robots of it may still
+    /// come to stand δ away from their posts without passing [`Self::longest_tree_link`].
+    pub fn longest_new_link(&self) -> f64 {
+        self.longest_tree_link() - self.service_radius
+    }
+}
+
+impl LinkRanges {
+    /// The distance at which the reliability (27) is `reliability`, a number between 0 and 1.
+    ///
+    /// With s = (d − l)/(u − l) the reliability is 1 − 3s² + 2s³. It is symmetric about s = ½,
+    /// and in the angle θ with sin θ = 2R − 1 its inverse is s = ½ − sin(θ/3).
+    pub fn distance_of(&self, reliability: f64) -> f64 {
+        let angle = (2.0 * reliability - 1.0).clamp(-1.0, 1.0).asin();
+        let fraction = 0.5 - (angle / 3.0).sin();
+        self.full_range + fraction * (self.max_range - self.full_range)
+    }
+}
+
+impl From<Settings> for Control {
+    fn from(settings: Settings) -> Self {
+        Self {
+            clearance: Some(settings.clearance),
+            service_radius: Some(settings.service_radius),
+            step_radius: Some(settings.step_radius),
+            residual_tolerance: Some(settings.residual_tolerance),
+            max_steps: Some(settings.max_steps),
+            period: Some(settings.period),
+            rounds_per_period: Some(settings.rounds_per_period),
+            routing_method: Some(settings.routing_method),
+            routing_iterations: Some(settings.routing_iterations),
+            routing_reserve: Some(settings.routing_reserve),
+            slope_aversion: Some(settings.slope_aversion),
+            tree_reliability: Some(settings.tree_reliability),
+            motion_solver: Some(settings.motion_solver),
+        }
+    }
+}
+
+impl Scenario {
+    /// The same scenario with every default of its control settings written out.
+    #[must_use]
+    pub fn with_defaults(&self) -> Self {
+        Self { control: Settings::resolve(self).into(), ..self.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::scenario::{AccessPoint, RobotStart, WorkspaceOutline};
+    use proptest::prelude::*;
+
+    fn scenario(control: Control) -> Scenario {
+        Scenario {
+            name: "room".into(),
+            description: None,
+            workspace: WorkspaceOutline {
+                boundary: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]],
+                holes: vec![],
+            },
+            link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+            control,
+            access_point: vec![AccessPoint { position: [0.5, 0.2] }],
+            robot: vec![RobotStart { position: [0.6, 0.2], rate: 0.075 }],
+            task: vec![],
+        }
+    }
+
+    #[test]
+    fn defaults_are_those_of_study_one() {
+        let settings = Settings::resolve(&scenario(Control::default()));
+        assert_eq!(settings.clearance, 0.01);
+        assert_eq!(settings.service_radius, 0.03);
+        assert!((settings.step_radius - 0.01).abs() < 1e-15);
+        assert_eq!(settings.residual_tolerance, 0.0);
+        assert!((settings.longest_tree_link() - 0.4287).abs() < 1e-4);
+        assert!((settings.longest_new_link() - 0.3987).abs() < 1e-4);
+    }
+
+    #[test]
+    fn what_the_file_states_is_kept() {
+        let control = Control {
+            clearance: Some(0.02),
+            motion_solver: Some(MotionSolver::Conic),
+            ..Control::default()
+        };
+        let settings = Settings::resolve(&scenario(control));
+        assert_eq!(settings.clearance, 0.02);
+        assert_eq!(settings.service_radius, 0.06);
+        assert_eq!(settings.motion_solver, MotionSolver::Conic);
+    }
+
+    #[test]
+    fn defaults_written_out_resolve_to_themselves() {
+        let scenario = scenario(Control::default());
+        let complete = scenario.with_defaults();
+        assert_ne!(complete, scenario);
+        assert_eq!(Settings::resolve(&complete), Settings::resolve(&scenario));
+        assert_eq!(complete.with_defaults(), complete);
+    }
+
+    proptest! {
+        #[test]
+        fn distance_of_inverts_the_reliability(reliability in 0.0..=1.0_f64) {
+            let link = LinkRanges { full_range: 2.7, max_range: 3.4 };
+            let s = (link.distance_of(reliability) - 2.7) / 0.7;
+            prop_assert!((1.0 - 3.0 * s * s + 2.0 * s * s * s - reliability).abs() < 1e-12);
+            prop_assert!((-1e-12..=1.0 + 1e-12).contains(&s));
+        }
+    }
+}

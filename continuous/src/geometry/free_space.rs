@@ -1,0 +1,205 @@
+//! The free space W_f: where the centre of a robot may be (Sec. IV-A and Appendix A).
+
+use thiserror::Error;
+
+use super::edge_tree::EdgeTree;
+use super::erosion::{Region, erode};
+use super::visibility::VisibilityGraph;
+use super::workspace::edges_of;
+use super::{Segment, Workspace};
+use crate::Point;
+
+/// The tolerance τ as a fraction of the extent of the workspace: how much farther than ρ from ∂W
+/// robots are sent. Large against rounding (1e-16), small against anything that a robot would
+/// notice.
+const RELATIVE_TOLERANCE: f64 = 1e-6;
+
+/// As a fraction of τ: the deviation from a straight line below which a vertex of the outline is
+/// left out. Small, so that the sight set stays around the planning set.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// The points of a workspace that keep a clearance ρ from its boundary, ready for questions about
+/// sight and shortest paths. See [the two nested sets](super#two-nested-sets).
+///
+/// An inner approximation: all its points have clearance ≥ ρ, which is checked on construction,
+/// and every point with clearance ≥ 1.2 (ρ + τ) belongs to it, except beside reflex vertices that
+/// turn by 67° to 100°, where a mitred corner reaches up to 1.56 (ρ + τ).
+#[derive(Debug, Clone)]
+pub struct FreeSpace {
+    clearance: f64,
+    tolerance: f64,
+    planning: Outline,
+    sight: Outline,
+    graph: VisibilityGraph,
+}
+
+/// Why there is no free space.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FreeSpaceError {
+    /// The clearance is not a length.
+    #[error("the clearance is {clearance}; it is a finite length, 0 or more")]
+    InvalidClearance {
+        /// The clearance asked for.
+        clearance: f64,
+    },
+    /// No room for a robot anywhere.
+    #[error(
+        "no point of the workspace, whose extent is {extent}, keeps a clearance of {clearance} \
+         from the boundary; choose a smaller clearance"
+    )]
+    Empty {
+        /// The clearance asked for.
+        clearance: f64,
+        /// The larger side of the box around the workspace.
+        extent: f64,
+    },
+    /// The outline that was computed does not keep the clearance: coordinates so large, or details
+    /// so small, that rounding exceeds the tolerance.
+    #[error(
+        "near ({}, {}) the free space cannot be computed to within {tolerance:e}; move the \
+         workspace closer to the origin, or remove details of that size from it", at.x, at.y
+    )]
+    Uncertified {
+        /// A point of the outline that fails.
+        at: Point,
+        /// The tolerance τ that rounding exceeds.
+        tolerance: f64,
+    },
+}
+
+impl FreeSpace {
+    /// The free space of `workspace` for robots that keep `clearance` (ρ, a length) from its
+    /// boundary; 0 is allowed.
+    ///
+    /// # Errors
+    ///
+    /// If the clearance is not a length, if no place keeps it, or if rounding spoils the result.
+    pub fn new(workspace: &Workspace, clearance: f64) -> Result<FreeSpace, FreeSpaceError> {
+        if !(clearance.is_finite() && clearance >= 0.0) {
+            return Err(FreeSpaceError::InvalidClearance { clearance });
+        }
+        let extent = workspace.extent();
+        let tolerance = RELATIVE_TOLERANCE * extent;
+        let outline =
+            |slack: f64| Outline::new(erode(workspace, clearance + slack, NEGLIGIBLE * tolerance));
+        let (planning, sight) = (outline(tolerance), outline(tolerance / 2.0));
+        if planning.rings.is_empty() {
+            return Err(FreeSpaceError::Empty { clearance, extent });
+        }
+        let graph = VisibilityGraph::new(&planning.rings, &sight.tree, tolerance);
+        let free_space = FreeSpace { clearance, tolerance, planning, sight, graph };
+        free_space.certify(workspace)?;
+        Ok(free_space)
+    }
+
+    /// The clearance ρ that every point of the free space keeps from the boundary, a length.
+    pub fn clearance(&self) -> f64 {
+        self.clearance
+    }
+
+    /// The tolerance τ, a length: planned positions keep ρ + τ from the boundary.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Outline of the planning set, for drawings: outer rings counter-clockwise, holes clockwise.
+    pub fn outline(&self) -> &[Vec<Point>] {
+        &self.planning.rings
+    }
+
+    /// Whether a robot at `point` keeps the clearance: membership in the sight set.
+    pub fn contains(&self, point: Point) -> bool {
+        self.sight.tree.encloses(point)
+    }
+
+    /// The point of the planning set nearest to `point`; the point itself if it lies there.
+    pub fn nearest(&self, point: Point) -> Point {
+        if self.planning.tree.encloses(point) {
+            return point;
+        }
+        self.planning.tree.nearest(point).map_or(point, |(_, nearest)| nearest)
+    }
+
+    /// Which connected piece of the free space `point` lies in, `None` if it lies in none.
+    /// Robots cannot walk from one piece to another.
+    pub fn region(&self, point: Point) -> Option<usize> {
+        if !self.contains(point) {
+            return None;
+        }
+        // From a point inside, nothing lies between it and the nearest edge: that edge bounds its region.
+        self.sight.tree.nearest(point).map(|(edge, _)| self.sight.region_of_edge[edge])
+    }
+
+    /// Whether a robot can walk straight from one point to the other: the segment between them
+    /// lies in the sight set.
+    pub fn sees(&self, from: Point, to: Point) -> bool {
+        self.contains(from) && self.is_clear(&Segment::new(from, to))
+    }
+
+    /// Whether a segment that starts in the sight set stays there.
+    pub(super) fn is_clear(&self, path: &Segment) -> bool {
+        !self.sight.tree.is_crossed_by(path)
+    }
+
+    pub(super) fn graph(&self) -> &VisibilityGraph {
+        &self.graph
+    }
+
+    /// Visits the edges of the planning set within `radius` of `center`.
+    pub(super) fn for_each_edge_near(
+        &self,
+        center: Point,
+        radius: f64,
+        visit: impl FnMut(&Segment),
+    ) {
+        self.planning.tree.for_each_near(center, radius, visit);
+    }
+
+    /// Checks that both outlines keep the clearance and that the planning set lies within the
+    /// sight set. An outline that keeps the clearance encloses no part of ∂W unless it encloses
+    /// a whole polygon of it, which is checked by one vertex of each.
+    fn certify(&self, workspace: &Workspace) -> Result<(), FreeSpaceError> {
+        let failed = |at: Point| FreeSpaceError::Uncertified { at, tolerance: self.tolerance };
+        for edge in self.sight.edges().chain(self.planning.edges()) {
+            if workspace.segment_clearance(edge.from, edge.to) < self.clearance {
+                return Err(failed(edge.from));
+            }
+        }
+        for edge in self.planning.edges() {
+            if !self.sees(edge.from, edge.to) {
+                return Err(failed(edge.from));
+            }
+        }
+        for ring in workspace.polygons() {
+            if self.contains(ring[0]) {
+                return Err(failed(ring[0]));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The boundary of a set, with the set on the left.
+#[derive(Debug, Clone)]
+struct Outline {
+    rings: Vec<Vec<Point>>,
+    tree: EdgeTree,
+    region_of_edge: Vec<usize>,
+}
+
+impl Outline {
+    fn new(regions: Vec<Region>) -> Outline {
+        let sizes = regions.iter().map(|rings| rings.iter().map(Vec::len).sum());
+        let region_of_edge = sizes
+            .enumerate()
+            .flat_map(|(region, edges): (usize, usize)| std::iter::repeat_n(region, edges))
+            .collect();
+        let rings: Vec<Vec<Point>> = regions.into_iter().flatten().collect();
+        let tree = EdgeTree::new(rings.iter().flat_map(|ring| edges_of(ring)));
+        Outline { rings, tree, region_of_edge }
+    }
+
+    fn edges(&self) -> impl Iterator<Item = Segment> {
+        self.rings.iter().flat_map(|ring| edges_of(ring))
+    }
+}

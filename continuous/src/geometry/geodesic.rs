@@ -1,0 +1,176 @@
+//! Shortest paths in the free space (Definition 4.1).
+
+use std::collections::BinaryHeap;
+
+use super::ranked::Ranked;
+use super::search::shortest_path;
+use super::{FreeSpace, Segment};
+use crate::Point;
+
+/// A shortest path in the free space: straight lines between reflex vertices (15).
+///
+/// With holes there can be several of equal length; which of them is returned is deterministic
+/// but arbitrary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Geodesic {
+    /// Length of the path.
+    pub length: f64,
+    /// Where the path goes from its start: the vertices a₁, …, a_m, and last the goal. Never empty.
+    pub waypoints: Vec<Point>,
+}
+
+impl Geodesic {
+    /// The path from `start` through `waypoints`.
+    pub(super) fn new(start: Point, waypoints: Vec<Point>) -> Geodesic {
+        let length = segments(start, &waypoints).map(|segment| segment.length()).sum();
+        Geodesic { length, waypoints }
+    }
+
+    /// The segments of the path, which begins at `start`.
+    pub fn segments(&self, start: Point) -> impl Iterator<Item = Segment> {
+        segments(start, &self.waypoints)
+    }
+}
+
+fn segments(start: Point, waypoints: &[Point]) -> impl Iterator<Item = Segment> {
+    let starts = std::iter::once(start).chain(waypoints.iter().copied());
+    starts.zip(waypoints).map(|(from, to)| Segment::new(from, *to))
+}
+
+/// A goal with everything about it computed once: the way from every corner of one free space.
+/// Made by [`FreeSpace::destination`], used with [`FreeSpace::geodesic_to`] of the same free space.
+#[derive(Debug, Clone)]
+pub struct Destination {
+    goal: Point,
+    ways: Vec<Way>,
+}
+
+/// The way from a corner to the goal.
+#[derive(Debug, Clone, Copy)]
+struct Way {
+    /// Length of the shortest path; infinite if there is none.
+    length: f64,
+    /// The corner that follows on it; `None` if the goal does.
+    next: Option<usize>,
+}
+
+impl Destination {
+    /// The goal.
+    pub fn goal(&self) -> Point {
+        self.goal
+    }
+
+    fn waypoints_from(&self, corner: usize, space: &FreeSpace) -> Vec<Point> {
+        let corners = space.graph().corners();
+        let chain = std::iter::successors(Some(corner), |&at| self.ways[at].next);
+        chain.map(|at| corners[at].at).chain([self.goal]).collect()
+    }
+}
+
+impl FreeSpace {
+    /// A shortest path from `from` to `to`, `None` if there is none or if one of them is not in
+    /// the free space (see [`FreeSpace::nearest`]).
+    pub fn geodesic(&self, from: Point, to: Point) -> Option<Geodesic> {
+        if !self.contains(from) || !self.contains(to) {
+            return None;
+        }
+        if self.is_clear(&Segment::new(from, to)) {
+            return Some(Geodesic::new(from, vec![to]));
+        }
+        shortest_path(self, from, to, &[])
+    }
+
+    /// Length of a shortest path from `from` to `to`; infinite if there is none.
+    pub fn distance(&self, from: Point, to: Point) -> f64 {
+        self.geodesic(from, to).map_or(f64::INFINITY, |path| path.length)
+    }
+
+    /// The shortest ways to `goal` from everywhere, for many questions about the same goal.
+    /// A goal outside the free space can be reached from nowhere.
+    pub fn destination(&self, goal: Point) -> Destination {
+        let graph = self.graph();
+        let unreached = Way { length: f64::INFINITY, next: None };
+        let mut ways = vec![unreached; graph.corners().len()];
+        if !self.contains(goal) {
+            return Destination { goal, ways };
+        }
+        let mut frontier = BinaryHeap::new();
+        for (index, corner) in graph.corners().iter().enumerate() {
+            let path = Segment::new(goal, corner.at);
+            if self.is_clear(&path) {
+                ways[index].length = path.length();
+                frontier.push(Ranked { cost: path.length(), item: index });
+            }
+        }
+        while let Some(Ranked { cost, item: corner }) = frontier.pop() {
+            if cost > ways[corner].length {
+                continue;
+            }
+            for link in graph.links(corner) {
+                let length = cost + link.length;
+                if length < ways[link.corner].length {
+                    ways[link.corner] = Way { length, next: Some(corner) };
+                    frontier.push(Ranked { cost: length, item: link.corner });
+                }
+            }
+        }
+        Destination { goal, ways }
+    }
+
+    /// A shortest path from `from` to a destination of this free space, `None` if there is none.
+    ///
+    /// Corners are tried in the order of the length that the path over them would have: the first
+    /// one in sight is on a shortest path, and few are tested.
+    pub fn geodesic_to(&self, from: Point, destination: &Destination) -> Option<Geodesic> {
+        if !self.contains(from) {
+            return None;
+        }
+        let goal = destination.goal;
+        if self.contains(goal) && self.is_clear(&Segment::new(from, goal)) {
+            return Some(Geodesic::new(from, vec![goal]));
+        }
+        let corners = self.graph().corners();
+        let mut candidates: BinaryHeap<Ranked<usize>> = corners
+            .iter()
+            .zip(&destination.ways)
+            .enumerate()
+            .filter(|(_, (_, way))| way.length.is_finite())
+            .map(|(item, (corner, way))| Ranked {
+                cost: (corner.at - from).norm() + way.length,
+                item,
+            })
+            .collect();
+        while let Some(Ranked { item: corner, .. }) = candidates.pop() {
+            if self.is_clear(&Segment::new(from, corners[corner].at)) {
+                let waypoints = destination.waypoints_from(corner, self);
+                return Some(self.departure(from, waypoints, |path| self.is_clear(path)));
+            }
+        }
+        None
+    }
+
+    /// Length of a shortest path from `from` to a destination; infinite if there is none.
+    pub fn distance_to(&self, from: Point, destination: &Destination) -> f64 {
+        self.geodesic_to(from, destination).map_or(f64::INFINITY, |path| path.length)
+    }
+
+    /// The path from `from` through `waypoints`, without a first waypoint where `from` already is:
+    /// a robot at a corner is told where to go next, unless it must still come closer to see it.
+    pub(super) fn departure(
+        &self,
+        from: Point,
+        mut waypoints: Vec<Point>,
+        passable: impl Fn(&Segment) -> bool,
+    ) -> Geodesic {
+        while waypoints.len() > 1 {
+            let distance = (waypoints[0] - from).norm();
+            let reached = distance == 0.0
+                || distance < self.tolerance() && passable(&Segment::new(from, waypoints[1]));
+            if !reached {
+                break;
+            }
+            waypoints.remove(0);
+        }
+        Geodesic::new(from, waypoints)
+    }
+}

@@ -1,0 +1,149 @@
+//! Line segments: distances, and the exact test whether a path crosses an edge.
+
+use crate::{Point, Vector};
+
+/// The straight line between two points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Where it starts.
+    pub from: Point,
+    /// Where it ends.
+    pub to: Point,
+}
+
+impl Segment {
+    /// The segment between two points.
+    pub fn new(from: Point, to: Point) -> Segment {
+        Segment { from, to }
+    }
+
+    /// A place: the segment of length zero.
+    pub fn still(place: Point) -> Segment {
+        Segment { from: place, to: place }
+    }
+
+    /// The first half.
+    pub fn halved(&self) -> Segment {
+        Segment { from: self.from, to: nalgebra::center(&self.from, &self.to) }
+    }
+
+    /// The point at a share of the way, 0 at the start and 1 at the end.
+    pub fn at(&self, share: f64) -> Point {
+        self.from + self.vector() * share
+    }
+
+    /// The displacement from start to end.
+    pub fn vector(&self) -> Vector {
+        self.to - self.from
+    }
+
+    /// The distance between the ends.
+    pub fn length(&self) -> f64 {
+        self.vector().norm()
+    }
+
+    /// The unit vector a quarter turn to the left of the direction; zero for a single point.
+    pub fn left_normal(&self) -> Vector {
+        let along = self.vector();
+        let length = along.norm();
+        if length == 0.0 { Vector::zeros() } else { Vector::new(-along.y, along.x) / length }
+    }
+
+    /// The point of the segment nearest to `point`.
+    pub fn nearest(&self, point: Point) -> Point {
+        let along = self.vector();
+        let fraction = along.dot(&(point - self.from)) / along.norm_squared();
+        if fraction >= 1.0 {
+            self.to
+        } else if fraction > 0.0 {
+            self.from + along * fraction
+        } else {
+            self.from // also for a segment that is a single point, where the fraction is not a number
+        }
+    }
+
+    /// Distance to the nearest point of the segment.
+    pub fn distance(&self, point: Point) -> f64 {
+        (point - self.nearest(point)).norm()
+    }
+
+    /// A pair of closest points: the first on this segment, the second on `other`.
+    pub fn closest(&self, other: &Segment) -> (Point, Point) {
+        if let Some(common) = self.crossing_point(other) {
+            return (common, common);
+        }
+        let pairs = [
+            (self.nearest(other.from), other.from),
+            (self.nearest(other.to), other.to),
+            (self.from, other.nearest(self.from)),
+            (self.to, other.nearest(self.to)),
+        ];
+        let gap = |pair: &(Point, Point)| (pair.1 - pair.0).norm_squared();
+        pairs
+            .into_iter()
+            .fold(pairs[0], |best, pair| if gap(&pair) < gap(&best) { pair } else { best })
+    }
+
+    /// Distance between the two segments; 0 if they meet.
+    pub fn distance_to(&self, other: &Segment) -> f64 {
+        let (here, there) = self.closest(other);
+        (there - here).norm()
+    }
+
+    /// Whether `path` passes from one side of this edge to the other. Exact.
+    ///
+    /// The left side of the edge owns the edge, and the right side of the path owns the path:
+    /// where a path runs exactly through a corner, it therefore crosses one of the two edges there
+    /// if these lie on different sides of it, and either both or none if they lie on the same side
+    /// (a path that grazes a corner may count as crossing).
+    pub fn is_crossed_by(&self, path: &Segment) -> bool {
+        let starts_left = side(self.from, self.to, path.from) >= 0.0;
+        let ends_left = side(self.from, self.to, path.to) >= 0.0;
+        starts_left != ends_left
+            && (side(path.from, path.to, self.from) > 0.0)
+                != (side(path.from, path.to, self.to) > 0.0)
+    }
+
+    /// Whether the two segments have a point in common. Exact.
+    pub fn meets(&self, other: &Segment) -> bool {
+        let sides = |line: &Segment, cut: &Segment| {
+            (side(line.from, line.to, cut.from), side(line.from, line.to, cut.to))
+        };
+        let (a, b) = sides(self, other);
+        let (c, d) = sides(other, self);
+        if a == 0.0 && b == 0.0 && c == 0.0 && d == 0.0 {
+            return self.boxes_overlap(other);
+        }
+        opposite_or_on(a, b) && opposite_or_on(c, d)
+    }
+
+    /// Where the segments cross, if each has ends strictly on both sides of the other.
+    fn crossing_point(&self, other: &Segment) -> Option<Point> {
+        let (a, b) = (side(self.from, self.to, other.from), side(self.from, self.to, other.to));
+        let (c, d) = (side(other.from, other.to, self.from), side(other.from, other.to, self.to));
+        let crosses = a * b < 0.0 && c * d < 0.0;
+        crosses.then(|| self.from + self.vector() * (c / (c - d)))
+    }
+
+    fn boxes_overlap(&self, other: &Segment) -> bool {
+        (0..2).all(|axis| {
+            let (a, b) = (self.from[axis], self.to[axis]);
+            let (c, d) = (other.from[axis], other.to[axis]);
+            a.min(b) <= c.max(d) && c.min(d) <= a.max(b)
+        })
+    }
+}
+
+fn opposite_or_on(one: f64, other: f64) -> bool {
+    !(one > 0.0 && other > 0.0 || one < 0.0 && other < 0.0)
+}
+
+/// On which side of the line from `from` to `to` the `point` lies: positive on the left, negative
+/// on the right, 0 on the line. The sign is exact.
+///
+/// J. R. Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric
+/// predicates*, <https://doi.org/10.1007/PL00009321>.
+pub fn side(from: Point, to: Point, point: Point) -> f64 {
+    let coord = |p: Point| robust::Coord { x: p.x, y: p.y };
+    robust::orient2d(coord(from), coord(to), coord(point))
+}

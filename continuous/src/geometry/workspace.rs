@@ -1,0 +1,335 @@
+//! The workspace W: a polygon with polygonal holes (Sec. II).
+
+use std::fmt;
+
+use thiserror::Error;
+
+use super::Segment;
+use super::edge_tree::EdgeTree;
+use super::segment::side;
+use crate::Point;
+
+/// Largest magnitude of a coordinate: beyond it the square of a length leaves the range of numbers.
+const COORDINATE_LIMIT: f64 = 1e100;
+
+/// The bounded region W in which the robots live: a simple polygon without the interiors of its
+/// holes. Its boundary ∂W has W on the left: the outer boundary runs counter-clockwise, holes run
+/// clockwise, however they were given.
+#[derive(Debug, Clone)]
+pub struct Workspace {
+    /// The outer boundary, then the holes.
+    polygons: Vec<Vec<Point>>,
+    tree: EdgeTree,
+    extent: f64,
+}
+
+/// One of the polygons that bound a workspace.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Polygon {
+    /// The outer boundary.
+    Boundary,
+    /// A hole, by its index in the list of holes, from 0.
+    Hole(usize),
+}
+
+impl fmt::Display for Polygon {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Polygon::Boundary => write!(f, "the boundary"),
+            Polygon::Hole(index) => write!(f, "hole {index}"),
+        }
+    }
+}
+
+/// An edge of a workspace as errors name it: edge `index` runs from vertex `index` of its polygon,
+/// counted as it was given from 0, to the vertex after it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NamedEdge {
+    /// The polygon it belongs to.
+    pub polygon: Polygon,
+    /// Index of the edge, and of the vertex it starts at.
+    pub index: usize,
+    /// Where it runs.
+    pub segment: Segment,
+}
+
+impl fmt::Display for NamedEdge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Segment { from, to } = self.segment;
+        let NamedEdge { polygon, index, .. } = self;
+        write!(f, "edge {index} of {polygon}, ({}, {}) to ({}, {})", from.x, from.y, to.x, to.y)
+    }
+}
+
+/// Why polygons do not bound a workspace.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum WorkspaceError {
+    /// Not enough vertices to enclose anything.
+    #[error("{polygon} has {count} vertices; a polygon needs at least 3")]
+    TooFewVertices {
+        /// The polygon.
+        polygon: Polygon,
+        /// How many vertices it has.
+        count: usize,
+    },
+    /// A coordinate that is not a number, or too large to compute with.
+    #[error(
+        "vertex {vertex} of {polygon} is ({}, {}); coordinates are finite numbers of magnitude at \
+         most {COORDINATE_LIMIT:e}", at.x, at.y
+    )]
+    NotFinite {
+        /// The polygon.
+        polygon: Polygon,
+        /// Index of the vertex in it.
+        vertex: usize,
+        /// The vertex.
+        at: Point,
+    },
+    /// Two vertices of a polygon at the same place.
+    #[error(
+        "vertices {first} and {second} of {polygon} are both ({}, {}); list every vertex once, \
+         without repeating the first one at the end", at.x, at.y
+    )]
+    RepeatedVertex {
+        /// The polygon.
+        polygon: Polygon,
+        /// The earlier vertex.
+        first: usize,
+        /// The later vertex.
+        second: usize,
+        /// Where both are.
+        at: Point,
+    },
+    /// All vertices on one line.
+    #[error("the vertices of {polygon} lie on one line; a polygon encloses an area")]
+    Flat {
+        /// The polygon.
+        polygon: Polygon,
+    },
+    /// Two edges of one polygon that cross, touch or overlap.
+    #[error(
+        "{first}, meets {second}; the edges of a polygon meet only where one follows the other"
+    )]
+    SelfIntersecting {
+        /// The earlier edge.
+        first: NamedEdge,
+        /// The later edge.
+        second: NamedEdge,
+    },
+    /// Edges of two polygons that cross, touch or overlap.
+    #[error(
+        "{first}, meets {second}; holes lie strictly inside the boundary and apart from each \
+         other: join holes that touch, and draw a hole that touches the boundary as part of it"
+    )]
+    PolygonsMeet {
+        /// The edge of one polygon.
+        first: NamedEdge,
+        /// The edge of the other.
+        second: NamedEdge,
+    },
+    /// A hole outside the boundary.
+    #[error("hole {hole}, with a vertex at ({}, {}), lies outside the boundary; remove it", at.x, at.y)]
+    HoleOutside {
+        /// Index of the hole.
+        hole: usize,
+        /// Its first vertex.
+        at: Point,
+    },
+    /// A hole inside another one.
+    #[error("hole {inner} lies inside hole {outer}; remove it")]
+    NestedHoles {
+        /// Index of the hole inside.
+        inner: usize,
+        /// Index of the hole around it.
+        outer: usize,
+    },
+}
+
+impl Workspace {
+    /// The workspace within `boundary` and outside every one of `holes`. Vertices are listed in
+    /// order, clockwise or counter-clockwise; vertices on a straight line with their neighbours
+    /// are welcome.
+    ///
+    /// # Errors
+    ///
+    /// Unless every polygon is simple and encloses an area, and the holes lie strictly inside the
+    /// boundary and apart from each other. Decided exactly, without tolerances.
+    pub fn new(boundary: Vec<Point>, holes: Vec<Vec<Point>>) -> Result<Workspace, WorkspaceError> {
+        let mut polygons = vec![boundary];
+        polygons.extend(holes);
+        for (index, vertices) in polygons.iter().enumerate() {
+            check_vertices(name_of(index), vertices)?;
+        }
+        check_edges(&polygons)?;
+        check_nesting(&polygons)?;
+        for (index, vertices) in polygons.iter_mut().enumerate() {
+            if is_counter_clockwise(vertices) != (index == 0) {
+                vertices.reverse();
+            }
+        }
+        let tree = EdgeTree::new(polygons.iter().flat_map(|vertices| edges_of(vertices)));
+        let extent = extent_of(&polygons[0]);
+        Ok(Workspace { polygons, tree, extent })
+    }
+
+    /// Vertices of the outer boundary, counter-clockwise.
+    pub fn boundary(&self) -> &[Point] {
+        &self.polygons[0]
+    }
+
+    /// Vertices of the holes, each clockwise.
+    pub fn holes(&self) -> &[Vec<Point>] {
+        &self.polygons[1..]
+    }
+
+    /// The outer boundary and the holes: all of ∂W, with W on the left.
+    pub fn polygons(&self) -> &[Vec<Point>] {
+        &self.polygons
+    }
+
+    /// The edges of ∂W, with W on the left.
+    pub fn edges(&self) -> impl Iterator<Item = Segment> {
+        self.polygons.iter().flat_map(|vertices| edges_of(vertices))
+    }
+
+    /// Whether `point` lies in W. Exact; for points on ∂W either answer may come.
+    pub fn contains(&self, point: Point) -> bool {
+        self.tree.encloses(point)
+    }
+
+    /// Distance from `point` to ∂W, negative outside W.
+    pub fn clearance(&self, point: Point) -> f64 {
+        let distance = self.tree.distance(point);
+        if self.contains(point) { distance } else { -distance }
+    }
+
+    /// Distance from the segment between two points to ∂W; 0 or less if it leaves W.
+    pub fn segment_clearance(&self, from: Point, to: Point) -> f64 {
+        let path = Segment::new(from, to);
+        if self.contains(from) && !self.tree.is_crossed_by(&path) {
+            self.tree.distance_to_segment(&path)
+        } else {
+            self.clearance(from).min(self.clearance(to)).min(0.0)
+        }
+    }
+
+    /// The larger side of the box around W.
+    pub fn extent(&self) -> f64 {
+        self.extent
+    }
+}
+
+/// The edges of a ring of vertices, the last one back to the first vertex.
+pub(super) fn edges_of(vertices: &[Point]) -> impl Iterator<Item = Segment> {
+    let following = vertices.iter().cycle().skip(1);
+    vertices.iter().zip(following).map(|(from, to)| Segment::new(*from, *to))
+}
+
+fn name_of(index: usize) -> Polygon {
+    index.checked_sub(1).map_or(Polygon::Boundary, Polygon::Hole)
+}
+
+fn check_vertices(polygon: Polygon, vertices: &[Point]) -> Result<(), WorkspaceError> {
+    if vertices.len() < 3 {
+        return Err(WorkspaceError::TooFewVertices { polygon, count: vertices.len() });
+    }
+    let too_large = |p: &Point| !p.iter().all(|coordinate| coordinate.abs() <= COORDINATE_LIMIT);
+    if let Some(vertex) = vertices.iter().position(too_large) {
+        return Err(WorkspaceError::NotFinite { polygon, vertex, at: vertices[vertex] });
+    }
+    let mut sorted: Vec<usize> = (0..vertices.len()).collect();
+    sorted.sort_by(|&i, &j| {
+        let (p, q) = (vertices[i], vertices[j]);
+        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(i.cmp(&j))
+    });
+    if let Some(pair) = sorted.windows(2).find(|pair| vertices[pair[0]] == vertices[pair[1]]) {
+        let (first, second) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+        return Err(WorkspaceError::RepeatedVertex { polygon, first, second, at: vertices[first] });
+    }
+    if vertices.iter().all(|&vertex| side(vertices[0], vertices[1], vertex) == 0.0) {
+        return Err(WorkspaceError::Flat { polygon });
+    }
+    Ok(())
+}
+
+fn check_edges(polygons: &[Vec<Point>]) -> Result<(), WorkspaceError> {
+    let named: Vec<NamedEdge> = polygons
+        .iter()
+        .enumerate()
+        .flat_map(|(polygon, vertices)| {
+            edges_of(vertices).enumerate().map(move |(index, segment)| NamedEdge {
+                polygon: name_of(polygon),
+                index,
+                segment,
+            })
+        })
+        .collect();
+    let tree = EdgeTree::new(named.iter().map(|edge| edge.segment));
+    for (index, first) in named.iter().enumerate() {
+        let mut met: Option<usize> = None;
+        tree.for_each_overlapping(&first.segment, |other, edge| {
+            if other > index && wrongly_meets(&first.segment, edge) {
+                met = Some(met.map_or(other, |found| found.min(other)));
+            }
+        });
+        if let Some(second) = met.map(|other| named[other]) {
+            return Err(if first.polygon == second.polygon {
+                WorkspaceError::SelfIntersecting { first: *first, second }
+            } else {
+                WorkspaceError::PolygonsMeet { first: *first, second }
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Whether two edges have a point in common other than a vertex that joins one to the next.
+/// Vertices of one polygon being distinct, edges that share an end follow each other; they then
+/// overlap if the second folds back onto the first.
+fn wrongly_meets(first: &Segment, second: &Segment) -> bool {
+    let folds_back = |tip: Point, one: Point, other: Point| {
+        side(one, tip, other) == 0.0 && (one - tip).dot(&(other - tip)) > 0.0
+    };
+    if first.to == second.from {
+        folds_back(first.to, first.from, second.to)
+    } else if second.to == first.from {
+        folds_back(first.from, first.to, second.from)
+    } else {
+        first.meets(second)
+    }
+}
+
+fn check_nesting(polygons: &[Vec<Point>]) -> Result<(), WorkspaceError> {
+    let trees: Vec<EdgeTree> =
+        polygons.iter().map(|vertices| EdgeTree::new(edges_of(vertices))).collect();
+    for (hole, vertices) in polygons[1..].iter().enumerate() {
+        if !trees[0].encloses(vertices[0]) {
+            return Err(WorkspaceError::HoleOutside { hole, at: vertices[0] });
+        }
+        let around = |outer: &usize| *outer != hole && trees[outer + 1].encloses(vertices[0]);
+        if let Some(outer) = (0..polygons.len() - 1).find(around) {
+            return Err(WorkspaceError::NestedHoles { inner: hole, outer });
+        }
+    }
+    Ok(())
+}
+
+/// Orientation of a simple polygon: the turn at its lowest, leftmost vertices tells. Exact.
+fn is_counter_clockwise(vertices: &[Point]) -> bool {
+    let count = vertices.len();
+    let lowest = (0..count)
+        .min_by(|&i, &j| {
+            let (p, q) = (vertices[i], vertices[j]);
+            p.y.total_cmp(&q.y).then(p.x.total_cmp(&q.x))
+        })
+        .unwrap_or(0);
+    let before = vertices[(lowest + count - 1) % count];
+    let after = vertices[(lowest + 1) % count];
+    side(before, vertices[lowest], after) > 0.0
+}
+
+fn extent_of(vertices: &[Point]) -> f64 {
+    let low = vertices.iter().fold(vertices[0], |low, vertex| low.inf(vertex));
+    let high = vertices.iter().fold(vertices[0], |high, vertex| high.sup(vertex));
+    (high - low).max()
+}

@@ -1,0 +1,133 @@
+use pleach_continuous::Point;
+use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace};
+use proptest::prelude::*;
+
+use crate::environments::{CLEARANCE, environment, place, ring};
+use crate::plain;
+
+/// How far a cap with a single corner reaches, in clearances: 1 / cos 50°.
+const MITRE_REACH: f64 = 1.556;
+
+/// A room of 4 by 2 with a thin wall that leaves a door of width 0.5 at the top.
+fn room_with_door() -> Workspace {
+    Workspace::new(
+        ring(&[
+            (0.0, 0.0),
+            (1.9, 0.0),
+            (1.9, 1.5),
+            (2.1, 1.5),
+            (2.1, 0.0),
+            (4.0, 0.0),
+            (4.0, 2.0),
+            (0.0, 2.0),
+        ]),
+        vec![],
+    )
+    .unwrap()
+}
+
+#[test]
+fn rectangle_shrinks_to_a_rectangle() {
+    let workspace =
+        Workspace::new(ring(&[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]), vec![]).unwrap();
+    let free_space = FreeSpace::new(&workspace, 0.25).unwrap();
+    let [outline] = free_space.outline() else { panic!("one ring") };
+    assert_eq!(outline.len(), 4);
+    let slack = free_space.tolerance();
+    for vertex in outline {
+        assert!((vertex.x - 1.0).abs() - (0.75 - slack) < 1e-12);
+        assert!((vertex.y - 0.5).abs() - (0.25 - slack) < 1e-12);
+    }
+}
+
+#[test]
+fn square_corners_keep_one_corner() {
+    let free_space = FreeSpace::new(&room_with_door(), 0.1).unwrap();
+    assert_eq!(free_space.outline()[0].len(), 8);
+}
+
+#[test]
+fn narrow_door_separates_regions() {
+    let free_space = FreeSpace::new(&room_with_door(), 0.26).unwrap();
+    let (left, right) = (Point::new(1.0, 1.0), Point::new(3.0, 1.0));
+    assert_eq!(free_space.outline().len(), 2);
+    assert!(free_space.region(left).is_some() && free_space.region(right).is_some());
+    assert_ne!(free_space.region(left), free_space.region(right));
+    assert_eq!(free_space.region(Point::new(2.0, 1.75)), None);
+    assert_eq!(free_space.distance(left, right), f64::INFINITY);
+    assert_eq!(free_space.geodesic(left, right), None);
+    let destination = free_space.destination(right);
+    assert_eq!(free_space.geodesic_to(left, &destination), None);
+}
+
+#[test]
+fn no_room_is_an_error() {
+    let workspace = room_with_door();
+    let error = FreeSpace::new(&workspace, 1.0).unwrap_err();
+    assert_eq!(error, FreeSpaceError::Empty { clearance: 1.0, extent: 4.0 });
+    assert!(matches!(
+        FreeSpace::new(&workspace, -1.0),
+        Err(FreeSpaceError::InvalidClearance { .. })
+    ));
+    assert!(matches!(
+        FreeSpace::new(&workspace, f64::NAN),
+        Err(FreeSpaceError::InvalidClearance { .. })
+    ));
+}
+
+#[test]
+fn rounding_beyond_the_tolerance_is_an_error() {
+    let far = 1e10;
+    let square = ring(&[(far, far), (far + 1.0, far), (far + 1.0, far + 1.0), (far, far + 1.0)]);
+    let workspace = Workspace::new(square, vec![]).unwrap();
+    assert!(matches!(FreeSpace::new(&workspace, 0.1), Err(FreeSpaceError::Uncertified { .. })));
+}
+
+#[test]
+fn zero_clearance_is_almost_the_workspace() {
+    let workspace = room_with_door();
+    let free_space = FreeSpace::new(&workspace, 0.0).unwrap();
+    for &vertex in workspace.boundary() {
+        assert!((free_space.nearest(vertex) - vertex).norm() < 2.0 * free_space.tolerance());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn free_space_is_where_the_clearance_is_kept(
+        environment in environment(),
+        places in prop::collection::vec(place(), 200),
+    ) {
+        let free_space = &environment.free_space;
+        let edges = plain::edges(environment.workspace.polygons());
+        let corners: Vec<Point> = environment.workspace.polygons().concat();
+        for place in places {
+            let clearance = plain::distance(&edges, place);
+            let inside = plain::winds_around(&edges, place) && clearance >= CLEARANCE;
+            if free_space.contains(place) {
+                prop_assert!(inside, "{place} has clearance {clearance}");
+            }
+            // Away from corners, nothing is lost but the tolerance.
+            let kept = CLEARANCE + free_space.tolerance();
+            let from_corners = corners.iter().map(|corner| (corner - place).norm()).fold(f64::INFINITY, f64::min);
+            if inside && clearance > kept && from_corners > MITRE_REACH * kept {
+                prop_assert!(free_space.contains(place), "{place} has clearance {clearance}");
+            }
+        }
+    }
+
+    #[test]
+    fn nearest_is_inside_and_nearest(environment in environment(), place in place()) {
+        let free_space = &environment.free_space;
+        let nearest = free_space.nearest(place);
+        prop_assert!(free_space.contains(nearest));
+        let outline = plain::edges(free_space.outline());
+        if plain::winds_around(&outline, place) {
+            prop_assert_eq!(nearest, place);
+        } else {
+            prop_assert!(((nearest - place).norm() - plain::distance(&outline, place)).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+use pleach_continuous::Point;
+use pleach_continuous::geometry::{Disc, FreeSpace, Segment, Workspace};
+use proptest::prelude::*;
+
+use crate::environments::{CLEARANCE, environment, place, ring};
+use crate::plain;
+
+fn square_room_with_square_hole() -> FreeSpace {
+    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
+    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
+    FreeSpace::new(&Workspace::new(boundary, vec![hole]).unwrap(), 0.125).unwrap()
+}
+
+#[test]
+fn diagonals_of_a_hole_are_blocked() {
+    let free_space = square_room_with_square_hole();
+    for (a, b) in [((0.25, 0.25), (2.75, 2.75)), ((0.25, 2.75), (2.75, 0.25))] {
+        let (a, b) = (Point::new(a.0, a.1), Point::new(b.0, b.1));
+        assert!(!free_space.sees(a, b) && !free_space.sees(b, a));
+        let path = free_space.geodesic(a, b).unwrap();
+        let expected = 2.0 * (1.875_f64 - 0.25 + 0.25).hypot(0.625);
+        assert!((path.length - expected).abs() < 1e-5, "{} {expected}", path.length);
+    }
+}
+
+#[test]
+fn corners_and_edges_of_the_outline_see_what_they_should() {
+    let free_space = square_room_with_square_hole();
+    for ring in free_space.outline() {
+        for (index, &from) in ring.iter().enumerate() {
+            let to = ring[(index + 1) % ring.len()];
+            assert!(free_space.sees(from, to) && free_space.sees(to, from));
+            assert!(free_space.sees(nalgebra::center(&from, &to), to));
+            assert!(free_space.sees(from, from));
+        }
+        let (one, opposite) = (ring[0], ring[2]);
+        assert!(!free_space.sees(one, opposite), "across the hole");
+    }
+}
+
+#[test]
+fn robot_at_a_corner_is_sent_on() {
+    let free_space = square_room_with_square_hole();
+    let goal = Point::new(2.75, 2.75);
+    let destination = free_space.destination(goal);
+    let mut at = Point::new(0.25, 0.25);
+    let mut left = free_space.distance(at, goal);
+    for _ in 0..2 {
+        let path = free_space.geodesic_to(at, &destination).unwrap();
+        assert_eq!(Some(path.clone()), free_space.geodesic(at, goal));
+        let next = path.waypoints[0];
+        assert!((next - at).norm() > 0.5, "progress");
+        left -= (next - at).norm();
+        assert!((free_space.distance(next, goal) - left).abs() < 1e-9);
+        at = next;
+    }
+    assert_eq!(at, goal);
+    assert_eq!(free_space.geodesic(goal, goal).unwrap().length, 0.0);
+}
+
+#[test]
+fn outside_there_is_no_path() {
+    let free_space = square_room_with_square_hole();
+    let (inside, hole) = (Point::new(0.5, 0.5), Point::new(1.5, 1.5));
+    assert!(!free_space.sees(inside, hole) && !free_space.sees(hole, hole));
+    assert_eq!(free_space.geodesic(inside, hole), None);
+    assert_eq!(free_space.geodesic(hole, inside), None);
+    assert_eq!(free_space.distance_to(inside, &free_space.destination(hole)), f64::INFINITY);
+}
+
+#[test]
+fn detour_follows_an_octagon() {
+    let boundary = ring(&[(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (0.0, 2.0)]);
+    let free_space = FreeSpace::new(&Workspace::new(boundary, vec![]).unwrap(), 0.1).unwrap();
+    let (from, to) = (Point::new(1.0, 1.0), Point::new(3.0, 1.0));
+    let disc = |x: f64, y: f64, radius: f64| Disc { center: Point::new(x, y), radius };
+
+    let around = free_space.detour(from, to, &[disc(2.0, 1.0, 0.4)]).unwrap();
+    let corner = (0.4 * (std::f64::consts::PI / 8.0).tan(), 0.4);
+    let expected = 2.0 * (1.0 - corner.0).hypot(corner.1) + 2.0 * corner.0;
+    assert!((around.length - expected).abs() < 1e-9, "{} {expected}", around.length);
+
+    let straight = free_space.geodesic(from, to);
+    let harmless = [disc(2.0, 1.5, 0.4), disc(3.2, 1.0, 0.3)];
+    assert_eq!(
+        free_space.detour(from, to, &harmless),
+        straight,
+        "beside the path, around the goal"
+    );
+    assert!(free_space.detour(from, to, &[disc(0.9, 1.0, 0.4)]).is_some(), "around the start");
+    assert!(free_space.detour(from, to, &[disc(1.0, 1.0, 0.4)]).is_some(), "at the start");
+
+    let wall = [disc(2.0, 0.4, 0.4), disc(2.0, 1.0, 0.4), disc(2.0, 1.6, 0.4)];
+    assert_eq!(free_space.detour(from, to, &wall), None, "nothing leads through");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn geodesics_are_shortest(environment in environment(), a in place(), b in place()) {
+        let free_space = &environment.free_space;
+        let (a, b) = (free_space.nearest(a), free_space.nearest(b));
+        let tolerance = free_space.tolerance();
+        let expected = plain::shortest(free_space.outline(), a, b, tolerance / 4.0);
+        let found = free_space.distance(a, b);
+        prop_assert!(found == expected || (found - expected).abs() < 40.0 * tolerance, "{found} {expected}");
+        let back = free_space.distance(b, a);
+        prop_assert!(found == back || (found - back).abs() < 1e-9, "{found} {back}");
+        let told = free_space.distance_to(a, &free_space.destination(b));
+        prop_assert!(found == told || (found - told).abs() < 4.0 * tolerance, "{found} {told}");
+    }
+
+    #[test]
+    fn geodesics_keep_the_clearance(environment in environment(), a in place(), b in place()) {
+        let free_space = &environment.free_space;
+        let (a, b) = (free_space.nearest(a), free_space.nearest(b));
+        let edges = plain::edges(environment.workspace.polygons());
+        let Some(path) = free_space.geodesic(a, b) else { return Ok(()) };
+        prop_assert_eq!(path.waypoints.last(), Some(&b));
+        let mut total = 0.0;
+        for Segment { from, to } in path.segments(a) {
+            total += (to - from).norm();
+            for step in 0..=100 {
+                let point = from + (to - from) * (f64::from(step) / 100.0);
+                prop_assert!(plain::winds_around(&edges, point));
+                prop_assert!(plain::distance(&edges, point) >= CLEARANCE);
+            }
+        }
+        prop_assert!((total - path.length).abs() < 1e-12);
+    }
+
+    #[test]
+    fn detours_avoid_discs(
+        environment in environment(),
+        a in place(),
+        b in place(),
+        centers in prop::collection::vec(place(), 0..12),
+    ) {
+        let free_space = &environment.free_space;
+        let (a, b) = (free_space.nearest(a), free_space.nearest(b));
+        let radius = 2.1 * CLEARANCE;
+        let discs: Vec<Disc> =
+            centers.into_iter().map(|c| Disc { center: free_space.nearest(c), radius }).collect();
+        let Some(path) = free_space.detour(a, b, &discs) else { return Ok(()) };
+        prop_assert!(path.length >= free_space.distance(a, b) - 4.0 * free_space.tolerance());
+        let edges = plain::edges(environment.workspace.polygons());
+        for Segment { from, to } in path.segments(a) {
+            for step in 0..=50 {
+                let point = from + (to - from) * (f64::from(step) / 50.0);
+                prop_assert!(plain::distance(&edges, point) >= CLEARANCE);
+                for disc in discs.iter().filter(|disc| !disc.contains(b)) {
+                    let allowed = disc.radius.min((a - disc.center).norm());
+                    prop_assert!((point - disc.center).norm() >= allowed * (1.0 - 1e-5));
+                }
+            }
+        }
+    }
+}

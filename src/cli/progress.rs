@@ -1,0 +1,95 @@
+//! The progress of a mission on the error output, while it runs.
+//!
+//! On a terminal the telling events scroll by above a line that says where the mission stands.
+//! Elsewhere only the events are written, one a line.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pleach::automaton::network::record::{End, MissionEvent, Snapshot};
+use pleach::automaton::network::scenario::Scenario;
+use pleach::mission::Observer;
+use pleach::story;
+use std::io::{self, IsTerminal};
+
+/// An observer that shows the progress.
+#[derive(Debug)]
+pub struct Progress {
+    display: Display,
+    tasks: usize,
+}
+
+#[derive(Debug)]
+enum Display {
+    Quiet,
+    Lines,
+    Live(ProgressBar),
+}
+
+impl Progress {
+    /// Progress of a mission of `scenario`, shown as the error output can.
+    pub fn new(scenario: &Scenario, quiet: bool) -> Self {
+        let display = if quiet {
+            Display::Quiet
+        } else if io::stderr().is_terminal() {
+            Display::Live(spinner())
+        } else {
+            Display::Lines
+        };
+        Self { display, tasks: scenario.task.len() }
+    }
+
+    /// Clears the line that says where the mission stands.
+    pub fn finish(&self) {
+        if let Display::Live(bar) = &self.display {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Observer for Progress {
+    fn event(&mut self, step: usize, event: &MissionEvent) -> io::Result<()> {
+        if story::is_telling(event) {
+            let line = format!("k = {step:<6} {}", story::tell(event));
+            match &self.display {
+                Display::Quiet => {}
+                Display::Lines => eprintln!("{line}"),
+                Display::Live(bar) => bar.println(line),
+            }
+        }
+        Ok(())
+    }
+
+    fn snapshot(&mut self, snapshot: &Snapshot) -> io::Result<()> {
+        if let Display::Live(bar) = &self.display {
+            bar.set_message(standing(snapshot, self.tasks));
+            bar.inc(1);
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _: &End) -> io::Result<()> {
+        self.finish();
+        Ok(())
+    }
+}
+
+fn spinner() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    match ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// Where the mission stands: step, phase, task, who leads.
+fn standing(snapshot: &Snapshot, tasks: usize) -> String {
+    let phase = snapshot.phase.name();
+    let task = match snapshot.task {
+        Some(task) => format!("task {task} ({} of {tasks} serviced)", snapshot.serviced.len()),
+        None => format!("{} of {tasks} tasks serviced", snapshot.serviced.len()),
+    };
+    let leader = match snapshot.primary_team.last() {
+        Some(leader) => format!("robot {leader} leads"),
+        None => "nobody leads".into(),
+    };
+    format!("k = {}  {phase}  {task}  {leader}", snapshot.step)
+}

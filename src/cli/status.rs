@@ -1,0 +1,74 @@
+//! Exit statuses, and the failures behind them.
+
+use pleach::automaton::network::record::Outcome;
+use pleach::scenario_file::ScenarioError;
+use std::io;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use thiserror::Error;
+
+/// How the program ends, for those who start it from other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// All tasks are serviced; or what was asked for is printed.
+    Done = 0,
+    /// The program failed, the input is not to blame.
+    Failed = 1,
+    /// The scenario or the arguments are wrong, and nothing was run.
+    BadInput = 2,
+    /// The mission ended with tasks unserviced.
+    Unserviced = 3,
+    /// A monitored property failed, and the mission was stopped.
+    InvariantViolated = 4,
+}
+
+impl From<Outcome> for Status {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Serviced => Status::Done,
+            Outcome::InvariantViolated => Status::InvariantViolated,
+            Outcome::InsufficientRobots
+            | Outcome::UnreachableTask
+            | Outcome::StepLimit
+            | Outcome::Blocked => Status::Unserviced,
+        }
+    }
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        ExitCode::from(status as u8)
+    }
+}
+
+/// Why the program could not do what it was asked for.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// No mission can start from the scenario.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// A file cannot be created.
+    #[error("{}: cannot be created: {source}; choose a path that may be written", path.display())]
+    Creation {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The trace, the progress or a figure cannot be written.
+    #[error("cannot write what the mission shows: {0}")]
+    Output(#[from] io::Error),
+    /// The program is not complete.
+    #[error("{0}")]
+    Internal(String),
+}
+
+impl Failure {
+    /// The exit status that tells this failure.
+    pub fn status(&self) -> Status {
+        match self {
+            Failure::Scenario(_) | Failure::Creation { .. } => Status::BadInput,
+            Failure::Output(_) | Failure::Internal(_) => Status::Failed,
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! The shape of a scenario file: which keys it may hold, and what each of them looks like.
+//!
+//! The shape is checked before the file becomes a [`Scenario`](crate::automaton::network::scenario::Scenario),
+//! so that every mistake is found in one reading, and each is told with what would be right.
+
+use crate::automaton::network::scenario::KeyPath;
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue};
+
+/// What a value looks like.
+pub(super) enum Shape {
+    Text,
+    Number,
+    Count,
+    OneOf(&'static [&'static str]),
+    Point,
+    ListOf(&'static Shape),
+    Table(&'static [Entry]),
+}
+
+/// A key of a table.
+pub(super) struct Entry {
+    name: &'static str,
+    required: bool,
+    shape: Shape,
+}
+
+const fn required(name: &'static str, shape: Shape) -> Entry {
+    Entry { name, required: true, shape }
+}
+
+const fn optional(name: &'static str, shape: Shape) -> Entry {
+    Entry { name, required: false, shape }
+}
+
+/// A whole scenario.
+pub(super) const SCENARIO: &[Entry] = &[
+    required("name", Shape::Text),
+    optional("description", Shape::Text),
+    required(
+        "workspace",
+        Shape::Table(&[
+            required("boundary", Shape::ListOf(&Shape::Point)),
+            optional("holes", Shape::ListOf(&Shape::ListOf(&Shape::Point))),
+        ]),
+    ),
+    required(
+        "link",
+        Shape::Table(&[
+            required("full_range", Shape::Number),
+            required("max_range", Shape::Number),
+        ]),
+    ),
+    optional(
+        "control",
+        Shape::Table(&[
+            optional("clearance", Shape::Number),
+            optional("service_radius", Shape::Number),
+            optional("step_radius", Shape::Number),
+            optional("residual_tolerance", Shape::Number),
+            optional("max_steps", Shape::Count),
+            optional("period", Shape::Number),
+            optional("rounds_per_period", Shape::Count),
+            optional("routing_method", Shape::OneOf(&["dual", "adal"])),
+            optional("routing_iterations", Shape::Count),
+            optional("routing_reserve", Shape::Number),
+            optional("slope_aversion", Shape::Number),
+            optional("tree_reliability", Shape::Number),
+            optional("motion_solver", Shape::OneOf(&["exact", "conic"])),
+        ]),
+    ),
+    required("access_point", Shape::ListOf(&Shape::Table(&[required("position", Shape::Point)]))),
+    required(
+        "robot",
+        Shape::ListOf(&Shape::Table(&[
+            required("position", Shape::Point),
+            optional("rate", Shape::Number),
+        ])),
+    ),
+    optional("task", Shape::ListOf(&Shape::Table(&[required("position", Shape::Point)]))),
+];
+
+/// A place where a file departs from its shape.
+pub(super) struct Departure {
+    /// The key concerned; for an unknown or missing key the one that the file should not or
+    /// should hold.
+    pub key: KeyPath,
+    /// The bytes of the file that are wrong.
+    pub span: std::ops::Range<usize>,
+    /// What is wrong and what would be right.
+    pub message: String,
+}
+
+/// Every place where the parsed file departs from the shape of a scenario, in the order of the
+/// file.
+pub(super) fn departures(file: &Spanned<DeTable<'_>>) -> Vec<Departure> {
+    let mut comparison = Comparison::default();
+    comparison.table(&KeyPath::root(), file.span(), file.get_ref(), SCENARIO);
+    comparison.found.sort_by_key(|departure| departure.span.start);
+    comparison.found
+}
+
+/// A walk through a file beside its shape.
+#[derive(Default)]
+struct Comparison {
+    found: Vec<Departure>,
+}
+
+impl Comparison {
+    fn value(&mut self, key: &KeyPath, value: &Spanned<DeValue<'_>>, shape: &Shape) {
+        match (value.get_ref(), shape) {
+            (DeValue::String(_), Shape::Text)
+            | (DeValue::Float(_) | DeValue::Integer(_), Shape::Number) => {}
+            (DeValue::Integer(digits), Shape::Count)
+                if digits.to_string().parse::<u64>().is_ok() => {}
+            (DeValue::String(text), Shape::OneOf(choices)) if choices.contains(&text.as_ref()) => {}
+            (DeValue::Array(numbers), Shape::Point) => self.point(key, value.span(), numbers),
+            (DeValue::Array(elements), Shape::ListOf(shape)) => {
+                for (index, element) in elements.iter().enumerate() {
+                    self.value(&key.clone().index(index), element, shape);
+                }
+            }
+            (DeValue::Table(table), Shape::Table(entries)) => {
+                self.table(key, value.span(), table, entries);
+            }
+            (other, shape) => {
+                let message = format!("{} stands where {} belongs", spoken(other), shape.wanted());
+                self.found.push(Departure { key: key.clone(), span: value.span(), message });
+            }
+        }
+    }
+
+    fn point(&mut self, key: &KeyPath, span: std::ops::Range<usize>, numbers: &DeArray<'_>) {
+        if numbers.len() == 2 {
+            for (axis, number) in numbers.iter().enumerate() {
+                self.value(&key.clone().index(axis), number, &Shape::Number);
+            }
+        } else {
+            let message = format!(
+                "a point has two coordinates, [x, y], and this list has {} elements",
+                numbers.len()
+            );
+            self.found.push(Departure { key: key.clone(), span, message });
+        }
+    }
+
+    fn table(
+        &mut self,
+        key: &KeyPath,
+        span: std::ops::Range<usize>,
+        table: &DeTable<'_>,
+        entries: &[Entry],
+    ) {
+        for (name, value) in table {
+            let here = key.clone().key(name.get_ref().as_ref());
+            match entries.iter().find(|entry| entry.name == name.get_ref().as_ref()) {
+                Some(entry) => self.value(&here, value, &entry.shape),
+                None => {
+                    let known: Vec<_> = entries.iter().map(|entry| entry.name).collect();
+                    let message =
+                        format!("unknown key; the keys known here are {}", known.join(", "));
+                    self.found.push(Departure { key: here, span: name.span(), message });
+                }
+            }
+        }
+        for entry in entries.iter().filter(|entry| entry.required) {
+            if !table.contains_key(entry.name) {
+                let message = format!("missing; it must be {}", entry.shape.wanted());
+                let here = key.clone().key(entry.name);
+                self.found.push(Departure { key: here, span: span.clone(), message });
+            }
+        }
+    }
+}
+
+impl Shape {
+    /// What belongs where this shape is asked for.
+    fn wanted(&self) -> String {
+        match self {
+            Shape::Text => "a text in quotation marks".into(),
+            Shape::Number => "a number".into(),
+            Shape::Count => "a whole number, 0 or above".into(),
+            Shape::OneOf(choices) => {
+                let quoted: Vec<_> = choices.iter().map(|choice| format!("{choice:?}")).collect();
+                quoted.join(" or ")
+            }
+            Shape::Point => "a point, [x, y]".into(),
+            Shape::ListOf(Shape::Point) => "a polygon, [[x, y], [x, y], [x, y], …]".into(),
+            Shape::ListOf(Shape::Table(_)) => "a list of tables, each under [[…]]".into(),
+            Shape::ListOf(_) => "a list of polygons, [[[x, y], …], …]".into(),
+            Shape::Table(entries) => {
+                let required: Vec<_> =
+                    entries.iter().filter(|entry| entry.required).map(|entry| entry.name).collect();
+                match required.as_slice() {
+                    [] => "a table".into(),
+                    names => format!("a table with {}", names.join(" and ")),
+                }
+            }
+        }
+    }
+}
+
+/// A value as one would say it.
+fn spoken(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("the text {text:?}"),
+        DeValue::Integer(digits) => format!("the whole number {digits}"),
+        DeValue::Float(digits) => format!("the number {digits}"),
+        DeValue::Boolean(value) => format!("the truth value {value}"),
+        DeValue::Datetime(moment) => format!("the date {moment}"),
+        DeValue::Array(_) => "a list".into(),
+        DeValue::Table(_) => "a table".into(),
+    }
+}

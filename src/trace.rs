@@ -1,0 +1,179 @@
+//! The trace of a mission: one JSON object a line, written while the mission runs.
+//!
+//! Nodes are numbered from 0, robots first, then access points. Lengths are in the scenario's
+//! unit, times in seconds. Numbers are written with the fewest digits from which they can be
+//! read back exactly, and nothing but the scenario decides what is written: the trace of a
+//! scenario by one build is the same to the byte.
+//!
+//! The first line is the header, `{"type":"header","format":"pleach-trace","version":1,
+//! "scenario":…}`, with every default of the scenario filled in. Then follows, for each control
+//! period, a line for each event that led to it and one of type `step` for the instant at which
+//! the robots are about to move. The last line, of type `end`, holds the outcome.
+//!
+//! A `step` holds, in this order: `k`, `t`, `position` `[[x, y], …]` and `role` of every robot,
+//! `active` (the robots that may move), `residual` and `multiplier` of every robot, `route`
+//! `[[from, to, T, R], …]` where T > 0, `tree` `[[child, parent], …]`, `task` (or null), and
+//! what an observer needs to draw the picture: `phase`, `active_team`, `primary_team`, `path`,
+//! `serviced` `[[task, robot], …]` and `post`.
+
+mod line;
+
+use crate::automaton::network::record::{End, MissionEvent, Snapshot};
+use crate::automaton::network::scenario::Scenario;
+use crate::mission::Observer;
+use line::{EndLine, Line, LineOut, StepLine};
+use std::io::{self, BufRead, Lines, Write};
+use thiserror::Error;
+
+/// What the header calls the format.
+pub const FORMAT: &str = "pleach-trace";
+
+/// The version of the format that is written and read.
+pub const VERSION: u32 = 1;
+
+/// Writes a trace, line by line, as the mission goes on.
+#[derive(Debug)]
+pub struct TraceWriter<W: Write> {
+    output: W,
+}
+
+impl<W: Write> TraceWriter<W> {
+    /// Starts a trace of `scenario` with its header. The output should be buffered.
+    ///
+    /// # Errors
+    /// The header cannot be written.
+    pub fn new(output: W, scenario: &Scenario) -> io::Result<Self> {
+        let mut writer = Self { output };
+        let scenario = scenario.with_defaults();
+        writer.line(&LineOut::Header { format: FORMAT, version: VERSION, scenario: &scenario })?;
+        Ok(writer)
+    }
+
+    /// The output, flushed.
+    ///
+    /// # Errors
+    /// What is buffered cannot be written.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.output.flush()?;
+        Ok(self.output)
+    }
+
+    fn line(&mut self, line: &LineOut<'_>) -> io::Result<()> {
+        serde_json::to_writer(&mut self.output, line)?;
+        self.output.write_all(b"\n")
+    }
+}
+
+impl<W: Write> Observer for TraceWriter<W> {
+    fn event(&mut self, step: usize, event: &MissionEvent) -> io::Result<()> {
+        self.line(&LineOut::Event { k: step, event })
+    }
+
+    fn snapshot(&mut self, snapshot: &Snapshot) -> io::Result<()> {
+        self.line(&LineOut::Step(Box::new(StepLine::from(snapshot))))
+    }
+
+    fn end(&mut self, end: &End) -> io::Result<()> {
+        self.line(&LineOut::End(EndLine::from(end)))?;
+        self.output.flush()
+    }
+}
+
+/// One entry of a trace after its header.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TraceEntry {
+    /// Something happened in control period `step`.
+    Event {
+        /// k.
+        step: usize,
+        /// What happened.
+        event: MissionEvent,
+    },
+    /// The instant at which the robots are about to move.
+    Step(Box<Snapshot>),
+    /// How the mission ended. A serviced mission gives no reason.
+    End(End),
+}
+
+/// Reads a trace: the header at once, then entry by entry as an iterator.
+#[derive(Debug)]
+pub struct TraceReader<R> {
+    scenario: Scenario,
+    lines: Lines<R>,
+    number: usize,
+}
+
+impl<R: BufRead> TraceReader<R> {
+    /// Starts to read a trace.
+    ///
+    /// # Errors
+    /// The first line cannot be read or is not the header of a trace of version [`VERSION`].
+    pub fn new(input: R) -> Result<Self, TraceError> {
+        let mut lines = input.lines();
+        let first = lines.next().ok_or(TraceError::Empty)?;
+        match parse(1, first)? {
+            Line::Header { format, version, .. } if format != FORMAT || version != VERSION => {
+                Err(TraceError::OtherFormat { format, version })
+            }
+            Line::Header { scenario, .. } => Ok(Self { scenario: *scenario, lines, number: 1 }),
+            _ => Err(TraceError::Misplaced { line: 1, wanted: "the header" }),
+        }
+    }
+
+    /// The scenario of the mission, every default filled in.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+}
+
+impl<R: BufRead> Iterator for TraceReader<R> {
+    type Item = Result<TraceEntry, TraceError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let text = self.lines.next()?;
+        self.number += 1;
+        Some(parse(self.number, text).and_then(|line| {
+            match line {
+                Line::Event { k, event } => Ok(TraceEntry::Event { step: k, event }),
+                Line::Step(step) => (Snapshot::try_from(*step)
+                    .map(|snapshot| TraceEntry::Step(Box::new(snapshot))))
+                .map_err(|wrong| TraceError::Uneven { line: self.number, wrong }),
+                Line::End(end) => Ok(TraceEntry::End(end.into())),
+                Line::Header { .. } => {
+                    Err(TraceError::Misplaced { line: self.number, wanted: "a step, event or end" })
+                }
+            }
+        }))
+    }
+}
+
+fn parse(number: usize, text: io::Result<String>) -> Result<Line, TraceError> {
+    let text = text.map_err(|source| TraceError::Unreadable { line: number, source })?;
+    serde_json::from_str(&text).map_err(|source| TraceError::NotALine { line: number, source })
+}
+
+/// Why a text is not a trace. Lines are counted from 1.
+#[derive(Debug, Error)]
+#[allow(missing_docs)] // the fields are what the sentences show
+pub enum TraceError {
+    /// There is no line at all.
+    #[error("the trace is empty: its first line must be the header")]
+    Empty,
+    /// The text cannot be read further.
+    #[error("line {line}: cannot be read: {source}")]
+    Unreadable { line: usize, source: io::Error },
+    /// Not one of the four kinds of line.
+    #[error("line {line}: not a line of a trace: {source}")]
+    NotALine { line: usize, source: serde_json::Error },
+    /// Another format or another version.
+    #[error(
+        "the header says {format:?} version {version}; this reads {FORMAT:?} version {VERSION}"
+    )]
+    OtherFormat { format: String, version: u32 },
+    /// A line where it does not belong.
+    #[error("line {line}: this is the place of {wanted}")]
+    Misplaced { line: usize, wanted: &'static str },
+    /// A step whose lists do not fit together.
+    #[error("line {line}: {wrong}")]
+    Uneven { line: usize, wrong: String },
+}
