@@ -1,3 +1,51 @@
 //! Locations, events and transition tables: the discrete layer, pure and small.
+//!
+//! A hybrid automaton jumps between *locations*; an *event* is the name under which it jumps. All
+//! that the discrete layer knows of a model is one [`TransitionTable`]: which event leads from
+//! which location to which, how urgently, and in which order where several could. Running,
+//! drawing, checking and proving read the same table.
+//!
+//! No number of the continuous world gets here, nothing is allocated while running, and every
+//! order is total; that keeps the layer within reach of exhaustive checks and proofs.
+//!
+//! ```
+//! use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency};
+//!
+//! #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+//! enum Heater { Off, On }
+//!
+//! impl Location for Heater {
+//!     const ALL: &'static [Self] = &[Heater::Off, Heater::On];
+//!     fn name(self) -> &'static str {
+//!         match self { Heater::Off => "off", Heater::On => "on" }
+//!     }
+//! }
+//!
+//! #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+//! enum Sensed { TooCold, TooWarm }
+//!
+//! impl Event for Sensed {
+//!     const ALL: &'static [Self] = &[Sensed::TooCold, Sensed::TooWarm];
+//!     fn name(self) -> &'static str {
+//!         match self { Sensed::TooCold => "too cold", Sensed::TooWarm => "too warm" }
+//!     }
+//! }
+//!
+//! const THERMOSTAT: TransitionTable<Heater, Sensed> = TransitionTable::new(&[
+//!     Row { source: Heater::Off, event: Sensed::TooCold, target: Heater::On, urgency: Urgency::Must, priority: 0 },
+//!     Row { source: Heater::On, event: Sensed::TooWarm, target: Heater::Off, urgency: Urgency::Must, priority: 0 },
+//! ]);
+//!
+//! assert_eq!(THERMOSTAT.next(Heater::Off, Sensed::TooCold), Ok(Heater::On));
+//! let refusal = THERMOSTAT.next(Heater::Off, Sensed::TooWarm).unwrap_err();
+//! assert_eq!(refusal.to_string(), "no transition leaves location `off` on event `too warm`");
+//! ```
 
+pub mod location;
 pub mod network;
+pub mod table;
+pub mod urgency;
+
+pub use location::{Event, Location};
+pub use table::{InvalidTransition, Row, TransitionTable};
+pub use urgency::Urgency;

@@ -1,1 +1,53 @@
-//! Predicates over states, with a signed margin.
+//! Guards as data: predicates over named variables, each with a signed margin.
+//!
+//! A *guard* says when a transition of a hybrid automaton may be taken. Here it is a value and
+//! not a closure, so that one and the same guard can be evaluated, printed in a diagram, searched
+//! for the variables it reads, and analysed before anything runs.
+//!
+//! An [`Expression`] is arithmetic over variables, built with ordinary operators. Comparing two
+//! expressions gives a [`Predicate`], and predicates combine by *and*, *or* and *not*:
+//!
+//! ```
+//! use pleach_guards::{variable, Guard, Verdict};
+//!
+//! let close = variable("distance").at_most(variable("δ"));
+//! let settled = variable("still").at_least(8.0);
+//! let arrived = Guard::new("arrived", close.and(settled));
+//!
+//! assert_eq!(arrived.predicate().to_string(), "distance ≤ δ ∧ still ≥ 8");
+//!
+//! let state = [("distance", 0.25), ("δ", 0.75), ("still", 10.0)];
+//! let verdict = arrived.evaluate(&state)?;
+//! assert_eq!(verdict, Verdict { margin: 0.5, holds: true });
+//! # Ok::<(), pleach_guards::EvaluationError>(())
+//! ```
+//!
+//! # Margins
+//!
+//! Beside its truth a predicate has a *margin*: how far the state is from changing the verdict,
+//! in the unit of what is compared. The margin of a ≤ b is b − a; *and* takes the smallest margin,
+//! *or* the largest, *not* turns the sign. A positive margin means that the predicate holds, a
+//! negative one that it does not; at margin 0 strictness decides. This is the robustness of
+//! signal temporal logic for a single instant (Donzé and Maler 2010,
+//! [doi:10.1007/978-3-642-15297-9_9](https://doi.org/10.1007/978-3-642-15297-9_9)); an executor
+//! finds the instant of an event as a zero of the margin.
+//!
+//! # Where things are
+//!
+//! [`expression`] and [`predicate`] are the data, [`valuation`] is what they are evaluated on,
+//! [`guard`] gives a predicate its name, [`crossing`] follows margins over time, and [`mod@print`]
+//! writes all of it as Unicode text and LaTeX.
+
+pub mod crossing;
+pub mod expression;
+pub mod guard;
+pub mod network;
+pub mod predicate;
+pub mod print;
+pub mod valuation;
+
+pub use crossing::{Crossing, Hysteresis, InvertedBand};
+pub use expression::{Expression, constant, variable};
+pub use guard::Guard;
+pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
+pub use valuation::{EvaluationError, Valuation};

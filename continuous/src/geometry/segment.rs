@@ -17,6 +17,21 @@ impl Segment {
         Segment { from, to }
     }
 
+    /// A place: the segment of length zero.
+    pub fn still(place: Point) -> Segment {
+        Segment { from: place, to: place }
+    }
+
+    /// The first half.
+    pub fn halved(&self) -> Segment {
+        Segment { from: self.from, to: nalgebra::center(&self.from, &self.to) }
+    }
+
+    /// The point at a share of the way, 0 at the start and 1 at the end.
+    pub fn at(&self, share: f64) -> Point {
+        self.from + self.vector() * share
+    }
+
     /// The displacement from start to end.
     pub fn vector(&self) -> Vector {
         self.to - self.from

@@ -20,6 +20,11 @@ impl Disc {
         (point - self.center).norm() <= self.radius
     }
 
+    /// Signed distance from `point` to the rim: positive inside, negative outside.
+    pub fn margin(&self, point: Point) -> f64 {
+        self.radius - (point - self.center).norm()
+    }
+
     /// Distance from the rim to the nearest point of `segment`; negative where the segment enters
     /// the disc.
     pub fn gap(&self, segment: &Segment) -> f64 {
@@ -42,6 +47,12 @@ impl HalfPlane {
     pub fn through(point: Point, outward: Vector) -> Option<HalfPlane> {
         let normal = Unit::try_new(outward, 0.0)?;
         Some(HalfPlane { normal, offset: normal.dot(&point.coords) })
+    }
+
+    /// The half-plane `normal · q ≤ offset`, for a normal of any length but zero.
+    pub fn new(normal: Vector, offset: f64) -> HalfPlane {
+        let (normal, length) = Unit::new_and_get(normal);
+        HalfPlane { normal, offset: offset / length }
     }
 
     /// Signed distance from `point` to the border: positive inside, negative outside.

@@ -1,5 +1,27 @@
-//! The discrete layer of the robot network.
+//! The discrete layer of the robot network: identities, roles, phases and the small protocols by
+//! which robots agree. Nothing here knows a coordinate, a clock or a medium.
 
+pub mod agreement;
+pub mod bulletin;
+pub mod election;
+pub mod exchange;
+pub mod id_set;
+pub mod lineage;
+pub mod path;
+pub mod post;
 pub mod role;
+pub mod tables;
 
+pub use agreement::Agreement;
+pub use bulletin::Bulletin;
+pub use election::{Bid, Election};
+pub use exchange::{Exchange, Reply};
+pub use id_set::IdSet;
+pub use lineage::Lineage;
+pub use path::{Hop, Path, Subgroup};
+pub use post::{Anchor, Post, PostId, PostKind};
 pub use role::{Phase, Role};
+pub use tables::{MISSION, MissionStep, ROLES, RoleEvent};
+
+/// A node of the network: robots are numbered first, from 0, then access points.
+pub type NodeId = usize;

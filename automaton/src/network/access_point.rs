@@ -1,0 +1,245 @@
+//! Access points: fixed sinks of information that relay messages, wired to each other.
+//!
+//! An access point passes on what it hears like a robot does. The first of them also speaks for
+//! the user: it announces the tasks one after another, each when the one before is serviced.
+
+use std::sync::Arc;
+
+use pleach_continuous::Point;
+use pleach_discrete::network::{
+    Agreement, Anchor, Bulletin, Election, IdSet, Lineage, NodeId,
+};
+
+use super::beacon::{Beacon, Notice};
+use super::duty::Hop;
+use super::record::{MissionEvent, Outcome};
+use super::site::Site;
+
+/// The first task is announced when the roster has not changed for this many rounds: between two
+/// robots whose links to an access point differ by one, news of them come two rounds apart.
+const ROUNDS_UNTIL_ROSTER_SETTLES: usize = 8;
+
+/// An access point.
+#[derive(Debug)]
+pub struct AccessPoint {
+    number: usize,
+    site: Arc<Site>,
+    position: Point,
+    heard: Vec<Arc<Beacon>>,
+    bulletin: Arc<Bulletin<Notice>>,
+    election: Option<Election>,
+    agreement: Option<Agreement>,
+    route: Option<(u32, Arc<Vec<Hop>>)>,
+    crossing: Vec<usize>,
+    roster: Arc<IdSet>,
+    settled_rounds: usize,
+    log: Vec<MissionEvent>,
+}
+
+impl AccessPoint {
+    /// Access point `number` of the site.
+    pub fn new(number: usize, site: Arc<Site>) -> Self {
+        AccessPoint {
+            number,
+            position: site.access_points[number],
+            site,
+            heard: Vec::new(),
+            bulletin: Arc::new(Bulletin::first(Notice::Quiet)),
+            election: None,
+            agreement: None,
+            route: None,
+            crossing: Vec::new(),
+            roster: Arc::default(),
+            settled_rounds: 0,
+            log: Vec::new(),
+        }
+    }
+
+    fn id(&self) -> NodeId {
+        self.site.robots + self.number
+    }
+
+    /// Where it stands.
+    pub const fn position(&self) -> Point {
+        self.position
+    }
+
+    /// What it tells its neighbours and, over the wire, the other access points.
+    pub fn beacon(&self) -> Beacon {
+        Beacon {
+            sender: self.id(),
+            position: self.position,
+            bulletin: Arc::clone(&self.bulletin),
+            election: self.election.clone(),
+            agreement: self.agreement.clone(),
+            route: self.route.clone(),
+            crossing: self.crossing.clone(),
+            lineage: Some(Arc::new(Lineage::of_access_point(self.number))),
+            below: Arc::clone(&self.roster),
+            duty: None,
+            parked: false,
+            can_detach: false,
+            offer: None,
+            reply: None,
+            team: None,
+        }
+    }
+
+    /// Takes in one round of beacons.
+    pub fn hear(&mut self, beacons: impl Iterator<Item = Arc<Beacon>>) {
+        self.heard.clear();
+        self.heard.extend(beacons);
+        self.hear_word();
+        self.find_route();
+        self.call_roll();
+    }
+
+    fn hear_word(&mut self) {
+        let newest = self.heard.iter().map(|b| &b.bulletin).max_by_key(|b| b.sequence());
+        if let Some(newest) = newest
+            && newest.sequence() > self.bulletin.sequence()
+        {
+            self.take_up(Arc::clone(newest));
+        }
+        for beacon in &self.heard {
+            if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
+                own.merge(heard);
+            }
+            if let (Some(own), Some(heard)) = (&mut self.agreement, &beacon.agreement) {
+                own.merge(heard);
+            }
+        }
+    }
+
+    fn take_up(&mut self, bulletin: Arc<Bulletin<Notice>>) {
+        let number = bulletin.sequence();
+        match bulletin.notice() {
+            Notice::Task { .. } | Notice::Call { .. } => {
+                self.election = Some(Election::new(number));
+                self.route = None;
+                self.crossing.clear();
+            }
+            Notice::Path(_) => self.agreement = Some(Agreement::new(number)),
+            _ => {}
+        }
+        self.bulletin = bulletin;
+    }
+
+    /// The way to the robot that calls: through a robot that hangs here, or through another
+    /// access point so near that a robot can change over from one to the other.
+    fn find_route(&mut self) {
+        let number = self.bulletin.sequence();
+        if !matches!(self.bulletin.notice(), Notice::Call { .. }) || self.route.is_some() {
+            return;
+        }
+        let own = Anchor::Access(self.number);
+        for beacon in &self.heard {
+            let Some((_, onward)) = beacon.route.as_ref().filter(|(at, _)| *at == number) else {
+                continue;
+            };
+            let hangs_here = beacon
+                .duty
+                .as_ref()
+                .is_some_and(|duty| duty.post().is_some_and(|post| post.parent == Some(own)));
+            let changeover = beacon.duty.is_none() && self.is_within_changeover(beacon.position);
+            if hangs_here || changeover {
+                self.route = Some((number, Arc::clone(onward)));
+                self.crossing = vec![self.number];
+                self.crossing.extend(&beacon.crossing);
+                return;
+            }
+        }
+    }
+
+    fn is_within_changeover(&self, other: Point) -> bool {
+        self.site.free_space.distance(self.position, other)
+            <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
+    }
+
+    /// Which robots hang on the access points.
+    fn call_roll(&mut self) {
+        let own = Anchor::Access(self.number);
+        let mut roster = IdSet::new();
+        for beacon in &self.heard {
+            let counts = match &beacon.duty {
+                None => true,
+                Some(duty) => duty.post().is_some_and(|post| post.parent == Some(own)),
+            };
+            if counts {
+                roster.merge(&beacon.below);
+            }
+        }
+        let settled = self.roster.includes(&roster) && roster.includes(&self.roster);
+        self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
+        if !settled {
+            // What another access point told may be older than what this one has heard itself.
+            roster.merge(&self.roster);
+            self.roster = Arc::new(roster);
+        }
+    }
+
+    /// The first access point speaks for the user: announces the next of `tasks` when the one
+    /// before is serviced, and says when the mission has ended.
+    pub fn speak_for_user(&mut self, tasks: &[Point]) {
+        let next = match self.bulletin.notice() {
+            Notice::Quiet if self.settled_rounds < ROUNDS_UNTIL_ROSTER_SETTLES => return,
+            Notice::Quiet => 0,
+            Notice::Serviced { task } => task + 1,
+            Notice::Task { task, .. } => return self.find_unreachable(*task),
+            _ => return,
+        };
+        let notice = match tasks.get(next) {
+            Some(&position) => {
+                self.log.push(MissionEvent::TaskAnnounced { task: next });
+                Notice::Task {
+                    task: next,
+                    position,
+                    roster: Arc::clone(&self.roster),
+                    eligible: Arc::new((0..self.site.access_points.len()).collect()),
+                }
+            }
+            None => Notice::Ended {
+                outcome: Outcome::Serviced,
+                reason: format!("all {next} tasks are serviced").into(),
+            },
+        };
+        self.issue(notice);
+    }
+
+    /// No robot bids for a task that none can come close to.
+    fn find_unreachable(&mut self, task: usize) {
+        let (Some(election), Notice::Task { roster, .. }) =
+            (&self.election, self.bulletin.notice())
+        else {
+            return;
+        };
+        if election.number() == self.bulletin.sequence()
+            && election.is_complete(roster)
+            && election.best().is_none()
+        {
+            let reason = format!(
+                "no robot can come within the service radius of task {task}: it lies in a wall, \
+                 too near to one, or in a part of the workspace that no robot can enter"
+            );
+            self.issue(Notice::Ended { outcome: Outcome::UnreachableTask, reason: reason.into() });
+        }
+    }
+
+    fn issue(&mut self, notice: Notice) {
+        self.take_up(Arc::new(self.bulletin.next(notice)));
+    }
+
+    /// The newest word on the mission that it knows.
+    pub fn notice(&self) -> &Notice {
+        self.bulletin.notice()
+    }
+
+    /// Takes what it has told observers since the last call.
+    pub fn drain_log(&mut self) -> std::vec::Drain<'_, MissionEvent> {
+        self.log.drain(..)
+    }
+}
+
+/// Two access points at most this share of 2 d_build apart let a robot change over from one to
+/// the other without losing both.
+const CHANGEOVER_SHARE: f64 = 0.98;

@@ -1,0 +1,106 @@
+//! What nodes tell their neighbours.
+//!
+//! A beacon is a copy of its sender's public state. Every protocol of the network works by
+//! repeating such copies and taking maxima, so that a message lost, doubled or late does no
+//! harm; the next one says the same or better.
+
+use std::sync::Arc;
+
+use pleach_continuous::Point;
+use pleach_discrete::network::{
+    Agreement, Bulletin, Election, Exchange, IdSet, Lineage, NodeId, PostId, Reply,
+};
+
+use super::duty::{Duty, Hop, Path};
+use super::record::Outcome;
+
+/// The newest word on the mission.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Notice {
+    /// Nothing is announced.
+    Quiet,
+    /// A task is announced; the robots of `roster` elect its leader, and those that hang on an
+    /// access point of `eligible` compete.
+    Task {
+        /// Its number.
+        task: usize,
+        /// q_v.
+        position: Point,
+        /// The robots that take part.
+        roster: Arc<IdSet>,
+        /// The access points whose robots compete.
+        eligible: Arc<IdSet>,
+    },
+    /// The primary team calls for a recruit (Remark 5.4).
+    Call {
+        /// Who calls: p₁, or the leader when it has to be released.
+        caller: NodeId,
+        /// L_b.
+        releases_leader: bool,
+    },
+    /// The recruit has found the path Σ.
+    Path(Arc<Path>),
+    /// The primary team is the active team (again).
+    Advance {
+        /// The post that has joined the team and the post that it follows.
+        joined: Option<(PostId, PostId)>,
+    },
+    /// The task is serviced.
+    Serviced {
+        /// Its number.
+        task: usize,
+    },
+    /// The mission has ended.
+    Ended {
+        /// How.
+        outcome: Outcome,
+        /// Why, in a sentence.
+        reason: Arc<str>,
+    },
+}
+
+/// What the primary team knows of itself, passed from the leader back to p₁.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TeamReport {
+    /// Control periods since any member moved, as far forward as the leader.
+    pub still: u32,
+    /// A member whose link is slack although it cannot move.
+    pub slack: Option<NodeId>,
+    /// Geodesic distance from the leader to its task.
+    pub remaining: f64,
+}
+
+/// The public state of a node.
+#[derive(Clone, Debug)]
+pub struct Beacon {
+    /// Who sends.
+    pub sender: NodeId,
+    /// Where it is.
+    pub position: Point,
+    /// The newest word on the mission that it knows.
+    pub bulletin: Arc<Bulletin<Notice>>,
+    /// Its view of the current election.
+    pub election: Option<Election>,
+    /// Its view of the agreement about the current path.
+    pub agreement: Option<Agreement>,
+    /// Its way over the tree to the robot that calls for a recruit; the number is the call's.
+    pub route: Option<(u32, Arc<Vec<Hop>>)>,
+    /// The access points that the way crosses first, when the sender is an access point.
+    pub crossing: Vec<usize>,
+    /// Its way to an access point.
+    pub lineage: Option<Arc<Lineage>>,
+    /// The robots that hang on it, itself included.
+    pub below: Arc<IdSet>,
+    /// What it does; none for an access point.
+    pub duty: Option<Duty>,
+    /// Whether it stands still unless it is asked for.
+    pub parked: bool,
+    /// For a redundant robot: whether it could hang on another node than its parent.
+    pub can_detach: bool,
+    /// A standing offer to exchange duties.
+    pub offer: Option<Exchange<Duty>>,
+    /// The answer to an offer.
+    pub reply: Option<Reply<Duty>>,
+    /// What the primary team knows of itself, for the next member towards p₁.
+    pub team: Option<TeamReport>,
+}

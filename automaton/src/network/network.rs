@@ -1,0 +1,467 @@
+//! The network: N robots, their access points and the medium, composed.
+//!
+//! All components share the clock that samples control. At t_k a fixed sequence of joint jumps
+//! takes no time: a few rounds of messages, between which each robot takes its own at-once
+//! transitions; then routes; then moves, proposed and certified. Until t_{k+1} every robot flows
+//! with ẋ = u, τ̇ = 1.
+//!
+//! The network passes messages on and never looks into a robot to tell another of it. What
+//! observers see is put together in [`crate::network::observer`].
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use pleach_continuous::Point;
+use pleach_discrete::network::{MissionStep, NodeId, Phase, Role, RoleEvent};
+
+use crate::executor::{Round, System};
+use crate::trajectory::Jump;
+
+use super::access_point::AccessPoint;
+use super::automata::{MissionAutomaton, RoleAutomaton, mission_automaton, role_automaton};
+use super::beacon::{Beacon, Notice};
+use super::medium::{Medium, Radio};
+use super::record::{End, MissionEvent, Outcome};
+use super::robot::{Objection, Proposal, Robot};
+use super::scenario::{RoutingMethod, Scenario};
+use super::site::{Site, SiteError};
+
+/// Rounds in which proposals are checked and halved; whoever still meets an objection in the last
+/// one gives its move up.
+const NEGOTIATION_ROUNDS: usize = 8;
+
+/// Where a control period stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// Messages are exchanged; so many rounds remain.
+    Exchange(usize),
+    /// Routes are computed.
+    Route,
+    /// Moves are proposed and certified.
+    Move,
+    /// Time passes.
+    Flow,
+}
+
+/// A jump of the network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NetworkJump {
+    /// A new control period begins: τ = Δt, and τ becomes 0.
+    Sample,
+    /// One round of messages.
+    Exchange,
+    /// The routes of the period.
+    Route,
+    /// The moves of the period.
+    Move,
+    /// A robot changes its role.
+    Role(Jump<Role, RoleEvent>),
+    /// A robot takes a step of the mission.
+    Mission(Jump<Phase, MissionStep>),
+}
+
+/// What went wrong inside the simulator.
+#[derive(Debug, thiserror::Error)]
+pub enum NetworkError {
+    /// The floor plan or the radio is not valid.
+    #[error(transparent)]
+    Site(#[from] SiteError),
+    /// An automaton is not well formed.
+    #[error(transparent)]
+    Build(#[from] crate::BuildError),
+    /// A guard speaks of something that robots do not measure.
+    #[error(transparent)]
+    Guard(#[from] crate::GuardError),
+}
+
+/// Time spent in the parts of a control period.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct KernelTimes {
+    /// Messages, coordination and the automata.
+    pub coordination: Duration,
+    /// Routes.
+    pub routing: Duration,
+    /// Geodesics, cells and motion problems.
+    pub motion: Duration,
+    /// The certified acceptance.
+    pub acceptance: Duration,
+}
+
+/// The network of robots.
+#[derive(Debug)]
+pub struct Network<M = Radio> {
+    pub(super) site: Arc<Site>,
+    pub(super) robots: Vec<Robot>,
+    pub(super) access_points: Vec<AccessPoint>,
+    pub(super) step: usize,
+    pub(super) events: Vec<MissionEvent>,
+    medium: M,
+    roles: RoleAutomaton,
+    mission: MissionAutomaton,
+    tasks: Vec<Point>,
+    positions: Vec<Point>,
+    inboxes: Vec<Vec<Arc<Beacon>>>,
+    stage: Stage,
+    times: KernelTimes,
+}
+
+impl Network<Radio> {
+    /// The network of a scenario at its start, with the synchronous medium.
+    ///
+    /// # Errors
+    /// When the scenario's floor plan or radio is not valid.
+    pub fn new(scenario: &Scenario) -> Result<Self, NetworkError> {
+        let site = Arc::new(Site::new(scenario)?);
+        let medium = Radio::new(&site);
+        Network::with_medium(scenario, site, medium)
+    }
+}
+
+impl<M: Medium> Network<M> {
+    /// The network of a scenario at its start, with a medium of one's own.
+    ///
+    /// # Errors
+    /// When an automaton is not well formed.
+    pub fn with_medium(
+        scenario: &Scenario,
+        site: Arc<Site>,
+        medium: M,
+    ) -> Result<Self, NetworkError> {
+        let robots: Vec<Robot> = scenario
+            .robot
+            .iter()
+            .enumerate()
+            .map(|(id, start)| Robot::new(id, start.position.into(), start.rate, Arc::clone(&site)))
+            .collect();
+        let access_points: Vec<AccessPoint> = (0..site.access_points.len())
+            .map(|number| AccessPoint::new(number, Arc::clone(&site)))
+            .collect();
+        let nodes = robots.len() + access_points.len();
+        Ok(Network {
+            step: 0,
+            events: Vec::new(),
+            roles: role_automaton()?,
+            mission: mission_automaton()?,
+            tasks: scenario.task.iter().map(|task| task.position.into()).collect(),
+            positions: Vec::with_capacity(nodes),
+            inboxes: vec![Vec::new(); nodes],
+            stage: Stage::Flow,
+            times: KernelTimes::default(),
+            site,
+            robots,
+            access_points,
+            medium,
+        })
+    }
+
+    /// What the robots know from the beginning.
+    pub fn site(&self) -> &Site {
+        &self.site
+    }
+
+    /// The robots, for observers.
+    pub fn robots(&self) -> &[Robot] {
+        &self.robots
+    }
+
+    /// The medium.
+    pub const fn medium(&self) -> &M {
+        &self.medium
+    }
+
+    /// Time spent in each part so far.
+    pub const fn times(&self) -> KernelTimes {
+        self.times
+    }
+
+    /// k: the number of the current control period.
+    pub const fn step(&self) -> usize {
+        self.step
+    }
+
+    // ---- The joint jumps of a control period -------------------------------------------------
+
+    fn begin_period(&mut self) {
+        for robot in &mut self.robots {
+            robot.restart_clock();
+        }
+        self.positions.clear();
+        self.positions.extend(self.robots.iter().map(Robot::position));
+        self.positions.extend(self.access_points.iter().map(AccessPoint::position));
+        self.medium.update(&self.positions);
+        self.stage = Stage::Exchange(self.site.settings.rounds_per_period);
+    }
+
+    /// One round: every node repeats its public state to those that hear it.
+    fn exchange_beacons(&mut self) {
+        let robots = self.robots.iter().map(Robot::beacon);
+        let access_points = self.access_points.iter().map(AccessPoint::beacon);
+        let beacons: Vec<Arc<Beacon>> = robots.chain(access_points).map(Arc::new).collect();
+        for (sender, beacon) in beacons.iter().enumerate() {
+            for at in 0..self.medium.audience(sender).len() {
+                let receiver = self.medium.audience(sender)[at];
+                if self.medium.delivers(sender, receiver) {
+                    self.inboxes[receiver].push(Arc::clone(beacon));
+                }
+            }
+        }
+        let (to_robots, to_access_points) = self.inboxes.split_at_mut(self.robots.len());
+        for (robot, inbox) in self.robots.iter_mut().zip(to_robots) {
+            robot.hear(inbox.drain(..));
+            robot.deliberate();
+        }
+        for (access_point, inbox) in self.access_points.iter_mut().zip(to_access_points) {
+            access_point.hear(inbox.drain(..));
+        }
+        if let Some(first) = self.access_points.first_mut() {
+            first.speak_for_user(&self.tasks);
+        }
+    }
+
+    /// Primal and dual iterations, then the sweep up the tree.
+    fn route(&mut self) {
+        for robot in &mut self.robots {
+            robot.survey_links();
+        }
+        for _ in 0..self.site.settings.routing_iterations {
+            self.exchange_multipliers();
+            for robot in &mut self.robots {
+                robot.minimise_locally();
+            }
+            self.exchange_flows();
+            for robot in &mut self.robots {
+                robot.step_multiplier();
+            }
+        }
+        self.sweep();
+        self.exchange_flows();
+        for (id, robot) in self.robots.iter_mut().enumerate() {
+            robot.settle_residual();
+            if robot.is_infeasible() {
+                self.events.push(MissionEvent::RouteInfeasible { robot: id });
+            }
+        }
+    }
+
+    fn exchange_multipliers(&mut self) {
+        let multipliers: Vec<f64> = self.robots.iter().map(Robot::multiplier).collect();
+        self.broadcast(&multipliers, Robot::hear_multiplier);
+    }
+
+    fn exchange_flows(&mut self) {
+        let reports: Vec<_> = self.robots.iter().map(Robot::flow_report).collect();
+        for robot in &mut self.robots {
+            robot.clear_inflow();
+        }
+        self.broadcast(&reports, Robot::hear_flows);
+    }
+
+    /// Every robot sends a message to all robots that hear it.
+    fn broadcast<T>(&mut self, messages: &[T], mut hear: impl FnMut(&mut Robot, NodeId, &T)) {
+        for (sender, message) in messages.iter().enumerate() {
+            for at in 0..self.medium.audience(sender).len() {
+                let receiver = self.medium.audience(sender)[at];
+                if receiver < self.robots.len() && self.medium.delivers(sender, receiver) {
+                    hear(&mut self.robots[receiver], sender, message);
+                }
+            }
+        }
+    }
+
+    /// Paper-notes' repair of (13)–(14): deepest first, every robot sends what is missing to its
+    /// parent, once it has heard from all its children.
+    fn sweep(&mut self) {
+        let mut awaited: Vec<usize> =
+            self.robots.iter().map(|robot| robot.tree_children().count()).collect();
+        let mut ready: Vec<NodeId> =
+            (0..self.robots.len()).filter(|&robot| awaited[robot] == 0).collect();
+        while let Some(robot) = ready.pop() {
+            let Some(parent) = self.robots[robot].tree_parent() else { continue };
+            let more = self.robots[robot].meet_demand();
+            if parent < self.robots.len() && self.medium.delivers(robot, parent) {
+                self.robots[parent].expect_more(more);
+                awaited[parent] = awaited[parent].saturating_sub(1);
+                if awaited[parent] == 0 {
+                    ready.push(parent);
+                }
+            }
+        }
+    }
+
+    /// Proposals, objections, halving; what is left is carried out.
+    fn negotiate(&mut self) {
+        let begin = Instant::now();
+        for robot in &mut self.robots {
+            robot.propose();
+        }
+        self.times.motion += begin.elapsed();
+        let begin = Instant::now();
+        for round in 0..=NEGOTIATION_ROUNDS {
+            if !self.negotiation_round(round == NEGOTIATION_ROUNDS) {
+                break;
+            }
+        }
+        for robot in &mut self.robots {
+            robot.set_off();
+        }
+        self.times.acceptance += begin.elapsed();
+    }
+
+    /// Whether anybody objected.
+    fn negotiation_round(&mut self, last: bool) -> bool {
+        let proposals: Vec<(NodeId, Proposal)> = self
+            .robots
+            .iter()
+            .enumerate()
+            .filter_map(|(id, robot)| Some((id, *robot.proposal()?)))
+            .collect();
+        for robot in &mut self.robots {
+            robot.clear_proposals();
+        }
+        for (mover, proposal) in &proposals {
+            for receiver in self.audience_of(*mover) {
+                self.robots[receiver].hear_proposal(*mover, proposal);
+            }
+        }
+        let objections: Vec<(NodeId, Objection)> = self
+            .robots
+            .iter()
+            .enumerate()
+            .filter_map(|(id, robot)| Some((id, robot.objection()?)))
+            .collect();
+        for (objector, objection) in &objections {
+            self.robots[*objector].yield_to(objection, last);
+            for receiver in self.audience_of(*objector) {
+                self.robots[receiver].yield_to(objection, last);
+            }
+        }
+        !objections.is_empty()
+    }
+
+    /// The robots that a message of `sender` reaches.
+    fn audience_of(&mut self, sender: NodeId) -> Vec<NodeId> {
+        let audience: Vec<NodeId> = self.medium.audience(sender).to_vec();
+        audience
+            .into_iter()
+            .filter(|&receiver| receiver < self.robots.len() && self.medium.delivers(sender, receiver))
+            .collect()
+    }
+
+    // ---- The robots' own jumps ---------------------------------------------------------------
+
+    /// Every robot takes at most one of its own transitions; says whether any did.
+    fn jump_alone(&mut self, round: &mut Round<'_, NetworkJump>) -> Result<bool, NetworkError> {
+        let mut jumped = false;
+        for (id, robot) in self.robots.iter_mut().enumerate() {
+            if !robot.measure() {
+                continue;
+            }
+            if let Some(jump) = robot.step_mission(&self.mission)? {
+                round.jumped(id, NetworkJump::Mission(jump));
+                jumped = true;
+            } else if let Some(jump) = robot.step_role(&self.roles)? {
+                let (from, to) = (jump.source, jump.target);
+                self.events.push(MissionEvent::RoleChanged { robot: id, from, to });
+                round.jumped(id, NetworkJump::Role(jump));
+                jumped = true;
+            }
+            self.events.extend(robot.drain_log());
+        }
+        for access_point in &mut self.access_points {
+            self.events.extend(access_point.drain_log());
+        }
+        Ok(jumped)
+    }
+
+    fn jump_together(&mut self) -> NetworkJump {
+        let begin = Instant::now();
+        match self.stage {
+            Stage::Flow => {
+                self.begin_period();
+                self.times.coordination += begin.elapsed();
+                NetworkJump::Sample
+            }
+            Stage::Exchange(0) | Stage::Route => {
+                self.route();
+                self.stage = Stage::Move;
+                self.times.routing += begin.elapsed();
+                NetworkJump::Route
+            }
+            Stage::Exchange(rounds) => {
+                if rounds == self.site.settings.rounds_per_period {
+                    self.robots.iter_mut().for_each(Robot::begin_period);
+                }
+                self.exchange_beacons();
+                self.stage = Stage::Exchange(rounds - 1);
+                self.times.coordination += begin.elapsed();
+                NetworkJump::Exchange
+            }
+            Stage::Move => {
+                self.negotiate();
+                self.stage = Stage::Flow;
+                NetworkJump::Move
+            }
+        }
+    }
+
+    /// Whether the clocks call for the next sample.
+    fn is_sample_due(&self) -> bool {
+        self.robots.iter().all(|robot| robot.time_to_sample() <= 0.0)
+    }
+
+    /// How the mission has ended, as the first access point knows it.
+    fn announced_end(&self) -> Option<End> {
+        match self.access_points.first()?.notice() {
+            Notice::Ended { outcome, reason, task } => {
+                Some(End { outcome: *outcome, reason: reason.to_string(), task: *task })
+            }
+            _ => None,
+        }
+    }
+}
+
+impl<M: Medium> System for Network<M> {
+    type Jump = NetworkJump;
+    type Finish = End;
+    type Error = NetworkError;
+
+    fn finished(&self) -> Option<End> {
+        if self.stage != Stage::Flow || !self.is_sample_due() || self.step == 0 {
+            return None;
+        }
+        let limit = self.site.settings.max_steps;
+        self.announced_end().or_else(|| {
+            (self.step >= limit).then(|| End {
+                outcome: Outcome::StepLimit,
+                reason: format!("the mission has taken the {limit} control periods allowed"),
+                task: None,
+            })
+        })
+    }
+
+    fn jump(&mut self, round: &mut Round<'_, NetworkJump>) -> Result<(), NetworkError> {
+        let begin = Instant::now();
+        let jumped = self.jump_alone(round)?;
+        self.times.coordination += begin.elapsed();
+        if !jumped && (self.stage != Stage::Flow || self.is_sample_due()) {
+            let jump = self.jump_together();
+            round.jumped_together(jump);
+        }
+        Ok(())
+    }
+
+    fn time_to_jump(&self) -> Result<Option<f64>, NetworkError> {
+        Ok(self.robots.iter().map(Robot::time_to_sample).reduce(f64::min))
+    }
+
+    fn flow(&mut self, duration: f64) -> Result<(), NetworkError> {
+        for robot in &mut self.robots {
+            robot.flow(duration);
+        }
+        self.step += 1;
+        Ok(())
+    }
+}
+
+/// Which routing methods a network can use.
+pub const ROUTING_METHODS: [RoutingMethod; 2] = [RoutingMethod::Dual, RoutingMethod::Adal];

@@ -1,0 +1,234 @@
+//! The robot's place in the tree: what it hangs on and what hangs on it (Definition 5.2).
+//!
+//! Redundant robots belong to the tree too. Each hangs itself on the node that is fewest links
+//! from an access point and, among those, most reliable, over links no longer than d_build. It
+//! chooses from the lineages that its neighbours tell it. Fixed and primary posts keep their
+//! parents; only p₁ may change its own (Remark 5.6).
+
+use std::sync::Arc;
+
+use pleach_discrete::network::{Anchor, IdSet, Lineage, Phase, PostId, PostKind};
+
+use super::super::record::MissionEvent;
+use super::Robot;
+use super::hearing::Neighbour;
+
+/// Relative slack when a length is compared with d_build: such lengths are sums of rounded ones.
+const ROUNDING: f64 = 1e-9;
+
+/// p₁ changes its parent only if that brings it nearer to its target by this share of d_build.
+const REATTACHMENT_GAIN: f64 = 0.05;
+
+/// A node without a branch becomes redundant after this many control periods.
+const PATIENCE_WITH_BARREN_POSTS: u32 = 2;
+
+impl Robot {
+    /// Renews the robot's place in the tree from what it has heard.
+    pub fn keep_place(&mut self) {
+        if self.duty.is_redundant() && (!self.tree_is_frozen() || self.anchor().is_none()) {
+            self.choose_parent();
+        }
+        self.trace_lineage();
+        self.can_detach = self.duty.is_redundant() && self.finds_other_parent();
+        self.collect_below();
+        self.promote_if_bearing();
+    }
+
+    /// Once a period: Remark 5.6 (ii), a node that bears no branch becomes redundant.
+    pub fn retire_if_barren(&mut self) {
+        let barren = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
+            && !self.bears_branch()
+            && !self.tree_is_frozen()
+            && !self.awaits_release;
+        self.barren_periods = if barren { self.barren_periods + 1 } else { 0 };
+        if self.barren_periods >= PATIENCE_WITH_BARREN_POSTS
+            && let Some(station) = self.duty.station_mut()
+        {
+            station.post.kind = PostKind::Redundant;
+            station.reference = self.position;
+        }
+    }
+
+    /// While a path Σ is being sought or walked, nobody changes its parent.
+    pub(super) fn tree_is_frozen(&self) -> bool {
+        matches!(self.phase, Phase::RecruitElection | Phase::PathAgreement | Phase::Shift)
+    }
+
+    /// Whether a fixed post or one of the primary team hangs on this robot's post.
+    pub(super) fn bears_branch(&self) -> bool {
+        self.branches() > 0
+    }
+
+    /// The number of branches that hang on this robot's post.
+    pub(super) fn branches(&self) -> usize {
+        self.children().filter(|child| child.post().is_some_and(|post| !post.is_redundant())).count()
+    }
+
+    pub(super) fn anchor(&self) -> Option<Anchor> {
+        self.duty.post().and_then(|post| post.parent)
+    }
+
+    /// Whether a link of this length may be made.
+    pub(super) fn may_build(&self, length: f64) -> bool {
+        length <= self.site.build_length * (1.0 + ROUNDING)
+    }
+
+    fn choose_parent(&mut self) {
+        let Some(&post) = self.duty.post() else { return };
+        let current = post.parent.and_then(|anchor| {
+            let bearer = self.bearer(anchor)?;
+            let lineage = bearer.beacon.lineage.as_ref()?;
+            let usable = Self::accepts_redundant(bearer)
+                && !lineage.contains(post.id)
+                && self.walk_to(bearer) <= self.site.hard_length * (1.0 + ROUNDING);
+            usable.then_some((lineage.hops(), anchor))
+        });
+        let best = self.best_parent(post.id, None);
+        let parent = match (current, best) {
+            (Some((hops, anchor)), Some((fewer, _))) if hops <= fewer => Some(anchor),
+            (Some((_, anchor)), None) => Some(anchor),
+            (_, best) => best.map(|(_, anchor)| anchor),
+        };
+        if let Some(station) = self.duty.station_mut() {
+            station.post.parent = parent;
+        }
+    }
+
+    /// The best node to hang on, with its number of links to the access point; ways through
+    /// `avoided` do not count.
+    fn best_parent(&self, own: PostId, avoided: Option<PostId>) -> Option<(usize, Anchor)> {
+        let mut best: Option<(usize, f64, Anchor)> = None;
+        for neighbour in &self.neighbours {
+            let Some(lineage) = &neighbour.beacon.lineage else { continue };
+            let hops = lineage.hops();
+            let better = best.is_none_or(|(fewest, reliability, _)| {
+                hops < fewest || hops == fewest && neighbour.reliability > reliability
+            });
+            if better
+                && neighbour.distance <= self.site.build_length * (1.0 + ROUNDING)
+                && Self::accepts_redundant(neighbour)
+                && !lineage.contains(own)
+                && avoided.is_none_or(|avoided| !lineage.contains(avoided))
+                && self.may_build(self.walk_to(neighbour))
+            {
+                best = Some((hops, neighbour.reliability, self.anchor_of(neighbour)));
+            }
+        }
+        best.map(|(hops, _, anchor)| (hops, anchor))
+    }
+
+    fn anchor_of(&self, neighbour: &Neighbour) -> Anchor {
+        match neighbour.post() {
+            Some(post) => Anchor::Post(post.id),
+            None => Anchor::Access(neighbour.id() - self.site.robots),
+        }
+    }
+
+    fn accepts_redundant(neighbour: &Neighbour) -> bool {
+        neighbour.is_access_point() || neighbour.post().is_some_and(|post| post.bears_redundant())
+    }
+
+    fn finds_other_parent(&self) -> bool {
+        match (self.duty.post(), self.anchor()) {
+            (Some(post), Some(Anchor::Post(parent))) => {
+                self.best_parent(post.id, Some(parent)).is_some()
+            }
+            _ => true,
+        }
+    }
+
+    fn trace_lineage(&mut self) {
+        let Some(post) = self.duty.post() else {
+            self.lineage = None;
+            return;
+        };
+        let Some(anchor) = post.parent else {
+            self.lineage = None;
+            return;
+        };
+        let root;
+        let parent = match anchor {
+            Anchor::Access(access) => {
+                root = Lineage::of_access_point(access);
+                Some(&root)
+            }
+            Anchor::Post(parent) => self.holder(parent).and_then(|n| n.beacon.lineage.as_deref()),
+        };
+        // A parent that is itself on its way along Σ is heard again when it has arrived.
+        let Some(parent) = parent else { return };
+        if self.lineage.as_ref().is_none_or(|own| !own.extends(parent, post.id)) {
+            self.lineage = parent.extended_by(post.id).map(Arc::new);
+        }
+    }
+
+    fn collect_below(&mut self) {
+        let mut below = IdSet::singleton(self.id);
+        for child in self.children() {
+            below.merge(&child.beacon.below);
+        }
+        if *self.below != below {
+            self.below = Arc::new(below);
+        }
+    }
+
+    /// Remark 5.6 (i): a redundant robot on which a branch hangs becomes a node.
+    fn promote_if_bearing(&mut self) {
+        if self.duty.is_redundant()
+            && self.bears_branch()
+            && let Some(station) = self.duty.station_mut()
+        {
+            station.post.kind = PostKind::Fixed;
+            station.reference = self.position;
+        }
+    }
+
+    /// Remark 5.6: p₁ hangs itself on a fixed or redundant robot or an access point that is
+    /// nearer to its target, if there is one within d_build.
+    pub fn reattach(&mut self) {
+        if self.phase != Phase::Advance || !self.is_first() && self.awaited_parent().is_none() {
+            return;
+        }
+        if let Some(awaited) = self.awaited_parent()
+            && let Some(newcomer) = self.holder(awaited)
+            && self.may_build(self.walk_to(newcomer))
+        {
+            self.hang_on(Anchor::Post(awaited));
+            return;
+        }
+        let (Some(goal), Some(anchor)) = (self.team_goal(), self.anchor()) else { return };
+        let Some(parent) = self.bearer(anchor) else { return };
+        let own = self.duty.post().map(|post| post.id);
+        let gain = REATTACHMENT_GAIN * self.site.build_length;
+        let mut nearest = self.site.free_space.distance(parent.position(), goal) - gain;
+        let mut better = None;
+        for neighbour in &self.neighbours {
+            let candidate = self.anchor_of(neighbour);
+            if candidate == anchor
+                || !Self::accepts_redundant(neighbour)
+                || neighbour.beacon.lineage.as_ref().is_none_or(|lineage| {
+                    own.is_some_and(|own| lineage.contains(own))
+                })
+                || neighbour.distance > self.site.build_length
+                || (goal - neighbour.position()).norm() >= nearest
+                || self.walk_to(neighbour) > self.site.build_length
+            {
+                continue;
+            }
+            let distance = self.site.free_space.distance(neighbour.position(), goal);
+            if distance < nearest {
+                (nearest, better) = (distance, Some((candidate, neighbour.id())));
+            }
+        }
+        if let Some((anchor, parent)) = better {
+            self.hang_on(anchor);
+            self.still_periods = 0;
+            self.report(MissionEvent::Reattached { robot: self.id, parent });
+        }
+    }
+
+    fn hang_on(&mut self, anchor: Anchor) {
+        if let Some(station) = self.duty.station_mut() {
+            station.post.parent = Some(anchor);
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Exchanging duties with the robot that stands in the way.
+//!
+//! A mover that touches a parked robot nearer to its goal offers it its duty; the parked robot
+//! takes it and leaves its post to the mover, which is within δ of it. With every exchange the
+//! way that remains gets shorter, so that exchanges come to an end.
+
+use pleach_discrete::network::{Exchange, Phase, Reply};
+
+use super::super::duty::Duty;
+use super::super::record::MissionEvent;
+use super::Robot;
+use super::hearing::Neighbour;
+
+/// Two robots touch when they are this many ρ apart; they never come closer than 2ρ.
+const CONTACT: f64 = 2.6;
+/// The parked robot must be nearer to the goal by this share of ρ.
+const GAIN: f64 = 0.05;
+/// Control periods without progress after which a mover looks for an exchange.
+const PATIENCE: u32 = 2;
+
+impl Robot {
+    /// Once a period: a mover that does not get on offers its duty to the robot in its way.
+    pub fn consider_exchange(&mut self) {
+        if self.offer.is_some()
+            || self.reply.is_some()
+            || self.still_periods < PATIENCE
+            || !self.may_hand_over()
+        {
+            return;
+        }
+        let Some(goal) = self.goal() else { return };
+        let own_way = self.site.free_space.distance(self.position, goal);
+        let mut nearest = own_way - GAIN * self.clearance();
+        let mut partner = None;
+        for neighbour in &self.neighbours {
+            if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
+                let way = self.site.free_space.distance(neighbour.position(), goal);
+                if way < nearest && self.could_be_replaced_by(neighbour) {
+                    (nearest, partner) = (way, Some(neighbour.id()));
+                }
+            }
+        }
+        if let Some(to) = partner {
+            self.offers_made += 1;
+            self.offer = Some(Exchange { to, number: self.offers_made, duty: self.duty });
+        }
+    }
+
+    /// Whether this robot is on a way that another could go on with.
+    fn may_hand_over(&self) -> bool {
+        match self.duty {
+            Duty::Shift { place } => {
+                self.active_subgroup().is_some_and(|active| active.places().contains(&place))
+            }
+            Duty::Hold(_) => self.duty.is_primary() && self.phase == Phase::Advance,
+            Duty::Wait { .. } => false,
+        }
+    }
+
+    /// Whether this robot could take over the post of `parked` from where it is.
+    fn could_replace(&self, parked: &Neighbour) -> bool {
+        let Some(station) = parked.station() else { return false };
+        let settings = &self.site.settings;
+        let near = |place| (self.position - place) as pleach_continuous::Vector;
+        let within_reach = match station.post.kind {
+            pleach_discrete::network::PostKind::Primary { .. } => false,
+            pleach_discrete::network::PostKind::Redundant => true,
+            pleach_discrete::network::PostKind::Fixed => {
+                near(station.reference).norm() <= settings.service_radius
+            }
+        };
+        let services = station.post.task.is_none_or(|task| {
+            self.task_position(task)
+                .is_some_and(|place| near(place).norm() <= settings.service_radius)
+        });
+        let link_holds = station.post.parent.and_then(|anchor| self.bearer(anchor)).is_some_and(
+            |parent| self.walk_to(parent) <= self.site.hard_length,
+        );
+        let children_hold = self
+            .neighbours
+            .iter()
+            .filter(|n| n.post().is_some_and(|post| post.hangs_on(station.post.id)))
+            .all(|child| self.walk_to(child) <= self.site.hard_length);
+        parked.beacon.parked
+            && parked.beacon.offer.is_none()
+            && parked.beacon.reply.is_none()
+            && within_reach
+            && services
+            && link_holds
+            && children_hold
+    }
+
+    /// Whether the links of this robot would hold if `parked` took its duty.
+    fn could_be_replaced_by(&self, parked: &Neighbour) -> bool {
+        self.tree_links().iter().all(|link| {
+            self.neighbour(link.to).is_some_and(|other| {
+                self.site.walk(parked.position(), other.position()) <= self.site.hard_length
+            })
+        })
+    }
+
+    pub(super) fn task_position(&self, task: usize) -> Option<pleach_continuous::Point> {
+        self.tasks.iter().find(|known| known.number == task).map(|known| known.position)
+    }
+
+    /// One round of the protocol: answer offers, complete exchanges.
+    pub fn handle_exchange(&mut self) {
+        self.complete_own_offer();
+        self.forget_heard_reply();
+        self.answer_offer();
+    }
+
+    fn complete_own_offer(&mut self) {
+        let Some(offer) = &self.offer else { return };
+        let Some(partner) = self.neighbour(offer.to) else { return };
+        let Some(reply) = &partner.beacon.reply else { return };
+        if reply.to != self.id || reply.number != offer.number {
+            return;
+        }
+        let (partner, accepted) = (offer.to, reply.accepted);
+        self.offer = None;
+        let Some(mut duty) = accepted else { return };
+        let position = self.position;
+        if let Some(station) = duty.station_mut()
+            && station.post.is_redundant()
+        {
+            station.reference = position;
+        }
+        self.left_post = self.duty.post().map(|post| post.id);
+        self.duty = duty;
+        self.lineage = None;
+        self.still_periods = 0;
+        self.report(MissionEvent::DutiesExchanged { mover: self.id, parked: partner });
+    }
+
+    /// The reply stands until the mover shows that it has heard it: its offer is gone.
+    fn forget_heard_reply(&mut self) {
+        let Some(reply) = &self.reply else { return };
+        let heard = self.neighbour(reply.to).is_some_and(|mover| {
+            mover.beacon.offer.as_ref().is_none_or(|offer| offer.number != reply.number)
+        });
+        if heard {
+            self.reply = None;
+        }
+    }
+
+    fn answer_offer(&mut self) {
+        if self.reply.is_some() {
+            return;
+        }
+        let offered = self.neighbours.iter().find_map(|neighbour| {
+            let offer = neighbour.beacon.offer.as_ref()?;
+            (offer.to == self.id).then(|| (neighbour.id(), offer.number, offer.duty))
+        });
+        let Some((to, number, duty)) = offered else { return };
+        let accepted = self.may_be_relieved().then_some(self.duty);
+        if accepted.is_some() {
+            self.left_post = self.duty.post().map(|post| post.id);
+            self.duty = duty;
+            self.lineage = None;
+            self.still_periods = 0;
+        }
+        self.reply = Some(Reply { to, number, accepted });
+    }
+
+    /// Whether this robot may leave its post to a mover.
+    fn may_be_relieved(&self) -> bool {
+        self.is_parked()
+            && self.offer.is_none()
+            && !self.awaits_release
+            && !self.duty.is_primary()
+            && self.duty.station().is_some()
+    }
+
+    /// Whether an exchange is under way; the robot then stands still.
+    pub(super) fn is_engaged(&self) -> bool {
+        self.offer.is_some() || self.reply.is_some()
+    }
+}

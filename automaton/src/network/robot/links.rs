@@ -1,0 +1,130 @@
+//! The links of the tree that the robot must not lose.
+//!
+//! While a subgroup of Σ is on its way, the posts that it left have no holder. The chain of its
+//! robots then stands for them: going up the tree each hangs on the next, going down each hangs
+//! on the one before, and the break points at both ends hold the chain.
+
+use pleach_discrete::network::{Anchor, NodeId};
+
+use super::super::duty::Duty;
+use super::Robot;
+use super::hearing::Neighbour;
+
+/// A link of the tree, as one of its ends sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TreeLink {
+    /// The other end.
+    pub to: NodeId,
+    /// The geodesic length that it should not exceed.
+    pub limit: f64,
+}
+
+impl Robot {
+    /// The node that this robot hangs on.
+    pub fn tree_parent(&self) -> Option<NodeId> {
+        self.parent_of(&self.duty, self.position)
+    }
+
+    /// The links of the tree at this robot: to its parent first, then to its children.
+    pub(super) fn tree_links(&self) -> Vec<TreeLink> {
+        let mut links = Vec::new();
+        links.extend(self.parent_link());
+        links.extend(self.tree_children().map(|child| TreeLink {
+            to: child.id(),
+            limit: self.limit_of(child.beacon.duty.as_ref()),
+        }));
+        links
+    }
+
+    pub(super) fn parent_link(&self) -> Option<TreeLink> {
+        let to = self.tree_parent()?;
+        Some(TreeLink { to, limit: self.limit_of(Some(&self.duty)) })
+    }
+
+    /// The robots that hang on this one now.
+    pub fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
+        self.neighbours.iter().filter(|neighbour| {
+            neighbour
+                .beacon
+                .duty
+                .as_ref()
+                .and_then(|duty| self.parent_of(duty, neighbour.position()))
+                == Some(self.id)
+        })
+    }
+
+    /// Links are made within d_build; those of the primary team stay so, and d_hard is never
+    /// exceeded.
+    fn limit_of(&self, duty: Option<&Duty>) -> f64 {
+        match duty {
+            Some(duty) if duty.is_primary() => self.site.build_length,
+            _ => self.site.hard_length,
+        }
+    }
+
+    /// The node on which a robot with this duty hangs, as far as this robot hears.
+    fn parent_of(&self, duty: &Duty, position: pleach_continuous::Point) -> Option<NodeId> {
+        match duty {
+            Duty::Shift { place } => self.parent_under_way(*place, position),
+            Duty::Hold(station) | Duty::Wait { station, .. } => match station.post.parent? {
+                Anchor::Access(access) => Some(self.site.robots + access),
+                Anchor::Post(post) => {
+                    self.holder_or_self(post).or_else(|| self.stand_in_for(post))
+                }
+            },
+        }
+    }
+
+    /// The parent of the robot that has left `place`.
+    fn parent_under_way(&self, place: usize, from: pleach_continuous::Point) -> Option<NodeId> {
+        let path = self.path.as_ref()?;
+        let active = self.subgroups.get(self.subgroup)?;
+        let hop = path.hops.get(place)?;
+        if path.descends(active.first) {
+            return match place == active.first {
+                true => self.holder_or_self(hop.post.id),
+                false => self.robot_at(place - 1),
+            };
+        }
+        if hop.crossing.is_empty() {
+            return self
+                .robot_at(place + 1)
+                .or_else(|| self.holder_or_self(path.hops.get(place + 1)?.post.id));
+        }
+        let distance = |&access: &usize| {
+            self.site.free_space.distance(from, self.site.access_points[access])
+        };
+        let nearest =
+            hop.crossing.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied()?;
+        Some(self.site.robots + nearest)
+    }
+
+    /// The robot of the chain that stands for a post whose holder has left it.
+    fn stand_in_for(&self, post: pleach_discrete::network::PostId) -> Option<NodeId> {
+        let path = self.path.as_ref()?;
+        let active = self.subgroups.get(self.subgroup)?;
+        let place = path.place_of(post)?;
+        match path.descends(active.first) {
+            true => self.robot_at(place),
+            false => self.robot_at(place.checked_sub(1)?),
+        }
+    }
+
+    /// The robot that waits at or has left `place` of the path.
+    fn robot_at(&self, place: usize) -> Option<NodeId> {
+        if self.duty.place() == Some(place) {
+            return Some(self.id);
+        }
+        self.neighbours
+            .iter()
+            .find(|n| n.beacon.duty.as_ref().and_then(Duty::place) == Some(place))
+            .map(Neighbour::id)
+    }
+
+    fn holder_or_self(&self, post: pleach_discrete::network::PostId) -> Option<NodeId> {
+        match self.duty.post() {
+            Some(own) if own.id == post => Some(self.id),
+            _ => self.holder(post).map(Neighbour::id),
+        }
+    }
+}

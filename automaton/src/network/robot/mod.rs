@@ -1,0 +1,236 @@
+//! One robot: its own state, and what it makes of the messages it hears.
+//!
+//! Everything here is local. A robot knows its own position and duty, what every robot knows
+//! from the beginning ([`Site`]), and the beacons of the neighbours that it hears. The chapters
+//! follow the day of a robot: it [listens](hearing), keeps its [place in the tree](attachment),
+//! takes part in the [mission](mission), [exchanges duties](exchange) with a robot in its way,
+//! [routes](routing) its packets and [moves](motion).
+
+mod attachment;
+mod exchange;
+mod facts;
+mod hearing;
+mod links;
+mod mission;
+mod motion;
+mod routing;
+
+use std::sync::Arc;
+
+use pleach_continuous::geometry::Destination;
+use pleach_continuous::network::acceptance::Segment;
+use pleach_continuous::{Point, Vector};
+use pleach_discrete::network::{
+    Agreement, Bulletin, Election, Exchange, IdSet, Lineage, NodeId, Phase, Post, PostId, Reply,
+    Role, Subgroup,
+};
+
+pub use facts::{Facts, VARIABLES};
+pub use motion::{Objection, Proposal};
+pub use routing::{FlowReport, RouteLink};
+
+use super::beacon::{Beacon, Notice, TeamReport};
+use super::duty::{Duty, Hop, Path, Station};
+use super::record::MissionEvent;
+use super::site::Site;
+use hearing::Neighbour;
+
+/// A robot of the network.
+#[derive(Debug)]
+pub struct Robot {
+    // What it knows from the beginning.
+    id: NodeId,
+    rate: f64,
+    site: Arc<Site>,
+
+    // Its continuous state: x, u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
+    position: Point,
+    velocity: Vector,
+    clock: f64,
+
+    // Where it is in its two automata.
+    role: Role,
+    phase: Phase,
+    facts: Facts,
+
+    // Its duty, and the exchange of duties that it is engaged in.
+    duty: Duty,
+    left_post: Option<PostId>,
+    offer: Option<Exchange<Duty>>,
+    offers_made: u32,
+    reply: Option<Reply<Duty>>,
+
+    // What it hears and where it hangs.
+    neighbours: Vec<Neighbour>,
+    lineage: Option<Arc<Lineage>>,
+    below: Arc<IdSet>,
+    can_detach: bool,
+    barren_periods: u32,
+
+    // What it was told of the mission.
+    bulletin: Arc<Bulletin<Notice>>,
+    tasks: Vec<TaskNotice>,
+    roster: Arc<IdSet>,
+    eligible: Arc<IdSet>,
+    election: Option<Election>,
+    waited_rounds: usize,
+    route: Option<(u32, Arc<Vec<Hop>>)>,
+    awaits_release: bool,
+    path: Option<Arc<Path>>,
+    agreement: Option<Agreement>,
+    subgroups: Vec<Subgroup>,
+    subgroup: usize,
+    team: Option<TeamReport>,
+
+    // Communication variables.
+    multiplier: routing::Multiplier,
+    links: Vec<RouteLink>,
+    inflow: f64,
+    inflows: Vec<(NodeId, f64)>,
+    residual: f64,
+
+    // Motion.
+    destination: Option<Destination>,
+    proposal: Option<Proposal>,
+    heard_moves: Vec<(NodeId, Segment)>,
+    arrival: Point,
+    still_periods: u32,
+
+    // What it tells observers; no robot reads it.
+    log: Vec<MissionEvent>,
+}
+
+/// A task that this robot has heard of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct TaskNotice {
+    number: usize,
+    position: Point,
+    /// The point of 𝒲_f nearest to it, where the leader goes.
+    target: Point,
+}
+
+impl Robot {
+    /// A robot at the start of a mission: redundant, alone, at rest.
+    pub fn new(id: NodeId, position: Point, rate: f64, site: Arc<Site>) -> Self {
+        let post = Post::redundant(PostId(id as u32));
+        Robot {
+            id,
+            rate,
+            position,
+            velocity: Vector::zeros(),
+            clock: site.settings.period,
+            role: Role::Redundant,
+            phase: Phase::Idle,
+            facts: Facts::default(),
+            duty: Duty::Hold(Station { post, reference: position }),
+            left_post: None,
+            offer: None,
+            offers_made: 0,
+            reply: None,
+            neighbours: Vec::new(),
+            lineage: None,
+            below: Arc::new(IdSet::singleton(id)),
+            can_detach: false,
+            barren_periods: 0,
+            bulletin: Arc::new(Bulletin::first(Notice::Quiet)),
+            tasks: Vec::new(),
+            roster: Arc::default(),
+            eligible: Arc::default(),
+            election: None,
+            waited_rounds: 0,
+            route: None,
+            awaits_release: false,
+            path: None,
+            agreement: None,
+            subgroups: Vec::new(),
+            subgroup: 0,
+            team: None,
+            multiplier: routing::Multiplier::default(),
+            links: Vec::new(),
+            inflow: 0.0,
+            inflows: Vec::new(),
+            residual: 0.0,
+            destination: None,
+            proposal: None,
+            heard_moves: Vec::new(),
+            arrival: position,
+            still_periods: 0,
+            log: Vec::new(),
+            site,
+        }
+    }
+
+    /// What the robot tells its neighbours now.
+    pub fn beacon(&self) -> Beacon {
+        Beacon {
+            sender: self.id,
+            position: self.position,
+            bulletin: Arc::clone(&self.bulletin),
+            election: self.election.clone(),
+            agreement: self.agreement.clone(),
+            route: self.route.clone(),
+            crossing: Vec::new(),
+            lineage: self.lineage.clone(),
+            below: Arc::clone(&self.below),
+            duty: Some(self.duty),
+            parked: self.is_parked(),
+            can_detach: self.can_detach,
+            offer: self.offer.clone(),
+            reply: self.reply.clone(),
+            team: self.team,
+        }
+    }
+
+    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly.
+    pub fn flow(&mut self, duration: f64) {
+        self.clock += duration;
+    }
+
+    /// Time until the clock calls for the next sample.
+    pub fn time_to_sample(&self) -> f64 {
+        (self.site.settings.period - self.clock).max(0.0)
+    }
+
+    /// x_i.
+    pub const fn position(&self) -> Point {
+        self.position
+    }
+
+    /// The role, a location of the role automaton.
+    pub const fn role(&self) -> Role {
+        self.role
+    }
+
+    /// The phase, a location of the mission automaton.
+    pub const fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// What it does.
+    pub const fn duty(&self) -> &Duty {
+        &self.duty
+    }
+
+    /// The newest word on the mission that it knows.
+    pub fn notice(&self) -> &Notice {
+        self.bulletin.notice()
+    }
+
+    /// c_i at the last sample.
+    pub const fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    /// Takes what it has told observers since the last call.
+    pub fn drain_log(&mut self) -> std::vec::Drain<'_, MissionEvent> {
+        self.log.drain(..)
+    }
+
+    fn report(&mut self, event: MissionEvent) {
+        self.log.push(event);
+    }
+
+    fn clearance(&self) -> f64 {
+        self.site.settings.clearance
+    }
+}

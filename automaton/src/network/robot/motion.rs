@@ -1,0 +1,323 @@
+//! Motion: where the robot goes, what it proposes, what it objects to (Sec. IV, Algorithm 5).
+//!
+//! The robot solves the motion problem (21)–(22) with everybody else fixed, and proposes the
+//! solution. Whoever hears a proposal that could overload it or overstretch its link to the tree,
+//! whichever of the proposed moves are carried out, objects; a mover that hears an objection
+//! halves its move. Shrinking moves never creates a new objection, so that what is left after the
+//! last round is safe, and every robot that moves knows it from its own neighbours.
+
+use std::sync::Arc;
+
+use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic, HalfPlane, cell};
+use pleach_continuous::network::acceptance::Segment;
+use pleach_continuous::network::motion::MotionProblem;
+use pleach_continuous::{Point, Vector};
+use pleach_discrete::network::{NodeId, Phase};
+
+use super::super::duty::Duty;
+use super::super::scenario::MotionSolver;
+use super::Robot;
+use super::hearing::Neighbour;
+use super::links::TreeLink;
+
+/// A robot this share of ρ from the reference of its post has settled.
+const SETTLED: f64 = 0.02;
+/// Distances kept are larger than required by this share, so that rounding never shows.
+const MARGIN: f64 = 1e-4;
+/// Parked robots are kept at this many ρ when there is a way round.
+const KEEP_OUT: f64 = 2.1;
+/// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
+/// goes straight on and exchanges duties with whoever is in its way.
+const DETOUR_ALLOWANCE: f64 = 8.0;
+/// A move shorter than this share of σ is none.
+const STILL: f64 = 0.02;
+/// A proposed move shorter than this share of σ is not made.
+const LEAST_MOVE: f64 = 1e-6;
+/// Tolerances of lengths against limits, relative.
+const ROUNDING: f64 = 1e-9;
+/// How much of a load a sender may be given, just short of all its time.
+const FULL_LOAD: f64 = 1.0 - 1e-9;
+
+/// A move that a robot intends to make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Proposal {
+    /// From where to where.
+    pub segment: Segment,
+}
+
+/// A robot cannot accept the moves proposed around it; those named should shorten theirs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Objection {
+    /// The movers concerned.
+    pub movers: Vec<NodeId>,
+}
+
+impl Robot {
+    /// Whether the robot stands still unless it is asked for; robots that settle on their post
+    /// count as parked.
+    pub(super) fn is_parked(&self) -> bool {
+        match self.duty {
+            Duty::Shift { .. } => self.active_subgroup().is_none(),
+            Duty::Hold(_) | Duty::Wait { .. } => {
+                !(self.duty.is_primary() && self.phase == Phase::Advance)
+            }
+        }
+    }
+
+    /// ψ_i: where the robot goes now (Algorithm 2), if it goes anywhere.
+    pub(super) fn goal(&self) -> Option<Point> {
+        if self.is_engaged() || self.phase == Phase::Ended {
+            return None;
+        }
+        if let Duty::Shift { .. } = self.duty {
+            self.active_subgroup()?;
+            return self.next_hop().map(|hop| hop.place.reference).filter(|&p| self.is_off(p));
+        }
+        if self.duty.is_primary() {
+            let waits = self.phase != Phase::Advance
+                || self.leads() && (self.facts.distance <= self.reach() || self.bears_others());
+            return if waits { None } else { self.team_goal() };
+        }
+        let station = self.duty.station()?;
+        (station.post.is_fixed() && self.is_off(station.reference)).then_some(station.reference)
+    }
+
+    /// Redundant robots still hang on the new leader: they need a moment to hang elsewhere.
+    fn bears_others(&self) -> bool {
+        self.children().any(|child| child.post().is_some_and(|post| post.is_redundant()))
+    }
+
+    fn is_off(&self, reference: Point) -> bool {
+        (reference - self.position).norm() > SETTLED * self.clearance()
+    }
+
+    /// Whether the robot may move in this period.
+    pub fn is_active(&self) -> bool {
+        self.goal().is_some()
+    }
+
+    /// Eq. (26): within δ of the place that it goes to along Σ, and of the task serviced there.
+    pub(super) fn has_arrived(&self) -> bool {
+        let Some(hop) = self.next_hop() else { return false };
+        let radius = self.site.settings.service_radius;
+        let near = |place: Point| (self.position - place).norm() <= radius;
+        let task = hop.post.task.and_then(|task| self.task_position(task));
+        near(hop.place.reference) && task.is_none_or(near)
+    }
+
+    /// Lines 4 to 7 of Algorithm 5: the next position, if the robot moves.
+    pub fn propose(&mut self) {
+        self.proposal = None;
+        let Some(goal) = self.goal() else { return };
+        if self.residual < -self.site.settings.residual_tolerance - ROUNDING {
+            return;
+        }
+        let Some(waypoint) = self.first_waypoint(goal) else { return };
+        let problem = self.motion_problem(waypoint);
+        let motion = match self.site.settings.motion_solver {
+            MotionSolver::Exact => problem.solve_exact(),
+            MotionSolver::Conic => problem.solve_conic(),
+        };
+        let segment = Segment { from: self.position, to: motion.target };
+        if segment.length() > LEAST_MOVE * self.site.settings.step_radius
+            && self.site.free_space.sees(segment.from, segment.to)
+        {
+            self.proposal = Some(Proposal { segment });
+        }
+    }
+
+    /// a₁ of the geodesic to the goal, round parked robots where that is a short way round.
+    fn first_waypoint(&mut self, goal: Point) -> Option<Point> {
+        let site = Arc::clone(&self.site);
+        let free_space: &FreeSpace = &site.free_space;
+        if self.destination.as_ref().is_none_or(|known| known.goal() != goal) {
+            self.destination = Some(free_space.destination(goal));
+        }
+        let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
+        let parked: Vec<Disc> = self
+            .neighbours
+            .iter()
+            .filter(|neighbour| !neighbour.is_access_point() && neighbour.beacon.parked)
+            .map(|n| Disc { center: n.position(), radius: KEEP_OUT * self.clearance() })
+            .collect();
+        let path = match free_space.detour(self.position, goal, &parked) {
+            Some(round)
+                if round.length <= direct.length + DETOUR_ALLOWANCE * self.clearance() =>
+            {
+                round
+            }
+            _ => direct,
+        };
+        Some(self.next_corner(&path).unwrap_or(goal))
+    }
+
+    /// The first waypoint that the robot has not reached.
+    fn next_corner(&self, path: &Geodesic) -> Option<Point> {
+        let reached = ROUNDING * self.site.workspace.extent();
+        path.waypoints.iter().copied().find(|w| (w - self.position).norm() > reached)
+    }
+
+    /// Problem (21): cell (18), linearised residual (22), trust region, links of the tree.
+    fn motion_problem(&self, waypoint: Point) -> MotionProblem {
+        let step = self.site.settings.step_radius;
+        let clearance = self.clearance() * (1.0 + MARGIN);
+        let close: Vec<Point> = self
+            .neighbours
+            .iter()
+            .filter(|n| !n.is_access_point() && n.distance < 2.0 * (step + clearance))
+            .map(Neighbour::position)
+            .collect();
+        let mut half_planes = cell::voronoi_half_planes(self.position, &close, clearance);
+        half_planes.extend(cell::convex_region(
+            &self.site.free_space,
+            self.position,
+            waypoint,
+            step,
+        ));
+        half_planes.extend(self.linearised_residual());
+        let mut discs = vec![Disc { center: self.position, radius: step }];
+        discs.extend(self.tree_links().iter().filter_map(|link| self.link_disc(link)));
+        MotionProblem { position: self.position, waypoint, half_planes, discs }
+    }
+
+    /// c̃_i ≥ −c_min, eq. (22), as a half-plane; none where c_i does not depend on x_i.
+    fn linearised_residual(&self) -> Option<HalfPlane> {
+        let mut gradient = Vector::zeros();
+        for neighbour in &self.neighbours {
+            let net_share = self.share_to(neighbour.id()) - self.share_from(neighbour);
+            if net_share != 0.0 && neighbour.distance > 0.0 {
+                let direction = (self.position - neighbour.position()) / neighbour.distance;
+                gradient += direction * (net_share * self.slope_at(neighbour.distance));
+            }
+        }
+        let steepness = gradient.norm();
+        if steepness * self.site.settings.step_radius < ROUNDING {
+            return None;
+        }
+        let normal = -gradient / steepness;
+        let room = (self.residual + self.site.settings.residual_tolerance).max(0.0) / steepness;
+        Some(HalfPlane::new(normal, normal.dot(&self.position.coords) + room))
+    }
+
+    fn share_to(&self, to: NodeId) -> f64 {
+        self.routes().find(|link| link.to == to).map_or(0.0, |link| link.share)
+    }
+
+    fn share_from(&self, neighbour: &Neighbour) -> f64 {
+        let id = neighbour.id();
+        let flow = self.inflows.iter().find(|(from, _)| *from == id).map_or(0.0, |(_, flow)| *flow);
+        if flow > 0.0 { flow / neighbour.reliability } else { 0.0 }
+    }
+
+    /// The disc in which the robot keeps a link of the tree within its limit, with the other end
+    /// where it is now.
+    fn link_disc(&self, link: &TreeLink) -> Option<Disc> {
+        let neighbour = self.neighbour(link.to)?;
+        let path = self.site.free_space.geodesic(self.position, neighbour.position())?;
+        let spare = (link.limit - path.length).max(0.0);
+        let corner = self.next_corner(&path)?;
+        Some(Disc { center: corner, radius: (corner - self.position).norm() + spare })
+    }
+
+    /// The move that this robot intends.
+    pub const fn proposal(&self) -> Option<&Proposal> {
+        self.proposal.as_ref()
+    }
+
+    /// Where this robot would be.
+    fn own_move(&self) -> Segment {
+        self.proposal.map_or(Segment::still(self.position), |proposal| proposal.segment)
+    }
+
+    /// Forgets the proposals heard in the round before.
+    pub fn clear_proposals(&mut self) {
+        self.heard_moves.clear();
+    }
+
+    /// A neighbour tells its proposal.
+    pub fn hear_proposal(&mut self, from: NodeId, proposal: &Proposal) {
+        self.heard_moves.push((from, proposal.segment));
+    }
+
+    fn move_of(&self, node: NodeId) -> Segment {
+        let heard = self.heard_moves.iter().find(|(from, _)| *from == node);
+        match (heard, self.neighbour(node)) {
+            (Some((_, segment)), _) => *segment,
+            (None, Some(neighbour)) => Segment::still(neighbour.position()),
+            (None, None) => Segment::still(self.position),
+        }
+    }
+
+    /// The movers whose moves this robot cannot accept, whichever of them are carried out.
+    pub fn objection(&self) -> Option<Objection> {
+        if self.heard_moves.is_empty() && self.proposal.is_none() {
+            return None;
+        }
+        let mut movers = Vec::new();
+        if self.is_overloaded() {
+            movers.extend(self.routes().map(|link| link.to).filter(|&to| self.is_mover(to)));
+            movers.extend(self.proposal.map(|_| self.id));
+        }
+        if let Some(parent) = self.overstretched_parent() {
+            movers.extend(Some(parent).filter(|&parent| self.is_mover(parent)));
+            movers.extend(self.proposal.map(|_| self.id));
+        }
+        (!movers.is_empty()).then_some(Objection { movers })
+    }
+
+    fn is_mover(&self, node: NodeId) -> bool {
+        self.heard_moves.iter().any(|(from, _)| *from == node)
+    }
+
+    fn is_overloaded(&self) -> bool {
+        let load: f64 = self.routes().map(|link| link.share).sum();
+        let worst = self.worst_load(self.own_move(), |node| self.move_of(node));
+        worst > FULL_LOAD.max(load + ROUNDING)
+    }
+
+    /// The parent, if the link to it could become longer than its limit and than it is now.
+    fn overstretched_parent(&self) -> Option<NodeId> {
+        let link = self.parent_link()?;
+        let (own, other) = (self.own_move(), self.move_of(link.to));
+        if own.length() == 0.0 && other.length() == 0.0 {
+            return None;
+        }
+        let neighbour = self.neighbour(link.to)?;
+        let limit = link.limit.max(self.walk_to(neighbour)) * (1.0 + ROUNDING);
+        let length = |a: Point, b: Point| self.site.free_space.distance(a, b);
+        let longest = [(own.to, other.from), (own.from, other.to), (own.to, other.to)]
+            .into_iter()
+            .map(|(a, b)| length(a, b))
+            .fold(0.0, f64::max);
+        (longest > limit).then_some(link.to)
+    }
+
+    /// A neighbour, or the robot itself, objects to its move: it halves it, or gives it up.
+    pub fn yield_to(&mut self, objection: &Objection, give_up: bool) {
+        if !objection.movers.contains(&self.id) {
+            return;
+        }
+        self.proposal = match self.proposal {
+            Some(proposal) if !give_up => Some(Proposal { segment: proposal.segment.halved() }),
+            _ => None,
+        };
+    }
+
+    /// The move is certified: eq. (23) until the next sample. Returns where the robot will be.
+    pub fn set_off(&mut self) -> Point {
+        let segment = self.own_move();
+        let step = self.site.settings.step_radius;
+        let still = segment.length() < STILL * step;
+        self.still_periods = if still { self.still_periods.saturating_add(1) } else { 0 };
+        self.velocity = (segment.to - segment.from) / self.site.settings.period;
+        self.arrival = segment.to;
+        segment.to
+    }
+
+    /// A new control period begins.
+    pub fn restart_clock(&mut self) {
+        self.position = self.arrival;
+        self.velocity = Vector::zeros();
+        self.clock = 0.0;
+    }
+}

@@ -1,0 +1,88 @@
+//! What every robot knows from the beginning: the floor plan, the access points, the radio and
+//! the settings.
+
+use pleach_continuous::Point;
+use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
+use pleach_continuous::network::reliability::{CubicReliability, LinkReliability, RangeError};
+
+use super::scenario::{Scenario, Settings};
+
+/// Common knowledge of the robots; it does not change during a mission.
+#[derive(Debug)]
+pub struct Site {
+    /// 𝒲.
+    pub workspace: Workspace,
+    /// 𝒲_f, the free space of the robots' centres.
+    pub free_space: FreeSpace,
+    /// Where the access points stand.
+    pub access_points: Vec<Point>,
+    /// Eq. (27).
+    pub link: CubicReliability,
+    /// The control settings, every default filled in.
+    pub settings: Settings,
+    /// Number of robots.
+    pub robots: usize,
+    /// d_build: the geodesic length up to which a link of the tree may be made.
+    pub build_length: f64,
+    /// d_hard: the geodesic length that no link of the tree exceeds.
+    pub hard_length: f64,
+}
+
+/// Why no site can be made of a scenario.
+#[derive(Debug, thiserror::Error)]
+pub enum SiteError {
+    /// The polygons do not make a workspace.
+    #[error(transparent)]
+    Workspace(#[from] WorkspaceError),
+    /// The robots have no free space.
+    #[error(transparent)]
+    FreeSpace(#[from] FreeSpaceError),
+    /// The radio's ranges make no sense.
+    #[error(transparent)]
+    Range(#[from] RangeError),
+}
+
+impl Site {
+    /// Prepares what the robots of `scenario` know.
+    ///
+    /// # Errors
+    /// When polygons, clearance or ranges are not valid.
+    pub fn new(scenario: &Scenario) -> Result<Self, SiteError> {
+        let settings = Settings::resolve(scenario);
+        let workspace = Workspace::new(
+            scenario.workspace.boundary.iter().map(|&p| Point::from(p)).collect(),
+            scenario
+                .workspace
+                .holes
+                .iter()
+                .map(|hole| hole.iter().map(|&p| Point::from(p)).collect())
+                .collect(),
+        )?;
+        let free_space = FreeSpace::new(&workspace, settings.clearance)?;
+        let link = CubicReliability::new(scenario.link.full_range, scenario.link.max_range)?;
+        let hard_length = link.distance_at(settings.tree_reliability);
+        Ok(Site {
+            workspace,
+            free_space,
+            access_points: scenario.access_point.iter().map(|ap| ap.position.into()).collect(),
+            link,
+            robots: scenario.robot.len(),
+            build_length: hard_length - settings.service_radius,
+            hard_length,
+            settings,
+        })
+    }
+
+    /// The geodesic length of a link, or infinity when it is longer than any link of the tree.
+    pub fn walk(&self, from: Point, to: Point) -> f64 {
+        let straight = (to - from).norm();
+        if straight > REACH_OF_INTEREST * self.hard_length {
+            return f64::INFINITY;
+        }
+        self.free_space.distance(from, to)
+    }
+}
+
+/// Links longer than this many times d_hard are never measured along geodesics: they cannot be
+/// links of the tree, nor become such within a period.
+const REACH_OF_INTEREST: f64 = 1.5;

@@ -1,0 +1,197 @@
+//! The certified acceptance of moves: constraint (5) holds at every instant of the motion.
+//!
+//! The linearised problem (21)–(22) proposes a move with everyone else fixed, but all robots move
+//! at once. What is accepted is decided here, exactly.
+//!
+//! # Held flows
+//!
+//! During (t_k, t_{k+1}) every sender holds its flows F_ij = T_ij(t_k) R_ij(t_k) and lets its time
+//! shares follow the positions, T_ij = F_ij / R_ij(x). Residuals are sums of flows and rates, so
+//! no c_i changes at all. What remains of (6) is one condition per sender, that its *load*
+//!
+//! ```text
+//! h_i(x) = Σ_j F_ij / R_ij(x) ≤ 1.
+//! ```
+//!
+//! # What is certified
+//!
+//! Let every robot n travel on its proposed segment from x_n to y_n at any pace, independently of
+//! the others; in particular any subset of the robots may carry out its move while the rest
+//! stays. Then h_i never exceeds [`worst_load`].
+//!
+//! *Proof.* Place robot n at x_n + α_n (y_n − x_n), α_n ∈ \[0, 1\]. The difference of two positions
+//! is affine in (α_i, α_j), its norm convex, and 1/R is convex and nondecreasing in the distance
+//! ([`LinkReliability`], requirement 3); so each term of h_i, and h_i itself, is convex in α (with
+//! the value ∞ where R = 0). A convex function on a cube is largest at a corner, α ∈ {0, 1}^n.
+//! For a fixed α_i the term of j depends on α_j alone, so the largest value over the corners is
+//! the maximum over α_i of the sum of the maxima over α_j: four distances per receiver. ∎
+//!
+//! # Halving needs no agreement
+//!
+//! Shrinking a move towards its start replaces \[0, 1\] by \[0, γ\]: a smaller cube, hence a smaller
+//! or equal maximum. So whoever halves its own move never raises anyone's worst load, and a robot
+//! whose load passes once passes for the rest of the round, whatever its neighbours do. A round of
+//! "who exceeds asks its receivers and itself to halve" ends: when all who are involved stay, the
+//! load is what it is now, at most 1 with feasible routes.
+//!
+//! The same argument bounds the euclidean length of a link by [`worst_separation`].
+
+use super::reliability::LinkReliability;
+use crate::Point;
+pub use crate::geometry::Segment;
+
+/// h_i: the time share that a sender at `own` needs to carry its flows, given as pairs of a flow
+/// F_ij and the place of the receiver. Infinite if a receiver of a flow cannot be reached.
+pub fn load(own: Point, receivers: &[(f64, Point)], reliability: &impl LinkReliability) -> f64 {
+    receivers.iter().map(|&(flow, place)| term(flow, &own, &place, reliability)).sum()
+}
+
+/// The largest load of a sender while it and its receivers carry out their moves, each at any
+/// pace or not at all. Infinite if a flow could be cut off. See the module for the proof.
+///
+/// `receivers` pairs the held flow F_ij ≥ 0 with the proposed move of j.
+///
+/// ```
+/// use pleach_continuous::Point;
+/// use pleach_continuous::network::acceptance::{Segment, worst_load};
+/// use pleach_continuous::network::CubicReliability;
+///
+/// let link = CubicReliability::new(0.4, 0.5)?;
+/// let away = Segment { from: Point::new(0.4, 0.0), to: Point::new(0.45, 0.0) };
+/// let access_point = Segment::still(Point::origin());
+/// // At the end R = 1/2: the flow of 0.3 then takes 0.6 of the sender's time.
+/// assert!((worst_load(away, &[(0.3, access_point)], &link) - 0.6).abs() < 1e-12);
+/// # Ok::<(), pleach_continuous::network::reliability::ReliabilityError>(())
+/// ```
+pub fn worst_load(
+    own: Segment,
+    receivers: &[(f64, Segment)],
+    reliability: &impl LinkReliability,
+) -> f64 {
+    let worst_from = |place: Point| -> f64 {
+        receivers
+            .iter()
+            .map(|&(flow, receiver)| {
+                let [start, end] = ends(&receiver);
+                term(flow, &place, &start, reliability).max(term(flow, &place, &end, reliability))
+            })
+            .sum()
+    };
+    worst_from(own.from).max(worst_from(own.to))
+}
+
+/// A convex function of a move is largest at one of its ends.
+fn ends(segment: &Segment) -> [Point; 2] {
+    [segment.from, segment.to]
+}
+
+/// F/R: what one flow adds to the load. A flow of zero adds nothing, however far the receiver.
+fn term(flow: f64, sender: &Point, receiver: &Point, reliability: &impl LinkReliability) -> f64 {
+    if flow == 0.0 {
+        return 0.0;
+    }
+    flow * reliability.expected_transmissions((sender - receiver).norm())
+}
+
+/// The largest euclidean distance between two robots while each carries out its move at any pace
+/// or not at all: the largest of the four distances between the ends.
+pub fn worst_separation(one: Segment, other: Segment) -> f64 {
+    let squared = |a: &Point, b: &Point| (a - b).norm_squared();
+    let [start, end] = ends(&other);
+    ends(&one)
+        .iter()
+        .map(|place| squared(place, &start).max(squared(place, &end)))
+        .fold(0.0, f64::max)
+        .sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::CubicReliability;
+    use proptest::prelude::*;
+
+    /// Rounding of a sum of a few terms of order one.
+    const ROUNDING: f64 = 1e-12;
+
+    fn link() -> CubicReliability {
+        CubicReliability::new(0.4, 0.8).unwrap()
+    }
+
+    fn segment() -> impl Strategy<Value = Segment> {
+        let place = || (0.0..0.6f64, 0.0..0.6f64).prop_map(|(x, y)| Point::new(x, y));
+        (place(), place()).prop_map(|(from, to)| Segment { from, to })
+    }
+
+    fn receivers() -> impl Strategy<Value = Vec<(f64, Segment)>> {
+        prop::collection::vec((0.0..0.3f64, segment()), 1..5)
+    }
+
+    proptest! {
+        #[test]
+        fn no_pace_exceeds_the_worst_load(
+            own in segment(),
+            receivers in receivers(),
+            paces in prop::collection::vec(prop::collection::vec(0.0..=1.0f64, 5), 20),
+        ) {
+            let worst = worst_load(own, &receivers, &link());
+            for pace in paces {
+                let now: Vec<_> =
+                    receivers.iter().zip(&pace[1..]).map(|((f, s), p)| (*f, s.at(*p))).collect();
+                let load = load(own.at(pace[0]), &now, &link());
+                prop_assert!(load <= worst * (1.0 + ROUNDING), "{load} exceeds {worst}");
+            }
+        }
+
+        /// The bound is attained: some corner has exactly this load.
+        #[test]
+        fn the_worst_load_is_attained_at_a_corner(own in segment(), receivers in receivers()) {
+            let worst = worst_load(own, &receivers, &link());
+            let corners = 0u32..(2 << receivers.len());
+            let largest = corners
+                .map(|corner| {
+                    let end = |bit: usize| f64::from((corner >> bit) & 1);
+                    let now: Vec<_> = receivers
+                        .iter()
+                        .enumerate()
+                        .map(|(index, (f, s))| (*f, s.at(end(index + 1))))
+                        .collect();
+                    load(own.at(end(0)), &now, &link())
+                })
+                .fold(0.0, f64::max);
+            prop_assert!(largest == worst || (largest - worst).abs() <= ROUNDING * worst);
+        }
+
+        #[test]
+        fn halving_any_move_never_raises_the_worst_load(
+            own in segment(),
+            receivers in receivers(),
+            halves in prop::collection::vec(any::<bool>(), 5),
+        ) {
+            let shrunk = |segment: &Segment, half: bool| {
+                if half { segment.halved() } else { *segment }
+            };
+            let after: Vec<_> =
+                receivers.iter().zip(&halves[1..]).map(|((f, s), h)| (*f, shrunk(s, *h))).collect();
+            let before = worst_load(own, &receivers, &link());
+            let now = worst_load(shrunk(&own, halves[0]), &after, &link());
+            prop_assert!(now <= before * (1.0 + ROUNDING));
+        }
+
+        #[test]
+        fn no_pace_exceeds_the_worst_separation(
+            one in segment(), other in segment(), a in 0.0..=1.0f64, b in 0.0..=1.0f64,
+        ) {
+            let distance = (one.at(a) - other.at(b)).norm();
+            prop_assert!(distance <= worst_separation(one, other) + ROUNDING);
+        }
+    }
+
+    #[test]
+    fn a_receiver_that_leaves_the_range_makes_the_load_infinite() {
+        let away = Segment { from: Point::new(0.5, 0.0), to: Point::new(0.9, 0.0) };
+        let still = Segment::still(Point::origin());
+        assert_eq!(worst_load(still, &[(0.1, away)], &link()), f64::INFINITY);
+        assert_eq!(worst_load(still, &[(0.0, away)], &link()), 0.0);
+    }
+}

@@ -1,0 +1,133 @@
+//! The dual iteration (14): a robot's multiplier rises while its residual misses the reserve.
+
+/// Largest multiplier λ, in units of the objective per unit of rate.
+///
+/// Where no routing reaches the reserve, the dual has no maximum and λ would grow without end. The
+/// cap is the exact dual of a soft reserve: robots may miss it by s_i ≥ 0 at a price of
+/// `MULTIPLIER_CAP`·s_i. A hop adds 2wT + μ to λ, so that a chain of thirteen at full load with
+/// weights of 1 ends below 30. A cap that is too low for a network costs optimality, not
+/// feasibility: [`repair`](super::repair) closes the gap.
+pub const MULTIPLIER_CAP: f64 = 100.0;
+
+/// One step of (14) with its sign put right: [λ − ε(c − η)]₊, capped at [`MULTIPLIER_CAP`].
+///
+/// `step` is ε, see [`safe_step`]; `residual` is c_i, for the shares that answered the present
+/// multipliers; `reserve` is η.
+pub fn dual_step(multiplier: f64, step: f64, residual: f64, reserve: f64) -> f64 {
+    (multiplier - step * (residual - reserve)).clamp(0.0, MULTIPLIER_CAP)
+}
+
+/// What a robot knows of one of its links when it chooses its step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkCurvature {
+    /// R_ij, the same both ways.
+    pub reliability: f64,
+    /// w_ij, the same both ways.
+    pub weight: f64,
+    /// Whether the other end is an access point, whose multiplier stays 0.
+    pub to_access_point: bool,
+}
+
+/// A step ε_i with which the dual iteration converges, from a robot's own links alone:
+///
+/// ```text
+/// ε_i = 1 / ( Σ_{robots j} R_ij²/w_ij + ½ Σ_{access points j} R_ij²/w_ij ).
+/// ```
+///
+/// The dual of (6) has curvature at most Σ R_ij²/(2w_ij)·(z_i − z_j)² in a direction z, over pairs
+/// of robots, since of T_ij and T_ji only the one from the dearer robot is positive, plus
+/// R_ij²/(2w_ij)·z_i² for access points; and (z_i − z_j)² ≤ 2z_i² + 2z_j². So diag(1/ε_i) bounds
+/// the Hessian, which is what gradient ascent with one step per robot needs. No robot has to know
+/// the largest degree of the network. A robot without links gets 0: its multiplier stays.
+pub fn safe_step(links: impl IntoIterator<Item = LinkCurvature>) -> f64 {
+    let curvature: f64 = links
+        .into_iter()
+        .map(|link| {
+            let share = if link.to_access_point { 0.5 } else { 1.0 };
+            share * link.reliability * link.reliability / link.weight
+        })
+        .sum();
+    if curvature > 0.0 { curvature.recip() } else { 0.0 }
+}
+
+/// Largest value of the momentum sequence t_k.
+///
+/// It bounds the momentum (t − 1)/t at 0.98, so that a network that moves on, whose optimum
+/// drifts, is not followed with the inertia of a thousand periods.
+const LONGEST_MEMORY: f64 = 50.0;
+
+/// One robot's multiplier under the accelerated dual iteration.
+///
+/// Nesterov's extrapolation applied to (14): the robot sends the extrapolated multiplier, to which
+/// its neighbours answer with shares. Momentum restarts when it points against the step taken
+/// (O'Donoghue and Candès, DOI 10.1007/s10208-013-9150-3), here by each robot for itself, so that
+/// nothing but the multiplier is ever sent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DualState {
+    /// λ as sent to the neighbours: extrapolated.
+    multiplier: f64,
+    /// λ after the last step, before extrapolation.
+    previous: f64,
+    /// t of the momentum (t_k − 1)/t_{k+1}, at least 1.
+    momentum: f64,
+}
+
+impl Default for DualState {
+    fn default() -> Self {
+        Self::new(0.0)
+    }
+}
+
+impl DualState {
+    /// At rest at a multiplier, which is brought into [0, [`MULTIPLIER_CAP`]].
+    pub fn new(multiplier: f64) -> Self {
+        let multiplier = multiplier.clamp(0.0, MULTIPLIER_CAP);
+        Self { multiplier, previous: multiplier, momentum: 1.0 }
+    }
+
+    /// λ_i: what the robot sends to its neighbours and uses for its own shares.
+    pub fn multiplier(&self) -> f64 {
+        self.multiplier
+    }
+
+    /// The state after one accelerated step; the arguments are those of [`dual_step`].
+    #[must_use]
+    pub fn step(self, step: f64, residual: f64, reserve: f64) -> Self {
+        let stepped = dual_step(self.multiplier, step, residual, reserve);
+        let progress = stepped - self.previous;
+        let against = (self.multiplier - stepped) * progress > 0.0;
+        let momentum = if against { 1.0 } else { self.momentum };
+        let next = (0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt())).min(LONGEST_MEMORY);
+        let extrapolated = stepped + (momentum - 1.0) / next * progress;
+        Self {
+            multiplier: extrapolated.clamp(0.0, MULTIPLIER_CAP),
+            previous: stepped,
+            momentum: next,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_residual_below_the_reserve_raises_the_multiplier() {
+        assert_eq!(dual_step(1.0, 0.5, -0.5, 0.0), 1.25);
+        assert_eq!(dual_step(0.1, 0.5, 0.5, 0.0), 0.0);
+        assert_eq!(dual_step(MULTIPLIER_CAP, 1.0, -1.0, 0.0), MULTIPLIER_CAP);
+    }
+
+    #[test]
+    fn the_first_accelerated_step_is_a_plain_one() {
+        let state = DualState::new(1.0).step(0.5, -0.5, 0.02);
+        assert_eq!(state.multiplier(), dual_step(1.0, 0.5, -0.5, 0.02));
+    }
+
+    #[test]
+    fn without_links_the_multiplier_stays() {
+        assert_eq!(safe_step([]), 0.0);
+        let link = LinkCurvature { reliability: 1.0, weight: 2.0, to_access_point: true };
+        assert_eq!(safe_step([link]), 4.0);
+    }
+}

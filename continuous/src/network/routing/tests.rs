@@ -1,0 +1,114 @@
+//! The distributed methods against clarabel.
+
+use super::adal::AdalSettings;
+use super::central::{CentralError, feasible, solve_central, widest_reserve};
+use super::problem::{DirectedLink, ProblemError, RoutingProblem};
+use super::rounds::{Method, Rounds};
+use crate::Point;
+use crate::network::CubicReliability;
+use crate::network::rates::Receiver;
+use proptest::prelude::*;
+
+fn methods() -> [Method; 3] {
+    [Method::Dual, Method::AcceleratedDual, Method::Adal(AdalSettings::default())]
+}
+
+/// Thirteen robots in a row in front of an access point; only neighbours hear each other.
+fn chain(rate: f64) -> RoutingProblem {
+    let link = CubicReliability::new(0.4, 0.5).unwrap();
+    let robots: Vec<Point> = (1..=13).map(|n| Point::new(0.4 * f64::from(n), 0.0)).collect();
+    RoutingProblem::of_places(&robots, &[Point::origin()], &[rate; 13], &link, 10.0, 0.0).unwrap()
+}
+
+/// Up to eight robots around one or two access points, some out of reach.
+fn networks() -> impl Strategy<Value = RoutingProblem> {
+    let place = || (0.0..1.6f64, 0.0..1.0f64).prop_map(|(x, y)| Point::new(x, y));
+    let robots = prop::collection::vec(place(), 1..8);
+    let sinks = prop::collection::vec(place(), 1..3);
+    (robots, sinks, 0.01..0.12f64, 0.0..0.05f64).prop_map(|(robots, sinks, rate, reserve)| {
+        let link = CubicReliability::new(0.4, 0.9).unwrap();
+        let rates = vec![rate; robots.len()];
+        let problem = RoutingProblem::of_places(&robots, &sinks, &rates, &link, 1.0, reserve);
+        problem.unwrap()
+    })
+}
+
+/// The counts that the documentation of the methods names.
+#[test]
+fn accelerated_methods_need_far_fewer_iterations_on_a_chain_of_thirteen() {
+    for (rate, tolerance) in [(0.03, 1e-2), (0.03, 1e-3), (0.07, 1e-2), (0.07, 1e-3)] {
+        let problem = chain(rate);
+        let count = |method| Rounds::new(&problem, method).run(tolerance, 2000).unwrap();
+        let [plain, accelerated, adal] = methods().map(count);
+        println!("rate {rate}, {tolerance}: {plain}, accelerated {accelerated}, ADAL {adal}");
+        assert!(7 * accelerated < plain && 5 * adal < plain);
+    }
+}
+
+/// Routes are a stationary point of the same strictly convex program, so they are equal, not only
+/// as good. Weights up to 1 + 1.5κ scale a miss of the residuals into one of the shares.
+fn agrees_with_clarabel(problem: &RoutingProblem, method: Method) -> Result<(), TestCaseError> {
+    let oracle = match solve_central(problem) {
+        Ok(oracle) => oracle,
+        Err(CentralError::NoRouting { .. }) => return Ok(()),
+        Err(error) => return Err(TestCaseError::fail(error.to_string())),
+    };
+    // Close to the limit of what can be carried multipliers are large and every method slow.
+    prop_assume!(oracle.multipliers.iter().all(|multiplier| *multiplier < 20.0));
+    let mut rounds = Rounds::new(problem, method);
+    let ended = rounds.run(1e-4, 200_000);
+    prop_assert!(ended.is_some(), "{method:?} still misses by {}", rounds.miss());
+    let objective = problem.objective(rounds.shares());
+    prop_assert!((objective - oracle.objective).abs() < 1e-3, "{objective} {oracle:?}");
+    for (share, expected) in rounds.shares().iter().zip(&oracle.shares) {
+        prop_assert!((share - expected).abs() < 1e-2, "{method:?}: {share}, not {expected}");
+    }
+    for used in problem.used_time(rounds.shares()) {
+        prop_assert!(used <= 1.0);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    #[test]
+    fn every_method_finds_the_routes_that_clarabel_finds(problem in networks()) {
+        for method in methods() {
+            agrees_with_clarabel(&problem, method)?;
+        }
+    }
+
+    #[test]
+    fn a_problem_is_infeasible_exactly_if_its_widest_reserve_is_too_small(problem in networks()) {
+        let widest = widest_reserve(&problem).unwrap();
+        prop_assume!((widest - problem.reserve()).abs() > 1e-6);
+        let solved = solve_central(&problem);
+        prop_assert_eq!(solved.is_ok(), widest > problem.reserve());
+        prop_assert_eq!(feasible(&problem, 1e-7).unwrap(), solved.is_ok());
+    }
+}
+
+/// N robots in a chain with perfect links: the one at the access point carries (r + η)·N ≤ 1.
+#[test]
+fn the_widest_reserve_of_a_chain_is_known() {
+    let widest = widest_reserve(&chain(0.075)).unwrap();
+    assert!((widest - (1.0 / 13.0 - 0.075)).abs() < 1e-7);
+    assert!(solve_central(&chain(0.075)).is_ok());
+    assert_eq!(solve_central(&chain(0.08)), Err(CentralError::NoRouting { reserve: 0.0 }));
+}
+
+#[test]
+fn numbers_that_make_no_problem_are_refused() {
+    let link =
+        |receiver, reliability| DirectedLink { sender: 0, receiver, reliability, weight: 1.0 };
+    let sink = Receiver::AccessPoint(0);
+    let ends = RoutingProblem::new(vec![link(Receiver::Robot(0), 1.0)], vec![0.1], 0.0);
+    assert!(matches!(ends, Err(ProblemError::Ends { .. })));
+    let reliability = RoutingProblem::new(vec![link(sink, 0.0)], vec![0.1], 0.0);
+    assert!(matches!(reliability, Err(ProblemError::Link { .. })));
+    let rate = RoutingProblem::new(vec![link(sink, 1.0)], vec![f64::NAN], 0.0);
+    assert!(matches!(rate, Err(ProblemError::Rate { .. })));
+    let reserve = RoutingProblem::new(vec![link(sink, 1.0)], vec![0.1], f64::INFINITY);
+    assert!(matches!(reserve, Err(ProblemError::Reserve { .. })));
+}

@@ -1,0 +1,23 @@
+//! The two vocabularies of a discrete graph.
+
+use std::fmt::Debug;
+
+/// The locations of an automaton, usually an enum without fields.
+///
+/// The order of the type is a total order that nothing but determinism relies on.
+pub trait Location: Copy + Eq + Ord + Debug + 'static {
+    /// Every location, each once, in the order in which tables and diagrams show them.
+    const ALL: &'static [Self];
+
+    /// The name in traces, tables and diagrams: lower-case words, different for each location.
+    fn name(self) -> &'static str;
+}
+
+/// The events on which an automaton jumps, usually an enum without fields.
+pub trait Event: Copy + Eq + Ord + Debug + 'static {
+    /// Every event, each once, in the order in which tables and diagrams show them.
+    const ALL: &'static [Self];
+
+    /// The name in traces, tables and diagrams: lower-case words, different for each event.
+    fn name(self) -> &'static str;
+}

@@ -1,0 +1,44 @@
+//! The newest word on the mission, flooded through the network.
+//!
+//! A mission goes through its steps one at a time, and at each step exactly one node may issue
+//! the next notice: the access point that announces, the elected leader, p₁ that calls for help,
+//! the recruit that found the path. Notices are therefore numbered, and the greater number wins:
+//! a max-consensus that neither loss, nor repetition, nor delay can confuse.
+
+/// A numbered notice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bulletin<N> {
+    sequence: u32,
+    notice: N,
+}
+
+impl<N: Clone> Bulletin<N> {
+    /// The first bulletin of a mission.
+    pub const fn first(notice: N) -> Self {
+        Bulletin { sequence: 0, notice }
+    }
+
+    /// The number of this bulletin.
+    pub const fn sequence(&self) -> u32 {
+        self.sequence
+    }
+
+    /// What it says.
+    pub const fn notice(&self) -> &N {
+        &self.notice
+    }
+
+    /// The bulletin that follows this one.
+    pub fn next(&self, notice: N) -> Self {
+        Bulletin { sequence: self.sequence + 1, notice }
+    }
+
+    /// Takes over `heard` if it is newer; says whether it was.
+    pub fn merge(&mut self, heard: &Self) -> bool {
+        let newer = heard.sequence > self.sequence;
+        if newer {
+            *self = heard.clone();
+        }
+        newer
+    }
+}

@@ -1,0 +1,70 @@
+//! Elections by max-consensus (Algorithm 1, and Remark 5.4 for recruits).
+//!
+//! Algorithm 1 passes on a vector of bids d and a vector of tokens φ. Since the vector of bids is
+//! only ever asked for its largest entry, the best bid known so far stands for it: the maximum of
+//! maxima is the maximum. A robot that does not compete places its token without a bid. Ties go
+//! to the robot with the highest index.
+
+use super::{IdSet, NodeId};
+
+/// What a robot offers; the greater, the better. Compared by `rank` first, then by `merit`, then
+/// by `economy`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Bid {
+    /// The class of the bid: no bid of a lower class wins against one of a higher class.
+    pub rank: u8,
+    /// How good the offer is.
+    pub merit: i64,
+    /// How little it costs.
+    pub economy: i64,
+}
+
+/// One robot's view of an election.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Election {
+    number: u32,
+    tokens: IdSet,
+    best: Option<(Bid, NodeId)>,
+}
+
+impl Election {
+    /// An election in which nobody's token is known yet; `number` tells elections apart.
+    pub const fn new(number: u32) -> Self {
+        Election { number, tokens: IdSet::new(), best: None }
+    }
+
+    /// The number of the election.
+    pub const fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// Robot `robot` places its token, with a bid if it competes.
+    pub fn place(&mut self, robot: NodeId, bid: Option<Bid>) {
+        if self.tokens.insert(robot) {
+            self.best = self.best.max(bid.map(|bid| (bid, robot)));
+        }
+    }
+
+    /// Whether the token of `robot` is known.
+    pub fn has_token(&self, robot: NodeId) -> bool {
+        self.tokens.contains(robot)
+    }
+
+    /// Lines 3 and 4 of Algorithm 1: takes the maximum with what a neighbour sent.
+    pub fn merge(&mut self, heard: &Election) {
+        if heard.number == self.number {
+            self.tokens.merge(&heard.tokens);
+            self.best = self.best.max(heard.best);
+        }
+    }
+
+    /// Whether the token of every robot in `roster` is known (line 1).
+    pub fn is_complete(&self, roster: &IdSet) -> bool {
+        self.tokens.includes(roster)
+    }
+
+    /// The best bid known and who placed it (line 6).
+    pub const fn best(&self) -> Option<(Bid, NodeId)> {
+        self.best
+    }
+}

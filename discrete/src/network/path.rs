@@ -1,0 +1,108 @@
+//! The path Σ from the recruit to p₁, its break points 𝓑 and its subgroups S_β (Sec. V-B).
+
+use super::{Anchor, NodeId, Post};
+
+/// One place of Σ: the robot that stands there at t_h and the post that it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hop<P> {
+    /// The robot.
+    pub robot: NodeId,
+    /// The post, as the discrete layer sees it.
+    pub post: Post,
+    /// What else the members need to know of the place.
+    pub place: P,
+    /// The access points that the path passes between this place and the next.
+    pub crossing: Vec<usize>,
+}
+
+/// The path Σ, from the recruit s₁ (place 0) to p₁ or, when L_b = 1, the leader.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path<P> {
+    /// The places in order.
+    pub hops: Vec<Hop<P>>,
+    /// L_b: whether the leader is to be released from past duties.
+    pub releases_leader: bool,
+}
+
+/// A subgroup S_β = [b_β, b_{β+1})_Σ: the places `first..end`; the robot at `end` is the break
+/// point that they relieve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Subgroup {
+    /// b_β.
+    pub first: usize,
+    /// b_{β+1}, which does not move with the subgroup.
+    pub end: usize,
+}
+
+/// What a robot of Σ knows of itself when it decides whether it is a break point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ties {
+    /// It services a task.
+    pub services_task: bool,
+    /// A neighbour in the tree, parent or child, is not on Σ.
+    pub bears_others: bool,
+}
+
+impl<P> Path<P> {
+    /// The number of places.
+    pub fn len(&self) -> usize {
+        self.hops.len()
+    }
+
+    /// Whether there is no place at all.
+    pub fn is_empty(&self) -> bool {
+        self.hops.is_empty()
+    }
+
+    /// The last place that is a break point: the leader when L_b = 1, else the robot before p₁.
+    pub fn last_break_point(&self) -> usize {
+        self.len().saturating_sub(if self.releases_leader { 1 } else { 2 })
+    }
+
+    /// Whether the robot at `place` is a break point of Σ.
+    ///
+    /// The paper names junctions and leaves. A robot is one in effect if it services a task, if
+    /// it has a tree neighbour off Σ, if it stands behind an access point that Σ crosses, or if
+    /// it is the last that Σ relieves; and b₁ = s₁.
+    pub fn is_break_point(&self, place: usize, ties: Ties) -> bool {
+        let last = self.last_break_point();
+        let behind_crossing =
+            place.checked_sub(1).is_some_and(|before| !self.hops[before].crossing.is_empty());
+        place == 0
+            || place == last
+            || place < last && (ties.services_task || ties.bears_others || behind_crossing)
+    }
+
+    /// The place that `post` has on the path.
+    pub fn place_of(&self, post: super::PostId) -> Option<usize> {
+        self.hops.iter().position(|hop| hop.post.id == post)
+    }
+
+    /// Whether the path descends from `place` to the next: the next post hangs on this one.
+    pub fn descends(&self, place: usize) -> bool {
+        match (self.hops.get(place), self.hops.get(place + 1)) {
+            (Some(hop), Some(next)) => next.post.hangs_on(hop.post.id),
+            _ => false,
+        }
+    }
+
+    /// Whether `anchor` is on the path.
+    pub fn passes(&self, anchor: Anchor) -> bool {
+        match anchor {
+            Anchor::Post(post) => self.place_of(post).is_some(),
+            Anchor::Access(access) => self.hops.iter().any(|hop| hop.crossing.contains(&access)),
+        }
+    }
+}
+
+/// The subgroups that `break_points` (ascending) cut out of Σ.
+pub fn subgroups(break_points: &[usize]) -> impl Iterator<Item = Subgroup> + '_ {
+    break_points.windows(2).map(|pair| Subgroup { first: pair[0], end: pair[1] })
+}
+
+impl Subgroup {
+    /// The places of its members.
+    pub const fn places(self) -> std::ops::Range<usize> {
+        self.first..self.end
+    }
+}

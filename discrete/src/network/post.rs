@@ -1,0 +1,84 @@
+//! Posts: the places of the tree network (Definition 5.2).
+//!
+//! The tree is a tree of posts, and robots hold posts. "Robot s_i adopts the role that s_{i+1}
+//! had" (Algorithm 4) means that the holder of a post changes; the tree does not. Junction, leaf
+//! and node are facts about a post: a leaf services a task, a junction bears several branches,
+//! and one post can be both.
+
+/// The identity of a post, unique in a mission.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PostId(pub u32);
+
+/// What a post hangs on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Anchor {
+    /// The access point with this number, from 0.
+    Access(usize),
+    /// Another post.
+    Post(PostId),
+}
+
+/// What kind of place a post is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PostKind {
+    /// Held by a redundant robot, wherever it stands.
+    Redundant,
+    /// A fixed place of the tree: its reference position does not move.
+    Fixed,
+    /// A place in the primary team, moving; it follows another post, or leads (eq. 24).
+    Primary {
+        /// The next post of the team; none for the leader's.
+        follows: Option<PostId>,
+    },
+}
+
+/// A post of the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Post {
+    /// Who it is.
+    pub id: PostId,
+    /// What it is.
+    pub kind: PostKind,
+    /// What it hangs on; none for a redundant robot that is not attached yet.
+    pub parent: Option<Anchor>,
+    /// The task serviced from it.
+    pub task: Option<usize>,
+}
+
+impl Post {
+    /// The post of a redundant robot that hangs on nothing yet.
+    pub const fn redundant(id: PostId) -> Self {
+        Post { id, kind: PostKind::Redundant, parent: None, task: None }
+    }
+
+    /// Whether the robot that holds it may be recruited.
+    pub const fn is_redundant(&self) -> bool {
+        matches!(self.kind, PostKind::Redundant)
+    }
+
+    /// Whether it is a fixed place.
+    pub const fn is_fixed(&self) -> bool {
+        matches!(self.kind, PostKind::Fixed)
+    }
+
+    /// Whether it belongs to the primary team.
+    pub const fn is_primary(&self) -> bool {
+        matches!(self.kind, PostKind::Primary { .. })
+    }
+
+    /// Whether it heads the primary team.
+    pub const fn is_leading(&self) -> bool {
+        matches!(self.kind, PostKind::Primary { follows: None })
+    }
+
+    /// Whether it hangs on `post`.
+    pub fn hangs_on(&self, post: PostId) -> bool {
+        self.parent == Some(Anchor::Post(post))
+    }
+
+    /// Whether others may hang on it: posts that move with the primary team bear only the next
+    /// post of the team.
+    pub const fn bears_redundant(&self) -> bool {
+        !self.is_primary()
+    }
+}

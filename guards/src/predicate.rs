@@ -1,0 +1,331 @@
+//! Comparisons of expressions and their logic, with verdict and margin.
+
+use std::collections::BTreeSet;
+use std::ops;
+use std::sync::Arc;
+
+use crate::expression::Expression;
+use crate::valuation::{EvaluationError, Valuation};
+
+/// A statement about a state, as data: the one guard type of the project.
+///
+/// Predicates begin as comparisons ([`Expression::at_most`] and its kin) and combine with
+/// [`and`](Predicate::and), [`or`](Predicate::or) and [`not()`], or with `&`, `|` and `!`:
+///
+/// ```
+/// use pleach_guards::variable;
+///
+/// let temperature = variable("temperature");
+/// let comfortable = temperature.at_least(19.0) & temperature.less_than(23.0);
+///
+/// let verdict = comfortable.evaluate(&[("temperature", 22.0)])?;
+/// assert!(verdict.holds);
+/// assert_eq!(verdict.margin, 1.0);
+/// assert_eq!((!comfortable).to_string(), "¬(temperature ≥ 19 ∧ temperature < 23)");
+/// # Ok::<(), pleach_guards::EvaluationError>(())
+/// ```
+///
+/// The enum is not exhaustive: there is room for named functions where an expression cannot say
+/// what a guard needs, which analyses would then report as unchecked.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Predicate {
+    /// A comparison of two expressions.
+    Comparison(Comparison),
+    /// The opposite of a predicate.
+    Not(Arc<Predicate>),
+    /// All of them hold; with none, this is [`always()`].
+    All(Arc<[Predicate]>),
+    /// At least one of them holds; with none, this is [`never()`].
+    Any(Arc<[Predicate]>),
+}
+
+/// Two expressions and how they are to compare.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// What stands on the left.
+    pub left: Expression,
+    /// How the two are to compare.
+    pub relation: Relation,
+    /// What stands on the right.
+    pub right: Expression,
+}
+
+/// An order between two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// a ≤ b
+    AtMost,
+    /// a < b
+    LessThan,
+    /// a ≥ b
+    AtLeast,
+    /// a > b
+    MoreThan,
+}
+
+/// What a predicate says about one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdict {
+    /// How far the state is from the other verdict, in the unit of what is compared: positive
+    /// where the predicate holds, negative where it does not, 0 on the boundary. Never NaN.
+    pub margin: f64,
+    /// Whether the predicate holds; on the boundary, its strictness decides.
+    pub holds: bool,
+}
+
+/// The predicate that every state satisfies, with margin ∞.
+pub fn always() -> Predicate {
+    Predicate::All(Arc::new([]))
+}
+
+/// The predicate that no state satisfies, with margin −∞.
+pub fn never() -> Predicate {
+    Predicate::Any(Arc::new([]))
+}
+
+/// The predicate that holds where `predicate` does not.
+pub fn not(predicate: Predicate) -> Predicate {
+    Predicate::Not(Arc::new(predicate))
+}
+
+impl Expression {
+    /// self ≤ `bound`, with margin `bound` − self.
+    pub fn at_most(&self, bound: impl Into<Expression>) -> Predicate {
+        self.compare(Relation::AtMost, bound.into())
+    }
+
+    /// self < `bound`, with margin `bound` − self.
+    pub fn less_than(&self, bound: impl Into<Expression>) -> Predicate {
+        self.compare(Relation::LessThan, bound.into())
+    }
+
+    /// self ≥ `bound`, with margin self − `bound`.
+    pub fn at_least(&self, bound: impl Into<Expression>) -> Predicate {
+        self.compare(Relation::AtLeast, bound.into())
+    }
+
+    /// self > `bound`, with margin self − `bound`.
+    pub fn more_than(&self, bound: impl Into<Expression>) -> Predicate {
+        self.compare(Relation::MoreThan, bound.into())
+    }
+
+    /// |self − `other`| ≤ `tolerance`, with margin `tolerance` − |self − `other`|.
+    pub fn equals_within(
+        &self,
+        other: impl Into<Expression>,
+        tolerance: impl Into<Expression>,
+    ) -> Predicate {
+        (self - other.into()).abs().at_most(tolerance)
+    }
+
+    fn compare(&self, relation: Relation, right: Expression) -> Predicate {
+        Predicate::Comparison(Comparison { left: self.clone(), relation, right })
+    }
+}
+
+impl Predicate {
+    /// Both hold. Conjunctions stay flat: `a.and(b).and(c)` is one conjunction of three.
+    pub fn and(self, other: Predicate) -> Predicate {
+        Predicate::all([self, other])
+    }
+
+    /// At least one of the two holds. Disjunctions stay flat.
+    pub fn or(self, other: Predicate) -> Predicate {
+        Predicate::any([self, other])
+    }
+
+    /// All of `predicates` hold; of one predicate, it is that predicate itself.
+    pub fn all(predicates: impl IntoIterator<Item = Predicate>) -> Predicate {
+        let mut parts = Vec::new();
+        for predicate in predicates {
+            match predicate {
+                Predicate::All(inner) => parts.extend(inner.iter().cloned()),
+                other => parts.push(other),
+            }
+        }
+        match <[Predicate; 1]>::try_from(parts) {
+            Ok([only]) => only,
+            Err(parts) => Predicate::All(parts.into()),
+        }
+    }
+
+    /// At least one of `predicates` holds; of one predicate, it is that predicate itself.
+    pub fn any(predicates: impl IntoIterator<Item = Predicate>) -> Predicate {
+        let mut parts = Vec::new();
+        for predicate in predicates {
+            match predicate {
+                Predicate::Any(inner) => parts.extend(inner.iter().cloned()),
+                other => parts.push(other),
+            }
+        }
+        match <[Predicate; 1]>::try_from(parts) {
+            Ok([only]) => only,
+            Err(parts) => Predicate::Any(parts.into()),
+        }
+    }
+
+    /// Verdict and margin in `state`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Expression::evaluate`]. Every part is evaluated, also where the verdict is
+    /// settled before, so that an error does not depend on the order of the parts.
+    pub fn evaluate(&self, state: &(impl Valuation + ?Sized)) -> Result<Verdict, EvaluationError> {
+        match self {
+            Predicate::Comparison(comparison) => comparison.evaluate(state),
+            Predicate::Not(inner) => inner.evaluate(state).map(Verdict::opposite),
+            Predicate::All(parts) => parts
+                .iter()
+                .try_fold(Verdict::ALWAYS, |verdict, part| Ok(verdict.and(part.evaluate(state)?))),
+            Predicate::Any(parts) => parts
+                .iter()
+                .try_fold(Verdict::NEVER, |verdict, part| Ok(verdict.or(part.evaluate(state)?))),
+        }
+    }
+
+    /// Whether the predicate holds in `state`; errors as for [`evaluate`](Self::evaluate).
+    pub fn holds(&self, state: &(impl Valuation + ?Sized)) -> Result<bool, EvaluationError> {
+        self.evaluate(state).map(|verdict| verdict.holds)
+    }
+
+    /// The margin in `state`; errors as for [`evaluate`](Self::evaluate).
+    pub fn margin(&self, state: &(impl Valuation + ?Sized)) -> Result<f64, EvaluationError> {
+        self.evaluate(state).map(|verdict| verdict.margin)
+    }
+
+    /// The names of the variables that occur, in alphabetical order.
+    pub fn variables(&self) -> BTreeSet<&str> {
+        let mut names = BTreeSet::new();
+        self.collect_variables(&mut names);
+        names
+    }
+
+    fn collect_variables<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
+        match self {
+            Predicate::Comparison(comparison) => {
+                comparison.left.collect_variables(names);
+                comparison.right.collect_variables(names);
+            }
+            Predicate::Not(inner) => inner.collect_variables(names),
+            Predicate::All(parts) | Predicate::Any(parts) => {
+                parts.iter().for_each(|part| part.collect_variables(names));
+            }
+        }
+    }
+}
+
+impl Comparison {
+    /// Verdict and margin in `state`; errors as for [`Expression::evaluate`].
+    pub fn evaluate(&self, state: &(impl Valuation + ?Sized)) -> Result<Verdict, EvaluationError> {
+        let (left, right) = (self.left.evaluate(state)?, self.right.evaluate(state)?);
+        Ok(self.relation.judge(left, right))
+    }
+}
+
+impl Relation {
+    /// Equal sides have margin 0 also at infinity, where a difference would not be a number.
+    fn judge(self, left: f64, right: f64) -> Verdict {
+        let slack = if left == right { 0.0 } else { right - left };
+        match self {
+            Relation::AtMost => Verdict { margin: slack, holds: left <= right },
+            Relation::LessThan => Verdict { margin: slack, holds: left < right },
+            Relation::AtLeast => Verdict { margin: -slack, holds: left >= right },
+            Relation::MoreThan => Verdict { margin: -slack, holds: left > right },
+        }
+    }
+}
+
+impl Verdict {
+    const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
+    const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
+
+    fn and(self, other: Verdict) -> Verdict {
+        Verdict { margin: self.margin.min(other.margin), holds: self.holds && other.holds }
+    }
+
+    fn or(self, other: Verdict) -> Verdict {
+        Verdict { margin: self.margin.max(other.margin), holds: self.holds || other.holds }
+    }
+
+    fn opposite(self) -> Verdict {
+        Verdict { margin: -self.margin, holds: !self.holds }
+    }
+}
+
+impl ops::Not for Predicate {
+    type Output = Predicate;
+
+    fn not(self) -> Predicate {
+        not(self)
+    }
+}
+
+impl ops::BitAnd for Predicate {
+    type Output = Predicate;
+
+    fn bitand(self, other: Predicate) -> Predicate {
+        self.and(other)
+    }
+}
+
+impl ops::BitOr for Predicate {
+    type Output = Predicate;
+
+    fn bitor(self, other: Predicate) -> Predicate {
+        self.or(other)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expression::variable;
+
+    fn verdict(predicate: &Predicate, x: f64) -> (f64, bool) {
+        let verdict = predicate.evaluate(&[("x", x)]).expect("x is the only variable");
+        (verdict.margin, verdict.holds)
+    }
+
+    #[test]
+    fn strictness_decides_on_the_boundary() {
+        let x = variable("x");
+        assert_eq!(verdict(&x.at_most(1.0), 1.0), (0.0, true));
+        assert_eq!(verdict(&x.less_than(1.0), 1.0), (0.0, false));
+        assert_eq!(verdict(&x.at_least(1.0), 1.0), (0.0, true));
+        assert_eq!(verdict(&x.more_than(1.0), 1.0), (0.0, false));
+        assert_eq!(verdict(&not(x.at_most(1.0)), 1.0), (0.0, false));
+        assert_eq!(verdict(&x.equals_within(0.75, 0.25), 1.0), (0.0, true));
+    }
+
+    #[test]
+    fn margins_measure_the_distance_to_the_other_verdict() {
+        let x = variable("x");
+        assert_eq!(verdict(&x.at_most(1.0), 0.25), (0.75, true));
+        assert_eq!(verdict(&x.at_least(1.0), 0.25), (-0.75, false));
+        assert_eq!(verdict(&x.at_least(0.0).and(x.at_most(1.0)), 0.25), (0.25, true));
+        assert_eq!(verdict(&x.at_most(0.0).or(x.at_least(1.0)), 0.25), (-0.25, false));
+        assert_eq!(verdict(&always(), 0.25), (f64::INFINITY, true));
+        assert_eq!(verdict(&never(), 0.25), (f64::NEG_INFINITY, false));
+    }
+
+    #[test]
+    fn infinity_equals_itself() {
+        assert_eq!(verdict(&variable("x").at_most(f64::INFINITY), f64::INFINITY), (0.0, true));
+    }
+
+    #[test]
+    fn every_part_is_evaluated() {
+        let predicate = never().and(variable("y").at_most(0.0));
+        assert!(predicate.evaluate(&[("x", 0.0)]).is_err());
+    }
+
+    #[test]
+    fn conjunctions_and_disjunctions_stay_flat() {
+        let [a, b, c] = ["a", "b", "c"].map(|name| variable(name).at_most(0.0));
+        let left = a.clone().and(b.clone()).and(c.clone());
+        assert_eq!(left, a.clone().and(b.and(c)));
+        assert_eq!(always().and(a.clone()), a);
+        assert_eq!(never().or(a.clone()), a);
+    }
+}

@@ -1,0 +1,195 @@
+//! The two notations: which symbols they use, and how they write names, numbers and exponents.
+
+use std::fmt::{self, Write};
+
+/// What differs between text and LaTeX.
+pub(super) struct Notation {
+    pub always: &'static str,
+    pub never: &'static str,
+    pub not: &'static str,
+    pub and: &'static str,
+    pub or: &'static str,
+    pub at_most: &'static str,
+    pub at_least: &'static str,
+    pub minus: &'static str,
+    pub difference: &'static str,
+    pub product: &'static str,
+    /// Between the operands; without it, a quotient is a fraction.
+    pub quotient: Option<&'static str>,
+    /// Before the operand; without it, a root spans its operand.
+    pub root: Option<&'static str>,
+    pub minimum: &'static str,
+    pub maximum: &'static str,
+    pub infinity: &'static str,
+    pub parentheses: (&'static str, &'static str),
+    pub bars: (&'static str, &'static str),
+    pub write_name: fn(&mut dyn Write, &str) -> fmt::Result,
+    pub write_exponent: fn(&mut dyn Write, f64) -> fmt::Result,
+}
+
+pub(super) static TEXT: Notation = Notation {
+    always: "always",
+    never: "never",
+    not: "¬",
+    and: " ∧ ",
+    or: " ∨ ",
+    at_most: " ≤ ",
+    at_least: " ≥ ",
+    minus: "−",
+    difference: " − ",
+    product: " · ",
+    quotient: Some(" ÷ "),
+    root: Some("√"),
+    minimum: "min",
+    maximum: "max",
+    infinity: "∞",
+    parentheses: ("(", ")"),
+    bars: ("|", "|"),
+    write_name: |out, name| out.write_str(name),
+    write_exponent: write_raised,
+};
+
+pub(super) static LATEX: Notation = Notation {
+    always: r"\top",
+    never: r"\bot",
+    not: r"\lnot ",
+    and: r" \land ",
+    or: r" \lor ",
+    at_most: r" \le ",
+    at_least: r" \ge ",
+    minus: "-",
+    difference: " - ",
+    product: r" \cdot ",
+    quotient: None,
+    root: None,
+    minimum: r"\min",
+    maximum: r"\max",
+    infinity: r"\infty",
+    parentheses: (r"\left(", r"\right)"),
+    bars: (r"\left|", r"\right|"),
+    write_name: write_latex_name,
+    write_exponent: |out, exponent| {
+        out.write_str("^{")?;
+        LATEX.write_number(out, exponent)?;
+        out.write_char('}')
+    },
+};
+
+impl Notation {
+    /// The shortest decimal that reads back as `value`.
+    pub fn write_number(&self, out: &mut dyn Write, value: f64) -> fmt::Result {
+        if value.is_sign_negative() {
+            out.write_str(self.minus)?;
+        }
+        if value.is_infinite() {
+            out.write_str(self.infinity)
+        } else {
+            write!(out, "{}", value.abs())
+        }
+    }
+}
+
+/// Whole exponents are raised; others follow a caret.
+fn write_raised(out: &mut dyn Write, exponent: f64) -> fmt::Result {
+    if exponent.fract() != 0.0 {
+        let (open, close) = if exponent < 0.0 { ("^(", ")") } else { ("^", "") };
+        out.write_str(open)?;
+        TEXT.write_number(out, exponent)?;
+        return out.write_str(close);
+    }
+    for character in exponent.to_string().chars() {
+        out.write_char(raised(character))?;
+    }
+    Ok(())
+}
+
+fn raised(character: char) -> char {
+    match character {
+        '-' => '⁻',
+        '0' => '⁰',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '4' => '⁴',
+        '5' => '⁵',
+        '6' => '⁶',
+        '7' => '⁷',
+        '8' => '⁸',
+        '9' => '⁹',
+        other => other,
+    }
+}
+
+/// What follows the first underscore is a subscript.
+fn write_latex_name(out: &mut dyn Write, name: &str) -> fmt::Result {
+    match name.split_once('_') {
+        None => write_latex_word(out, name),
+        Some((stem, subscript)) => {
+            write_latex_word(out, stem)?;
+            out.write_str("_{")?;
+            write_latex_word(out, subscript)?;
+            out.write_char('}')
+        }
+    }
+}
+
+/// A letter stands by itself, and Greek ones become their commands; words are set as one word.
+fn write_latex_word(out: &mut dyn Write, word: &str) -> fmt::Result {
+    let mut letters = word.chars();
+    match (letters.next(), letters.next()) {
+        (Some(letter), None) => match greek(letter) {
+            Some(command) => out.write_str(command),
+            None => write_latex_letter(out, letter),
+        },
+        _ if word.bytes().all(|byte| byte.is_ascii_digit()) => out.write_str(word),
+        _ => {
+            out.write_str(r"\mathit{")?;
+            word.chars().try_for_each(|letter| write_latex_letter(out, letter))?;
+            out.write_char('}')
+        }
+    }
+}
+
+fn write_latex_letter(out: &mut dyn Write, letter: char) -> fmt::Result {
+    match (letter, greek(letter)) {
+        (_, Some(command)) => write!(out, "{command} "),
+        ('_' | '%' | '&' | '#' | '$' | '{' | '}', None) => write!(out, r"\{letter}"),
+        (' ', None) => out.write_str(r"\ "),
+        (other, None) => out.write_char(other),
+    }
+}
+
+fn greek(letter: char) -> Option<&'static str> {
+    Some(match letter {
+        'α' => r"\alpha",
+        'β' => r"\beta",
+        'γ' => r"\gamma",
+        'δ' => r"\delta",
+        'ε' => r"\varepsilon",
+        'ζ' => r"\zeta",
+        'η' => r"\eta",
+        'θ' => r"\theta",
+        'κ' => r"\kappa",
+        'λ' => r"\lambda",
+        'μ' => r"\mu",
+        'ν' => r"\nu",
+        'ξ' => r"\xi",
+        'π' => r"\pi",
+        'ρ' => r"\rho",
+        'σ' => r"\sigma",
+        'τ' => r"\tau",
+        'φ' => r"\varphi",
+        'χ' => r"\chi",
+        'ψ' => r"\psi",
+        'ω' => r"\omega",
+        'Γ' => r"\Gamma",
+        'Δ' => r"\Delta",
+        'Θ' => r"\Theta",
+        'Λ' => r"\Lambda",
+        'Σ' => r"\Sigma",
+        'Φ' => r"\Phi",
+        'Ψ' => r"\Psi",
+        'Ω' => r"\Omega",
+        _ => return None,
+    })
+}

@@ -1,0 +1,93 @@
+//! What expressions are evaluated on, and how that can fail.
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fmt;
+
+/// A state seen through the names of its variables.
+///
+/// A state of one's own implements it with a `match`, which costs no allocation:
+///
+/// ```
+/// use pleach_guards::{variable, Valuation};
+///
+/// struct Ball { height: f64, velocity: f64 }
+///
+/// impl Valuation for Ball {
+///     fn value(&self, variable: &str) -> Option<f64> {
+///         match variable {
+///             "height" => Some(self.height),
+///             "velocity" => Some(self.velocity),
+///             _ => None,
+///         }
+///     }
+/// }
+///
+/// let impact = variable("height").at_most(0.0).and(variable("velocity").less_than(0.0));
+/// assert!(impact.holds(&Ball { height: 0.0, velocity: -3.0 })?);
+/// # Ok::<(), pleach_guards::EvaluationError>(())
+/// ```
+pub trait Valuation {
+    /// The value of `variable`, or `None` if the state has no variable of that name.
+    fn value(&self, variable: &str) -> Option<f64>;
+}
+
+impl<V: Valuation + ?Sized> Valuation for &V {
+    fn value(&self, variable: &str) -> Option<f64> {
+        (**self).value(variable)
+    }
+}
+
+/// Pairs of name and value; the first pair of a name counts.
+impl Valuation for [(&str, f64)] {
+    fn value(&self, variable: &str) -> Option<f64> {
+        self.iter().find(|(name, _)| *name == variable).map(|(_, value)| *value)
+    }
+}
+
+/// Pairs of name and value; the first pair of a name counts.
+impl<const N: usize> Valuation for [(&str, f64); N] {
+    fn value(&self, variable: &str) -> Option<f64> {
+        self.as_slice().value(variable)
+    }
+}
+
+impl Valuation for BTreeMap<String, f64> {
+    fn value(&self, variable: &str) -> Option<f64> {
+        self.get(variable).copied()
+    }
+}
+
+/// Why an expression or a predicate has no value in a state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum EvaluationError {
+    /// The state has no variable of this name.
+    UnknownVariable {
+        /// The name asked for.
+        variable: String,
+    },
+    /// A part of an expression is not a number, such as 0 ÷ 0, ∞ − ∞ or √−1.
+    ///
+    /// This is an error and not a verdict: if a comparison with such a part did "not hold", its
+    /// negation would hold.
+    NotANumber {
+        /// The smallest such part, as text.
+        expression: String,
+    },
+}
+
+impl fmt::Display for EvaluationError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownVariable { variable } => {
+                write!(formatter, "the state has no variable `{variable}`")
+            }
+            Self::NotANumber { expression } => {
+                write!(formatter, "`{expression}` is not a number in this state")
+            }
+        }
+    }
+}
+
+impl Error for EvaluationError {}
