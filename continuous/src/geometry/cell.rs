@@ -10,8 +10,9 @@
 use super::{FreeSpace, HalfPlane, Segment};
 use crate::Point;
 
-/// As a fraction of the tolerance τ of the free space: the distance below which a way touches an
-/// edge, and rounding spoils the direction from one to the other.
+/// As a fraction of the tolerance τ of the free space: the distance below which a way touches a
+/// wall, and rounding spoils the direction from one to the other. Far below the τ/2 that the sight
+/// set keeps beyond the clearance.
 const TOUCH: f64 = 1e-3;
 
 /// Half-planes that keep `clearance` (ρ, a length) from the bisectors between `position` and each
@@ -58,11 +59,12 @@ pub fn convex_region(
     let ahead = way_within(position, waypoint, radius);
     let way = if space.is_clear(&ahead) { ahead } else { Segment::new(position, position) };
     let tolerance = space.tolerance();
+    let touch = TOUCH * tolerance;
     let mut region = Vec::new();
     // Edges that rounding puts just outside the disc bound it too.
     space.for_each_wall_near(position, radius + tolerance, |wall| {
-        let separating = own_half_plane(wall, &way)
-            .or_else(|| half_plane_between(wall, &way, TOUCH * tolerance));
+        let separating =
+            own_half_plane(wall, &way, touch).or_else(|| half_plane_between(wall, &way, touch));
         // Back to the planning set, unless the way itself leaves it.
         let retracted = separating.map(|plane| {
             let offset = plane.offset - tolerance / 2.0;
@@ -84,10 +86,10 @@ fn way_within(position: Point, waypoint: Point, radius: f64) -> Segment {
     }
 }
 
-/// The half-plane on the free side of the wall's own line, if it contains the way.
-fn own_half_plane(wall: &Segment, way: &Segment) -> Option<HalfPlane> {
+/// The half-plane on the free side of the wall's own line, if it contains the way up to `touch`.
+fn own_half_plane(wall: &Segment, way: &Segment, touch: f64) -> Option<HalfPlane> {
     let own = HalfPlane::through(wall.from, -wall.left_normal())?;
-    (own.contains(way.from) && own.contains(way.to)).then_some(own)
+    (own.margin(way.from).min(own.margin(way.to)) >= -touch).then_some(own)
 }
 
 /// A half-plane that contains the way and has the wall on its border or outside: across the
@@ -97,11 +99,9 @@ fn half_plane_between(wall: &Segment, way: &Segment, touch: f64) -> Option<HalfP
     if (there - here).norm() > touch {
         return HalfPlane::through(there, there - here);
     }
-    // The end of the wall that is farther from the line of the way tells on which side it is. (A
-    // way without length has no line, but so near to a wall it is in the wall's own half-plane,
-    // up to rounding.)
-    let left = HalfPlane::through(way.from, way.left_normal())?;
-    let (from, to) = (left.margin(wall.from), left.margin(wall.to));
+    // The end of the wall that is farther from the line of the way tells on which side it is.
+    let right = HalfPlane::through(way.from, way.left_normal())?;
+    let (from, to) = (right.margin(wall.from), right.margin(wall.to));
     let farther = if from.abs() > to.abs() { from } else { to };
-    HalfPlane::through(way.from, -way.left_normal() * farther.signum())
+    HalfPlane::through(way.from, way.left_normal() * -farther.signum())
 }

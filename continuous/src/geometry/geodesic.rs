@@ -65,7 +65,7 @@ impl Destination {
     fn waypoints_from(&self, corner: usize, space: &FreeSpace) -> Vec<Point> {
         let corners = space.graph().corners();
         let chain = std::iter::successors(Some(corner), |&at| self.ways[at].next);
-        chain.map(|at| corners[at].at).chain([self.goal]).collect()
+        chain.filter_map(|at| corners.get(at)).map(|corner| corner.at).chain([self.goal]).collect()
     }
 }
 
