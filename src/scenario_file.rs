@@ -83,7 +83,7 @@ pub fn read(path: &Path) -> Result<Scenario, ScenarioError> {
 ///
 /// ```
 /// let error = pleach::scenario_file::parse("name = 3", "room.toml".as_ref()).unwrap_err();
-/// assert!(error.to_string().starts_with(
+/// assert!(error.to_string().contains(
 ///     "room.toml:1:8: name: the whole number 3 stands where a text in quotation marks belongs"
 /// ));
 /// ```
@@ -91,7 +91,9 @@ pub fn parse(text: &str, path: &Path) -> Result<Scenario, ScenarioError> {
     let mistaken = |mistakes| ScenarioError::Mistaken { path: path.into(), mistakes };
     let syntax = |error: &toml::de::Error| {
         let start = error.span().map_or(0, |span| span.start);
-        mistaken(vec![location::mistake(text, start, "", error.message())])
+        let line = location::line_around(text, start);
+        let message = format!("not TOML: {} in `{line}`", error.message());
+        mistaken(vec![location::mistake(text, start, "", &message)])
     };
 
     let file = DeTable::parse(text).map_err(|error| syntax(&error))?;

@@ -1,14 +1,10 @@
 //! What a person needs in order to judge a mission that has ended.
 
-mod extremes;
-
-pub use extremes::Smallest;
-
 use crate::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::{Scenario, Settings};
+use crate::continuous::Point;
+use crate::continuous::geometry::{Segment, Workspace, WorkspaceError};
 use crate::mission::Observer;
-use extremes::{Segment, keep_smaller, passing_distance, wall_distance, walls};
-use nalgebra::Point2;
 use std::fmt;
 use std::io;
 use std::time::Duration;
@@ -18,13 +14,13 @@ use std::time::Duration;
 pub struct Summary {
     name: String,
     settings: Settings,
-    walls: Vec<Segment>,
+    workspace: Workspace,
     tasks: Vec<TaskSummary>,
     recruits: usize,
     stationary_points: usize,
     last: Option<Instant>,
     pair_distance: Option<Smallest<(usize, usize)>>,
-    wall_distance: Option<Smallest<usize>>,
+    wall_clearance: Option<Smallest<usize>>,
     residual: Option<Smallest<usize>>,
     end: Option<End>,
     kernel_times: Vec<(&'static str, Duration)>,
@@ -40,20 +36,34 @@ pub struct TaskSummary {
     pub serviced: Option<(usize, usize)>,
 }
 
+/// The smallest value of something that was measured, and where it was met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Smallest<W> {
+    /// The value.
+    pub value: f64,
+    /// Who was concerned.
+    pub who: W,
+    /// The control period in which it was met.
+    pub step: usize,
+}
+
 #[derive(Clone, Debug)]
 struct Instant {
     step: usize,
     time: f64,
-    positions: Vec<Point2<f64>>,
+    positions: Vec<Point>,
 }
 
 impl Summary {
     /// The summary of a mission that has not begun.
-    pub fn new(scenario: &Scenario) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// The polygons of the scenario do not bound a workspace.
+    pub fn new(scenario: &Scenario) -> Result<Self, WorkspaceError> {
+        Ok(Self {
             name: scenario.name.clone(),
             settings: Settings::resolve(scenario),
-            walls: walls(scenario),
+            workspace: scenario.workspace()?,
             tasks: (scenario.task.iter())
                 .map(|task| TaskSummary { position: task.position, serviced: None })
                 .collect(),
@@ -61,12 +71,12 @@ impl Summary {
             stationary_points: 0,
             last: None,
             pair_distance: None,
-            wall_distance: None,
+            wall_clearance: None,
             residual: None,
             end: None,
             kernel_times: Vec::new(),
             elapsed: None,
-        }
+        })
     }
 
     /// Adds the time that the whole run took and what each kernel had of it.
@@ -102,8 +112,8 @@ impl Summary {
     }
 
     /// The smallest distance between a robot and a wall at any time.
-    pub fn wall_distance(&self) -> Option<Smallest<usize>> {
-        self.wall_distance
+    pub fn wall_clearance(&self) -> Option<Smallest<usize>> {
+        self.wall_clearance
     }
 
     /// The smallest residual c_i at the instants seen.
@@ -119,16 +129,16 @@ impl Summary {
             Some(last) => (last.step, &last.positions),
             None => (snapshot.step, now),
         };
-        let path = |robot: usize| [before[robot], now[robot]];
         let first = self.last.is_none();
         for robot in 0..now.len().min(before.len()) {
             if !first && before[robot] == now[robot] {
                 continue;
             }
-            let value = wall_distance(&self.walls, path(robot));
-            keep_smaller(&mut self.wall_distance, Smallest { value, who: robot, step });
+            let value = self.workspace.segment_clearance(before[robot], now[robot]);
+            keep_smaller(&mut self.wall_clearance, Smallest { value, who: robot, step });
             for other in (0..now.len().min(before.len())).filter(|&other| other != robot) {
-                let value = passing_distance(path(robot), path(other));
+                let value =
+                    passing_distance([before[robot], now[robot]], [before[other], now[other]]);
                 let who = (robot.min(other), robot.max(other));
                 keep_smaller(&mut self.pair_distance, Smallest { value, who, step });
             }
@@ -228,7 +238,7 @@ impl Summary {
                 2.0 * clearance
             )?;
         }
-        if let Some(Smallest { value, who, step }) = self.wall_distance {
+        if let Some(Smallest { value, who, step }) = self.wall_clearance {
             writeln!(
                 formatter,
                 "  smallest clearance  {value:.6} between robot {who} and a wall at k = {step}; \
@@ -260,4 +270,18 @@ impl Summary {
         }
         Ok(())
     }
+}
+
+/// Keeps the smaller of what is known and what was just measured.
+fn keep_smaller<W>(known: &mut Option<Smallest<W>>, measured: Smallest<W>) {
+    if known.as_ref().is_none_or(|known| measured.value < known.value) {
+        *known = Some(measured);
+    }
+}
+
+/// The smallest distance between two robots that go straight at constant speed in the same
+/// period, each from where it was to where it is: seen from one, the other goes straight too.
+fn passing_distance(first: [Point; 2], second: [Point; 2]) -> f64 {
+    let seen = |instant: usize| Point::from(second[instant] - first[instant]);
+    Segment::new(seen(0), seen(1)).distance(Point::origin())
 }

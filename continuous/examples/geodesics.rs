@@ -38,12 +38,12 @@ fn main() -> Result<()> {
     );
     let mut maps = 0;
     for path in files(&folder.join("visilibity"), "environment")? {
-        let map = Map::new(&path, read_environment(&path)?, 0.0)?;
+        let map = Map::new(&path, read_polygons(&path)?, 0.0)?;
         map.report(&map.check_expected(&path)?)?;
         maps += 1;
     }
     for path in files(&folder.join("ironharvest"), "txt")? {
-        let polygons = read_game_map(&path)?;
+        let polygons = read_polygons(&path)?;
         let clearance = MAP_CLEARANCE * Workspace::new(polygons[0].clone(), vec![])?.extent();
         Map::new(&path, polygons, clearance)?.report("")?;
         maps += 1;
@@ -77,8 +77,8 @@ impl Map {
         if !guards.exists() || !result.exists() {
             return Ok(String::new());
         }
-        let guards = read_environment(&guards)?.concat();
-        let expected = read_environment(&result)?.concat();
+        let guards = read_polygons(&guards)?.concat();
+        let expected = read_polygons(&result)?.concat();
         let [from, to] = guards[..] else { return Err("expected two guards".into()) };
         let (from, to) = (self.free_space.nearest(from), self.free_space.nearest(to));
         let length: f64 = expected.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
@@ -213,27 +213,14 @@ fn files(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Polygons of a VisiLibity file: one `x y` a line; other lines separate polygons.
-fn read_environment(path: &Path) -> Result<Vec<Vec<Point>>> {
-    read_polygons(path, |_| false)
-}
-
-/// Polygons of a game map, the border first: sections begin with a name in brackets, of which
-/// `[SCALE]` holds no polygon.
-fn read_game_map(path: &Path) -> Result<Vec<Vec<Point>>> {
-    read_polygons(path, |line| line.starts_with('['))
-}
-
-/// Polygons separated by lines that hold no point; with `only_after` also one that admits them.
-fn read_polygons(path: &Path, is_heading: impl Fn(&str) -> bool) -> Result<Vec<Vec<Point>>> {
+/// Polygons of a map, the outer boundary first: one `x y` a line, all other lines separate them.
+fn read_polygons(path: &Path) -> Result<Vec<Vec<Point>>> {
     let mut polygons = vec![Vec::new()];
     for line in fs::read_to_string(path)?.lines() {
         let numbers: Vec<f64> =
             line.split_whitespace().map_while(|word| word.parse().ok()).collect();
-        match numbers[..] {
-            [x, y] if !is_heading(line) => {
-                polygons.last_mut().into_iter().for_each(|ring| ring.push(Point::new(x, y)));
-            }
+        match (&numbers[..], polygons.last_mut()) {
+            (&[x, y], Some(ring)) => ring.push(Point::new(x, y)),
             _ => polygons.push(Vec::new()),
         }
     }

@@ -9,7 +9,7 @@ use pleach::scenario_file;
 use pleach::summary::Summary;
 use pleach::trace::TraceWriter;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -18,7 +18,8 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
     let scenario = scenario_file::read(&arguments.scenario)?;
     let mut mission = begin(&scenario)?;
 
-    let mut summary = Summary::new(&scenario);
+    let mut summary =
+        Summary::new(&scenario).map_err(|error| Failure::Internal(error.to_string()))?;
     let mut progress = Progress::new(&scenario, arguments.quiet);
     let mut trace =
         arguments.trace.as_deref().map(|path| start_trace(path, &scenario)).transpose()?;
@@ -35,14 +36,15 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
         trace.finish()?;
     }
 
-    print!("{}", summary.with_times(elapsed, mission.kernel_times()));
+    let mut output = io::stdout().lock();
+    write!(output, "{}", summary.with_times(elapsed, mission.kernel_times()))?;
     if let Some(path) = &arguments.trace {
-        println!("  trace               {}", path.display());
+        writeln!(output, "  trace               {}", path.display())?;
     }
     if let Some(folder) = figures_folder(arguments, &scenario) {
         // HOOK(figures): an album watches the mission beside the summary; here it writes its
         // pictures into `folder`, and the program says so.
-        println!("  figures             none yet, meant for {}", folder.display());
+        writeln!(output, "  figures             none yet, meant for {}", folder.display())?;
     }
     Ok(end.outcome.into())
 }

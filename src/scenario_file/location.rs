@@ -36,6 +36,14 @@ fn start_below(value: &Spanned<DeValue<'_>>, steps: &[KeyStep]) -> usize {
     below.unwrap_or(value.span().start)
 }
 
+/// The line of `text` that holds byte `start`, without blanks at its ends.
+pub(super) fn line_around(text: &str, start: usize) -> &str {
+    let (before, after) = text.split_at(text.floor_char_boundary(start));
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let line_end = before.len() + after.find('\n').unwrap_or(after.len());
+    text[line_start..line_end].trim()
+}
+
 /// The mistake whose first byte in `text` is `start`.
 pub(super) fn mistake(text: &str, start: usize, key: &str, message: &str) -> Mistake {
     let before = &text[..text.floor_char_boundary(start)];

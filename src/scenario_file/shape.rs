@@ -137,7 +137,7 @@ impl Comparison {
             }
         } else {
             let message = format!(
-                "a point has two coordinates, [x, y], and this list has {} elements",
+                "a point is a list of two numbers, [x, y], and this one has length {}",
                 numbers.len()
             );
             self.found.push(Departure { key: key.clone(), span, message });
@@ -179,15 +179,15 @@ impl Shape {
         match self {
             Shape::Text => "a text in quotation marks".into(),
             Shape::Number => "a number".into(),
-            Shape::Count => "a whole number, 0 or above".into(),
+            Shape::Count => "a whole number of at least 0".into(),
             Shape::OneOf(choices) => {
                 let quoted: Vec<_> = choices.iter().map(|choice| format!("{choice:?}")).collect();
                 quoted.join(" or ")
             }
-            Shape::Point => "a point, [x, y]".into(),
-            Shape::ListOf(Shape::Point) => "a polygon, [[x, y], [x, y], [x, y], …]".into(),
-            Shape::ListOf(Shape::Table(_)) => "a list of tables, each under [[…]]".into(),
-            Shape::ListOf(_) => "a list of polygons, [[[x, y], …], …]".into(),
+            Shape::Point => "a point [x, y]".into(),
+            Shape::ListOf(Shape::Point) => "a polygon [[x, y], [x, y], [x, y], …]".into(),
+            Shape::ListOf(Shape::Table(_)) => "a list of tables, each under its [[…]]".into(),
+            Shape::ListOf(_) => "a list of polygons [[[x, y], …], …]".into(),
             Shape::Table(entries) => {
                 let required: Vec<_> =
                     entries.iter().filter(|entry| entry.required).map(|entry| entry.name).collect();

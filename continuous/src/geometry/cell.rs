@@ -10,12 +10,9 @@
 use super::{FreeSpace, HalfPlane, Segment};
 use crate::Point;
 
-/// As a fraction of the tolerance τ of the free space: how far the border of a half-plane may be
-/// moved beyond the edge that it stems from. Below one half, where the sight set ends.
-const EDGE_SLACK: f64 = 0.25;
-
-/// As a fraction of τ: the distance below which a way touches an edge, and rounding spoils the
-/// direction from one to the other.
+/// As a fraction of the tolerance τ of the free space: the distance below which a way touches a
+/// wall, and rounding spoils the direction from one to the other. Far below the τ/2 that the sight
+/// set keeps beyond the clearance.
 const TOUCH: f64 = 1e-3;
 
 /// Half-planes that keep `clearance` (ρ, a length) from the bisectors between `position` and each
@@ -45,22 +42,35 @@ pub fn voronoi_half_planes(
 /// of `space` that contains `position` and the part of the segment to `waypoint` (a₁ of
 /// Definition 4.1) within the disc: the set P_i of (18).
 ///
-/// Expects `position` in the free space and `waypoint` in its sight. Half-planes that do not cut
-/// the disc are left out.
+/// Each wall, an edge of the sight set within the disc, contributes a half-plane that contains the
+/// way ahead and not the wall: the one on the wall's own line if possible. A point of the free
+/// space's complement would have a wall between itself and `position`, and is cut off by its
+/// half-plane. Then the half-planes retreat by the τ/2 from the sight set to the planning set, as
+/// far as the way allows, so that robots stay away from where sight ends.
+///
+/// Expects `position` in the free space. Should it not see so far towards `waypoint`, the region
+/// is grown around `position` alone. Half-planes that do not cut the disc are left out.
 pub fn convex_region(
     space: &FreeSpace,
     position: Point,
     waypoint: Point,
     radius: f64,
 ) -> Vec<HalfPlane> {
-    let way = way_within(position, waypoint, radius);
+    let ahead = way_within(position, waypoint, radius);
+    let way = if space.is_clear(&ahead) { ahead } else { Segment::new(position, position) };
+    let tolerance = space.tolerance();
+    let touch = TOUCH * tolerance;
     let mut region = Vec::new();
     // Edges that rounding puts just outside the disc bound it too.
-    space.for_each_edge_near(position, radius + space.tolerance(), |edge| {
-        let separating = own_half_plane(edge, &way, EDGE_SLACK * space.tolerance())
-            .or_else(|| half_plane_between(edge, &way, TOUCH * space.tolerance()));
-        let cuts = |plane: &HalfPlane| plane.margin(position) < radius;
-        region.extend(separating.filter(cuts));
+    space.for_each_wall_near(position, radius + tolerance, |wall| {
+        let separating =
+            own_half_plane(wall, &way, touch).or_else(|| half_plane_between(wall, &way, touch));
+        // Back to the planning set, unless the way itself leaves it.
+        let retracted = separating.map(|plane| {
+            let offset = plane.offset - tolerance / 2.0;
+            HalfPlane { offset, ..plane }.widened_to(way.from).widened_to(way.to)
+        });
+        region.extend(retracted.filter(|plane| plane.margin(position) < radius));
     });
     region
 }
@@ -76,37 +86,22 @@ fn way_within(position: Point, waypoint: Point, radius: f64) -> Segment {
     }
 }
 
-/// The half-plane on the free side of the edge's own line, if it contains the way or does so when
-/// its border moves by no more than `slack`.
-fn own_half_plane(edge: &Segment, way: &Segment, slack: f64) -> Option<HalfPlane> {
-    let own = HalfPlane::through(edge.from, -edge.left_normal())?;
-    let deepest = own.margin(way.from).min(own.margin(way.to));
-    (deepest >= -slack).then(|| widened_to_way(own, way))
+/// The half-plane on the free side of the wall's own line, if it contains the way up to `touch`.
+fn own_half_plane(wall: &Segment, way: &Segment, touch: f64) -> Option<HalfPlane> {
+    let own = HalfPlane::through(wall.from, -wall.left_normal())?;
+    (own.margin(way.from).min(own.margin(way.to)) >= -touch).then_some(own)
 }
 
-/// A half-plane that contains the way and has the edge on its border or outside: across the
-/// shortest line between them, or along the way if they are closer than `touch`.
-///
-/// In that last case the edge ends where the way passes, or the way cuts off a corner of the
-/// planning set by less than half the tolerance; the end of the edge that is farther from the line
-/// of the way tells on which side the wall is.
-fn half_plane_between(edge: &Segment, way: &Segment, touch: f64) -> Option<HalfPlane> {
-    let (here, there) = way.closest(edge);
-    let between = there - here;
-    let plane = if between.norm() > touch && (here == way.from || here == way.to) {
-        HalfPlane::through(there, between)?
-    } else {
-        let left = HalfPlane::through(way.from, way.left_normal())?;
-        let depth = |plane: &HalfPlane, point: Point| -plane.margin(point);
-        let (one, other) = (depth(&left, edge.from), depth(&left, edge.to));
-        let farther = if one.abs() > other.abs() { one } else { other };
-        let plane = HalfPlane::through(way.from, way.left_normal() * farther.signum())?;
-        let nearer_end = depth(&plane, edge.from).min(depth(&plane, edge.to));
-        HalfPlane { offset: plane.offset + nearer_end.max(0.0), ..plane }
-    };
-    Some(widened_to_way(plane, way))
-}
-
-fn widened_to_way(plane: HalfPlane, way: &Segment) -> HalfPlane {
-    plane.widened_to(way.from).widened_to(way.to)
+/// A half-plane that contains the way and has the wall on its border or outside: across the
+/// shortest line between them, or along the way where the wall ends closer to it than `touch`.
+fn half_plane_between(wall: &Segment, way: &Segment, touch: f64) -> Option<HalfPlane> {
+    let (here, there) = way.closest(wall);
+    if (there - here).norm() > touch {
+        return HalfPlane::through(there, there - here);
+    }
+    // The end of the wall that is farther from the line of the way tells on which side it is.
+    let right = HalfPlane::through(way.from, way.left_normal())?;
+    let (from, to) = (right.margin(wall.from), right.margin(wall.to));
+    let farther = if from.abs() > to.abs() { from } else { to };
+    HalfPlane::through(way.from, way.left_normal() * -farther.signum())
 }

@@ -14,6 +14,7 @@ use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 
+use super::segment::side;
 use super::workspace::edges_of;
 use super::{Segment, Workspace};
 use crate::{Point, Vector};
@@ -71,11 +72,12 @@ fn strip(edge: &Segment, width: f64) -> Vec<Point> {
 /// The polygon about the disc of `radius` around the vertex between two edges, from the end of one
 /// strip to the beginning of the next; none where the boundary does not turn right.
 fn cap(edge: &Segment, next: &Segment, radius: f64) -> Option<Vec<Point>> {
-    let (first, last) = (edge.left_normal(), next.left_normal());
-    let turn = (-first.perp(&last)).atan2(first.dot(&last));
-    if turn <= 0.0 {
+    // Decided exactly: at the tip of a needle, rounding could take a right turn for a left one.
+    if side(edge.from, edge.to, next.to) >= 0.0 {
         return None;
     }
+    let (first, last) = (edge.left_normal(), next.left_normal());
+    let turn = first.angle(&last);
     let corners = if turn <= SINGLE_CORNER_TURN { 1.0 } else { (turn / CAP_STEP).ceil() };
     let step = turn / corners;
     let reach = radius / (step / 2.0).cos();

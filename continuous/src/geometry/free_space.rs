@@ -145,14 +145,14 @@ impl FreeSpace {
         &self.graph
     }
 
-    /// Visits the edges of the planning set within `radius` of `center`.
-    pub(super) fn for_each_edge_near(
+    /// Visits the edges of the sight set within `radius` of `center`.
+    pub(super) fn for_each_wall_near(
         &self,
         center: Point,
         radius: f64,
         visit: impl FnMut(&Segment),
     ) {
-        self.planning.tree.for_each_near(center, radius, visit);
+        self.sight.tree.for_each_near(center, radius, visit);
     }
 
     /// Checks that both outlines keep the clearance and that the planning set lies within the

@@ -42,6 +42,8 @@ fn segments(start: Point, waypoints: &[Point]) -> impl Iterator<Item = Segment> 
 #[derive(Debug, Clone)]
 pub struct Destination {
     goal: Point,
+    /// Whether the goal lies in the free space; otherwise no way leads to it.
+    is_free: bool,
     ways: Vec<Way>,
 }
 
@@ -63,7 +65,7 @@ impl Destination {
     fn waypoints_from(&self, corner: usize, space: &FreeSpace) -> Vec<Point> {
         let corners = space.graph().corners();
         let chain = std::iter::successors(Some(corner), |&at| self.ways[at].next);
-        chain.map(|at| corners[at].at).chain([self.goal]).collect()
+        chain.filter_map(|at| corners.get(at)).map(|corner| corner.at).chain([self.goal]).collect()
     }
 }
 
@@ -91,8 +93,9 @@ impl FreeSpace {
         let graph = self.graph();
         let unreached = Way { length: f64::INFINITY, next: None };
         let mut ways = vec![unreached; graph.corners().len()];
-        if !self.contains(goal) {
-            return Destination { goal, ways };
+        let is_free = self.contains(goal);
+        if !is_free {
+            return Destination { goal, is_free, ways };
         }
         let mut frontier = BinaryHeap::new();
         for (index, corner) in graph.corners().iter().enumerate() {
@@ -114,7 +117,7 @@ impl FreeSpace {
                 }
             }
         }
-        Destination { goal, ways }
+        Destination { goal, is_free, ways }
     }
 
     /// A shortest path from `from` to a destination of this free space, `None` if there is none.
@@ -122,11 +125,11 @@ impl FreeSpace {
     /// Corners are tried in the order of the length that the path over them would have: the first
     /// one in sight is on a shortest path, and few are tested.
     pub fn geodesic_to(&self, from: Point, destination: &Destination) -> Option<Geodesic> {
-        if !self.contains(from) {
+        if !destination.is_free || !self.contains(from) {
             return None;
         }
         let goal = destination.goal;
-        if self.contains(goal) && self.is_clear(&Segment::new(from, goal)) {
+        if self.is_clear(&Segment::new(from, goal)) {
             return Some(Geodesic::new(from, vec![goal]));
         }
         let corners = self.graph().corners();

@@ -73,33 +73,55 @@ proptest! {
         environment in environment(),
         start in place(),
         goals in prop::collection::vec(place(), 3),
-        radius in 0.01..0.3,
-        sideways in -1.0..1.0,
+        radius in 0.05..0.3_f64,
+        sideways in -0.5..0.5_f64,
     ) {
         let free_space = &environment.free_space;
         let edges = plain::edges(environment.workspace.polygons());
         let mut at = free_space.nearest(start);
-        for goal in goals {
+        for (goal, drifts) in goals.into_iter().zip([true, false, false]) {
             let destination = free_space.destination(free_space.nearest(goal));
-            for _ in 0..40 {
+            let Some(path) = free_space.geodesic_to(at, &destination) else { break };
+            let steps = path.length / radius + path.waypoints.len() as f64 + 2.0;
+            for _ in 0..steps as usize {
                 let Some(path) = free_space.geodesic_to(at, &destination) else { break };
                 let waypoint = path.waypoints[0];
-                let region = convex_region(free_space, at, waypoint, radius);
                 let way = waypoint - at;
+                if way.norm() == 0.0 { break }
                 let end = at + way * (radius / way.norm()).min(1.0);
+                let region = convex_region(free_space, at, waypoint, radius);
                 prop_assert!(margin(&region, at) >= -1e-12);
-                if way.norm() > 0.0 {
-                    prop_assert!(margin(&region, end) >= -1e-12, "{at} to {end}: {}", margin(&region, end));
-                }
+                prop_assert!(margin(&region, end) >= -1e-12, "{at} to {end}: {}", margin(&region, end));
                 for point in disc(at, radius).filter(|point| admit(&region, *point)) {
                     prop_assert!(plain::winds_around(&edges, point));
                     prop_assert!(plain::distance(&edges, point) >= CLEARANCE, "{point} seen from {at} on the way to {waypoint}");
                 }
-                if way.norm() == 0.0 { break }
-                // Mostly ahead, now and then to the side, as far as the region allows.
-                let drift = Vector::new(-way.y, way.x).normalize() * (radius * sideways);
-                let aside = at + drift;
-                at = if admit(&region, aside) && sideways > 0.8 { aside } else { end };
+                let aside = end + Vector::new(-way.y, way.x).normalize() * (radius * sideways);
+                at = if drifts && (aside - at).norm() <= radius && admit(&region, aside) { aside } else { end };
+            }
+            if !drifts {
+                prop_assert_eq!(at, destination.goal());
+            }
+        }
+    }
+
+    /// Where the waypoint is out of sight, and where there is none, regions are free all the same.
+    #[test]
+    fn regions_are_free_whatever_the_waypoint(
+        environment in environment(),
+        at in place(),
+        waypoint in place(),
+        radius in 0.05..0.5,
+    ) {
+        let free_space = &environment.free_space;
+        let edges = plain::edges(environment.workspace.polygons());
+        let at = free_space.nearest(at);
+        for waypoint in [waypoint, at] {
+            let region = convex_region(free_space, at, waypoint, radius);
+            prop_assert!(margin(&region, at) >= -1e-12);
+            for point in disc(at, radius).filter(|point| admit(&region, *point)) {
+                prop_assert!(plain::winds_around(&edges, point));
+                prop_assert!(plain::distance(&edges, point) >= CLEARANCE);
             }
         }
     }

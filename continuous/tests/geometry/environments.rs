@@ -1,6 +1,7 @@
 //! Random environments: a rectangle with walls from below and above, and convex holes.
 
 use std::f64::consts::TAU;
+use std::fmt;
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, Workspace};
@@ -14,34 +15,92 @@ const WIDTH: f64 = 2.4;
 const HEIGHT: f64 = 1.6;
 
 /// A workspace with its free space.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Environment {
     pub workspace: Workspace,
     pub free_space: FreeSpace,
 }
 
-/// A place as fractions of the width and height of the rectangle.
+impl fmt::Debug for Environment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for polygon in self.workspace.polygons() {
+            let vertices: Vec<_> = polygon.iter().map(|p| (p.x, p.y)).collect();
+            writeln!(f, "{vertices:?}")?;
+        }
+        Ok(())
+    }
+}
+
+/// How the coordinates of an environment relate to each other.
+#[derive(Debug, Clone, Copy)]
+enum Alignment {
+    /// Not at all.
+    Free,
+    /// Multiples of `GRID`: corners in line, passages of equal length.
+    Grid,
+    /// Almost multiples of `GRID`: corners in line up to a few tolerances.
+    AlmostGrid,
+}
+
+const GRID: f64 = 0.1;
+
+/// How far vertices in an [`Alignment::AlmostGrid`] are from the grid; the tolerance is 2.8e-6.
+const MISALIGNMENT: f64 = 4e-6;
+
+impl Alignment {
+    fn align(self, point: Point) -> Point {
+        point
+            .coords
+            .map(|coordinate| {
+                let on_grid = (coordinate / GRID).round();
+                match self {
+                    Alignment::Free => coordinate,
+                    Alignment::Grid => on_grid * GRID,
+                    Alignment::AlmostGrid => {
+                        on_grid * GRID + 2.0 * MISALIGNMENT * (coordinate / GRID - on_grid)
+                    }
+                }
+            })
+            .into()
+    }
+}
+
+fn alignment() -> impl Strategy<Value = Alignment> {
+    prop_oneof![Just(Alignment::Free), Just(Alignment::Grid), Just(Alignment::AlmostGrid)]
+}
+
+/// A place in the rectangle, half of the time on a grid.
 pub fn place() -> impl Strategy<Value = Point> {
+    (anywhere(), any::<bool>()).prop_map(
+        |(place, free)| {
+            if free { place } else { Alignment::Grid.align(place) }
+        },
+    )
+}
+
+fn anywhere() -> impl Strategy<Value = Point> {
     (0.0..1.0, 0.0..1.0).prop_map(|(x, y)| Point::new(x * WIDTH, y * HEIGHT))
 }
 
 pub fn environment() -> impl Strategy<Value = Environment> {
     let walls = vec((0.1..0.9, 0.03..0.15, 0.2..0.8, any::<bool>()), 0..4);
-    let holes = vec((place(), 0.05..0.25, vec(0.0..TAU, 3..7)), 0..5);
-    (walls, holes).prop_map(|(walls, holes)| {
-        let boundary = boundary(&walls);
+    let holes = vec((anywhere(), 0.05..0.25, vec(0.0..TAU, 3..7)), 0..5);
+    (walls, holes, alignment()).prop_filter_map("no workspace", |(walls, holes, alignment)| {
+        let aligned = |ring: Vec<Point>| ring.into_iter().map(|p| alignment.align(p)).collect();
+        let boundary: Vec<Point> = aligned(boundary(&walls));
         // Keep every hole that fits.
         let mut kept: Vec<Vec<Point>> = Vec::new();
-        let mut workspace = Workspace::new(boundary.clone(), vec![]).unwrap();
+        let mut workspace = Workspace::new(boundary.clone(), vec![]).ok()?;
         for (center, radius, angles) in holes {
             let mut with_one_more = kept.clone();
-            with_one_more.push(hole(center, radius, angles));
+            with_one_more.push(aligned(hole(center, radius, angles)));
             if let Ok(larger) = Workspace::new(boundary.clone(), with_one_more.clone()) {
                 (workspace, kept) = (larger, with_one_more);
             }
         }
-        let free_space = FreeSpace::new(&workspace, CLEARANCE).unwrap();
-        Environment { workspace, free_space }
+        let free_space = FreeSpace::new(&workspace, CLEARANCE)
+            .unwrap_or_else(|error| panic!("{:?}: {error}", workspace.polygons()));
+        Some(Environment { workspace, free_space })
     })
 }
 

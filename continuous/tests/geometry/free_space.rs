@@ -84,6 +84,19 @@ fn rounding_beyond_the_tolerance_is_an_error() {
 }
 
 #[test]
+fn needles_get_caps() {
+    // Flat but for rounding: whether its tips turn right or left is decided exactly.
+    let needle = ring(&[(2.1, 0.4), (2.2, 0.30000000000000004), (2.3000000000000003, 0.2)]);
+    let boundary = ring(&[(0.0, 0.0), (2.8, 0.0), (2.8, 1.6), (0.0, 1.6)]);
+    let workspace = Workspace::new(boundary, vec![needle]).unwrap();
+    for clearance in [0.0, 0.01, 0.03] {
+        let free_space = FreeSpace::new(&workspace, clearance).unwrap();
+        let beyond_the_tip = Point::new(2.1 - 0.7 * clearance, 0.4 + 0.7 * clearance);
+        assert!(!free_space.contains(beyond_the_tip));
+    }
+}
+
+#[test]
 fn zero_clearance_is_almost_the_workspace() {
     let workspace = room_with_door();
     let free_space = FreeSpace::new(&workspace, 0.0).unwrap();

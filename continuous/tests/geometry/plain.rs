@@ -1,6 +1,9 @@
 //! Plain reimplementations that try everything: slow, obvious, and independent of the library.
 
-use pleach_continuous::Point;
+use std::f64::consts::PI;
+
+use pleach_continuous::geometry::Disc;
+use pleach_continuous::{Point, Vector};
 
 /// The edges of closed rings.
 pub fn edges(rings: &[Vec<Point>]) -> Vec<(Point, Point)> {
@@ -58,26 +61,67 @@ pub fn stays_inside(edges: &[(Point, Point)], a: Point, b: Point, tolerance: f64
         .all(|pair| almost_inside(edges, a + along * ((pair[0] + pair[1]) / 2.0), tolerance))
 }
 
-/// Length of a shortest path inside the rings by the visibility graph of all vertices.
-pub fn shortest(rings: &[Vec<Point>], a: Point, b: Point, tolerance: f64) -> f64 {
+/// Whether a segment keeps out of every disc, up to a millionth of the radius.
+pub fn avoids(discs: &[Disc], a: Point, b: Point) -> bool {
+    discs.iter().all(|disc| distance(&[(a, b)], disc.center) >= disc.radius * (1.0 - 1e-6))
+}
+
+/// Corners of the octagon about a disc.
+pub fn octagon(disc: &Disc) -> Vec<Point> {
+    let reach = disc.radius / (PI / 8.0).cos();
+    let angles = (0..8).map(|k| PI / 8.0 + f64::from(k) * PI / 4.0);
+    angles.map(|angle| disc.center + reach * Vector::new(angle.cos(), angle.sin())).collect()
+}
+
+/// Whether a segment keeps out of the octagons about all discs, up to a millionth.
+pub fn avoids_octagons(discs: &[Disc], a: Point, b: Point) -> bool {
+    discs.iter().all(|disc| {
+        // The part of the segment within all eight sides of a slightly smaller octagon.
+        let (mut first, mut last) = (0.0_f64, 1.0_f64);
+        for (corner, next) in edges(&[octagon(disc)]) {
+            let inwards = Vector::new(corner.y - next.y, next.x - corner.x).normalize();
+            let depth = |point: Point| inwards.dot(&(point - corner)) - 1e-6 * disc.radius;
+            let (from, to) = (depth(a), depth(b));
+            let cut = from / (from - to);
+            match (from > 0.0, to > 0.0) {
+                (true, true) => {}
+                (true, false) => last = last.min(cut),
+                (false, true) => first = first.max(cut),
+                (false, false) => last = -1.0,
+            }
+        }
+        first >= last
+    })
+}
+
+/// Length of a shortest path inside the rings, with steps that are `allowed`, over the vertices
+/// of the rings and further `corners`.
+pub fn shortest(
+    rings: &[Vec<Point>],
+    corners: &[Point],
+    allowed: impl Fn(Point, Point) -> bool,
+    a: Point,
+    b: Point,
+    tolerance: f64,
+) -> f64 {
     let edges = edges(rings);
     let mut nodes = vec![a, b];
-    nodes.extend(rings.iter().flatten());
-    let count = nodes.len();
-    let mut best = vec![f64::INFINITY; count];
-    let mut done = vec![false; count];
+    nodes.extend(rings.iter().flatten().chain(corners));
+    let mut best = vec![f64::INFINITY; nodes.len()];
+    let mut open: Vec<usize> = (0..nodes.len()).collect();
     best[0] = 0.0;
-    while let Some(at) = (0..count)
-        .filter(|&i| !done[i] && best[i].is_finite())
-        .min_by(|&i, &j| best[i].total_cmp(&best[j]))
+    while let Some(place) = (0..open.len()).min_by(|&i, &j| best[open[i]].total_cmp(&best[open[j]]))
     {
-        if at == 1 {
+        let at = open.swap_remove(place);
+        if at == 1 || best[at].is_infinite() {
             break;
         }
-        done[at] = true;
-        for next in 0..count {
+        for &next in &open {
             let length = best[at] + (nodes[next] - nodes[at]).norm();
-            if length < best[next] && stays_inside(&edges, nodes[at], nodes[next], tolerance) {
+            if length < best[next]
+                && allowed(nodes[at], nodes[next])
+                && stays_inside(&edges, nodes[at], nodes[next], tolerance)
+            {
                 best[next] = length;
             }
         }

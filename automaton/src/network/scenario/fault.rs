@@ -61,7 +61,7 @@ pub enum Problem {
     StepTooLong { step_radius: f64, most: f64 },
     /// No length is left for new links of the tree.
     #[error(
-        "no link can be added to the tree: a reliability of {tree_reliability} is reached at distance {longest}, and robots may stand service_radius = {service_radius} away from their posts; lower tree_reliability or service_radius, or raise full_range"
+        "no link can be added to the tree: a reliability of {tree_reliability} is reached at distance {longest:.6}, and robots may stand service_radius = {service_radius} away from their posts; lower tree_reliability or service_radius, or raise full_range"
     )]
     TreeLinksTooShort { tree_reliability: f64, longest: f64, service_radius: f64 },
     /// Nowhere to send information to.

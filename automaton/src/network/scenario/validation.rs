@@ -22,7 +22,7 @@ impl Scenario {
     /// then they are connected), so only the first kind of check that fails is reported.
     pub fn validate(&self) -> Result<(), Vec<Fault>> {
         let checks: [fn(&Scenario) -> Vec<Fault>; 4] =
-            [numbers_are_finite, settings_are_in_range, settings_fit_each_other, placement::faults];
+            [numbers_are_finite, values_are_in_range, settings_fit_each_other, placement::faults];
         match checks.iter().map(|check| check(self)).find(|faults| !faults.is_empty()) {
             Some(faults) => Err(faults),
             None => Ok(()),
@@ -105,48 +105,57 @@ fn numbers_are_finite(scenario: &Scenario) -> Vec<Fault> {
         .collect()
 }
 
-fn settings_are_in_range(scenario: &Scenario) -> Vec<Fault> {
-    let settings = Settings::resolve(scenario);
+/// Values that are wrong by themselves. What the file leaves to the defaults is right if the rest
+/// is.
+fn values_are_in_range(scenario: &Scenario) -> Vec<Fault> {
+    let Scenario { control: stated, link: ranges, .. } = scenario;
     let link = |name| KeyPath::root().key("link").key(name);
     let control = |name| KeyPath::root().key("control").key(name);
 
     let name = (!is_file_name(&scenario.name)).then(|| {
         Problem::NotAFileName { name: scenario.name.clone() }.at(KeyPath::root().key("name"))
     });
-    let positive = [
-        (link("full_range"), settings.link.full_range),
-        (link("max_range"), settings.link.max_range),
-        (control("clearance"), settings.clearance),
-        (control("service_radius"), settings.service_radius),
-        (control("period"), settings.period),
-    ]
-    .into_iter()
-    .filter(|&(_, value)| value <= 0.0)
-    .map(|(key, value)| Problem::NotPositive { value }.at(key));
-    let not_negative = [
-        (control("residual_tolerance"), settings.residual_tolerance),
-        (control("slope_aversion"), settings.slope_aversion),
-    ]
-    .into_iter()
-    .filter(|&(_, value)| value < 0.0)
-    .map(|(key, value)| Problem::Negative { value }.at(key));
-    let counts = [
-        (control("max_steps"), settings.max_steps),
-        (control("rounds_per_period"), settings.rounds_per_period),
-        (control("routing_iterations"), settings.routing_iterations),
-    ]
-    .into_iter()
-    .filter(|&(_, count)| count == 0)
-    .map(|(key, _)| Problem::Zero.at(key));
+    let not_positive = offences(
+        [
+            (link("full_range"), Some(ranges.full_range)),
+            (link("max_range"), Some(ranges.max_range)),
+            (control("clearance"), stated.clearance),
+            (control("service_radius"), stated.service_radius),
+            (control("step_radius"), stated.step_radius),
+            (control("period"), stated.period),
+        ],
+        |&value| value <= 0.0,
+        |value| Problem::NotPositive { value },
+    );
+    let negative = offences(
+        [
+            (control("residual_tolerance"), stated.residual_tolerance),
+            (control("slope_aversion"), stated.slope_aversion),
+        ],
+        |&value| value < 0.0,
+        |value| Problem::Negative { value },
+    );
+    let zero = offences(
+        [
+            (control("max_steps"), stated.max_steps),
+            (control("rounds_per_period"), stated.rounds_per_period),
+            (control("routing_iterations"), stated.routing_iterations),
+        ],
+        |&count| count == 0,
+        |_| Problem::Zero,
+    );
     let rates = (scenario.robot.iter().enumerate())
-        .map(|(index, robot)| (robot_key(index).key("rate"), robot.rate));
-    let shares = rates
-        .chain([(control("routing_reserve"), settings.routing_reserve)])
-        .filter(|&(_, value)| !(0.0..=1.0).contains(&value))
-        .map(|(key, value)| Problem::NotAShare { value }.at(key));
-    let reliability = Some(settings.tree_reliability)
-        .filter(|&value| value <= 0.0 || value >= 1.0)
-        .map(|value| Problem::NotAReliability { value }.at(control("tree_reliability")));
+        .map(|(index, robot)| (robot_key(index).key("rate"), Some(robot.rate)));
+    let no_share = offences(
+        rates.chain([(control("routing_reserve"), stated.routing_reserve)]),
+        |value| !(0.0..=1.0).contains(value),
+        |value| Problem::NotAShare { value },
+    );
+    let no_reliability = offences(
+        [(control("tree_reliability"), stated.tree_reliability)],
+        |&value| value <= 0.0 || value >= 1.0,
+        |value| Problem::NotAReliability { value },
+    );
     let nobody = [
         (scenario.access_point.is_empty(), "access_point", Problem::NoAccessPoint),
         (scenario.robot.is_empty(), "robot", Problem::NoRobot),
@@ -155,11 +164,23 @@ fn settings_are_in_range(scenario: &Scenario) -> Vec<Fault> {
     .filter(|(missing, ..)| *missing)
     .map(|(_, table, problem)| problem.at(KeyPath::root().key(table)));
 
-    (name.into_iter().chain(positive).chain(not_negative).chain(counts))
-        .chain(shares)
-        .chain(reliability)
+    (name.into_iter().chain(not_positive).chain(negative).chain(zero))
+        .chain(no_share)
+        .chain(no_reliability)
         .chain(nobody)
         .collect()
+}
+
+/// A fault for each value that is stated and wrong.
+fn offences<V: Copy>(
+    stated: impl IntoIterator<Item = (KeyPath, Option<V>)>,
+    wrong: impl Fn(&V) -> bool,
+    problem: impl Fn(V) -> Problem,
+) -> impl Iterator<Item = Fault> {
+    (stated.into_iter())
+        .filter_map(|(key, value)| Some((key, value?)))
+        .filter(move |(_, value)| wrong(value))
+        .map(move |(key, value)| problem(value).at(key))
 }
 
 fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
@@ -178,12 +199,8 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
             .at(control("service_radius"))
     });
     let most = (max_range - 2.0 * clearance) / 2.0;
-    let step = if step_radius <= 0.0 {
-        Some(Problem::NotPositive { value: step_radius }.at(control("step_radius")))
-    } else {
-        (step_radius > most * (1.0 + ROUNDING))
-            .then(|| Problem::StepTooLong { step_radius, most }.at(control("step_radius")))
-    };
+    let step = (step_radius > most * (1.0 + ROUNDING))
+        .then(|| Problem::StepTooLong { step_radius, most }.at(control("step_radius")));
     let longest = settings.longest_tree_link();
     let links = (settings.longest_new_link() <= 0.0).then(|| {
         Problem::TreeLinksTooShort { tree_reliability, longest, service_radius }

@@ -4,7 +4,7 @@
 //! have sent. A network of robot automata runs the same local functions over its medium instead.
 
 use super::TIME_BUDGET;
-use super::adal::{self, AdalLink, AdalRobot, AdalSettings, NeighbourReport};
+use super::adal::{AdalLink, AdalRobot, AdalSettings, Workspace};
 use super::dual::{DualState, LinkCurvature, dual_step, safe_step};
 use super::local::{LinkOffer, local_minimiser};
 use super::problem::{DirectedLink, RoutingProblem};
@@ -52,18 +52,26 @@ impl<'a> Rounds<'a> {
             .iter()
             .map(|links| safe_step(links.iter().map(|&link| curvature(&problem.links()[link]))))
             .collect();
-        let mut rounds = Self {
+        let mut adal_robots = vec![AdalRobot::default(); robots];
+        let residuals = problem.residuals(&vec![0.0; problem.links().len()]);
+        for ((robot, residual), links) in adal_robots.iter_mut().zip(residuals).zip(&links_of) {
+            let between_robots = links
+                .iter()
+                .map(|&link| &problem.links()[link])
+                .filter(|link| matches!(link.receiver, Receiver::Robot(_)))
+                .map(|link| link.reliability);
+            robot.measure(residual, problem.reserve(), between_robots);
+        }
+        Self {
             problem,
             method,
             links_of,
             steps,
             duals: vec![DualState::default(); robots],
-            robots: vec![AdalRobot::default(); robots],
+            robots: adal_robots,
             shares: vec![0.0; problem.links().len()],
             iterations: 0,
-        };
-        rounds.measure_mismatches();
-        rounds
+        }
     }
 
     /// One iteration of every robot.
@@ -99,7 +107,7 @@ impl<'a> Rounds<'a> {
     pub fn multiplier(&self, robot: usize) -> f64 {
         match self.method {
             Method::Dual | Method::AcceleratedDual => self.duals[robot].multiplier(),
-            Method::Adal(_) => self.robots[robot].multiplier,
+            Method::Adal(_) => self.robots[robot].multiplier(),
         }
     }
 
@@ -141,50 +149,28 @@ impl<'a> Rounds<'a> {
         }
     }
 
+    /// The primal steps with the reports as sent, then each robot's dual step.
     fn iterate_adal(&mut self, settings: &AdalSettings) {
-        let mut workspace = adal::Workspace::default();
-        let mut own_shares = Vec::new();
-        let mut next_shares = self.shares.clone();
-        let mut next_robots = self.robots.clone();
-        for (robot, links) in self.links_of.iter().enumerate() {
+        let reports: Vec<_> = self.robots.iter().map(AdalRobot::report).collect();
+        let mut workspace = Workspace::default();
+        for (robot, links) in self.robots.iter_mut().zip(&self.links_of) {
             let seen = |&link: &usize| {
                 let DirectedLink { receiver, reliability, weight, .. } = self.problem.links()[link];
                 let report = match receiver {
-                    Receiver::Robot(other) => Some(NeighbourReport {
-                        multiplier: self.robots[other].multiplier,
-                        mismatch: self.robots[other].mismatch,
-                    }),
+                    Receiver::Robot(other) => Some(reports[other]),
                     Receiver::AccessPoint(_) => None,
                 };
                 AdalLink { reliability, weight, share: self.shares[link], report }
             };
-            let seen: Vec<AdalLink> = links.iter().map(seen).collect();
-            let own = self.robots[robot];
-            let slack = adal::local_minimiser(
-                &own,
-                &seen,
-                settings.penalty,
-                TIME_BUDGET,
-                &mut workspace,
-                &mut own_shares,
-            );
-            next_robots[robot].slack = adal::relax(own.slack, slack, settings);
-            for (&link, &share) in links.iter().zip(&own_shares) {
-                next_shares[link] = adal::relax(self.shares[link], share, settings);
+            let mut seen: Vec<AdalLink> = links.iter().map(seen).collect();
+            robot.primal_step(&mut seen, settings, &mut workspace);
+            for (&link, seen) in links.iter().zip(&seen) {
+                self.shares[link] = seen.share;
             }
         }
-        self.shares = next_shares;
-        self.robots = next_robots;
-        self.measure_mismatches();
-        for robot in &mut self.robots {
-            robot.multiplier = adal::multiplier_step(robot.multiplier, robot.mismatch, settings);
-        }
-    }
-
-    fn measure_mismatches(&mut self) {
         let residuals = self.problem.residuals(&self.shares);
         for (robot, residual) in self.robots.iter_mut().zip(residuals) {
-            robot.mismatch = residual - self.problem.reserve() - robot.slack;
+            robot.dual_step(residual, self.problem.reserve(), settings);
         }
     }
 }

@@ -1,0 +1,83 @@
+//! A mission that only pretends: two robots and a leader's tale, for those who watch missions.
+
+use pleach::automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
+use pleach::automaton::network::scenario::Scenario;
+use pleach::discrete::network::{Phase, Role};
+use pleach::mission::{Mission, StepReport};
+use std::path::Path;
+
+/// Robot 1 walks by robot 0 and services the task.
+pub struct PretendedMission {
+    reports: std::vec::IntoIter<StepReport>,
+}
+
+impl PretendedMission {
+    pub fn new() -> Self {
+        Self { reports: reports().into_iter() }
+    }
+}
+
+impl Mission for PretendedMission {
+    fn step(&mut self) -> StepReport {
+        self.reports.next().expect("a report before the end")
+    }
+}
+
+/// The scenario that the pretended mission belongs to.
+pub fn room() -> Scenario {
+    pleach::scenario_file::read(Path::new("tests/scenarios/room.toml")).expect("a valid scenario")
+}
+
+/// Everything that the pretended mission reports.
+pub fn reports() -> Vec<StepReport> {
+    let places = [[0.6, 0.5], [0.4, 0.4], [0.1 + 0.2, 1.0 / 3.0]];
+    let events = [
+        vec![
+            MissionEvent::TaskAnnounced { task: 0 },
+            MissionEvent::LeaderElected { task: 0, robot: 1, conflict: false },
+            MissionEvent::RoleChanged { robot: 1, from: Role::Redundant, to: Role::Leader },
+        ],
+        vec![
+            MissionEvent::Stationary { robot: 1, team: vec![1] },
+            MissionEvent::RecruitElected { robot: 0, path: vec![0, 1], break_points: vec![0] },
+        ],
+        vec![MissionEvent::TaskServiced { task: 0, robot: 1 }],
+    ];
+    (places.into_iter().zip(events).enumerate())
+        .map(|(step, (place, events))| StepReport {
+            events,
+            snapshot: snapshot(step, place),
+            end: (step == 2).then(|| End {
+                outcome: Outcome::Serviced,
+                reason: String::new(),
+                task: None,
+            }),
+        })
+        .collect()
+}
+
+fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
+    Snapshot {
+        step,
+        time: step as f64,
+        positions: vec![[0.4, 0.5].into(), place.into()],
+        roles: vec![Role::Redundant, Role::Leader],
+        phase: Phase::Advance,
+        active: vec![1],
+        active_team: vec![1],
+        primary_team: vec![1],
+        path: vec![],
+        residuals: vec![0.02, 0.02 - 0.001 * step as f64],
+        multipliers: vec![0.0, 1e-7],
+        routes: vec![Route { from: 1, to: 0, share: 0.095, reliability: 1.0 }],
+        tree: vec![(0, 2), (1, 0)],
+        task: Some(0),
+        serviced: if step == 2 { vec![(0, 1)] } else { vec![] },
+        posts: vec![PostView {
+            reference: [0.4, 0.5].into(),
+            holder: 0,
+            task: None,
+            junction: false,
+        }],
+    }
+}

@@ -1,0 +1,61 @@
+//! Every mistake that a scenario can hold is told with file, line, column, key and what would be
+//! right. Each file in `tests/scenarios/faulty` holds one, but for the one that holds several.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+use pleach::scenario_file::{ScenarioError, read};
+use std::path::{Path, PathBuf};
+
+fn scenarios_in(folder: &str) -> Vec<PathBuf> {
+    let mut paths: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .collect();
+    paths.sort();
+    paths
+}
+
+#[test]
+fn every_faulty_scenario_is_refused_with_a_clear_message() {
+    for path in scenarios_in("tests/scenarios/faulty") {
+        let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let error = read(&path).expect_err(&stem);
+        insta::assert_snapshot!(stem, error);
+    }
+}
+
+#[test]
+fn the_scenario_without_the_mistake_is_read() {
+    let scenario = read(Path::new("tests/scenarios/room.toml")).unwrap();
+    assert_eq!(scenario.name, "room");
+    assert_eq!(scenario.robot[1].position, [0.6, 0.5]);
+    assert_eq!(scenario.robot[1].rate, 0.075);
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let error = read(Path::new("tests/scenarios/nowhere.toml")).unwrap_err();
+    assert!(matches!(error, ScenarioError::Unreadable { .. }));
+    assert!(error.to_string().starts_with("tests/scenarios/nowhere.toml: cannot be read"));
+}
+
+#[test]
+fn every_shipped_scenario_is_valid_and_explains_itself() {
+    let shipped = scenarios_in("scenarios");
+    assert!(shipped.len() >= 13);
+    for path in shipped {
+        let scenario = read(&path).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(Some(scenario.name.as_str()), path.file_stem().unwrap().to_str());
+        assert!(scenario.description.is_some(), "{} has no description", path.display());
+        assert!(!scenario.task.is_empty());
+    }
+}
+
+#[test]
+fn a_scenario_with_every_default_written_out_reads_as_itself() {
+    let scenario = read(Path::new("tests/scenarios/room.toml")).unwrap().with_defaults();
+    let text = toml::to_string(&scenario).unwrap();
+    let again = pleach::scenario_file::parse(&text, Path::new("room.toml")).unwrap();
+    assert_eq!(again, scenario);
+}

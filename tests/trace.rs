@@ -1,0 +1,99 @@
+//! What is written into a trace can be read back, and is the same to the byte.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+mod common;
+
+use common::{PretendedMission, reports, room};
+use pleach::automaton::network::record::{End, Outcome};
+use pleach::automaton::network::scenario::Settings;
+use pleach::mission::{Observer, watch};
+use pleach::trace::{TraceEntry, TraceError, TraceReader, TraceWriter};
+use proptest::prelude::*;
+
+fn written() -> String {
+    let mut writer = TraceWriter::new(Vec::new(), &room()).unwrap();
+    watch(&mut PretendedMission::new(), &mut [&mut writer]).unwrap();
+    String::from_utf8(writer.finish().unwrap()).unwrap()
+}
+
+#[test]
+fn a_trace_looks_as_the_format_says() {
+    insta::assert_snapshot!(written());
+}
+
+#[test]
+fn a_trace_is_the_same_to_the_byte() {
+    assert_eq!(written(), written());
+}
+
+#[test]
+fn what_is_read_is_what_was_written() {
+    let text = written();
+    let reader = TraceReader::new(text.as_bytes()).unwrap();
+    assert_eq!(reader.scenario(), &room().with_defaults());
+    assert_eq!(Settings::resolve(reader.scenario()), Settings::resolve(&room()));
+
+    let mut expected = Vec::new();
+    for report in reports() {
+        let step = report.snapshot.step;
+        expected.extend(report.events.into_iter().map(|event| TraceEntry::Event { step, event }));
+        expected.push(TraceEntry::Step(Box::new(report.snapshot)));
+        expected.extend(report.end.map(TraceEntry::End));
+    }
+    let entries: Vec<_> = reader.collect::<Result<_, _>>().unwrap();
+    assert_eq!(entries, expected);
+}
+
+#[test]
+fn an_end_with_a_reason_keeps_it() {
+    let end = End {
+        outcome: Outcome::InsufficientRobots,
+        reason: "no recruit is left: 2 more are needed".into(),
+        task: Some(1),
+    };
+    let mut writer = TraceWriter::new(Vec::new(), &room()).unwrap();
+    writer.end(&end).unwrap();
+    let text = String::from_utf8(writer.finish().unwrap()).unwrap();
+    assert!(text.ends_with(
+        "{\"type\":\"end\",\"outcome\":\"insufficient_robots\",\
+         \"reason\":\"no recruit is left: 2 more are needed\",\"task\":1}\n"
+    ));
+    let entries: Vec<_> = TraceReader::new(text.as_bytes()).unwrap().collect();
+    assert!(matches!(&entries[..], [Ok(TraceEntry::End(read))] if *read == end));
+}
+
+#[test]
+fn what_is_not_a_trace_is_refused() {
+    let refused = |text: &str| TraceReader::new(text.as_bytes()).unwrap_err();
+    assert!(matches!(refused(""), TraceError::Empty));
+    assert!(matches!(refused("hello"), TraceError::NotALine { line: 1, .. }));
+    let other = written().replacen("\"version\":1", "\"version\":2", 1);
+    assert!(matches!(refused(&other), TraceError::OtherFormat { version: 2, .. }));
+    let headless = written().split_once('\n').unwrap().1.to_owned();
+    assert!(matches!(refused(&headless), TraceError::Misplaced { line: 1, .. }));
+
+    let uneven = written().replacen("[\"redundant\",\"leader\"]", "[\"redundant\"]", 1);
+    let error = TraceReader::new(uneven.as_bytes()).unwrap().find_map(Result::err).unwrap();
+    assert_eq!(
+        error.to_string(),
+        "line 5: role has 1 elements where position has 2: one for each robot"
+    );
+}
+
+proptest! {
+    #[test]
+    fn every_number_survives(
+        numbers in prop::collection::vec(prop::num::f64::NORMAL | prop::num::f64::ZERO, 4),
+    ) {
+        let mut snapshot = reports()[0].snapshot.clone();
+        snapshot.positions[0] = [numbers[0], numbers[1]].into();
+        snapshot.residuals[0] = numbers[2];
+        snapshot.routes[0].share = numbers[3];
+        let mut writer = TraceWriter::new(Vec::new(), &room()).unwrap();
+        writer.snapshot(&snapshot).unwrap();
+        let text = writer.finish().unwrap();
+        let entry = TraceReader::new(text.as_slice()).unwrap().next().unwrap().unwrap();
+        prop_assert_eq!(entry, TraceEntry::Step(Box::new(snapshot)));
+    }
+}
