@@ -2,6 +2,8 @@
 //!
 //! Lengths are in the scenario's own unit, times in seconds.
 
+#![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may panic"))]
+
 pub mod geometry;
 pub mod network;
 

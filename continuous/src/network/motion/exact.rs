@@ -6,7 +6,7 @@
 //! place in the workspace.
 
 use super::{Motion, MotionOutcome, MotionProblem, USABLE_TOLERANCE};
-use crate::{Point, Vector};
+use crate::Vector;
 
 impl MotionProblem {
     /// Solves (21) exactly, up to rounding, by enumerating 0, 1 or 2 active constraints.
@@ -176,35 +176,4 @@ fn circles_meet(a: &Vector, p: f64, b: &Vector, q: f64) -> [Option<Vector>; 2] {
 fn either_side(foot: Vector, direction: &Vector, squared: f64) -> [Option<Vector>; 2] {
     let offset = Vector::new(-direction.y, direction.x) * squared.max(0.0).sqrt();
     [Some(foot + offset), Some(foot - offset)]
-}
-
-impl MotionProblem {
-    /// Moves a point onto every constraint that it breaks, one after the other, a few times over.
-    ///
-    /// An interior-point method ends up to 1e-8 outside of feasible sets without interior. This
-    /// brings its answer back where merely shrinking the step would freeze the robot.
-    pub(super) fn pull_inside(&self, point: Point) -> Point {
-        /// Sweeps over the constraints; each shrinks the violation by a constant factor.
-        const SWEEPS: usize = 20;
-        let mut point = point;
-        for _ in 0..SWEEPS {
-            if self.admits(&point) {
-                break;
-            }
-            for line in &self.half_planes {
-                let margin = line.margin(point);
-                if margin < 0.0 {
-                    point += line.normal.into_inner() * margin;
-                }
-            }
-            for disc in &self.discs {
-                let from_center = point - disc.center;
-                let distance = from_center.norm();
-                if distance > disc.radius {
-                    point = disc.center + from_center * (disc.radius / distance);
-                }
-            }
-        }
-        point
-    }
 }

@@ -6,9 +6,9 @@
 //!             y in every disc        (the trust region ‖y − x‖ ≤ σ, limits of links).
 //! ```
 //!
-//! That is the projection of the waypoint a₁ onto a convex set in the plane. [`exact`] finds it by
-//! enumerating which constraints are active; [`conic`] solves it as the second-order cone program
-//! that it is. Both return a point that has been checked against every constraint, or the robot's
+//! That is the projection of the waypoint a₁ onto a convex set in the plane.
+//! [`MotionProblem::solve_exact`] finds it by enumerating which constraints are active;
+//! [`MotionProblem::solve_conic`] solves it as the second-order cone program that it is. Both return a point that has been checked against every constraint, or the robot's
 //! own position with the reason.
 
 mod conic;
@@ -107,9 +107,12 @@ impl MotionProblem {
     /// A residual that does not change with the position and is below the floor makes the problem
     /// infeasible; one that is above adds nothing.
     pub fn keep_residual(&mut self, residual: f64, gradient: Vector, floor: f64) {
-        if gradient.norm() > 0.0 || residual < floor {
+        if gradient.norm() > 0.0 {
             let offset = residual - floor - gradient.dot(&self.position.coords);
             self.half_planes.push(HalfPlane::new(-gradient, offset));
+        } else if residual < floor {
+            // No place is good enough: a half-plane that contains no point.
+            self.half_planes.push(HalfPlane::new(Vector::x(), f64::NEG_INFINITY));
         }
     }
 

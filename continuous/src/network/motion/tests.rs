@@ -68,7 +68,7 @@ fn is_optimal(problem: &MotionProblem, target: Point, active_within: f64) -> boo
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
     fn the_exact_answer_is_feasible_and_optimal(problem in problems()) {

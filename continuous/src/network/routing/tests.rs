@@ -3,6 +3,7 @@
 use super::adal::AdalSettings;
 use super::central::{CentralError, feasible, solve_central, widest_reserve};
 use super::problem::{DirectedLink, ProblemError, RoutingProblem};
+use super::repair::{Share, meet_demand};
 use super::rounds::{Method, Rounds};
 use crate::Point;
 use crate::network::CubicReliability;
@@ -45,23 +46,26 @@ fn accelerated_methods_need_far_fewer_iterations_on_a_chain_of_thirteen() {
     }
 }
 
-/// Routes are a stationary point of the same strictly convex program, so they are equal, not only
-/// as good. Weights up to 1 + 1.5κ scale a miss of the residuals into one of the shares.
+/// Where the optimality conditions are missed by ε, the objective is off by at most ε·Σλ, and since
+/// Σ w T² with w ≥ 1 is strongly convex, no share is off by more than the root of that.
 fn agrees_with_clarabel(problem: &RoutingProblem, method: Method) -> Result<(), TestCaseError> {
+    const MISS: f64 = 1e-4;
     let oracle = match solve_central(problem) {
         Ok(oracle) => oracle,
         Err(CentralError::NoRouting { .. }) => return Ok(()),
         Err(error) => return Err(TestCaseError::fail(error.to_string())),
     };
-    // Close to the limit of what can be carried multipliers are large and every method slow.
+    // Close to the limit of what can be carried multipliers are large and every method is slow.
     prop_assume!(oracle.multipliers.iter().all(|multiplier| *multiplier < 20.0));
     let mut rounds = Rounds::new(problem, method);
-    let ended = rounds.run(1e-4, 200_000);
+    let ended = rounds.run(MISS, 200_000);
     prop_assert!(ended.is_some(), "{method:?} still misses by {}", rounds.miss());
+
+    let allowed = 2.0 * MISS * (1.0 + oracle.multipliers.iter().sum::<f64>());
     let objective = problem.objective(rounds.shares());
-    prop_assert!((objective - oracle.objective).abs() < 1e-3, "{objective} {oracle:?}");
+    prop_assert!((objective - oracle.objective).abs() < allowed, "{objective} {oracle:?}");
     for (share, expected) in rounds.shares().iter().zip(&oracle.shares) {
-        prop_assert!((share - expected).abs() < 1e-2, "{method:?}: {share}, not {expected}");
+        prop_assert!((share - expected).abs() < allowed.sqrt(), "{share}, not {expected}");
     }
     for used in problem.used_time(rounds.shares()) {
         prop_assert!(used <= 1.0);
@@ -69,13 +73,85 @@ fn agrees_with_clarabel(problem: &RoutingProblem, method: Method) -> Result<(), 
     Ok(())
 }
 
+/// A tree of shortest hop counts over the most reliable links: the tree link of every robot that
+/// reaches an access point, with its depth.
+fn tree(problem: &RoutingProblem) -> Vec<Option<(usize, usize)>> {
+    let mut tree: Vec<Option<(usize, usize)>> = vec![None; problem.robots()];
+    for depth in 1..=problem.robots() {
+        let known = tree.clone();
+        for (index, link) in problem.links().iter().enumerate() {
+            let upwards = match link.receiver {
+                Receiver::AccessPoint(_) => depth == 1,
+                Receiver::Robot(robot) => known[robot].is_some_and(|(_, d)| d + 1 == depth),
+            };
+            let better = match tree[link.sender] {
+                None => true,
+                Some((other, d)) => {
+                    d == depth && problem.links()[other].reliability < link.reliability
+                }
+            };
+            if upwards && better {
+                tree[link.sender] = Some((index, depth));
+            }
+        }
+    }
+    tree
+}
+
+/// The sweep of [`super::repair`], deepest robots first; the largest shortfall.
+fn sweep(problem: &RoutingProblem, shares: &mut [f64]) -> f64 {
+    let tree = tree(problem);
+    let mut order: Vec<usize> = (0..problem.robots()).filter(|&r| tree[r].is_some()).collect();
+    order.sort_by_key(|&robot| tree[robot].map(|(_, depth)| std::cmp::Reverse(depth)));
+    let mut largest = 0.0f64;
+    for robot in order {
+        let own: Vec<usize> =
+            (0..shares.len()).filter(|&link| problem.links()[link].sender == robot).collect();
+        let share_of = |&link: &usize| Share {
+            reliability: problem.links()[link].reliability,
+            share: shares[link],
+        };
+        let mut links: Vec<Share> = own.iter().map(share_of).collect();
+        let outflow: f64 = links.iter().map(|link| link.share * link.reliability).sum();
+        let demand = outflow - problem.residuals(shares)[robot] + problem.reserve();
+        let (tree_link, _) = tree[robot].unwrap();
+        let position = own.iter().position(|&link| link == tree_link).unwrap();
+        largest = largest.max(meet_demand(demand, &mut links, position));
+        for (&link, repaired) in own.iter().zip(&links) {
+            shares[link] = repaired.share;
+        }
+    }
+    largest
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3000))]
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn every_method_finds_the_routes_that_clarabel_finds(problem in networks()) {
         for method in methods() {
             agrees_with_clarabel(&problem, method)?;
+        }
+    }
+
+    /// Whatever the iteration has reached, the sweep meets every reserve or reports a shortfall.
+    #[test]
+    fn after_the_sweep_every_reserve_is_met(
+        problem in networks(), method in prop::sample::select(methods().to_vec()), iterations in 1usize..30,
+    ) {
+        let mut rounds = Rounds::new(&problem, method);
+        for _ in 0..iterations {
+            rounds.iterate();
+        }
+        let mut shares = rounds.shares().to_vec();
+        let shortfall = sweep(&problem, &mut shares);
+        let tree = tree(&problem);
+        for (robot, residual) in problem.residuals(&shares).into_iter().enumerate() {
+            let met = residual >= problem.reserve() - 1e-11;
+            prop_assert!(met || shortfall > 0.0 || tree[robot].is_none(), "robot {robot}: {residual}");
+        }
+        for used in problem.used_time(&shares) {
+            prop_assert!(used <= 1.0);
         }
     }
 
