@@ -334,6 +334,7 @@ impl Robot {
             }
             self.left_post = Some(station.post.id);
             self.duty = Duty::Shift { place };
+            self.still_periods = 0;
         }
         if let Duty::Shift { place } = self.duty
             && self.has_arrived()
