@@ -11,3 +11,5 @@ pub use pleach_continuous as continuous;
 pub use pleach_discrete as discrete;
 pub use pleach_guards as guards;
 pub use pleach_verify as verify;
+
+pub mod figures;

@@ -1,0 +1,282 @@
+//! Curves over control periods: axes, the lines of telling moments, and the curves themselves.
+
+use svg::node::element::{Group, Polyline};
+
+use super::canvas::{Spot, corners, layer, quantity, rectangle, sheet, stroke, text, text_width};
+use super::palette;
+use super::plan::round_length;
+use super::story::Moment;
+
+/// Upper left corner of the plot.
+const CORNER: Spot = [74.0, 132.0];
+/// Size of the plot.
+const SIZE: [f64; 2] = [810.0, 300.0];
+/// Height of the figure.
+const HEIGHT: f64 = 520.0;
+/// Rows of marks above the plot.
+const MARK_ROWS: usize = 3;
+/// From row to row of these marks.
+const MARK_ROW: f64 = 15.0;
+/// Smallest distance of labels at the right end of curves.
+const LABEL_STEP: f64 = 11.0;
+/// Curves up to which each has a colour and a label of its own.
+pub(super) const DISTINCT_CURVES: usize = 24;
+
+/// Something that happened at a control period, for the lines across the curves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sign {
+    pub step: usize,
+    pub moment: Moment,
+    /// The robot or task concerned.
+    pub number: usize,
+}
+
+/// A curve with its label.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    pub label: String,
+    pub colour: &'static str,
+    pub dashed: bool,
+    pub width: f64,
+    pub opacity: f64,
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A value that curves may not cross.
+#[derive(Clone, Debug)]
+pub(super) struct Limit {
+    pub value: f64,
+    pub label: String,
+}
+
+/// A chart before it is drawn.
+#[derive(Clone, Debug)]
+pub(super) struct Chart<'a> {
+    pub title: &'a str,
+    pub subtitle: String,
+    pub axis: &'a str,
+    pub period_axis: String,
+    pub curves: Vec<Curve>,
+    pub limits: Vec<Limit>,
+    pub signs: &'a [Sign],
+    /// From which period on each task is pursued.
+    pub tasks: &'a [(usize, usize)],
+    pub last_step: usize,
+}
+
+impl Chart<'_> {
+    /// Draws the chart as an SVG document.
+    pub(super) fn render(&self) -> String {
+        let frame = Frame::around(self);
+        sheet(HEIGHT, self.title, &self.subtitle)
+            .add(self.bands(&frame))
+            .add(frame.grid(self.axis, &self.period_axis))
+            .add(self.sign_lines(&frame))
+            .add(self.limit_lines(&frame))
+            .add(self.lines(&frame))
+            .add(self.end_labels(&frame))
+            .add(sign_legend())
+            .to_string()
+    }
+
+    fn bands(&self, frame: &Frame) -> Group {
+        let mut group = layer("tasks");
+        for (index, &(start, task)) in self.tasks.iter().enumerate() {
+            let end = self.tasks.get(index + 1).map_or(self.last_step, |next| next.0);
+            let left = frame.x(start as f64);
+            let width = frame.x(end as f64) - left;
+            if index % 2 == 0 {
+                group = group.add(rectangle([left, CORNER[1]], [width, SIZE[1]], palette::BAND));
+            }
+            let words = format!("task {task}");
+            if width > text_width(&words, palette::TEXT_SIZE) + 4.0 {
+                let place = [left + width / 2.0, CORNER[1] - MARK_ROWS as f64 * MARK_ROW - 8.0];
+                let label = text(words, place, palette::TEXT_SIZE, palette::TASK);
+                group = group.add(label.set("text-anchor", "middle").set("font-weight", "600"));
+            }
+        }
+        group
+    }
+
+    /// Lines at telling moments, their marks in rows above the plot so that none covers another;
+    /// where all rows are full, only the line is drawn.
+    fn sign_lines(&self, frame: &Frame) -> Group {
+        let mut occupied = [f64::NEG_INFINITY; MARK_ROWS];
+        self.signs.iter().fold(layer("moments"), |group, sign| {
+            let x = frame.x(sign.step as f64);
+            let row = occupied.iter().position(|right| x - 7.0 > *right);
+            let top = CORNER[1] - 7.0 - row.unwrap_or(0) as f64 * MARK_ROW;
+            let line = stroke([x, top], [x, CORNER[1] + SIZE[1]], palette::QUIET, 0.6)
+                .set("stroke-opacity", "0.45");
+            let group = group.add(line);
+            let Some(row) = row else { return group };
+            let words = sign.number.to_string();
+            occupied[row] = x + 8.0 + text_width(&words, 9.5);
+            let tooltip = format!("k = {}: {} ({})", sign.step, sign.moment.name(), sign.number);
+            group
+                .add(sign.moment.mark().draw([x, top], 4.0, &tooltip))
+                .add(text(words, [x + 7.0, top + 3.5], 9.5, palette::INK))
+        })
+    }
+
+    fn limit_lines(&self, frame: &Frame) -> Group {
+        self.limits.iter().fold(layer("limits"), |group, limit| {
+            let y = frame.y(limit.value);
+            let line = stroke([CORNER[0], y], [CORNER[0] + SIZE[0], y], palette::LIMIT, 1.3)
+                .set("stroke-dasharray", "6 4")
+                .set("stroke-linecap", "butt");
+            group.add(line)
+        })
+    }
+
+    fn lines(&self, frame: &Frame) -> Group {
+        self.curves.iter().fold(layer("curves"), |group, curve| {
+            let spots = curve.points.iter().map(|[k, value]| [frame.x(*k), frame.y(*value)]);
+            let line = Polyline::new()
+                .set("points", corners(spots))
+                .set("fill", "none")
+                .set("stroke", curve.colour)
+                .set("stroke-width", curve.width)
+                .set("stroke-opacity", curve.opacity)
+                .set("stroke-linejoin", "round");
+            group.add(if curve.dashed { line.set("stroke-dasharray", "5 2.5") } else { line })
+        })
+    }
+
+    /// Names of curves and limits at their right end, pushed apart.
+    fn end_labels(&self, frame: &Frame) -> Group {
+        let limits = self.limits.iter().map(|limit| {
+            (frame.y(limit.value), limit.label.as_str(), palette::LIMIT)
+        });
+        let curves = self.curves.iter().filter(|curve| !curve.label.is_empty());
+        let curves = curves.filter_map(|curve| {
+            let [_, value] = curve.points.last()?;
+            Some((frame.y(*value), curve.label.as_str(), curve.colour))
+        });
+        let mut labels: Vec<_> = limits.chain(curves).collect();
+        labels.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let heights: Vec<f64> = labels.iter().map(|label| label.0).collect();
+        let places = spread(&heights, LABEL_STEP, CORNER[1] + SIZE[1] + 4.0);
+        let right = CORNER[0] + SIZE[0];
+        labels.iter().zip(places).fold(layer("names"), |group, ((height, words, colour), y)| {
+            group
+                .add(stroke([right + 1.0, *height], [right + 9.0, y], colour, 0.7))
+                .add(text(*words, [right + 12.0, y + 3.5], 10.0, colour).set("font-weight", "600"))
+        })
+    }
+}
+
+/// Moves ascending heights apart by at least `step`, staying above `floor` where possible.
+fn spread(heights: &[f64], step: f64, floor: f64) -> Vec<f64> {
+    let mut places = heights.to_vec();
+    for index in 1..places.len() {
+        places[index] = places[index].max(places[index - 1] + step);
+    }
+    let mut lowest = floor;
+    for place in places.iter_mut().rev() {
+        *place = place.min(lowest);
+        lowest = *place - step;
+    }
+    places
+}
+
+/// What the marks above the plot mean, below it.
+fn sign_legend() -> Group {
+    let y = HEIGHT - 22.0;
+    let mut x = CORNER[0] + 6.0;
+    let mut group = layer("legend");
+    for moment in Moment::ALL {
+        group = group
+            .add(moment.mark().draw([x, y - 4.0], 4.6, moment.name()))
+            .add(text(moment.name(), [x + 11.0, y], palette::TEXT_SIZE, palette::INK));
+        x += text_width(moment.name(), palette::TEXT_SIZE) + 36.0;
+    }
+    let note = "beside a mark: its robot (or task)";
+    group.add(text(note, [x, y], palette::TEXT_SIZE, palette::QUIET))
+}
+
+/// The axes.
+struct Frame {
+    last_step: f64,
+    low: f64,
+    high: f64,
+}
+
+impl Frame {
+    fn around(chart: &Chart<'_>) -> Frame {
+        let values = chart.curves.iter().flat_map(|curve| curve.points.iter().map(|p| p[1]));
+        let values: Vec<f64> = values.chain(chart.limits.iter().map(|limit| limit.value)).collect();
+        let high = values.iter().copied().fold(0.0, f64::max);
+        let low = values.iter().copied().fold(0.0, f64::min);
+        let room = if high > low { (high - low) * 0.06 } else { 1.0 };
+        let low = if low < 0.0 { low - room } else { 0.0 };
+        Frame { last_step: chart.last_step.max(1) as f64, low, high: high + room }
+    }
+
+    fn x(&self, step: f64) -> f64 {
+        CORNER[0] + (step / self.last_step).min(1.0) * SIZE[0]
+    }
+
+    fn y(&self, value: f64) -> f64 {
+        CORNER[1] + (self.high - value) / (self.high - self.low) * SIZE[1]
+    }
+
+    fn grid(&self, axis: &str, period_axis: &str) -> Group {
+        let foot = CORNER[1] + SIZE[1];
+        let right = CORNER[0] + SIZE[0];
+        let mut group = layer("axes");
+        for value in ticks(self.low, self.high, 6.0) {
+            let y = self.y(value);
+            let words = text(quantity(value), [CORNER[0] - 8.0, y + 4.0], palette::TEXT_SIZE, palette::QUIET);
+            group = group
+                .add(stroke([CORNER[0], y], [right, y], palette::GRID, 0.8))
+                .add(words.set("text-anchor", "end"));
+        }
+        for step in ticks(0.0, self.last_step, 10.0) {
+            let x = self.x(step);
+            let words = text(quantity(step), [x, foot + 18.0], palette::TEXT_SIZE, palette::QUIET);
+            group = group
+                .add(stroke([x, foot], [x, foot + 4.0], palette::QUIET, 1.0))
+                .add(words.set("text-anchor", "middle"));
+        }
+        let middle = CORNER[1] + SIZE[1] / 2.0;
+        let axis_name = text(axis, [0.0, 0.0], palette::SUBTITLE_SIZE, palette::INK)
+            .set("text-anchor", "middle")
+            .set("transform", format!("translate(22,{middle}) rotate(-90)"));
+        let period_name =
+            text(period_axis, [CORNER[0] + SIZE[0] / 2.0, foot + 38.0], palette::SUBTITLE_SIZE, palette::INK)
+                .set("text-anchor", "middle");
+        group
+            .add(stroke([CORNER[0], foot], [right, foot], palette::QUIET, 1.0))
+            .add(stroke([CORNER[0], CORNER[1]], [CORNER[0], foot], palette::QUIET, 1.0))
+            .add(axis_name)
+            .add(period_name)
+    }
+}
+
+/// Round values between two ends, about `count` of them.
+fn ticks(low: f64, high: f64, count: f64) -> Vec<f64> {
+    let step = round_length((high - low) / count * 2.0);
+    let (first, last) = ((low / step).ceil() as i64, (high / step + 1e-9).floor() as i64);
+    (first..=last).map(|index| index as f64 * step).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        assert_eq!(ticks(0.0, 744.0, 10.0), [0., 100., 200., 300., 400., 500., 600., 700.]);
+        let small = ticks(-0.01, 0.09, 6.0);
+        assert_eq!(small.len(), 6, "{small:?}");
+        assert!(small.iter().all(|value| (-0.01..=0.09).contains(value)));
+    }
+
+    #[test]
+    fn labels_are_pushed_apart_and_stay_above_the_floor() {
+        let places = spread(&[10.0, 10.0, 11.0, 98.0, 99.0], 10.0, 100.0);
+        assert!(places.windows(2).all(|pair| pair[1] - pair[0] >= 10.0 - 1e-9), "{places:?}");
+        assert!(places.iter().all(|place| *place <= 100.0));
+    }
+}

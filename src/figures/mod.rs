@@ -1,0 +1,38 @@
+//! Figures of a mission, as SVG in the visual language of Figs. 8 to 15 of the paper.
+//!
+//! An [`Album`] watches a mission. Every control period it takes a snapshot; the telling ones
+//! (the start, each election, stationary point, release, arrival of a recruit, serviced task, and
+//! the end) become pictures, and the others extend the curves of Figs. 11 to 13: smallest
+//! distances, residuals, multipliers. At the end it writes one file a figure and a page that
+//! tells the story in order. A single instant is drawn by [`Plan::render`].
+//!
+//! | what | looks like |
+//! | --- | --- |
+//! | communication link | green, thickness ∝ T·R |
+//! | edge of the tree | red on its link, thickness ∝ T·R |
+//! | node | the [`Mark`] of its role, with its number |
+//! | member of the active team | a ring around the mark |
+//! | task | blue cross; in a ring when serviced, faint until announced |
+//!
+//! Equal missions give equal bytes.
+
+mod album;
+mod canvas;
+mod curves;
+mod labels;
+mod legend;
+mod marks;
+mod page;
+mod palette;
+mod plan;
+mod scene;
+mod series;
+mod spacing;
+mod story;
+#[cfg(test)]
+mod tests;
+
+pub use album::Album;
+pub use marks::Mark;
+pub use plan::Plan;
+pub use scene::Scene;
