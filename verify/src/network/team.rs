@@ -174,4 +174,19 @@ mod tests {
         }
         assert!(!subgroups_partition(&path, &[5, 6], &[&[5, 3]]), "a gap before the last");
     }
+
+    #[test]
+    fn the_subgroups_that_the_robots_form_partition_the_path() {
+        use pleach_discrete::network::path::subgroups;
+
+        let path = [5, 3, 8, 1, 6];
+        for chosen in 0_u32..16 {
+            // The recruit, and any of the other places.
+            let others = (1..path.len()).filter(|place| chosen >> (place - 1) & 1 == 1);
+            let places: Vec<_> = [0].into_iter().chain(others).collect();
+            let break_points: Vec<_> = places.iter().map(|&place| path[place]).collect();
+            let formed: Vec<_> = subgroups(&places).map(|group| &path[group.places()]).collect();
+            assert!(subgroups_partition(&path, &break_points, &formed), "{break_points:?}");
+        }
+    }
 }
