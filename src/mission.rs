@@ -1,44 +1,29 @@
-//! A mission in progress, and those who watch it.
+//! A mission from its start to its end, and those who watch it.
 //!
-//! A [`Mission`] advances one control period at a time and reports what an outsider may see.
-//! [`watch`] takes it to its end and hands every report to the [`Observer`]s: the trace writer,
-//! the progress display, the summary, the figures. None of them can influence the mission.
+//! [`run`] hands the network of a scenario to the executor. Every control period it takes the
+//! observers' view of the network, holds it against the properties of [`crate::verify`], and
+//! shows it to the [`Watcher`]s: the trace writer, the progress display, the summary, the
+//! figures. None of them can influence the robots; a violated property ends the run.
 
-use crate::automaton::network::record::{End, MissionEvent, Snapshot};
 use std::io;
-use std::time::Duration;
+use std::ops::ControlFlow;
 
-/// A mission that can be advanced.
-pub trait Mission {
-    /// Advances to the next control period and reports it.
-    ///
-    /// After a report with an end there is no further step.
-    fn step(&mut self) -> StepReport;
+use thiserror::Error;
 
-    /// Processor time spent so far in each kernel (routing, motion, …), by its name.
-    fn kernel_times(&self) -> Vec<(&'static str, Duration)> {
-        Vec::new()
-    }
-}
+use crate::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use crate::automaton::network::scenario::Scenario;
+use crate::automaton::network::{KernelTimes, Medium, Network, NetworkError};
+use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
+use crate::discrete::network::ROLES;
+use crate::verify::network::{LimitError, Monitor};
 
-/// What a control period shows.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StepReport {
-    /// What happened since the previous snapshot, in this order.
-    pub events: Vec<MissionEvent>,
-    /// The instant at which the robots are about to move.
-    pub snapshot: Snapshot,
-    /// How the mission ended, if it did; the robots move no more.
-    pub end: Option<End>,
-}
-
-/// Somebody who watches a mission. Steps are told after the events that led to them.
+/// Somebody who watches a mission. Snapshots are shown after the events that led to them.
 #[allow(unused_variables)]
-pub trait Observer {
+pub trait Watcher {
     /// Something happened in control period `step`.
     ///
     /// # Errors
-    /// The observer cannot write what it has to.
+    /// The watcher cannot write what it has to.
     fn event(&mut self, step: usize, event: &MissionEvent) -> io::Result<()> {
         Ok(())
     }
@@ -46,7 +31,7 @@ pub trait Observer {
     /// The robots are about to move.
     ///
     /// # Errors
-    /// The observer cannot write what it has to.
+    /// The watcher cannot write what it has to.
     fn snapshot(&mut self, snapshot: &Snapshot) -> io::Result<()> {
         Ok(())
     }
@@ -54,30 +39,126 @@ pub trait Observer {
     /// The mission has ended.
     ///
     /// # Errors
-    /// The observer cannot write what it has to.
+    /// The watcher cannot write what it has to.
     fn end(&mut self, end: &End) -> io::Result<()> {
         Ok(())
     }
 }
 
-/// Takes `mission` to its end and tells every observer what happens, in the given order.
+/// Why a mission could not be run to an end.
+#[derive(Debug, Error)]
+pub enum MissionError {
+    /// No mission can start from the scenario.
+    #[error(transparent)]
+    Scenario(#[from] LimitError),
+    /// The network cannot be set up, or a guard cannot be evaluated.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
+    /// The settings leave no time for the mission.
+    #[error(transparent)]
+    Limit(#[from] InvalidLimit),
+    /// A watcher cannot write what it has to.
+    #[error("cannot write what the mission shows: {0}")]
+    Watcher(#[from] io::Error),
+}
+
+/// A mission that has ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Completed {
+    /// How it ended.
+    pub end: End,
+    /// Time spent in the parts of the control periods.
+    pub times: KernelTimes,
+}
+
+/// Runs the mission of `scenario` to its end.
 ///
 /// # Errors
-/// The first error of an observer; the mission stops there.
-pub fn watch(mission: &mut dyn Mission, observers: &mut [&mut dyn Observer]) -> io::Result<End> {
-    loop {
-        let StepReport { events, snapshot, end } = mission.step();
-        for observer in observers.iter_mut() {
-            for event in &events {
-                observer.event(snapshot.step, event)?;
+/// When no mission can start from the scenario, or a watcher fails.
+pub fn run(
+    scenario: &Scenario,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<Completed, MissionError> {
+    run_network(scenario, &mut Network::new(scenario)?, watchers)
+}
+
+/// Runs `network`, which is the network of `scenario` over any medium, to its end.
+///
+/// # Errors
+/// When no mission can start from the scenario, or a watcher fails.
+pub fn run_network<M: Medium>(
+    scenario: &Scenario,
+    network: &mut Network<M>,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<Completed, MissionError> {
+    let is_transition = |from, to| ROLES.enabled(from).any(|row| row.target == to);
+    let mut gallery =
+        Gallery { monitor: Monitor::new(scenario, is_transition)?, watchers, failure: None };
+    let settings = network.site().settings;
+    let horizon = settings.period * (settings.max_steps as f64 + 1.0);
+    let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
+    if let Some(error) = gallery.failure {
+        return Err(error.into());
+    }
+    let end = match ending.reason {
+        Reason::Finished(end) | Reason::Interrupted(end) => end,
+        other => End {
+            outcome: Outcome::StepLimit,
+            reason: format!("the executor stops at t = {} s: {other:?}", ending.at.t),
+            task: None,
+        },
+    };
+    for watcher in gallery.watchers.iter_mut() {
+        watcher.end(&end)?;
+    }
+    Ok(Completed { end, times: network.times() })
+}
+
+/// Far more rounds of jumps than the messages of a control period ever take: only a cycle of
+/// transitions that consumes no time can reach it.
+const JUMPS_PER_PERIOD: u32 = 1_000_000;
+
+/// The monitor and the watchers, looking on while the executor runs.
+struct Gallery<'a, 'w> {
+    monitor: Monitor<'a>,
+    watchers: &'a mut [&'w mut dyn Watcher],
+    failure: Option<io::Error>,
+}
+
+impl Gallery<'_, '_> {
+    fn show(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        for watcher in self.watchers.iter_mut() {
+            for event in events {
+                watcher.event(snapshot.step, event)?;
             }
-            observer.snapshot(&snapshot)?;
-            if let Some(end) = &end {
-                observer.end(end)?;
-            }
+            watcher.snapshot(snapshot)?;
         }
-        if let Some(end) = end {
-            return Ok(end);
+        Ok(())
+    }
+
+    fn check(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Result<(), End> {
+        self.monitor
+            .observe(snapshot)
+            .and_then(|()| events.iter().try_for_each(|event| self.monitor.observe_event(event)))
+            .map_err(|violation| End {
+                outcome: Outcome::InvariantViolated,
+                reason: violation.to_string(),
+                task: snapshot.task,
+            })
+    }
+}
+
+impl<M: Medium> Observer<Network<M>> for Gallery<'_, '_> {
+    fn flows(&mut self, network: &Network<M>, _: HybridTime, _: f64) -> ControlFlow<End> {
+        let (snapshot, events) = (network.snapshot(), network.events());
+        if let Err(error) = self.show(&snapshot, &events) {
+            let reason = error.to_string();
+            self.failure = Some(error);
+            return ControlFlow::Break(End { outcome: Outcome::Blocked, reason, task: None });
+        }
+        match self.check(&snapshot, &events) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(end) => ControlFlow::Break(end),
         }
     }
 }
