@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{PretendedMission, reports, room};
+use common::{PretendedMission, every_event, reports, room};
 use pleach::automaton::network::record::{End, Outcome};
 use pleach::automaton::network::scenario::Settings;
 use pleach::mission::{Observer, watch};
@@ -43,6 +43,18 @@ fn what_is_read_is_what_was_written() {
     }
     let entries: Vec<_> = reader.collect::<Result<_, _>>().unwrap();
     assert_eq!(entries, expected);
+}
+
+#[test]
+fn every_kind_of_event_survives() {
+    let mut writer = TraceWriter::new(Vec::new(), &room()).unwrap();
+    for event in every_event() {
+        writer.event(7, &event).unwrap();
+    }
+    let text = writer.finish().unwrap();
+    let read: Vec<_> = TraceReader::new(text.as_slice()).unwrap().map(Result::unwrap).collect();
+    let expected = every_event().into_iter().map(|event| TraceEntry::Event { step: 7, event });
+    assert_eq!(read, expected.collect::<Vec<_>>());
 }
 
 #[test]

@@ -72,3 +72,19 @@ impl Failure {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_outcome_has_the_status_of_the_format() {
+        let status = |outcome| Status::from(outcome) as u8;
+        assert_eq!(status(Outcome::Serviced), 0);
+        assert_eq!(status(Outcome::InsufficientRobots), 3);
+        assert_eq!(status(Outcome::UnreachableTask), 3);
+        assert_eq!(status(Outcome::StepLimit), 3);
+        assert_eq!(status(Outcome::Blocked), 3);
+        assert_eq!(status(Outcome::InvariantViolated), 4);
+    }
+}

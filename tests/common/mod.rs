@@ -1,5 +1,7 @@
 //! A mission that only pretends: two robots and a leader's tale, for those who watch missions.
 
+#![allow(dead_code)] // not every test needs everything
+
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
 use pleach::automaton::network::scenario::Scenario;
 use pleach::discrete::network::{Phase, Role};
@@ -80,4 +82,29 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
             junction: false,
         }],
     }
+}
+
+/// One event of each kind.
+pub fn every_event() -> Vec<MissionEvent> {
+    let mut events = vec![
+        MissionEvent::TaskAnnounced { task: 0 },
+        MissionEvent::LeaderElected { task: 0, robot: 5, conflict: false },
+        MissionEvent::LeaderElected { task: 0, robot: 5, conflict: true },
+        MissionEvent::Stationary { robot: 4, team: vec![4, 5] },
+        MissionEvent::RecruitElected { robot: 1, path: vec![1, 2, 3], break_points: vec![1, 3] },
+        MissionEvent::SubgroupStarted { subgroup: 0, robots: vec![1, 2] },
+        MissionEvent::SubgroupArrived { subgroup: 0, robots: vec![1, 2] },
+        MissionEvent::JoinedPrimary { robot: 3, team: vec![3, 4, 5] },
+        MissionEvent::Released { robot: 5 },
+        MissionEvent::TaskServiced { task: 0, robot: 5 },
+        MissionEvent::RouteInfeasible { robot: 2 },
+        MissionEvent::DutiesExchanged { mover: 1, parked: 2 },
+        MissionEvent::Reattached { robot: 3, parent: 7 },
+        MissionEvent::ElectionRepeated { task: 0 },
+    ];
+    events.extend(
+        (Role::ALL.into_iter().zip(Role::ALL.into_iter().skip(1)))
+            .map(|(from, to)| MissionEvent::RoleChanged { robot: 0, from, to }),
+    );
+    events
 }

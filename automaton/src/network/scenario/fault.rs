@@ -95,9 +95,11 @@ pub enum Problem {
     CutOff { longest: f64 },
     /// Rates that the links cannot carry.
     #[error(
-        "no routing carries the rates from where the robots start: {reason}; lower the rates or place the robots closer together"
+        "no routing carries the rates from where the robots start: with the best one some robot \
+         cannot send {missing:.6} of what it receives and generates; lower the rates or place \
+         the robots closer together"
     )]
-    RatesTooHigh { reason: String },
+    RatesTooHigh { missing: f64 },
 }
 
 impl Problem {

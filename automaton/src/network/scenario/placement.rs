@@ -1,11 +1,17 @@
 //! Whether robots and access points stand where a mission can start.
 
 use super::validation::{ROUNDING, robot_key};
-use super::{Fault, KeyPath, Problem, Scenario, Settings};
+use super::{Fault, KeyPath, LinkRanges, Problem, Scenario, Settings};
 use nalgebra::distance;
 use pleach_continuous::Point;
 use pleach_continuous::geometry::workspace::Polygon;
 use pleach_continuous::geometry::{FreeSpace, Workspace, WorkspaceError};
+use pleach_continuous::network::CubicReliability;
+use pleach_continuous::network::routing::central::widest_reserve;
+use pleach_continuous::network::routing::problem::RoutingProblem;
+
+/// The rate that may be missing where rates just fit, well above the solver's 1e-8.
+const RATE_TOLERANCE: f64 = 1e-6;
 
 /// What is wrong with the workspace and with where robots and access points stand in it.
 pub(super) fn faults(scenario: &Scenario) -> Vec<Fault> {
@@ -18,8 +24,9 @@ pub(super) fn faults(scenario: &Scenario) -> Vec<Fault> {
     if faults.is_empty() {
         faults = ground.cut_off();
     }
-    // HOOK(radio): where nothing else is wrong, solve the routing problem (6) at the starting
-    // positions and report `Problem::RatesTooHigh` at `robot` if it has no solution.
+    if faults.is_empty() {
+        faults.extend(ground.overloaded());
+    }
     faults
 }
 
@@ -30,10 +37,10 @@ struct Ground {
     free_space: FreeSpace,
     access_points: Vec<Point>,
     robots: Vec<Point>,
+    rates: Vec<f64>,
 }
 
 impl Ground {
-    #[allow(clippy::result_large_err)] // made once, before anything runs
     fn of(scenario: &Scenario) -> Result<Self, Fault> {
         let settings = Settings::resolve(scenario);
         let workspace = scenario
@@ -51,6 +58,7 @@ impl Ground {
                 .map(|access_point| access_point.position.into())
                 .collect(),
             robots: scenario.robot.iter().map(|robot| robot.position.into()).collect(),
+            rates: scenario.robot.iter().map(|robot| robot.rate).collect(),
         })
     }
 
@@ -112,6 +120,25 @@ impl Ground {
         (missing.into_iter())
             .map(|robot| Problem::CutOff { longest }.at(robot_key(robot).key("position")))
             .collect()
+    }
+
+    /// Rates that no routing carries from where the robots start: with the best one, some robot
+    /// receives and generates more than it sends. A solver without an answer proves nothing.
+    fn overloaded(&self) -> Option<Fault> {
+        let missing = -self.widest_reserve()?;
+        (missing > RATE_TOLERANCE)
+            .then(|| Problem::RatesTooHigh { missing }.at(KeyPath::root().key("robot")))
+    }
+
+    /// The largest residual that some routing gives to every robot at once.
+    fn widest_reserve(&self) -> Option<f64> {
+        let Self { settings, robots, access_points, rates, .. } = self;
+        let LinkRanges { full_range, max_range } = settings.link;
+        let link = CubicReliability::new(full_range, max_range).ok()?;
+        let aversion = settings.slope_aversion;
+        let routing =
+            RoutingProblem::of_places(robots, access_points, rates, &link, aversion, 0.0).ok()?;
+        widest_reserve(&routing).ok()
     }
 
     /// Whether a link of the tree may be built between two places. A link through a wall cannot
