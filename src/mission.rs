@@ -15,32 +15,21 @@ use crate::automaton::network::scenario::Scenario;
 use crate::automaton::network::{KernelTimes, Medium, Network, NetworkError};
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use crate::discrete::network::ROLES;
-use crate::verify::network::{LimitError, Monitor};
+use crate::verify::network::{Extremes, LimitError, Monitor};
 
-/// Somebody who watches a mission. Snapshots are shown after the events that led to them.
-#[allow(unused_variables)]
+/// Somebody who watches a mission.
 pub trait Watcher {
-    /// Something happened in control period `step`.
+    /// The robots are about to move; `events` is what has happened in this control period.
     ///
     /// # Errors
     /// The watcher cannot write what it has to.
-    fn event(&mut self, step: usize, event: &MissionEvent) -> io::Result<()> {
-        Ok(())
-    }
-
-    /// The robots are about to move.
-    ///
-    /// # Errors
-    /// The watcher cannot write what it has to.
-    fn snapshot(&mut self, snapshot: &Snapshot) -> io::Result<()> {
-        Ok(())
-    }
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()>;
 
     /// The mission has ended.
     ///
     /// # Errors
     /// The watcher cannot write what it has to.
-    fn end(&mut self, end: &End) -> io::Result<()> {
+    fn end(&mut self, _: &End) -> io::Result<()> {
         Ok(())
     }
 }
@@ -67,6 +56,8 @@ pub enum MissionError {
 pub struct Completed {
     /// How it ended.
     pub end: End,
+    /// How near it came to its bounds.
+    pub extremes: Extremes,
     /// Time spent in the parts of the control periods.
     pub times: KernelTimes,
 }
@@ -111,7 +102,7 @@ pub fn run_network<M: Medium>(
     for watcher in gallery.watchers.iter_mut() {
         watcher.end(&end)?;
     }
-    Ok(Completed { end, times: network.times() })
+    Ok(Completed { end, extremes: gallery.monitor.extremes().clone(), times: network.times() })
 }
 
 /// Far more rounds of jumps than the messages of a control period ever take: only a cycle of
@@ -128,10 +119,7 @@ struct Gallery<'a, 'w> {
 impl Gallery<'_, '_> {
     fn show(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
         for watcher in self.watchers.iter_mut() {
-            for event in events {
-                watcher.event(snapshot.step, event)?;
-            }
-            watcher.snapshot(snapshot)?;
+            watcher.observe(snapshot, events)?;
         }
         Ok(())
     }

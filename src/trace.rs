@@ -20,7 +20,7 @@ mod line;
 
 use crate::automaton::network::record::{End, MissionEvent, Snapshot};
 use crate::automaton::network::scenario::Scenario;
-use crate::mission::Observer;
+use crate::mission::Watcher;
 use line::{EndLine, Line, LineOut, StepLine};
 use std::io::{self, BufRead, Lines, Write};
 use thiserror::Error;
@@ -64,12 +64,11 @@ impl<W: Write> TraceWriter<W> {
     }
 }
 
-impl<W: Write> Observer for TraceWriter<W> {
-    fn event(&mut self, step: usize, event: &MissionEvent) -> io::Result<()> {
-        self.line(&LineOut::Event { k: step, event })
-    }
-
-    fn snapshot(&mut self, snapshot: &Snapshot) -> io::Result<()> {
+impl<W: Write> Watcher for TraceWriter<W> {
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        for event in events {
+            self.line(&LineOut::Event { k: snapshot.step, event })?;
+        }
         self.line(&LineOut::Step(Box::new(StepLine::from(snapshot))))
     }
 

@@ -4,16 +4,16 @@
 
 mod common;
 
-use common::{PretendedMission, reports, room};
+use common::{PretendedMission, every_event, reports, room};
 use pleach::automaton::network::record::{End, Outcome};
 use pleach::automaton::network::scenario::Settings;
-use pleach::mission::{Observer, watch};
+use pleach::mission::Watcher;
 use pleach::trace::{TraceEntry, TraceError, TraceReader, TraceWriter};
 use proptest::prelude::*;
 
 fn written() -> String {
     let mut writer = TraceWriter::new(Vec::new(), &room()).unwrap();
-    watch(&mut PretendedMission::new(), &mut [&mut writer]).unwrap();
+    show(&mut writer);
     String::from_utf8(writer.finish().unwrap()).unwrap()
 }
 
@@ -39,10 +39,22 @@ fn what_is_read_is_what_was_written() {
         let step = report.snapshot.step;
         expected.extend(report.events.into_iter().map(|event| TraceEntry::Event { step, event }));
         expected.push(TraceEntry::Step(Box::new(report.snapshot)));
-        expected.extend(report.end.map(TraceEntry::End));
     }
+    expected.push(TraceEntry::End(end()));
     let entries: Vec<_> = reader.collect::<Result<_, _>>().unwrap();
     assert_eq!(entries, expected);
+}
+
+#[test]
+fn every_kind_of_event_survives() {
+    let mut writer = TraceWriter::new(Vec::new(), &room()).unwrap();
+    for event in every_event() {
+        writer.event(7, &event).unwrap();
+    }
+    let text = writer.finish().unwrap();
+    let read: Vec<_> = TraceReader::new(text.as_slice()).unwrap().map(Result::unwrap).collect();
+    let expected = every_event().into_iter().map(|event| TraceEntry::Event { step: 7, event });
+    assert_eq!(read, expected.collect::<Vec<_>>());
 }
 
 #[test]
@@ -91,7 +103,7 @@ proptest! {
         snapshot.residuals[0] = numbers[2];
         snapshot.routes[0].share = numbers[3];
         let mut writer = TraceWriter::new(Vec::new(), &room()).unwrap();
-        writer.snapshot(&snapshot).unwrap();
+        writer.observe(&snapshot, &[]).unwrap();
         let text = writer.finish().unwrap();
         let entry = TraceReader::new(text.as_slice()).unwrap().next().unwrap().unwrap();
         prop_assert_eq!(entry, TraceEntry::Step(Box::new(snapshot)));

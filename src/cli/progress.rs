@@ -6,7 +6,7 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pleach::automaton::network::record::{End, MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::Scenario;
-use pleach::mission::Observer;
+use pleach::mission::Watcher;
 use pleach::story;
 use std::io::{self, IsTerminal};
 
@@ -45,20 +45,16 @@ impl Progress {
     }
 }
 
-impl Observer for Progress {
-    fn event(&mut self, step: usize, event: &MissionEvent) -> io::Result<()> {
-        if story::is_telling(event) {
-            let line = format!("k = {step:<6} {}", story::tell(event));
+impl Watcher for Progress {
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        for event in events.iter().filter(|event| story::is_telling(event)) {
+            let line = format!("k = {:<6} {}", snapshot.step, story::tell(event));
             match &self.display {
                 Display::Quiet => {}
                 Display::Lines => eprintln!("{line}"),
                 Display::Live(bar) => bar.println(line),
             }
         }
-        Ok(())
-    }
-
-    fn snapshot(&mut self, snapshot: &Snapshot) -> io::Result<()> {
         if let Display::Live(bar) = &self.display {
             bar.set_message(standing(snapshot, self.tasks));
             bar.inc(1);

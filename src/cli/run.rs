@@ -3,8 +3,10 @@
 use super::arguments::RunArguments;
 use super::progress::Progress;
 use super::status::{Failure, Status};
+use pleach::automaton::network::Site;
 use pleach::automaton::network::scenario::Scenario;
-use pleach::mission::{Mission, Observer, watch};
+use pleach::figures::Album;
+use pleach::mission::{self, Watcher};
 use pleach::scenario_file;
 use pleach::summary::Summary;
 use pleach::trace::TraceWriter;
@@ -16,43 +18,38 @@ use std::time::Instant;
 /// Runs the mission of a scenario.
 pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
     let scenario = scenario_file::read(&arguments.scenario)?;
-    let mut mission = begin(&scenario)?;
-
-    let mut summary =
-        Summary::new(&scenario).map_err(|error| Failure::Internal(error.to_string()))?;
+    let mut summary = Summary::new(&scenario);
     let mut progress = Progress::new(&scenario, arguments.quiet);
     let mut trace =
         arguments.trace.as_deref().map(|path| start_trace(path, &scenario)).transpose()?;
+    let folder = figures_folder(arguments, &scenario);
+    let mut album = folder.as_ref().map(|_| open_album(&scenario)).transpose()?;
 
-    let mut observers: Vec<&mut dyn Observer> = vec![&mut summary, &mut progress];
-    if let Some(trace) = &mut trace {
-        observers.push(trace);
-    }
+    let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, &mut progress];
+    watchers.extend(trace.as_mut().map(|trace| trace as &mut dyn Watcher));
+    watchers.extend(album.as_mut().map(|album| album as &mut dyn Watcher));
     let clock = Instant::now();
-    let end = watch(mission.as_mut(), &mut observers)?;
+    let completed = mission::run(&scenario, &mut watchers)?;
     let elapsed = clock.elapsed();
-    progress.finish();
-    if let Some(trace) = trace {
-        trace.finish()?;
-    }
+    let end = completed.end.clone();
 
     let mut output = io::stdout().lock();
-    write!(output, "{}", summary.with_times(elapsed, mission.kernel_times()))?;
+    write!(output, "{}", summary.completed(completed, elapsed))?;
     if let Some(path) = &arguments.trace {
         writeln!(output, "  trace               {}", path.display())?;
     }
-    if let Some(folder) = figures_folder(arguments, &scenario) {
-        // HOOK(figures): an album watches the mission beside the summary; here it writes its
-        // pictures into `folder`, and the program says so.
-        writeln!(output, "  figures             none yet, meant for {}", folder.display())?;
+    if let (Some(album), Some(folder)) = (album, folder) {
+        let written = album.write(&folder, &end)?;
+        let index = written.last().unwrap_or(&folder);
+        writeln!(output, "  figures             {}: open {}", written.len(), index.display())?;
     }
     Ok(end.outcome.into())
 }
 
-/// The mission of a valid scenario, before its first control period.
-fn begin(scenario: &Scenario) -> Result<Box<dyn Mission>, Failure> {
-    // HOOK(network): the robot network takes its place here.
-    Err(Failure::Internal(format!("there is no network yet to run {}", scenario.name)))
+fn open_album(scenario: &Scenario) -> Result<Album, Failure> {
+    let site = Site::new(scenario).map_err(|error| Failure::Internal(error.to_string()))?;
+    let corners = |outline: &Vec<_>| outline.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
+    Ok(Album::new(scenario, site.free_space.outline().iter().map(corners).collect()))
 }
 
 fn start_trace(path: &Path, scenario: &Scenario) -> Result<TraceWriter<BufWriter<File>>, Failure> {

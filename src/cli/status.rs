@@ -1,6 +1,7 @@
 //! Exit statuses, and the failures behind them.
 
 use pleach::automaton::network::record::Outcome;
+use pleach::mission::MissionError;
 use pleach::scenario_file::ScenarioError;
 use std::io;
 use std::path::PathBuf;
@@ -58,7 +59,10 @@ pub enum Failure {
     /// The trace, the progress or a figure cannot be written.
     #[error("cannot write what the mission shows: {0}")]
     Output(#[from] io::Error),
-    /// The program is not complete.
+    /// The mission could not be run to an end.
+    #[error(transparent)]
+    Mission(#[from] MissionError),
+    /// Something that cannot go wrong with a valid scenario did.
     #[error("{0}")]
     Internal(String),
 }
@@ -68,7 +72,23 @@ impl Failure {
     pub fn status(&self) -> Status {
         match self {
             Failure::Scenario(_) | Failure::Creation { .. } => Status::BadInput,
-            Failure::Output(_) | Failure::Internal(_) => Status::Failed,
+            Failure::Output(_) | Failure::Mission(_) | Failure::Internal(_) => Status::Failed,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_outcome_has_the_status_of_the_format() {
+        let status = |outcome| Status::from(outcome) as u8;
+        assert_eq!(status(Outcome::Serviced), 0);
+        assert_eq!(status(Outcome::InsufficientRobots), 3);
+        assert_eq!(status(Outcome::UnreachableTask), 3);
+        assert_eq!(status(Outcome::StepLimit), 3);
+        assert_eq!(status(Outcome::Blocked), 3);
+        assert_eq!(status(Outcome::InvariantViolated), 4);
     }
 }

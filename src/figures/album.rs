@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use pleach_automaton::network::record::{End, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::Scenario;
 
+use crate::mission::Watcher;
+
 use super::canvas::quantity;
 use super::curves::{Chart, Curve, DISTINCT_CURVES, Limit, Sign};
 use super::palette;
@@ -285,4 +287,11 @@ fn robot_curves(series: &Series) -> Vec<Curve> {
             points: series.points(robot),
         })
         .collect()
+}
+
+impl Watcher for Album {
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        Album::observe(self, snapshot, events);
+        Ok(())
+    }
 }

@@ -1,26 +1,30 @@
 //! A mission that only pretends: two robots and a leader's tale, for those who watch missions.
 
+#![allow(dead_code)] // not every test needs everything
+
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
 use pleach::automaton::network::scenario::Scenario;
 use pleach::discrete::network::{Phase, Role};
-use pleach::mission::{Mission, StepReport};
+use pleach::mission::Watcher;
 use std::path::Path;
 
-/// Robot 1 walks by robot 0 and services the task.
-pub struct PretendedMission {
-    reports: std::vec::IntoIter<StepReport>,
+/// What a control period shows.
+pub struct Report {
+    pub events: Vec<MissionEvent>,
+    pub snapshot: Snapshot,
 }
 
-impl PretendedMission {
-    pub fn new() -> Self {
-        Self { reports: reports().into_iter() }
+/// Shows the pretended mission, in which robot 1 walks by robot 0 and services the task.
+pub fn show(watcher: &mut dyn Watcher) {
+    for Report { events, snapshot } in reports() {
+        watcher.observe(&snapshot, &events).expect("a watcher that can write");
     }
+    watcher.end(&end()).expect("a watcher that can write");
 }
 
-impl Mission for PretendedMission {
-    fn step(&mut self) -> StepReport {
-        self.reports.next().expect("a report before the end")
-    }
+/// How the pretended mission ends.
+pub fn end() -> End {
+    End { outcome: Outcome::Serviced, reason: String::new(), task: None }
 }
 
 /// The scenario that the pretended mission belongs to.
@@ -29,7 +33,7 @@ pub fn room() -> Scenario {
 }
 
 /// Everything that the pretended mission reports.
-pub fn reports() -> Vec<StepReport> {
+pub fn reports() -> Vec<Report> {
     let places = [[0.6, 0.5], [0.4, 0.4], [0.1 + 0.2, 1.0 / 3.0]];
     let events = [
         vec![
@@ -44,15 +48,7 @@ pub fn reports() -> Vec<StepReport> {
         vec![MissionEvent::TaskServiced { task: 0, robot: 1 }],
     ];
     (places.into_iter().zip(events).enumerate())
-        .map(|(step, (place, events))| StepReport {
-            events,
-            snapshot: snapshot(step, place),
-            end: (step == 2).then(|| End {
-                outcome: Outcome::Serviced,
-                reason: String::new(),
-                task: None,
-            }),
-        })
+        .map(|(step, (place, events))| Report { events, snapshot: snapshot(step, place) })
         .collect()
 }
 
@@ -80,4 +76,29 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
             junction: false,
         }],
     }
+}
+
+/// One event of each kind.
+pub fn every_event() -> Vec<MissionEvent> {
+    let mut events = vec![
+        MissionEvent::TaskAnnounced { task: 0 },
+        MissionEvent::LeaderElected { task: 0, robot: 5, conflict: false },
+        MissionEvent::LeaderElected { task: 0, robot: 5, conflict: true },
+        MissionEvent::Stationary { robot: 4, team: vec![4, 5] },
+        MissionEvent::RecruitElected { robot: 1, path: vec![1, 2, 3], break_points: vec![1, 3] },
+        MissionEvent::SubgroupStarted { subgroup: 0, robots: vec![1, 2] },
+        MissionEvent::SubgroupArrived { subgroup: 0, robots: vec![1, 2] },
+        MissionEvent::JoinedPrimary { robot: 3, team: vec![3, 4, 5] },
+        MissionEvent::Released { robot: 5 },
+        MissionEvent::TaskServiced { task: 0, robot: 5 },
+        MissionEvent::RouteInfeasible { robot: 2 },
+        MissionEvent::DutiesExchanged { mover: 1, parked: 2 },
+        MissionEvent::Reattached { robot: 3, parent: 7 },
+        MissionEvent::ElectionRepeated { task: 0 },
+    ];
+    events.extend(
+        (Role::ALL.into_iter().zip(Role::ALL.into_iter().skip(1)))
+            .map(|(from, to)| MissionEvent::RoleChanged { robot: 0, from, to }),
+    );
+    events
 }

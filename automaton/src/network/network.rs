@@ -429,7 +429,8 @@ impl<M: Medium> System for Network<M> {
             return None;
         }
         let limit = self.site.settings.max_steps;
-        self.announced_end().or_else(|| {
+        let at_rest = !self.robots.iter().any(Robot::is_active);
+        self.announced_end().filter(|_| at_rest).or_else(|| {
             (self.step >= limit).then(|| End {
                 outcome: Outcome::StepLimit,
                 reason: format!("the mission has taken the {limit} control periods allowed"),

@@ -21,7 +21,8 @@ pub struct Fault {
 pub enum Problem {
     /// A name that cannot be a file name.
     #[error(
-        "{name:?} cannot name a file: use letters, digits, `-` and `_` only, and at least one of them"
+        "{name:?} cannot name a file: use letters, digits, `-` and `_` only, and at least \
+         one of them"
     )]
     NotAFileName { name: String },
     /// NaN or infinite.
@@ -41,27 +42,35 @@ pub enum Problem {
     NotAShare { value: f64 },
     /// A reliability that makes no sense as a limit for links of the tree.
     #[error(
-        "{value} does not lie between 0 and 1: a link of the tree needs a reliability above 0 and, to have a longest one, below 1"
+        "{value} does not lie between 0 and 1: a link of the tree needs a reliability above \
+         0 and, to have a longest one, below 1"
     )]
     NotAReliability { value: f64 },
     /// l ≥ u in eq. (27).
     #[error(
-        "{full_range} is not below max_range = {max_range}: reliability falls from 1 at full_range to 0 at max_range, so full_range < max_range"
+        "{full_range} is not below max_range = {max_range}: reliability falls from 1 at \
+         full_range to 0 at max_range, so full_range < max_range"
     )]
     RangesReversed { full_range: f64, max_range: f64 },
     /// δ too small against ρ (Remark 5.5).
     #[error(
-        "{service_radius} is too small for clearance = {clearance}: two robots that hand over a task stay 2 clearances apart and must both be able to service it, so at least {least}"
+        "{service_radius} is too small for clearance = {clearance}: two robots that hand \
+         over a task stay 2 clearances apart and must both be able to service it, so at \
+         least {least}"
     )]
     ServiceRadiusTooSmall { service_radius: f64, clearance: f64, least: f64 },
     /// σ > (u − 2ρ)/2 (footnote 6).
     #[error(
-        "{step_radius} is too long a step: robots that cannot hear each other could meet within one period, so at most (max_range − 2 clearance)/2 = {most}"
+        "{step_radius} is too long a step: robots that cannot hear each other could meet \
+         within one period, so at most (max_range − 2 clearance)/2 = {most}"
     )]
     StepTooLong { step_radius: f64, most: f64 },
     /// No length is left for new links of the tree.
     #[error(
-        "no link can be added to the tree: a reliability of {tree_reliability} is reached at distance {longest:.6}, and robots may stand service_radius = {service_radius} away from their posts; lower tree_reliability or service_radius, or raise full_range"
+        "no link can be added to the tree: a reliability of {tree_reliability} is reached \
+         at distance {longest:.6}, and robots may stand service_radius = {service_radius} \
+         away from their posts; lower tree_reliability or service_radius, or raise \
+         full_range"
     )]
     TreeLinksTooShort { tree_reliability: f64, longest: f64, service_radius: f64 },
     /// Nowhere to send information to.
@@ -75,29 +84,36 @@ pub enum Problem {
     Outline(String),
     /// A robot or access point that is not in the workspace.
     #[error(
-        "({x}, {y}) lies outside the workspace: place it inside the boundary and outside the holes"
+        "({x}, {y}) lies outside the workspace: place it inside the boundary and outside \
+         the holes"
     )]
     Outside { x: f64, y: f64 },
     /// A robot that touches a wall.
     #[error(
-        "({x}, {y}) is only {distance:.6} away from a wall: robots keep a clearance of {clearance}"
+        "({x}, {y}) is only {distance:.6} away from a wall: robots keep a clearance of \
+         {clearance}"
     )]
     TooCloseToWall { x: f64, y: f64, distance: f64, clearance: f64 },
     /// Robots that touch each other.
     #[error(
-        "it is only {distance:.6} away from robot[{other}]: robots keep 2 clearances = {least} from each other"
+        "it is only {distance:.6} away from robot[{other}]: robots keep 2 clearances = \
+         {least} from each other"
     )]
     RobotsTooClose { other: usize, distance: f64, least: f64 },
     /// A robot that no chain of links connects to an access point.
     #[error(
-        "it is cut off: no chain of robots leads from it to an access point with links of at most {longest:.6} each, measured along the shortest way around walls; place it nearer to an access point or to another robot"
+        "it is cut off: no chain of robots leads from it to an access point with links of \
+         at most {longest:.6} each, measured along the shortest way around walls; place it \
+         nearer to an access point or to another robot"
     )]
     CutOff { longest: f64 },
     /// Rates that the links cannot carry.
     #[error(
-        "no routing carries the rates from where the robots start: {reason}; lower the rates or place the robots closer together"
+        "no routing carries the rates from where the robots start: with the best one some robot \
+         cannot send {missing:.6} of what it receives and generates; lower the rates or place \
+         the robots closer together"
     )]
-    RatesTooHigh { reason: String },
+    RatesTooHigh { missing: f64 },
 }
 
 impl Problem {
