@@ -20,7 +20,7 @@ impl<M: Medium> Network<M> {
             positions: self.robots.iter().map(Robot::position).collect(),
             roles: self.robots.iter().map(Robot::role).collect(),
             phase: self.phase(),
-            active: self.robots_where(Robot::is_active),
+            active: self.active(),
             active_team: self.active_team(),
             primary_team: self.primary_team(),
             path: self.path(),
@@ -53,8 +53,12 @@ impl<M: Medium> Network<M> {
         }
     }
 
-    fn robots_where(&self, holds: impl Fn(&Robot) -> bool) -> Vec<NodeId> {
-        (0..self.robots.len()).filter(|&id| holds(&self.robots[id])).collect()
+    /// The active team, and the robots that settle on their posts.
+    fn active(&self) -> Vec<NodeId> {
+        let team = self.active_team();
+        (0..self.robots.len())
+            .filter(|id| team.contains(id) || self.robots[*id].is_active())
+            .collect()
     }
 
     /// Where the mission stands for the robot that knows the newest word.
@@ -79,8 +83,7 @@ impl<M: Medium> Network<M> {
     /// The primary team 𝒫 from p₁ to the leader, or the leader alone before it is released.
     pub fn primary_team(&self) -> Vec<NodeId> {
         let member = |robot: &Robot| robot.duty().post().filter(|post| post.is_primary()).copied();
-        let leads = |robot: &Robot| member(robot).is_some_and(|post| post.is_leading());
-        let Some(leader) = self.robots.iter().position(leads) else { return Vec::new() };
+        let Some(leader) = self.robots.iter().position(Robot::leads) else { return Vec::new() };
         let mut team = vec![leader];
         let mut ahead = member(&self.robots[leader]);
         while let Some(post) = ahead {

@@ -424,7 +424,7 @@ impl Robot {
     // ---- The primary team (Sec. V-A) ---------------------------------------------------------
 
     /// Whether this robot heads the network's effort, released or not.
-    pub(super) fn leads(&self) -> bool {
+    pub fn leads(&self) -> bool {
         self.awaits_release || self.duty.post().is_some_and(|post| post.is_leading())
     }
 
