@@ -99,13 +99,9 @@ impl Column {
         };
         let clearance = plan.clearance();
         let swatch = rectangle([LEFT, self.y - 10.0], [14.0, 12.0], palette::WALL);
-        let outline = stroke(
-            [LEFT + 18.0, self.y - 4.0],
-            [LEFT + 36.0, self.y - 4.0],
-            palette::LIMIT,
-            0.9,
-        )
-        .set("stroke-dasharray", "4 3");
+        let outline =
+            stroke([LEFT + 18.0, self.y - 4.0], [LEFT + 36.0, self.y - 4.0], palette::LIMIT, 0.9)
+                .set("stroke-dasharray", "4 3");
         let note = match plan.free_space.is_empty() {
             true => format!("walls; robots keep ρ = {}", quantity(clearance)),
             false => format!("wall; W_f: ρ = {} off", quantity(clearance)),
