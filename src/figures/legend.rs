@@ -31,7 +31,7 @@ pub(super) fn draw(plan: &Plan, view: &View) -> Group {
     for mark in Mark::ALL {
         column.row(mark.name(), |spot| mark.draw(spot, RADIUS, mark.name()));
     }
-    column.row("ring: member of active team", |spot| {
+    column.row("ring: active team", |spot| {
         layer("sample").add(Mark::Member.draw(spot, 4.6, "")).add(active_ring(spot, 4.6))
     });
     column.gap();
@@ -41,8 +41,8 @@ pub(super) fn draw(plan: &Plan, view: &View) -> Group {
     column.gap();
     column.row("link, thickness ∝ T·R", |[x, y]| {
         layer("sample")
-            .add(stroke([x - 16.0, y], [x - 1.0, y], palette::LINK, link_width(0.15)))
-            .add(stroke([x + 1.0, y], [x + 16.0, y], palette::LINK, link_width(0.8)))
+            .add(stroke([x - 16.0, y], [x - 5.0, y], palette::LINK, link_width(0.05)))
+            .add(stroke([x + 5.0, y], [x + 14.0, y], palette::LINK, link_width(0.6)))
     });
     column.row("edge of the tree", |[x, y]| {
         layer("sample")

@@ -241,3 +241,37 @@ fn an_album_without_a_single_period_is_written_too() {
     assert_eq!(files.len(), 4);
     std::fs::remove_dir_all(&folder).expect("removable");
 }
+
+/// A hall of 17 by 12 with pillars, and 60 robots in rows that hang on each other.
+#[test]
+fn a_crowd_in_a_hall_is_drawn_with_every_number() {
+    let square = |x: f64, y: f64| vec![[x, y], [x + 0.8, y], [x + 0.8, y + 0.8], [x, y + 0.8]];
+    let mut scenario = study_one();
+    scenario.workspace.boundary = vec![[0.0, 0.0], [17.0, 0.0], [17.0, 12.0], [0.0, 12.0]];
+    scenario.workspace.holes = vec![square(8.0, 2.0), square(8.0, 8.0), square(13.0, 5.0)];
+    (scenario.link.full_range, scenario.link.max_range) = (2.7, 3.4);
+    scenario.control.clearance = Some(0.07);
+    scenario.access_point[0].position = [0.5, 6.0];
+    for (task, x) in scenario.task.iter_mut().zip([16.0, 12.0, 6.0]) {
+        task.position = [x, 11.0];
+    }
+    let mut snapshot = moment(412, 0.0);
+    let places = (0..60).map(|i| [1.2 + 0.75 * (i % 8) as f64, 0.8 + 1.4 * (i / 8) as f64]);
+    snapshot.positions = places.map(Into::into).collect();
+    snapshot.roles = (0..60).map(|i| Role::ALL[if i % 9 == 4 { i % 6 } else { 0 }]).collect();
+    snapshot.tree = (0..60).map(|i| (i, if i % 8 == 0 { 60 } else { i - 1 })).collect();
+    let links = snapshot.tree.iter();
+    snapshot.routes = links
+        .map(|&(from, to)| Route { from, to, share: 0.1 * (8 - from % 8) as f64, reliability: 1.0 })
+        .collect();
+    let plan = Plan::new(&scenario, vec![vec![[0.1, 0.1], [16.9, 0.1], [16.9, 11.9], [0.1, 11.9]]]);
+    let picture = plan.render(&Scene { snapshot: &snapshot, title: "k = 412", trails: &[] });
+    assert_well_formed(&picture);
+    let labels = &picture[picture.find("class=\"labels\"").expect("labels")..];
+    for robot in 0..60 {
+        assert!(labels.contains(&format!("\n{robot}\n")), "robot {robot} has no number");
+    }
+    if std::env::var_os("PLEACH_KEEP_FIGURES").is_some() {
+        std::fs::write(folder("hall.svg"), picture).expect("written");
+    }
+}
