@@ -80,9 +80,11 @@ impl Album {
         self.extend_trails(snapshot);
         let started = self.last.is_none();
         let moments = events.iter().filter_map(story::moment);
-        self.signs.extend(
-            moments.map(|(moment, number)| Sign { step: snapshot.step, moment, number }),
-        );
+        self.signs.extend(moments.map(|(moment, number)| Sign {
+            step: snapshot.step,
+            moment,
+            number,
+        }));
         if let Some(task) = snapshot.task
             && self.tasks.last().is_none_or(|(_, pursued)| *pursued != task)
         {
@@ -159,8 +161,7 @@ impl Album {
 
     fn add_page(&mut self, snapshot: &Snapshot, events: &[MissionEvent], started: bool) {
         let named = events.iter().find_map(story::task_of).or(snapshot.task);
-        let mut headlines: Vec<String> =
-            named.iter().map(|task| format!("task {task}")).collect();
+        let mut headlines: Vec<String> = named.iter().map(|task| format!("task {task}")).collect();
         let mut slugs: Vec<String> = named.iter().map(|task| format!("task-{task}")).collect();
         if started {
             headlines.push("the start".to_owned());
@@ -214,7 +215,10 @@ impl Album {
                 Limit { value: 2.0 * clearance, label: "2ρ".to_owned() },
                 Limit { value: clearance, label: "ρ".to_owned() },
             ],
-            ..self.chart("Smallest distance between robots, and from a robot to a wall", "distance (scenario's unit)")
+            ..self.chart(
+                "Smallest distance between robots, and from a robot to a wall",
+                "distance (scenario's unit)",
+            )
         };
         let residuals = Chart {
             subtitle: "what a robot can send beyond what it must: the network holds while none \
@@ -232,9 +236,21 @@ impl Album {
             ..self.chart("Lagrange multipliers λᵢ of all robots", "λᵢ")
         };
         [
-            ("distances.svg", distances, "Nothing touches anything: the curves stay above their limits."),
-            ("residuals.svg", residuals, "Every robot can always send on what it makes and receives."),
-            ("multipliers.svg", multipliers, "The multipliers of the routing problem, one curve a robot."),
+            (
+                "distances.svg",
+                distances,
+                "Nothing touches anything: the curves stay above their limits.",
+            ),
+            (
+                "residuals.svg",
+                residuals,
+                "Every robot can always send on what it makes and receives.",
+            ),
+            (
+                "multipliers.svg",
+                multipliers,
+                "The multipliers of the routing problem, one curve a robot.",
+            ),
         ]
         .map(|(file, chart, caption)| page::Figure {
             file: file.to_owned(),

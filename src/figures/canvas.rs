@@ -58,7 +58,8 @@ pub(super) fn stroke(from: Spot, to: Spot, colour: &str, width: f64) -> Line {
 /// An empty sheet with its title and subtitle.
 pub(super) fn sheet(height: f64, title: &str, subtitle: &str) -> Document {
     let room = WIDTH - 40.0;
-    let fitting = |content: &str, size: f64| size.min(size * room / text_width(content, size).max(1.0));
+    let fitting =
+        |content: &str, size: f64| size.min(size * room / text_width(content, size).max(1.0));
     Document::new()
         .set("viewBox", format!("0 0 {} {}", number(WIDTH), number(height)))
         .set("width", number(WIDTH))
@@ -67,15 +68,8 @@ pub(super) fn sheet(height: f64, title: &str, subtitle: &str) -> Document {
         .set("role", "img")
         .set("aria-label", title)
         .add(rectangle([0.0, 0.0], [WIDTH, height], PAPER))
-        .add(
-            text(title, [20.0, 34.0], fitting(title, TITLE_SIZE), INK).set("font-weight", "bold"),
-        )
-        .add(text(
-            subtitle,
-            [20.0, 56.0],
-            fitting(subtitle, SUBTITLE_SIZE),
-            super::palette::QUIET,
-        ))
+        .add(text(title, [20.0, 34.0], fitting(title, TITLE_SIZE), INK).set("font-weight", "bold"))
+        .add(text(subtitle, [20.0, 56.0], fitting(subtitle, SUBTITLE_SIZE), super::palette::QUIET))
 }
 
 /// A filled rectangle from a corner, with its size.

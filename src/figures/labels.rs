@@ -136,8 +136,7 @@ mod tests {
     #[test]
     fn labels_of_neighbours_do_not_cover_each_other() {
         let marks = [([50.0, 50.0], 6.0), ([64.0, 50.0], 6.0), ([57.0, 62.0], 6.0)];
-        let mut places =
-            LabelPlaces::new(([0.0, 0.0], [200.0, 200.0]), &marks, &[], &NoWalls);
+        let mut places = LabelPlaces::new(([0.0, 0.0], [200.0, 200.0]), &marks, &[], &NoWalls);
         for (centre, radius) in marks {
             places.place("12", 10.0, centre, radius);
         }

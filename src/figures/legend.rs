@@ -31,7 +31,7 @@ pub(super) fn draw(plan: &Plan, view: &View) -> Group {
     for mark in Mark::ALL {
         column.row(mark.name(), |spot| mark.draw(spot, RADIUS, mark.name()));
     }
-    column.row("ring: member of active team", |spot| {
+    column.row("ring: active team", |spot| {
         layer("sample").add(Mark::Member.draw(spot, 4.6, "")).add(active_ring(spot, 4.6))
     });
     column.gap();
@@ -41,8 +41,8 @@ pub(super) fn draw(plan: &Plan, view: &View) -> Group {
     column.gap();
     column.row("link, thickness ∝ T·R", |[x, y]| {
         layer("sample")
-            .add(stroke([x - 16.0, y], [x - 1.0, y], palette::LINK, link_width(0.15)))
-            .add(stroke([x + 1.0, y], [x + 16.0, y], palette::LINK, link_width(0.8)))
+            .add(stroke([x - 16.0, y], [x - 5.0, y], palette::LINK, link_width(0.05)))
+            .add(stroke([x + 5.0, y], [x + 14.0, y], palette::LINK, link_width(0.6)))
     });
     column.row("edge of the tree", |[x, y]| {
         layer("sample")
@@ -99,13 +99,9 @@ impl Column {
         };
         let clearance = plan.clearance();
         let swatch = rectangle([LEFT, self.y - 10.0], [14.0, 12.0], palette::WALL);
-        let outline = stroke(
-            [LEFT + 18.0, self.y - 4.0],
-            [LEFT + 36.0, self.y - 4.0],
-            palette::LIMIT,
-            0.9,
-        )
-        .set("stroke-dasharray", "4 3");
+        let outline =
+            stroke([LEFT + 18.0, self.y - 4.0], [LEFT + 36.0, self.y - 4.0], palette::LIMIT, 0.9)
+                .set("stroke-dasharray", "4 3");
         let note = match plan.free_space.is_empty() {
             true => format!("walls; robots keep ρ = {}", quantity(clearance)),
             false => format!("wall; W_f: ρ = {} off", quantity(clearance)),

@@ -98,7 +98,9 @@ impl Mark {
         match self {
             Mark::AccessPoint => group.add(ring_of_corners(centre, 4, &[radius * 1.75], 0.0)),
             Mark::Leaf => group.add(ring_of_corners(centre, 4, &[radius * 1.45], 0.0)),
-            Mark::Leader => group.add(ring_of_corners(centre, 10, &[radius * 1.75, radius * 0.78], 0.0)),
+            Mark::Leader => {
+                group.add(ring_of_corners(centre, 10, &[radius * 1.75, radius * 0.78], 0.0))
+            }
             Mark::Recruit => group.add(ring_of_corners(centre, 3, &[radius * 1.5], 0.0)),
             Mark::Junction => group.add(ring_of_corners(centre, 4, &[radius * 1.35], 0.5)),
             Mark::Member => group.add(disc(centre, radius * 1.05)),
@@ -147,9 +149,12 @@ impl TaskState {
                 );
             }
         }
-        group
-            .add(stroke([x - arm, y - arm], [x + arm, y + arm], palette::TASK, width))
-            .add(stroke([x - arm, y + arm], [x + arm, y - arm], palette::TASK, width))
+        group.add(stroke([x - arm, y - arm], [x + arm, y + arm], palette::TASK, width)).add(stroke(
+            [x - arm, y + arm],
+            [x + arm, y - arm],
+            palette::TASK,
+            width,
+        ))
     }
 }
 

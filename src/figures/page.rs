@@ -39,13 +39,18 @@ pub(super) fn render(scenario: &Scenario, figures: &[Figure], end: &End) -> Stri
     html.push_str(&paragraph("end", &format!("How it ends: {}", end.reason)));
     for figure in figures {
         let name = escape(&figure.file);
-        html.push_str(&format!("<figure id=\"{}\">\n<figcaption>\n", name.trim_end_matches(".svg")));
+        html.push_str(&format!(
+            "<figure id=\"{}\">\n<figcaption>\n",
+            name.trim_end_matches(".svg")
+        ));
         for sentence in &figure.narration {
             html.push_str(&paragraph("told", sentence));
         }
         html.push_str("</figcaption>\n");
         html.push_str(&figure.picture);
-        html.push_str(&format!("\n<p class=\"file\"><a href=\"{name}\">{name}</a></p>\n</figure>\n"));
+        html.push_str(&format!(
+            "\n<p class=\"file\"><a href=\"{name}\">{name}</a></p>\n</figure>\n"
+        ));
     }
     html.push_str("</body>\n</html>\n");
     html
@@ -56,8 +61,7 @@ fn paragraph(class: &str, words: &str) -> String {
 }
 
 fn style() -> String {
-    let (font, ink, quiet, band) =
-        (palette::FONT, palette::INK, palette::QUIET, palette::BAND);
+    let (font, ink, quiet, band) = (palette::FONT, palette::INK, palette::QUIET, palette::BAND);
     format!(
         "body {{ font-family: {font}; color: {ink}; background: {band}; margin: 2.5rem auto; \
          max-width: 62rem; padding: 0 1rem; line-height: 1.5; }}\n\

@@ -52,7 +52,8 @@ pub(super) const CURVES: [&str; 12] = [
 ];
 
 /// The typefaces, the first that is installed.
-pub(super) const FONT: &str = "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif";
+pub(super) const FONT: &str =
+    "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif";
 /// Size of titles.
 pub(super) const TITLE_SIZE: f64 = 20.0;
 /// Size of subtitles and names of axes.

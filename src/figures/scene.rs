@@ -198,9 +198,11 @@ impl Picture<'_> {
         let snapshot = self.scene.snapshot;
         let nodes = snapshot.positions.len() + self.plan.scenario.access_point.len();
         let spots: Vec<Spot> = (0..nodes).filter_map(|node| self.node(node)).collect();
-        let reach = |node: usize| match snapshot.active_team.contains(&node) {
-            true => self.radius * 2.15,
-            false => self.radius * 1.25,
+        let reach = |node: usize| match node {
+            _ if snapshot.active_team.contains(&node) => self.radius * 2.15,
+            _ if node >= snapshot.positions.len() => self.radius * 1.8,
+            _ if Mark::of(snapshot, node) == Mark::Leader => self.radius * 1.6,
+            _ => self.radius * 1.25,
         };
         let mut taken: Vec<(Spot, f64)> =
             spots.iter().enumerate().map(|(node, spot)| (*spot, reach(node))).collect();

@@ -61,7 +61,7 @@ impl Series {
             })
             .collect();
         // An odd bucket at the end holds half of what it will hold.
-        self.filled = if self.capacity % 2 == 0 { self.stride } else { 0 };
+        self.filled = if self.capacity.is_multiple_of(2) { self.stride } else { 0 };
         self.stride *= 2;
     }
 

@@ -137,7 +137,9 @@ pub(super) fn sentence(event: &MissionEvent) -> Option<String> {
             format!("Robot {robot} hangs itself on node {parent}.")
         }
         MissionEvent::ElectionRepeated { task } => {
-            format!("The leader's tree has no recruit left: the election for task {task} is repeated.")
+            format!(
+                "The leader's tree has no recruit left: the election for task {task} is repeated."
+            )
         }
     };
     Some(sentence)
