@@ -122,4 +122,25 @@ proptest! {
             prop_assert!((workspace.clearance(place) - expected).abs() < 1e-12);
         }
     }
+
+    #[test]
+    fn clearance_of_segments_agrees_with_trying_every_edge(
+        environment in environment(),
+        ends in prop::collection::vec((place(), place()), 50),
+    ) {
+        let workspace = &environment.workspace;
+        let edges = plain::edges(workspace.polygons());
+        for (a, b) in ends {
+            let found = workspace.segment_clearance(a, b);
+            // Segments that do not meet are closest at an end of one of them.
+            let of_ends = plain::distance(&edges, a).min(plain::distance(&edges, b));
+            let vertices = workspace.polygons().iter().flatten();
+            let expected = vertices.map(|v| plain::distance(&[(a, b)], *v)).fold(of_ends, f64::min);
+            if plain::stays_inside(&edges, a, b, 0.0) {
+                prop_assert!((found - expected).abs() < 1e-12, "{a} to {b}: {found} {expected}");
+            } else {
+                prop_assert!(found < 1e-12, "{a} to {b}: {found}");
+            }
+        }
+    }
 }
