@@ -40,7 +40,7 @@ pub(super) fn erode(workspace: &Workspace, distance: f64, negligible: f64) -> Ve
     };
     rest.iter()
         .map(|region| region.iter().map(points).collect::<Region>())
-        .filter(|region| !region[0].is_empty())
+        .filter(|region| region.first().is_some_and(|outer| !outer.is_empty()))
         .map(|region| region.into_iter().filter(|ring| !ring.is_empty()).collect())
         .collect()
 }
