@@ -6,6 +6,26 @@
 //!   shares with others, moved inwards by ρ. They keep robots 2ρ apart for as long as each stays
 //!   in its own: the half-planes of two neighbours are disjoint;
 //! - a convex part P_i of the free space that contains the way ahead.
+//!
+//! ```
+//! use pleach_continuous::Point;
+//! use pleach_continuous::geometry::{FreeSpace, Workspace, convex_region, voronoi_half_planes};
+//!
+//! let room = [(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (0.0, 2.0)].map(|(x, y)| Point::new(x, y));
+//! let clearance = 0.1;
+//! let free_space = FreeSpace::new(&Workspace::new(room.to_vec(), vec![])?, clearance)?;
+//!
+//! // A robot near the lower wall, on its way to the right, where another one stands 0.6 away.
+//! let (robot, other, goal) = (Point::new(1.0, 0.2), Point::new(1.6, 0.2), Point::new(3.0, 0.2));
+//! let mut cell = voronoi_half_planes(robot, &[other], clearance);
+//! cell.extend(convex_region(&free_space, robot, goal, 0.5));
+//! assert_eq!(cell.len(), 2); // the other robot, and the lower wall
+//!
+//! let admits = |x, y| cell.iter().all(|half_plane| half_plane.contains(Point::new(x, y)));
+//! assert!(admits(1.19, 0.2) && !admits(1.21, 0.2)); // half the way, less the clearance
+//! assert!(admits(1.1, 0.11) && !admits(1.1, 0.09));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use super::{FreeSpace, HalfPlane, Segment};
 use crate::Point;

@@ -17,6 +17,19 @@ impl FreeSpace {
     /// Paths around a disc follow a regular octagon about it. A disc that contains `to` is no
     /// obstacle (its occupant is whom the robot comes to replace), and one that contains `from`
     /// is taken just small enough not to.
+    ///
+    /// ```
+    /// use pleach_continuous::Point;
+    /// use pleach_continuous::geometry::{Disc, FreeSpace, Workspace};
+    ///
+    /// let corridor = [(0.0, 0.0), (9.0, 0.0), (9.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y));
+    /// let free_space = FreeSpace::new(&Workspace::new(corridor.to_vec(), vec![])?, 0.1)?;
+    /// let (from, to) = (Point::new(1.0, 0.5), Point::new(8.0, 0.5));
+    /// let parked = |radius| [Disc { center: Point::new(4.0, 0.4), radius }];
+    /// assert!(free_space.detour(from, to, &parked(0.3)).is_some());
+    /// assert!(free_space.detour(from, to, &parked(0.5)).is_none()); // no room to pass
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn detour(&self, from: Point, to: Point, obstacles: &[Disc]) -> Option<Geodesic> {
         let mut path = self.geodesic(from, to)?;
         let mut waiting: Vec<Disc> = obstacles

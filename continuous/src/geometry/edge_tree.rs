@@ -9,6 +9,10 @@ use crate::Point;
 /// Edges below one leaf of the tree: few enough that testing them all is cheaper than descending.
 const LEAF_EDGES: usize = 4;
 
+/// Relative rounding error that the test of a box against a path allows for: more than its dozen
+/// operations can sum up to.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
 /// Edges under a hierarchy of bounding boxes.
 #[derive(Debug, Clone)]
 pub(super) struct EdgeTree {
@@ -225,8 +229,8 @@ impl Bounds {
         let half = (self.high - self.low) / 2.0;
         let center = self.low + half - path.from;
         let reach = along.x.abs() * half.y + along.y.abs() * half.x;
-        let rounding = along.abs().sum() * center.abs().sum() * (16.0 * f64::EPSILON)
-            + along.abs().sum() * self.high.coords.abs().sum() * (16.0 * f64::EPSILON);
+        let size = self.low.coords.amax() + self.high.coords.amax() + path.from.coords.amax();
+        let rounding = ROUNDING * size * along.amax();
         along.perp(&center).abs() <= reach + rounding
     }
 }

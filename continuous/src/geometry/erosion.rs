@@ -1,12 +1,6 @@
 //! Algorithm 6 of the paper, repaired: W without everything near its boundary.
 //!
-//! The paper removes from W one strip for each edge, and ends each strip at the half-planes of the
-//! adjacent edges. At a reflex vertex these cuts are degenerate: the end of a strip is collinear
-//! with the edge that the previous strip left behind, and a corner may keep no clearance at all.
-//! Here a strip is the rectangle on its edge, and every reflex vertex gets a *cap* of its own: a
-//! polygon circumscribed about the disc around the vertex, between the two strips. Nearest points
-//! of ∂W lie in edges or at reflex vertices, so strips and caps together cover every point that
-//! is too near.
+//! What is repaired, and why: see [`super::free_space`].
 
 use std::f64::consts::PI;
 
@@ -46,7 +40,7 @@ pub(super) fn erode(workspace: &Workspace, distance: f64, negligible: f64) -> Ve
     };
     rest.iter()
         .map(|region| region.iter().map(points).collect::<Region>())
-        .filter(|region| !region[0].is_empty())
+        .filter(|region| region.first().is_some_and(|outer| !outer.is_empty()))
         .map(|region| region.into_iter().filter(|ring| !ring.is_empty()).collect())
         .collect()
 }

@@ -1,4 +1,14 @@
 //! The free space W_f: where the centre of a robot may be (Sec. IV-A and Appendix A).
+//!
+//! # What Algorithm 6 becomes here
+//!
+//! Algorithm 6 takes from W one strip along each edge and ends it at the half-planes of the
+//! adjacent edges. At a reflex vertex these cuts are degenerate (the end of a strip is collinear
+//! with what the previous strip left behind), and read with the boundary of W instead of the
+//! updated one they leave reflex corners no clearance at all. Here a strip is the rectangle on its
+//! edge, and every reflex vertex gets a cap: a polygon circumscribed about the disc around it,
+//! between the two strips. As the points of ∂W nearest to anything lie in edges or at reflex
+//! vertices, strips and caps together cover every point that is too near.
 
 use thiserror::Error;
 

@@ -166,10 +166,8 @@ impl FreeSpace {
         passable: impl Fn(&Segment) -> bool,
     ) -> Geodesic {
         while waypoints.len() > 1 {
-            let distance = (waypoints[0] - from).norm();
-            let reached = distance == 0.0
-                || distance < self.tolerance() && passable(&Segment::new(from, waypoints[1]));
-            if !reached {
+            let is_here = (waypoints[0] - from).norm() < self.tolerance();
+            if !is_here || !passable(&Segment::new(from, waypoints[1])) {
                 break;
             }
             waypoints.remove(0);

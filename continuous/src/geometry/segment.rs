@@ -90,18 +90,22 @@ impl Segment {
         (there - here).norm()
     }
 
-    /// Whether `path` passes from one side of this edge to the other. Exact.
+    /// Whether `path` passes from one side of this edge to the other. Exact, and the same for both
+    /// directions of the path.
     ///
-    /// The left side of the edge owns the edge, and the right side of the path owns the path:
-    /// where a path runs exactly through a corner, it therefore crosses one of the two edges there
-    /// if these lie on different sides of it, and either both or none if they lie on the same side
-    /// (a path that grazes a corner may count as crossing).
+    /// Points on the line of the edge count as left of it, and ends of the edge on the line of the
+    /// path as below it. Where a path runs exactly through a corner, it therefore crosses one of
+    /// the two edges there if these lie on different sides of it, and both or none if they lie on
+    /// the same side (a path that grazes a corner may count as crossing).
     pub fn is_crossed_by(&self, path: &Segment) -> bool {
         let starts_left = side(self.from, self.to, path.from) >= 0.0;
         let ends_left = side(self.from, self.to, path.to) >= 0.0;
-        starts_left != ends_left
-            && (side(path.from, path.to, self.from) > 0.0)
-                != (side(path.from, path.to, self.to) > 0.0)
+        if starts_left == ends_left {
+            return false;
+        }
+        let runs_right = (path.from.x, path.from.y) <= (path.to.x, path.to.y);
+        let (left, right) = if runs_right { (path.from, path.to) } else { (path.to, path.from) };
+        (side(left, right, self.from) > 0.0) != (side(left, right, self.to) > 0.0)
     }
 
     /// Whether the two segments have a point in common. Exact.

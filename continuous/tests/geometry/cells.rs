@@ -1,8 +1,10 @@
-use pleach_continuous::geometry::{HalfPlane, convex_region, voronoi_half_planes};
+use pleach_continuous::geometry::{
+    FreeSpace, HalfPlane, Workspace, convex_region, voronoi_half_planes,
+};
 use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;
 
-use crate::environments::{CLEARANCE, environment, place};
+use crate::environments::{CLEARANCE, environment, place, ring};
 use crate::plain;
 
 fn admit(region: &[HalfPlane], point: Point) -> bool {
@@ -14,18 +16,66 @@ fn margin(region: &[HalfPlane], point: Point) -> f64 {
     region.iter().map(|plane| plane.margin(point)).fold(f64::INFINITY, f64::min)
 }
 
-/// Points of a disc: rings of directions.
-fn disc(center: Point, radius: f64) -> impl Iterator<Item = Point> {
-    (0..=12).flat_map(move |ring| {
-        (0..48).map(move |direction| {
-            let angle = f64::from(direction) * std::f64::consts::TAU / 48.0;
-            center + Vector::new(angle.cos(), angle.sin()) * (radius * f64::from(ring) / 12.0)
-        })
-    })
+/// Places spread over a region within a disc: in many directions from its centre, up to where the
+/// region or the disc ends, and the corners of the region.
+fn spread(region: &[HalfPlane], center: Point, radius: f64) -> Vec<Point> {
+    let mut places = Vec::new();
+    for direction in 0..64 {
+        let angle = f64::from(direction) * std::f64::consts::TAU / 64.0;
+        let ray = Vector::new(angle.cos(), angle.sin());
+        let reach = region
+            .iter()
+            .filter(|plane| plane.normal.dot(&ray) > 0.0)
+            .map(|plane| plane.margin(center) / plane.normal.dot(&ray))
+            .fold(radius, f64::min);
+        places.extend([0.25, 0.5, 1.0].map(|part| center + ray * (reach * part)));
+    }
+    for (index, one) in region.iter().enumerate() {
+        for other in &region[..index] {
+            let determinant = one.normal.perp(&other.normal);
+            let corner = Point::new(
+                one.offset * other.normal.y - other.offset * one.normal.y,
+                other.offset * one.normal.x - one.offset * other.normal.x,
+            ) / determinant;
+            let is_in_disc = (corner - center).norm() <= radius;
+            if determinant.abs() > 1e-6 && is_in_disc && margin(region, corner) >= -1e-9 {
+                places.push(corner);
+            }
+        }
+    }
+    places
+}
+
+#[test]
+fn ways_may_touch_corners_of_the_sight_set() {
+    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
+    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
+    let workspace = Workspace::new(boundary, vec![hole]).unwrap();
+    let free_space = FreeSpace::new(&workspace, 0.125).unwrap();
+    let edges = plain::edges(workspace.polygons());
+    let sight_offset = 0.125 + free_space.tolerance() / 2.0;
+    let mut touching = 0;
+    for (step, gap) in (1..60).zip([0.0, 2e-16, 1e-15, 1e-13].into_iter().cycle()) {
+        let corner = Point::new(1.0 - sight_offset - gap, 1.0 - sight_offset - gap);
+        let slope = f64::from(step % 7 + 1) / 4.0;
+        let along = Vector::new(-1.0, slope).normalize() * (f64::from(step) * 0.003);
+        for (at, waypoint) in [(corner + along, corner - along), (corner - along, corner + along)] {
+            let region = convex_region(&free_space, at, waypoint, 0.2);
+            if free_space.sees(at, waypoint) {
+                touching += 1;
+                assert!(margin(&region, nalgebra::center(&at, &waypoint)) >= -1e-12);
+            }
+            for place in spread(&region, at, 0.2) {
+                assert!(plain::winds_around(&edges, place), "{place} from {at} to {waypoint}");
+                assert!(plain::distance(&edges, place) >= 0.125 - 1e-12, "{place} from {at}");
+            }
+        }
+    }
+    assert!(touching > 10, "{touching}");
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
     fn voronoi_half_planes_are_cells_shrunk(
@@ -92,9 +142,9 @@ proptest! {
                 let region = convex_region(free_space, at, waypoint, radius);
                 prop_assert!(margin(&region, at) >= -1e-12);
                 prop_assert!(margin(&region, end) >= -1e-12, "{at} to {end}: {}", margin(&region, end));
-                for point in disc(at, radius).filter(|point| admit(&region, *point)) {
+                for point in spread(&region, at, radius) {
                     prop_assert!(plain::winds_around(&edges, point));
-                    prop_assert!(plain::distance(&edges, point) >= CLEARANCE, "{point} seen from {at} on the way to {waypoint}");
+                    prop_assert!(plain::distance(&edges, point) >= CLEARANCE - 1e-12, "{point} seen from {at} on the way to {waypoint}");
                 }
                 let aside = end + Vector::new(-way.y, way.x).normalize() * (radius * sideways);
                 at = if drifts && (aside - at).norm() <= radius && admit(&region, aside) { aside } else { end };
@@ -119,9 +169,9 @@ proptest! {
         for waypoint in [waypoint, at] {
             let region = convex_region(free_space, at, waypoint, radius);
             prop_assert!(margin(&region, at) >= -1e-12);
-            for point in disc(at, radius).filter(|point| admit(&region, *point)) {
+            for point in spread(&region, at, radius) {
                 prop_assert!(plain::winds_around(&edges, point));
-                prop_assert!(plain::distance(&edges, point) >= CLEARANCE);
+                prop_assert!(plain::distance(&edges, point) >= CLEARANCE - 1e-12);
             }
         }
     }

@@ -97,6 +97,18 @@ fn needles_get_caps() {
 }
 
 #[test]
+fn scale_does_not_matter() {
+    for scale in [1e-90, 1e-9, 1e9, 1e90] {
+        let l = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
+        let corners = l.map(|(x, y)| (x * scale, y * scale));
+        let workspace = Workspace::new(ring(&corners), vec![]).unwrap();
+        let free_space = FreeSpace::new(&workspace, 0.25 * scale).unwrap();
+        let (a, b) = (Point::new(1.5, 0.5) * scale, Point::new(0.5, 1.5) * scale);
+        assert!((free_space.distance(a, b) / scale - 2.0 * 0.75_f64.hypot(0.25)).abs() < 1e-5);
+    }
+}
+
+#[test]
 fn zero_clearance_is_almost_the_workspace() {
     let workspace = room_with_door();
     let free_space = FreeSpace::new(&workspace, 0.0).unwrap();
@@ -106,7 +118,7 @@ fn zero_clearance_is_almost_the_workspace() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
     fn free_space_is_where_the_clearance_is_kept(

@@ -95,7 +95,7 @@ fn detour_follows_an_octagon() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
     fn geodesics_are_shortest(environment in environment(), a in place(), b in place()) {

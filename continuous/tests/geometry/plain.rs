@@ -25,6 +25,24 @@ pub fn distance(edges: &[(Point, Point)], point: Point) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
+/// Distance from a segment to the nearest of some edges: 0 where they intersect, otherwise they
+/// are closest at an end of one of them.
+pub fn segment_distance(edges: &[(Point, Point)], a: Point, b: Point) -> f64 {
+    let along = b - a;
+    let of_edge = |&(from, to): &(Point, Point)| {
+        let edge = to - from;
+        let determinant = along.perp(&edge);
+        let t = (from - a).perp(&edge) / determinant;
+        let s = (from - a).perp(&along) / determinant;
+        if (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s) {
+            return 0.0;
+        }
+        let ends = distance(&[(from, to)], a).min(distance(&[(from, to)], b));
+        ends.min(distance(&[(a, b)], from)).min(distance(&[(a, b)], to))
+    };
+    edges.iter().map(of_edge).fold(f64::INFINITY, f64::min)
+}
+
 /// Whether the rings wind around a point (the sum of the angles under which edges are seen).
 pub fn winds_around(edges: &[(Point, Point)], point: Point) -> bool {
     let total: f64 = edges

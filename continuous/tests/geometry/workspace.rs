@@ -107,7 +107,7 @@ fn errors_name_what_is_wrong() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
     fn clearance_agrees_with_trying_every_edge(
@@ -120,6 +120,24 @@ proptest! {
             let distance = plain::distance(&edges, place);
             let expected = if plain::winds_around(&edges, place) { distance } else { -distance };
             prop_assert!((workspace.clearance(place) - expected).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn clearance_of_segments_agrees_with_trying_every_edge(
+        environment in environment(),
+        ends in prop::collection::vec((place(), place()), 50),
+    ) {
+        let workspace = &environment.workspace;
+        let edges = plain::edges(workspace.polygons());
+        for (a, b) in ends {
+            let found = workspace.segment_clearance(a, b);
+            let expected = plain::segment_distance(&edges, a, b);
+            if plain::stays_inside(&edges, a, b, 0.0) {
+                prop_assert!((found - expected).abs() < 1e-12, "{a} to {b}: {found} {expected}");
+            } else {
+                prop_assert!(found < 1e-12, "{a} to {b}: {found}");
+            }
         }
     }
 }
