@@ -50,8 +50,8 @@ impl Default for AdalSettings {
     }
 }
 
-/// Largest τ. Two robots that hear each other but faintly have q near 1, yet both answer to the
-/// same equations: with τ = 1 they overshoot in turns for ever.
+/// Largest τ. Two robots that hear each other faintly have q near 1, yet both answer to the same
+/// two equations: τ near 1 lets them overshoot in turns for ever, which was seen.
 const LONGEST_PART: f64 = 0.7;
 
 impl AdalSettings {

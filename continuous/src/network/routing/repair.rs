@@ -137,6 +137,17 @@ mod tests {
     }
 
     #[test]
+    fn time_moves_over_from_the_worst_link_first() {
+        let link = |reliability, share| Share { reliability, share };
+        let mut links = [link(0.9, 0.2), link(0.5, 0.4), link(0.1, TIME_BUDGET - 0.6)];
+        // Moving 0.1 from the link with 0.1 gains 0.1·(0.9 − 0.1).
+        let demand = outflow(&links) + 0.08;
+        assert_eq!(meet_demand(demand, &mut links, 0), 0.0);
+        assert_eq!(links[1].share, 0.4);
+        assert!((links[0].share - 0.3).abs() < 1e-12);
+    }
+
+    #[test]
     fn a_demand_that_is_met_changes_nothing() {
         let mut links = [Share { reliability: 0.9, share: 0.5 }];
         assert_eq!(meet_demand(0.4, &mut links, 0), 0.0);
