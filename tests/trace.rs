@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{PretendedMission, every_event, reports, room};
+use common::{end, every_event, reports, room, show};
 use pleach::automaton::network::record::{End, Outcome};
 use pleach::automaton::network::scenario::Settings;
 use pleach::mission::Watcher;
@@ -47,14 +47,14 @@ fn what_is_read_is_what_was_written() {
 
 #[test]
 fn every_kind_of_event_survives() {
+    let snapshot = reports()[1].snapshot.clone();
     let mut writer = TraceWriter::new(Vec::new(), &room()).unwrap();
-    for event in every_event() {
-        writer.event(7, &event).unwrap();
-    }
+    writer.observe(&snapshot, &every_event()).unwrap();
     let text = writer.finish().unwrap();
     let read: Vec<_> = TraceReader::new(text.as_slice()).unwrap().map(Result::unwrap).collect();
-    let expected = every_event().into_iter().map(|event| TraceEntry::Event { step: 7, event });
-    assert_eq!(read, expected.collect::<Vec<_>>());
+    let events = every_event().into_iter().map(|event| TraceEntry::Event { step: 1, event });
+    let expected: Vec<_> = events.chain([TraceEntry::Step(Box::new(snapshot))]).collect();
+    assert_eq!(read, expected);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The shape of a scenario file: which keys it may hold, and what each of them looks like.
 //!
-//! The shape is checked before the file becomes a [`Scenario`](crate::automaton::network::scenario::Scenario),
-//! so that every mistake is found in one reading, and each is told with what would be right.
+//! The shape is checked before the file becomes a scenario, so that every mistake is found in one
+//! reading, and each is told with what would be right.
 
 use crate::automaton::network::scenario::KeyPath;
 use toml::Spanned;
