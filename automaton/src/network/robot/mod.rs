@@ -62,6 +62,7 @@ pub struct Robot {
     left_post: Option<PostId>,
     offer: Option<Exchange<Duty>>,
     offers_made: u32,
+    last_partner: Option<NodeId>,
     reply: Option<Reply<Duty>>,
 
     // What it hears and where it hangs.
@@ -131,6 +132,7 @@ impl Robot {
             left_post: None,
             offer: None,
             offers_made: 0,
+            last_partner: None,
             reply: None,
             neighbours: Vec::new(),
             lineage: None,
