@@ -62,15 +62,15 @@ impl<P> Path<P> {
     /// Whether the robot at `place` is a break point of Σ.
     ///
     /// The paper names junctions and leaves. A robot is one in effect if it services a task, if
-    /// it has a tree neighbour off Σ, if it stands behind an access point that Σ crosses, or if
-    /// it is the last that Σ relieves; and b₁ = s₁.
+    /// it has a tree neighbour off Σ, if it stands before or behind an access point that Σ
+    /// crosses, or if it is the last that Σ relieves; and b₁ = s₁.
     pub fn is_break_point(&self, place: usize, ties: Ties) -> bool {
         let last = self.last_break_point();
-        let behind_crossing =
-            place.checked_sub(1).is_some_and(|before| !self.hops[before].crossing.is_empty());
+        let crosses = |place: usize| !self.hops[place].crossing.is_empty();
+        let at_crossing = crosses(place) || place.checked_sub(1).is_some_and(crosses);
         place == 0
             || place == last
-            || place < last && (ties.services_task || ties.bears_others || behind_crossing)
+            || place < last && (ties.services_task || ties.bears_others || at_crossing)
     }
 
     /// The place that `post` has on the path.
