@@ -100,6 +100,9 @@ facts! {
 impl Robot {
     /// Measures the facts; says whether a guard may hold that did not hold before.
     pub fn measure(&mut self) -> bool {
+        if !std::mem::take(&mut self.is_unmeasured) {
+            return false;
+        }
         let facts = self.facts_now();
         let may_jump = facts != self.facts || !self.is_quiet;
         self.facts = facts;
