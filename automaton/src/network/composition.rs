@@ -33,8 +33,10 @@ const NEGOTIATION_ROUNDS: usize = 8;
 /// Where a control period stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// Messages are exchanged; so many rounds remain, and then routes are computed.
-    Exchange(usize),
+    /// Messages are exchanged.
+    Exchange,
+    /// Routes are computed.
+    Route,
     /// Moves are proposed and certified.
     Move,
     /// Time passes.
@@ -103,6 +105,7 @@ pub struct Network<M = Radio> {
     /// The senders that each node hears in the current round, ascending.
     inboxes: Vec<Vec<NodeId>>,
     stage: Stage,
+    rounds: usize,
     times: KernelTimes,
 }
 
@@ -148,6 +151,7 @@ impl<M: Medium> Network<M> {
             beacons: Vec::with_capacity(nodes),
             inboxes: vec![Vec::new(); nodes],
             stage: Stage::Flow,
+            rounds: 0,
             times: KernelTimes::default(),
             site,
             robots,
@@ -192,7 +196,8 @@ impl<M: Medium> Network<M> {
         self.positions.extend(self.robots.iter().map(Robot::position));
         self.positions.extend(self.access_points.iter().map(AccessPoint::position));
         self.medium.update(&self.positions);
-        self.stage = Stage::Exchange(self.site.settings.rounds_per_period);
+        self.rounds = 0;
+        self.stage = Stage::Exchange;
     }
 
     /// One round: every node repeats its public state to those that hear it.
@@ -269,10 +274,18 @@ impl<M: Medium> Network<M> {
         }
     }
 
-    /// Paper-notes' repair of (13)–(14): deepest first, every robot sends what is missing to its
-    /// parent, once it has heard from all its children.
+    /// The repair of (13)–(14): every robot tells its parent that it hangs on it; then, deepest
+    /// first, each sends what is missing to its parent once it has heard from all its children.
     fn sweep(&mut self) {
-        let mut awaited: Vec<usize> = self.robots.iter().map(Robot::tree_degree).collect();
+        let mut awaited = vec![0_usize; self.robots.len()];
+        for child in 0..self.robots.len() {
+            let parent = self.robots[child].tree_parent().filter(|&node| node < awaited.len());
+            if let Some(parent) = parent
+                && self.medium.delivers(child, parent)
+            {
+                awaited[parent] += 1;
+            }
+        }
         let mut ready: Vec<NodeId> =
             (0..self.robots.len()).filter(|&robot| awaited[robot] == 0).collect();
         while let Some(robot) = ready.pop() {
@@ -383,20 +396,23 @@ impl<M: Medium> Network<M> {
                 self.times.coordination += begin.elapsed();
                 NetworkJump::Sample
             }
-            Stage::Exchange(0) => {
+            Stage::Exchange => {
+                if self.rounds == 0 {
+                    self.robots.iter_mut().for_each(Robot::begin_period);
+                }
+                self.exchange_beacons();
+                self.rounds += 1;
+                if self.has_exchanged_enough() {
+                    self.stage = Stage::Route;
+                }
+                self.times.coordination += begin.elapsed();
+                NetworkJump::Exchange
+            }
+            Stage::Route => {
                 self.route();
                 self.stage = Stage::Move;
                 self.times.routing += begin.elapsed();
                 NetworkJump::Route
-            }
-            Stage::Exchange(rounds) => {
-                if rounds == self.site.settings.rounds_per_period {
-                    self.robots.iter_mut().for_each(Robot::begin_period);
-                }
-                self.exchange_beacons();
-                self.stage = Stage::Exchange(rounds - 1);
-                self.times.coordination += begin.elapsed();
-                NetworkJump::Exchange
             }
             Stage::Move => {
                 self.negotiate();
@@ -404,6 +420,16 @@ impl<M: Medium> Network<M> {
                 NetworkJump::Move
             }
         }
+    }
+
+    /// A control period has a fixed number of rounds. Before the first one the robots are given as
+    /// many as news can take to cross the network, so that the tree stands when the clock starts.
+    fn has_exchanged_enough(&self) -> bool {
+        let longest_way = self.robots.len() + self.access_points.len();
+        let stands = self.step > 0
+            || self.rounds >= longest_way
+            || self.robots.iter().all(|robot| robot.tree_parent().is_some());
+        stands && self.rounds >= self.site.settings.rounds_per_period
     }
 
     /// Whether the clocks call for the next sample.
