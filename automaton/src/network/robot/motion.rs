@@ -333,11 +333,13 @@ impl Robot {
         self.still_periods = if still { self.still_periods.saturating_add(1) } else { 0 };
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
+        self.stir();
         segment.to
     }
 
     /// A new control period begins.
     pub fn restart_clock(&mut self) {
+        self.stir();
         self.position = self.arrival;
         self.velocity = Vector::zeros();
         self.clock = 0.0;
