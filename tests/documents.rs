@@ -1,0 +1,217 @@
+//! The documents say what the code says: drawings are regenerated and compared, and what tables
+//! name exists.
+//!
+//! `PLEACH_UPDATE_DOCS=1 cargo test --test documents` writes the generated documents anew.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use pleach::automaton::network::scenario::{Control, Scenario};
+use pleach::automaton::network::{mission_automaton, role_automaton};
+use pleach::automaton::{Automaton, diagram};
+use pleach::discrete::{Event, Location};
+use pleach::guards::Valuation;
+use pleach::scenario_file;
+
+const UPDATE: &str = "PLEACH_UPDATE_DOCS";
+
+/// The documents that people write, with their links and tables.
+const WRITTEN: [&str; 4] =
+    ["README.md", "docs/architecture.md", "docs/model.md", "docs/automata.md"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &str) -> String {
+    fs::read_to_string(root().join(path)).unwrap()
+}
+
+/// Compares a generated document with the file, or writes the file.
+fn keep_up_to_date(path: &str, document: &str) {
+    let file = root().join(path);
+    if std::env::var_os(UPDATE).is_some() {
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(&file, document).unwrap();
+    }
+    let kept = fs::read_to_string(&file).unwrap_or_default();
+    assert!(
+        kept == document,
+        "{path} is out of date; refresh it with `{UPDATE}=1 cargo test --test documents`"
+    );
+}
+
+// ---- The automata ------------------------------------------------------------------------------
+
+#[test]
+fn the_drawing_of_the_role_automaton_is_up_to_date() {
+    keep_up_to_date("docs/pictures/role.svg", &diagram::svg(&role_automaton().unwrap()));
+}
+
+#[test]
+fn the_drawing_of_the_mission_automaton_is_up_to_date() {
+    keep_up_to_date("docs/pictures/mission.svg", &diagram::svg(&mission_automaton().unwrap()));
+}
+
+#[test]
+fn the_page_on_the_automata_is_up_to_date() {
+    let (role, mission) = (role_automaton().unwrap(), mission_automaton().unwrap());
+    let page = format!(
+        "{INTRODUCTION}\n{}\n{}",
+        chapter("The role of a robot", "role", ROLE, &role),
+        chapter("The mission as one robot sees it", "mission", MISSION, &mission),
+    );
+    keep_up_to_date("docs/automata.md", &page);
+}
+
+const INTRODUCTION: &str = "\
+<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test documents -->
+
+# The two automata of a robot
+
+Every robot runs two automata over its own state. This page is written by the library from the
+transition tables, guards and resets that the robots run. A transition reads `event [guard] /
+reset (urgency, priority)`; all of them are taken *at once*, and where several could be, the
+smaller priority goes first. The words in the guards are the facts that a robot measures of
+itself; yes-or-no facts are 0 or 1. They are explained where they are measured, in
+[`facts.rs`](../automaton/src/network/robot/facts.rs).
+";
+
+const ROLE: &str = "\
+The role says what a robot is for the network. It is read off the robot's duty, so that its
+transitions reset nothing.
+";
+
+const MISSION: &str = "\
+The phase says where the mission stands for this robot. Transitions of priority 0 follow the newest
+word that the robot has heard; those of priority 1 are what it finds out itself, and their resets
+issue the next word. Robots are in different phases while a word spreads.
+";
+
+fn chapter<L: Location, E: Event, S: Valuation>(
+    title: &str,
+    name: &str,
+    text: &str,
+    automaton: &Automaton<L, E, S>,
+) -> String {
+    let (graph, table) = (diagram::mermaid(automaton), diagram::table(automaton));
+    format!(
+        "## {title}\n\n{text}\n\
+         ![The {name} automaton](pictures/{name}.svg)\n\n\
+         ```mermaid\n{graph}```\n\n\
+         Rows are locations, columns are events; a cell names the location that the event leads \
+         to.\n\n{table}"
+    )
+}
+
+// ---- Links and names ---------------------------------------------------------------------------
+
+/// A link in Markdown: its text and its target.
+struct Link {
+    text: String,
+    target: PathBuf,
+}
+
+/// The links of a document to files of this project, as paths from its root.
+fn links(document: &str) -> Vec<Link> {
+    let folder = Path::new(document).parent().unwrap();
+    let text = read(document);
+    let mut links = Vec::new();
+    for (at, _) in text.match_indices("](") {
+        let target = text[at + 2..].split(')').next().unwrap();
+        if target.contains("://") || target.starts_with('#') {
+            continue;
+        }
+        let name = text[..at].rsplit('[').next().unwrap();
+        let target = folder.join(target.split('#').next().unwrap());
+        links.push(Link { text: name.to_owned(), target });
+    }
+    links
+}
+
+#[test]
+fn every_link_leads_to_a_file() {
+    for document in WRITTEN {
+        let links = links(document);
+        assert!(!links.is_empty(), "{document} has no links");
+        for Link { text, target } in links {
+            assert!(root().join(&target).exists(), "{document}: [{text}] leads to {target:?}");
+        }
+    }
+}
+
+/// `[`Type::function`](path.rs)` promises that path.rs has something called `function`.
+#[test]
+fn every_item_named_in_the_documents_exists() {
+    let mut items = 0;
+    for document in WRITTEN {
+        for Link { text, target } in links(document) {
+            let Some(item) = text.strip_prefix('`').and_then(|text| text.strip_suffix('`')) else {
+                continue;
+            };
+            if target.extension().is_none_or(|extension| extension != "rs") || item.ends_with(".rs")
+            {
+                continue;
+            }
+            let source = fs::read_to_string(root().join(&target)).unwrap();
+            for word in item.split("::") {
+                assert!(has_word(&source, word), "{document}: {target:?} has no `{word}`");
+            }
+            items += 1;
+        }
+    }
+    assert!(items > 100, "only {items} items are named");
+}
+
+fn has_word(source: &str, word: &str) -> bool {
+    let is_part = |character: char| character.is_alphanumeric() || character == '_';
+    source.match_indices(word).any(|(at, _)| {
+        !source[..at].ends_with(is_part) && !source[at + word.len()..].starts_with(is_part)
+    })
+}
+
+// ---- The README --------------------------------------------------------------------------------
+
+#[test]
+fn the_readme_lists_every_scenario() {
+    let readme = read("README.md");
+    for entry in fs::read_dir(root().join("scenarios")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(readme.contains(&format!("(scenarios/{name})")), "{name} is not in the README");
+    }
+}
+
+/// Every key of `[control]` has a row that ends with the default its documentation states.
+#[test]
+fn the_readme_explains_every_control_key() {
+    let readme = read("README.md");
+    let control = toml::Table::try_from(settled_control()).unwrap();
+    assert!(control.len() > 10);
+    for key in control.keys() {
+        assert!(readme.contains(&format!("| `{key}` |")), "`{key}` is not in the README");
+    }
+}
+
+/// The defaults that do not depend on other keys stand in the README as they are.
+#[test]
+fn the_readme_states_the_defaults() {
+    let readme = read("README.md");
+    let control = toml::Table::try_from(settled_control()).unwrap();
+    for (key, value) in control {
+        if matches!(&*key, "clearance" | "service_radius" | "step_radius") {
+            continue;
+        }
+        let row = readme.lines().find(|line| line.starts_with(&format!("| `{key}` |"))).unwrap();
+        let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let stated = row.split('|').nth(2).unwrap().trim().trim_matches('`').replace(' ', "");
+        let same = stated == value || stated.parse::<f64>().ok() == value.parse::<f64>().ok();
+        assert!(same, "`{key}` defaults to {value}, the README says {stated}");
+    }
+}
+
+fn settled_control() -> Control {
+    let study: Scenario = scenario_file::read(&root().join("scenarios/study-1.toml")).unwrap();
+    Scenario { control: Control::default(), ..study }.with_defaults().control
+}
