@@ -73,9 +73,11 @@ impl Robot {
             self.task_position(task)
                 .is_some_and(|place| near(place).norm() <= settings.service_radius)
         });
-        let link_holds = station.post.parent.and_then(|anchor| self.bearer(anchor)).is_some_and(
-            |parent| self.walk_to(parent) <= self.site.hard_length,
-        );
+        let link_holds = station
+            .post
+            .parent
+            .and_then(|anchor| self.bearer(anchor))
+            .is_some_and(|parent| self.walk_to(parent) <= self.site.hard_length);
         let children_hold = self
             .neighbours
             .iter()

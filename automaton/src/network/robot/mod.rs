@@ -87,7 +87,7 @@ pub struct Robot {
     team: Option<TeamReport>,
 
     // Communication variables.
-    multiplier: routing::Multiplier,
+    routing: routing::RoutingState,
     links: Vec<RouteLink>,
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
@@ -150,7 +150,7 @@ impl Robot {
             subgroups: Vec::new(),
             subgroup: 0,
             team: None,
-            multiplier: routing::Multiplier::default(),
+            routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
             inflow: 0.0,
             inflows: Vec::new(),
