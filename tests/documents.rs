@@ -5,15 +5,20 @@
 
 #![allow(clippy::unwrap_used)] // a test that panics has failed
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+use std::{fs, io};
 
+use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::{Control, Scenario};
-use pleach::automaton::network::{mission_automaton, role_automaton};
+use pleach::automaton::network::{Site, mission_automaton, role_automaton};
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
+use pleach::figures::Album;
 use pleach::guards::Valuation;
-use pleach::scenario_file;
+use pleach::mission::{self, Watcher};
+use pleach::summary::Summary;
+use pleach::{scenario_file, story};
 
 const UPDATE: &str = "PLEACH_UPDATE_DOCS";
 
@@ -29,10 +34,14 @@ fn read(path: &str) -> String {
     fs::read_to_string(root().join(path)).unwrap()
 }
 
+fn is_update() -> bool {
+    std::env::var_os(UPDATE).is_some()
+}
+
 /// Compares a generated document with the file, or writes the file.
 fn keep_up_to_date(path: &str, document: &str) {
     let file = root().join(path);
-    if std::env::var_os(UPDATE).is_some() {
+    if is_update() {
         fs::create_dir_all(file.parent().unwrap()).unwrap();
         fs::write(&file, document).unwrap();
     }
@@ -104,6 +113,78 @@ fn chapter<L: Location, E: Event, S: Valuation>(
          Rows are locations, columns are events; a cell names the location that the event leads \
          to.\n\n{table}"
     )
+}
+
+// ---- The run in the README ---------------------------------------------------------------------
+
+/// How many sentences of the story the README shows.
+const SENTENCES: usize = 12;
+
+/// The sentences of the story, as the program shows them.
+#[derive(Default)]
+struct Story(Vec<String>);
+
+impl Watcher for Story {
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        let telling = events.iter().filter(|event| story::is_telling(event));
+        let line = |event| format!("k = {:<6} {}", snapshot.step, story::tell(event));
+        self.0.extend(telling.map(line));
+        Ok(())
+    }
+}
+
+/// The pictures are drawn anew with everything else, and not compared.
+#[test]
+fn the_run_in_the_readme_is_up_to_date() {
+    let scenario = study();
+    let (mut story, mut summary) = (Story::default(), Summary::new(&scenario));
+    let mut album = album(&scenario);
+    let completed = mission::run(&scenario, &mut [&mut story, &mut summary, &mut album]).unwrap();
+    if is_update() {
+        let folder = std::env::temp_dir().join(format!("pleach-{}", std::process::id()));
+        let figures = album.write(&folder, &completed.end).unwrap();
+        keep_picture(&figures, "stationary", 1, "study-1-stuck.svg");
+        keep_picture(&figures, "-end", 0, "study-1-end.svg");
+        fs::remove_dir_all(folder).unwrap();
+    }
+    let summary = summary.completed(completed, Duration::ZERO).to_string();
+    let untimed = summary.lines().take_while(|line| !line.starts_with("  time "));
+    let (first, last) = (&story.0[..SENTENCES], &story.0[story.0.len() - 1..]);
+    let run: Vec<&str> = first
+        .iter()
+        .map(String::as_str)
+        .chain(["…"])
+        .chain(last.iter().map(String::as_str))
+        .chain([""])
+        .chain(untimed)
+        .collect();
+
+    let readme = read("README.md");
+    let (before, rest) = readme.split_once(BEGIN_OF_RUN).unwrap();
+    let (_, after) = rest.split_once(END_OF_RUN).unwrap();
+    let run = run.join("\n");
+    let refreshed = format!("{before}{BEGIN_OF_RUN}\n```text\n{run}\n```\n{END_OF_RUN}{after}");
+    keep_up_to_date("README.md", &refreshed);
+}
+
+const BEGIN_OF_RUN: &str =
+    "<!-- begin of the run: PLEACH_UPDATE_DOCS=1 cargo test --test documents -->";
+const END_OF_RUN: &str = "<!-- end of the run -->";
+
+fn album(scenario: &Scenario) -> Album {
+    let site = Site::new(scenario).unwrap();
+    let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
+    Album::new(scenario, site.free_space.outline().iter().map(corners).collect())
+}
+
+/// Copies the picture that is number `which` of those whose name contains `word`.
+fn keep_picture(figures: &[PathBuf], word: &str, which: usize, name: &str) {
+    let mut named = figures.iter().filter(|path| path.to_string_lossy().contains(word));
+    fs::copy(named.nth(which).unwrap(), root().join("docs/pictures").join(name)).unwrap();
+}
+
+fn study() -> Scenario {
+    scenario_file::read(&root().join("scenarios/study-1.toml")).unwrap()
 }
 
 // ---- Links and names ---------------------------------------------------------------------------
@@ -212,6 +293,5 @@ fn the_readme_states_the_defaults() {
 }
 
 fn settled_control() -> Control {
-    let study: Scenario = scenario_file::read(&root().join("scenarios/study-1.toml")).unwrap();
-    Scenario { control: Control::default(), ..study }.with_defaults().control
+    Scenario { control: Control::default(), ..study() }.with_defaults().control
 }

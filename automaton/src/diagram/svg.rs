@@ -37,27 +37,23 @@ const KEY: [&str; 2] =
 /// The automaton as an SVG document. Transitions that only may be taken are dashed, and those that
 /// happen at once are bold.
 pub fn svg<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
-    let rows = rows(automaton);
-    let label_width = rows
-        .iter()
-        .flat_map(|row| &row.label)
-        .map(String::as_str)
-        .chain(KEY)
-        .map(text_width)
-        .fold(0.0, f64::max);
+    let mut rows = rows(automaton);
+    let labels = rows.iter().flat_map(|row| &row.label).map(String::as_str);
+    let label_width = labels.chain(KEY).map(text_width).fold(0.0, f64::max);
     let columns = columns(automaton, MARGIN + label_width + GAP);
+    let right = columns.last().map_or(MARGIN + label_width, |last| last.x + last.width / 2.0);
+    let bottom = stack(&mut rows, MARGIN + ENTRANCE + box_height(&columns) + PADDING);
+
     let mut canvas = Canvas::new();
-    let bottom = draw_rows(&mut canvas, &rows, &columns);
+    draw_labels(&mut canvas, &rows, right);
     draw_columns(&mut canvas, &columns, bottom);
+    for row in &rows {
+        draw_arrows(&mut canvas, row, &columns);
+    }
     if let Some(initial) = node(automaton.initial()).and_then(|node| columns.get(node.index())) {
         canvas.initial_arrow(Place { x: initial.x, y: MARGIN }, ENTRANCE);
     }
-    for (number, line) in KEY.iter().enumerate() {
-        let y = MARGIN + ENTRANCE + (number as f64 + 0.5) * LINE_HEIGHT;
-        canvas.label(Place { x: MARGIN, y }, line, "key");
-    }
-    let width = columns.last().map_or(MARGIN + label_width, |last| last.x + last.width / 2.0);
-    canvas.finish(Size { width: width + MARGIN, height: bottom + LINE_HEIGHT + MARGIN })
+    canvas.finish(Size { width: right + MARGIN, height: bottom + LINE_HEIGHT + MARGIN })
 }
 
 /// A location: its box, and the line below it.
@@ -75,6 +71,18 @@ struct Row {
     /// The column that it enters.
     target: usize,
     urgency: Urgency,
+    /// Where it begins in the picture.
+    top: f64,
+}
+
+impl Row {
+    fn height(&self) -> f64 {
+        (self.label.len() as f64 * LINE_HEIGHT + PADDING).max(ROW_HEIGHT)
+    }
+
+    fn middle(&self) -> f64 {
+        self.top + self.height() / 2.0
+    }
 }
 
 fn columns<L: Location, E: Event, S: Valuation>(
@@ -114,7 +122,7 @@ fn rows<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> 
                 Some(row) => row.sources.push(source),
                 None => {
                     let urgency = transition.urgency;
-                    rows.push(Row { label, sources: vec![source], target, urgency });
+                    rows.push(Row { label, sources: vec![source], target, urgency, top: 0.0 });
                 }
             }
         }
@@ -122,29 +130,36 @@ fn rows<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> 
     rows
 }
 
-/// Draws the rows on a ground of alternating colour; returns where they end.
-fn draw_rows(canvas: &mut Canvas, rows: &[Row], columns: &[Column]) -> f64 {
-    let mut top = MARGIN + ENTRANCE + box_height(columns) + PADDING;
-    let right = columns.last().map_or(0.0, |last| last.x + last.width / 2.0);
-    for (number, row) in rows.iter().enumerate() {
-        let height = (row.label.len() as f64 * LINE_HEIGHT + PADDING).max(ROW_HEIGHT);
-        if number % 2 == 0 {
-            let corner = Place { x: MARGIN / 2.0, y: top };
-            canvas.stripe(corner, Size { width: right, height });
-        }
-        let middle = top + height / 2.0;
-        let first = middle - (row.label.len() as f64 - 1.0) / 2.0 * LINE_HEIGHT;
-        for (at, line) in row.label.iter().enumerate() {
-            let class = if at == 0 { "name" } else { "condition" };
-            canvas.label(Place { x: MARGIN, y: first + at as f64 * LINE_HEIGHT }, line, class);
-        }
-        draw_arrows(canvas, row, columns, middle);
-        top += height;
+/// Puts the rows below each other; returns where they end.
+fn stack(rows: &mut [Row], mut top: f64) -> f64 {
+    for row in rows {
+        row.top = top;
+        top += row.height();
     }
     top + PADDING
 }
 
-fn draw_arrows(canvas: &mut Canvas, row: &Row, columns: &[Column], y: f64) {
+/// The key, and the labels of the rows on a ground of alternating colour.
+fn draw_labels(canvas: &mut Canvas, rows: &[Row], right: f64) {
+    for (number, line) in KEY.iter().enumerate() {
+        let y = MARGIN + ENTRANCE + (number as f64 + 0.5) * LINE_HEIGHT;
+        canvas.label(Place { x: MARGIN, y }, line, "key");
+    }
+    for (number, row) in rows.iter().enumerate() {
+        if number % 2 == 0 {
+            let corner = Place { x: MARGIN / 2.0, y: row.top };
+            canvas.stripe(corner, Size { width: right, height: row.height() });
+        }
+        let first = row.middle() - (row.label.len() as f64 - 1.0) / 2.0 * LINE_HEIGHT;
+        for (at, line) in row.label.iter().enumerate() {
+            let class = if at == 0 { "name" } else { "condition" };
+            canvas.label(Place { x: MARGIN, y: first + at as f64 * LINE_HEIGHT }, line, class);
+        }
+    }
+}
+
+fn draw_arrows(canvas: &mut Canvas, row: &Row, columns: &[Column]) {
+    let y = row.middle();
     let target = columns[row.target].x;
     let class = match row.urgency {
         Urgency::May => "may",
