@@ -62,10 +62,12 @@ pub struct Robot {
     left_post: Option<PostId>,
     offer: Option<Exchange<Duty>>,
     offers_made: u32,
+    last_partner: Option<NodeId>,
     reply: Option<Reply<Duty>>,
 
     // What it hears and where it hangs.
     neighbours: Vec<Neighbour>,
+    parent: Option<NodeId>,
     lineage: Option<Arc<Lineage>>,
     below: Arc<IdSet>,
     can_detach: bool,
@@ -131,8 +133,10 @@ impl Robot {
             left_post: None,
             offer: None,
             offers_made: 0,
+            last_partner: None,
             reply: None,
             neighbours: Vec::new(),
+            parent: None,
             lineage: None,
             below: Arc::new(IdSet::singleton(id)),
             can_detach: false,
@@ -176,6 +180,7 @@ impl Robot {
             route: self.route.clone(),
             crossing: Vec::new(),
             lineage: self.lineage.clone(),
+            parent: self.parent,
             below: Arc::clone(&self.below),
             duty: Some(self.duty),
             parked: self.is_parked(),
@@ -255,6 +260,7 @@ impl Robot {
         self.keep_place();
         self.reattach();
         self.hear_word();
+        self.remember_parent();
     }
 
     /// Takes at most one transition of the mission automaton.
