@@ -2,9 +2,10 @@
 //!
 //! Everything here is local. A robot knows its own position and duty, what every robot knows
 //! from the beginning ([`Site`]), and the beacons of the neighbours that it hears. The chapters
-//! follow the day of a robot: it [listens](hearing), keeps its [place in the tree](attachment),
-//! takes part in the [mission](mission), [exchanges duties](exchange) with a robot in its way or
-//! [makes way](yielding), [routes](routing) its packets and [moves](motion).
+//! follow the day of a robot: it listens (`hearing`), keeps its place in the tree (`attachment`,
+//! `links`), takes part in the mission (`mission`), exchanges duties with a robot in its way
+//! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
+//! what its guards see of all this are `facts`.
 
 mod attachment;
 mod exchange;
