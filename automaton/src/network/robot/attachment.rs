@@ -146,6 +146,7 @@ impl Robot {
         })
     }
 
+    /// What a neighbour that [accepts](Self::accepts_redundant) others stands for.
     fn anchor_of(&self, neighbour: &Neighbour) -> Anchor {
         match neighbour.post() {
             Some(post) => Anchor::Post(post.id),
@@ -229,10 +230,9 @@ impl Robot {
         let gain = REATTACHMENT_GAIN * self.site.build_length;
         let mut nearest = self.site.free_space.distance(parent.position(), goal) - gain;
         let mut better = None;
-        for neighbour in &self.neighbours {
+        for neighbour in self.neighbours.iter().filter(|n| Self::accepts_redundant(n)) {
             let candidate = self.anchor_of(neighbour);
             if candidate == anchor
-                || !Self::accepts_redundant(neighbour)
                 || neighbour
                     .beacon
                     .lineage

@@ -1,0 +1,238 @@
+//! Distributed means distributed: what robots do is decided by the messages that reach them.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+mod missions;
+
+use missions::{Mission, Period, network_over, run, run_over, run_unmonitored, shipped};
+use pleach::automaton::network::record::{End, MissionEvent as Event, Outcome};
+use pleach::automaton::network::scenario::{RobotStart, Scenario};
+use pleach::automaton::network::{Medium, Radio, Site};
+use pleach::continuous::Point;
+use pleach::discrete::network::NodeId;
+use std::collections::BTreeSet;
+use std::sync::OnceLock;
+
+fn study_one() -> &'static Mission {
+    static MISSION: OnceLock<Mission> = OnceLock::new();
+    MISSION.get_or_init(|| run(shipped("study-1")))
+}
+
+// ---- Media -------------------------------------------------------------------------------------
+
+/// A radio that counts its messages and insists that each has a link to go over.
+#[derive(Debug)]
+struct Inspected {
+    radio: Radio,
+    range: f64,
+    robots: usize,
+    positions: Vec<Point>,
+    messages: u64,
+    longest: f64,
+}
+
+impl Inspected {
+    fn new(site: &Site) -> Self {
+        Inspected {
+            radio: Radio::new(site),
+            range: site.settings.link.max_range,
+            robots: site.robots,
+            positions: Vec::new(),
+            messages: 0,
+            longest: 0.0,
+        }
+    }
+}
+
+impl Medium for Inspected {
+    fn update(&mut self, positions: &[Point]) {
+        self.positions = positions.to_vec();
+        self.radio.update(positions);
+    }
+
+    fn audience(&self, sender: NodeId) -> &[NodeId] {
+        self.radio.audience(sender)
+    }
+
+    fn delivers(&mut self, sender: NodeId, receiver: NodeId) -> bool {
+        let is_wire = sender >= self.robots && receiver >= self.robots;
+        if !is_wire {
+            let distance = (self.positions[sender] - self.positions[receiver]).norm();
+            assert!(distance < self.range, "{sender} to {receiver}: R = 0 over {distance}");
+            self.longest = self.longest.max(distance);
+        }
+        assert_ne!(sender, receiver);
+        self.messages += 1;
+        self.radio.delivers(sender, receiver)
+    }
+}
+
+/// A radio some of whose messages are lost; `loses` is told how many messages there were before,
+/// and between whom.
+struct Lossy<F> {
+    radio: Radio,
+    messages: u64,
+    loses: F,
+}
+
+impl<F: FnMut(u64, NodeId, NodeId) -> bool> Lossy<F> {
+    fn new(site: &Site, loses: F) -> Self {
+        Lossy { radio: Radio::new(site), messages: 0, loses }
+    }
+}
+
+impl<F: FnMut(u64, NodeId, NodeId) -> bool> Medium for Lossy<F> {
+    fn update(&mut self, positions: &[Point]) {
+        self.radio.update(positions);
+    }
+
+    fn audience(&self, sender: NodeId) -> &[NodeId] {
+        self.radio.audience(sender)
+    }
+
+    fn delivers(&mut self, sender: NodeId, receiver: NodeId) -> bool {
+        self.messages += 1;
+        !(self.loses)(self.messages - 1, sender, receiver)
+    }
+}
+
+// ---- Messages go over links --------------------------------------------------------------------
+
+#[test]
+fn no_message_goes_where_there_is_no_link() {
+    let (mission, network) = run_over(shipped("study-1"), Inspected::new);
+    assert_eq!(mission.periods, study_one().periods);
+    assert_eq!(mission.end, study_one().end);
+    assert!(network.medium().messages > 1_000_000);
+    let range = network.site().settings.link.max_range;
+    assert!(network.medium().longest > 0.99 * range, "the whole range is used");
+}
+
+/// Without messages nobody learns of a task, sends anything or moves: whatever robots know of
+/// each other has gone through the medium.
+#[test]
+fn without_messages_nothing_happens() {
+    let scenario = shipped("study-1");
+    let mut network = network_over(&scenario, |site| Lossy::new(site, |_, _, _| true));
+    let (periods, end) = run_unmonitored(&mut network, 50);
+    assert_eq!(end, None);
+    for Period { snapshot, events } in &periods {
+        assert_eq!(snapshot.positions, periods[0].snapshot.positions);
+        assert!(snapshot.routes.is_empty());
+        let idle = |event: &Event| {
+            matches!(event, Event::TaskAnnounced { .. } | Event::RouteInfeasible { .. })
+        };
+        assert!(events.iter().all(idle), "{events:?}");
+    }
+}
+
+// ---- A robot out of everyone's range -----------------------------------------------------------
+
+/// A corner of Study I in which no robot comes into range and through which none walks.
+const FAR_CORNER: [f64; 2] = [2.6, 1.53];
+
+fn with_hermit() -> Scenario {
+    let mut scenario = shipped("study-1");
+    scenario.robot.push(RobotStart { position: FAR_CORNER, rate: 0.075 });
+    scenario
+}
+
+/// What the robots of Study I did, as if the last robot had never been there: access points are
+/// numbered one lower.
+fn without_the_last_robot(period: &Period) -> Period {
+    let hermit = period.snapshot.positions.len() - 1;
+    let mut snapshot = period.snapshot.clone();
+    snapshot.positions.pop();
+    snapshot.roles.pop();
+    snapshot.residuals.pop();
+    snapshot.multipliers.pop();
+    snapshot.tree.retain(|&(child, _)| child != hermit);
+    snapshot.routes.retain(|route| route.from != hermit);
+    let renumber = |node: &mut usize| {
+        assert_ne!(*node, hermit, "somebody knows the hermit");
+        *node -= usize::from(*node > hermit);
+    };
+    snapshot.tree.iter_mut().for_each(|(_, parent)| renumber(parent));
+    snapshot.routes.iter_mut().for_each(|route| renumber(&mut route.to));
+    let mut events = period.events.clone();
+    events.retain(|event| *event != Event::RouteInfeasible { robot: hermit });
+    for event in &mut events {
+        if let Event::Reattached { parent, .. } = event {
+            renumber(parent);
+        }
+    }
+    Period { snapshot, events }
+}
+
+#[test]
+fn a_robot_out_of_range_changes_nothing_for_the_others() {
+    let scenario = with_hermit();
+    assert!(scenario.validate().is_err(), "no mission starts so by itself");
+    let mut network = network_over(&scenario, Radio::new);
+    let (periods, end) = run_unmonitored(&mut network, 5_000);
+    let range = network.site().settings.link.max_range;
+    for (period, alone) in periods.iter().zip(&study_one().periods) {
+        let (hermit, others) = period.snapshot.positions.split_last().unwrap();
+        assert!(others.iter().all(|other| (other - hermit).norm() > range));
+        assert_eq!(&without_the_last_robot(period), alone);
+    }
+    assert_eq!(periods.len(), study_one().periods.len());
+    assert_eq!(end.as_ref(), Some(&study_one().end));
+}
+
+/// The hermit itself, alone with its numbers, knows of nothing.
+#[test]
+fn a_robot_out_of_range_hears_of_nothing() {
+    let mut network = network_over(&with_hermit(), Radio::new);
+    let (periods, _) = run_unmonitored(&mut network, 100);
+    for Period { snapshot, .. } in periods {
+        assert_eq!(snapshot.positions[13], Point::from(FAR_CORNER));
+        assert!(!snapshot.active.contains(&13));
+        assert!(snapshot.routes.iter().all(|route| route.from != 13 && route.to != 13));
+    }
+}
+
+// ---- Rounds of messages ------------------------------------------------------------------------
+
+#[test]
+fn one_round_a_period_and_fifty_both_service_study_one() {
+    for rounds in [1, 50] {
+        let mut scenario = shipped("study-1");
+        scenario.control.rounds_per_period = Some(rounds);
+        let mission = run(scenario);
+        mission.assert_serviced();
+    }
+}
+
+// ---- Messages that are lost --------------------------------------------------------------------
+
+/// A redundant robot on which nobody hangs.
+const NOBODY_NEEDS: NodeId = 0;
+
+#[test]
+fn probe_jam() {
+    for from in [0u64, 1, 100, 400_000] {
+        for robot in [0, 1, 5, 12] {
+        let mut network = network_over(&shipped("study-1"), |site| {
+            Lossy::new(site, move |before, sender, receiver| {
+                before >= from && (sender == robot || receiver == robot)
+            })
+        });
+        let (periods, end) = run_unmonitored(&mut network, 3_000);
+        let events: Vec<_> = periods.iter().flat_map(|p| p.events.iter().filter(|e| !matches!(e, Event::RouteInfeasible{..})).map(move |e| (p.snapshot.step, e))).collect();
+        println!("{from} {robot}: {} {end:?} {:?}", periods.len(), events.last());
+        }
+    }
+}
+
+#[test]
+fn probe_loss() {
+    for name in ["study-1", "leaf-leader", "study-2", "corridor", "redundant-node"] {
+        for every in [1000u64, 100, 10, 7, 3] {
+            let (mission, _) = run_over(shipped(name), |site| {
+                Lossy::new(site, move |before, _, _| before % every == every - 1)
+            });
+            println!("{name} {every}: {} {:?}", mission.periods.len(), mission.end);
+        }
+    }
+}

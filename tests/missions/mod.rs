@@ -1,0 +1,146 @@
+//! Missions that are run to their end, and everything that their observers saw.
+
+#![allow(dead_code)] // not every test needs everything
+
+use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::{Medium, Network, Site};
+use pleach::automaton::{Executor, HybridTime, Observer, Reason};
+use pleach::mission::{self, Completed, Watcher};
+use pleach::verify::network::Extremes;
+use pleach::{scenario_file, story};
+use std::io;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What a control period showed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Period {
+    pub snapshot: Snapshot,
+    pub events: Vec<MissionEvent>,
+}
+
+/// A mission that has ended.
+#[derive(Clone, Debug)]
+pub struct Mission {
+    pub scenario: Scenario,
+    pub periods: Vec<Period>,
+    pub end: End,
+    pub extremes: Extremes,
+}
+
+/// The scenario of that name among those that are shipped.
+pub fn shipped(name: &str) -> Scenario {
+    let path = format!("scenarios/{name}.toml");
+    scenario_file::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The mission of a scenario, with the monitor watching.
+pub fn run(scenario: Scenario) -> Mission {
+    let mut recorder = Recorder::default();
+    let completed = mission::run(&scenario, &mut [&mut recorder]).expect("a mission can start");
+    Mission::new(scenario, recorder, completed)
+}
+
+/// The same over a medium of the test's own.
+pub fn run_over<M: Medium>(
+    scenario: Scenario,
+    medium: impl FnOnce(&Site) -> M,
+) -> (Mission, Network<M>) {
+    let mut network = network_over(&scenario, medium);
+    let mut recorder = Recorder::default();
+    let completed = mission::run_network(&scenario, &mut network, &mut [&mut recorder])
+        .expect("a mission can start");
+    (Mission::new(scenario, recorder, completed), network)
+}
+
+/// The network of a scenario over a medium of the test's own.
+pub fn network_over<M: Medium>(
+    scenario: &Scenario,
+    medium: impl FnOnce(&Site) -> M,
+) -> Network<M> {
+    let site = Arc::new(Site::new(scenario).expect("a valid site"));
+    let medium = medium(&site);
+    Network::with_medium(scenario, site, medium).expect("a network")
+}
+
+/// Runs a network for at most `periods` control periods with nobody but a recorder looking on,
+/// so that it may start where the monitor refuses and go on where the monitor stops.
+pub fn run_unmonitored<M: Medium>(
+    network: &mut Network<M>,
+    periods: usize,
+) -> (Vec<Period>, Option<End>) {
+    let mut recorder = Recorder::default();
+    let horizon = network.site().settings.period * periods as f64;
+    let executor = Executor::new(horizon, 1_000_000).expect("valid limits");
+    let ending = executor.run(network, &mut recorder).expect("a run without errors");
+    let end = match ending.reason {
+        Reason::Finished(end) => Some(end),
+        Reason::Horizon => None,
+        other => panic!("the executor stops: {other:?}"),
+    };
+    (recorder.periods, end)
+}
+
+/// A watcher, and an observer, that keeps everything.
+#[derive(Debug, Default)]
+struct Recorder {
+    periods: Vec<Period>,
+}
+
+impl Watcher for Recorder {
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        self.periods.push(Period { snapshot: snapshot.clone(), events: events.to_vec() });
+        Ok(())
+    }
+}
+
+impl<M: Medium> Observer<Network<M>> for Recorder {
+    fn flows(&mut self, network: &Network<M>, _: HybridTime, _: f64) -> ControlFlow<End> {
+        self.periods.push(Period { snapshot: network.snapshot(), events: network.events() });
+        ControlFlow::Continue(())
+    }
+}
+
+impl Mission {
+    fn new(scenario: Scenario, recorder: Recorder, completed: Completed) -> Self {
+        let Completed { end, extremes, .. } = completed;
+        Mission { scenario, periods: recorder.periods, end, extremes }
+    }
+
+    /// The number of tasks serviced.
+    pub fn serviced(&self) -> usize {
+        let serviced = |(_, event): &(usize, &MissionEvent)| {
+            matches!(event, MissionEvent::TaskServiced { .. })
+        };
+        self.events().filter(serviced).count()
+    }
+
+    /// Every event with its k, in order.
+    pub fn events(&self) -> impl Iterator<Item = (usize, &MissionEvent)> {
+        self.periods.iter().flat_map(|period| {
+            period.events.iter().map(|event| (period.snapshot.step, event))
+        })
+    }
+
+    /// The last thing that the observers saw.
+    pub fn last(&self) -> &Snapshot {
+        &self.periods.last().expect("at least one period").snapshot
+    }
+
+    /// The mission as a story: one line an event, and its outcome.
+    pub fn story(&self) -> String {
+        let mut lines: Vec<_> = (self.events())
+            .map(|(k, event)| format!("{k:>4}  {}", story::tell(event)))
+            .collect();
+        lines.push(format!("      {}", self.end.outcome.name()));
+        lines.join("\n")
+    }
+
+    /// Says why a mission that should have serviced every task has not.
+    pub fn assert_serviced(&self) {
+        assert_eq!(self.end.outcome, Outcome::Serviced, "{}: {}", self.scenario.name, self.end.reason);
+        assert_eq!(self.serviced(), self.scenario.task.len(), "{}", self.scenario.name);
+    }
+}

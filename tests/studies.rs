@@ -1,0 +1,295 @@
+//! The shipped scenarios as whole missions: how each ends, the story it was made to tell, and
+//! what an oracle that knows nothing of the monitor reads out of its trace.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+mod missions;
+mod oracle;
+
+use missions::{Mission, run, shipped};
+use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
+use pleach::automaton::network::scenario::Settings;
+use pleach::discrete::network::Role;
+use pleach::mission::Watcher;
+use pleach::trace::{TraceReader, TraceWriter};
+use pleach::verify::network::SLACK;
+use std::collections::BTreeSet;
+use std::sync::OnceLock;
+
+/// Every shipped scenario with its outcome and the number of tasks serviced.
+const SHIPPED: [(&str, Outcome, usize); 13] = [
+    ("corridor", Outcome::Serviced, 2),
+    ("discs", Outcome::Serviced, 3),
+    ("hall", Outcome::Serviced, 6),
+    ("leaf-leader", Outcome::Serviced, 3),
+    ("office", Outcome::Serviced, 3),
+    ("redundant-node", Outcome::Serviced, 1),
+    ("ring", Outcome::Serviced, 2),
+    ("study-1", Outcome::Serviced, 3),
+    ("study-1b", Outcome::Serviced, 3),
+    ("study-2", Outcome::Serviced, 2),
+    ("too-few", Outcome::InsufficientRobots, 1),
+    ("two-clusters", Outcome::Serviced, 3),
+    ("unreachable", Outcome::UnreachableTask, 1),
+];
+
+/// The mission of a shipped scenario, run once for all tests.
+fn mission(name: &str) -> &'static Mission {
+    static MISSIONS: [OnceLock<Mission>; SHIPPED.len()] =
+        [const { OnceLock::new() }; SHIPPED.len()];
+    let at = SHIPPED.iter().position(|(shipped, ..)| *shipped == name).unwrap();
+    MISSIONS[at].get_or_init(|| run(shipped(name)))
+}
+
+// ---- How missions end --------------------------------------------------------------------------
+
+#[test]
+fn no_shipped_scenario_is_forgotten() {
+    let mut names: Vec<_> = std::fs::read_dir("scenarios")
+        .unwrap()
+        .map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    names.sort();
+    assert_eq!(names, SHIPPED.map(|(name, ..)| name));
+}
+
+#[test]
+fn every_shipped_scenario_ends_as_it_should() {
+    for (name, outcome, serviced) in SHIPPED {
+        let mission = mission(name);
+        assert_eq!(mission.end.outcome, outcome, "{name}: {}", mission.end.reason);
+        assert_eq!(mission.serviced(), serviced, "{name}");
+        assert_eq!(mission.last().serviced.len(), serviced, "{name}");
+    }
+}
+
+#[test]
+fn the_bounds_are_kept_in_every_shipped_scenario() {
+    for (name, ..) in SHIPPED {
+        let mission = mission(name);
+        let settings = Settings::resolve(&mission.scenario);
+        let value = |extreme: &Option<_>| {
+            let extreme: &pleach::verify::network::Extreme = extreme.as_ref().unwrap();
+            extreme.value
+        };
+        assert_eq!(settings.residual_tolerance, 0.0, "{name}: the default");
+        assert!(value(&mission.extremes.pair_distance) >= 2.0 * settings.clearance - SLACK, "{name}");
+        assert!(value(&mission.extremes.clearance) >= settings.clearance - SLACK, "{name}");
+        assert!(value(&mission.extremes.residual) >= -SLACK, "{name}");
+        assert!(value(&mission.extremes.load) <= 1.0 + SLACK, "{name}");
+    }
+}
+
+#[test]
+fn nobody_moves_any_more_when_a_mission_ends() {
+    for (name, ..) in SHIPPED {
+        assert!(mission(name).last().active.is_empty(), "{name}");
+    }
+}
+
+// ---- Their stories -----------------------------------------------------------------------------
+
+#[test]
+fn study_one_tells_its_story() {
+    insta::assert_snapshot!("study-1", mission("study-1").story());
+}
+
+#[test]
+fn study_two_tells_its_story() {
+    insta::assert_snapshot!("study-2", mission("study-2").story());
+}
+
+/// What the election of a leader led to.
+struct Leadership<'a> {
+    leader: usize,
+    conflict: bool,
+    /// The role of the leader just before it was elected.
+    origin: Role,
+    /// What happened from the election to the service of the task.
+    events: Vec<&'a Event>,
+}
+
+fn leadership(mission: &Mission, task: usize) -> Leadership<'_> {
+    let events: Vec<_> = mission.events().collect();
+    let elected = |(k, event): &(usize, &Event)| match event {
+        &&Event::LeaderElected { task: of, robot, conflict } if of == task => {
+            Some((*k, robot, conflict))
+        }
+        _ => None,
+    };
+    let at = events.iter().position(|entry| elected(entry).is_some()).unwrap();
+    let (k, leader, conflict) = elected(&events[at]).unwrap();
+    let serviced = |event: &Event| matches!(event, Event::TaskServiced { task: of, .. } if *of == task);
+    let rest = events[at..].iter().map(|(_, event)| *event);
+    Leadership {
+        leader,
+        conflict,
+        origin: mission.periods[k - 1].snapshot.roles[leader],
+        events: rest.take_while(|event| !serviced(event)).collect(),
+    }
+}
+
+impl Leadership<'_> {
+    /// The subgroups that arrived before the leader was released.
+    fn subgroups_that_release(&self) -> Vec<usize> {
+        let released = |event: &&&Event| **event != &Event::Released { robot: self.leader };
+        assert!(self.events.contains(&&Event::Released { robot: self.leader }));
+        (self.events.iter().take_while(released))
+            .filter_map(|event| match event {
+                Event::SubgroupArrived { subgroup, .. } => Some(*subgroup),
+                _ => None,
+            })
+            .collect()
+    }
+}
+
+/// The third task of these two is led by the leaf of the second, which a team of subgroups
+/// relieves one after another.
+#[test]
+fn a_leaf_is_elected_leader_and_several_subgroups_relieve_it() {
+    for (name, subgroups) in [("leaf-leader", 2), ("study-1b", 3)] {
+        let third = leadership(mission(name), 2);
+        assert!(third.conflict, "{name}: a leaf has duties");
+        assert_eq!(third.origin, Role::Leaf, "{name}");
+        let relief = third.subgroups_that_release();
+        assert_eq!(relief, (0..subgroups).collect::<Vec<_>>(), "{name}");
+    }
+}
+
+#[test]
+fn a_node_in_a_branch_is_elected_leader() {
+    let second = leadership(mission("study-1b"), 1);
+    assert!(second.conflict);
+    assert!(matches!(second.origin, Role::Node | Role::Junction));
+    assert_eq!(second.subgroups_that_release(), [0, 1]);
+}
+
+/// Whoever relieves a leaf services its task from then on, and never leaves it.
+#[test]
+fn the_task_of_a_leaf_that_leads_passes_to_its_replacement() {
+    for name in ["leaf-leader", "study-1b", "study-1"] {
+        let mission = mission(name);
+        let leader = leadership(mission, 2).leader;
+        let answerable = |snapshot: &Snapshot| {
+            snapshot.serviced.iter().find(|(task, _)| *task == 1).map(|&(_, robot)| robot)
+        };
+        let holders: Vec<_> =
+            mission.periods.iter().filter_map(|period| answerable(&period.snapshot)).collect();
+        assert_eq!(holders[0], leader, "{name}");
+        assert_ne!(*holders.last().unwrap(), leader, "{name}");
+    }
+}
+
+/// Remark 5.6: robot 1 carries the traffic of a branch and loses it to the second access point.
+#[test]
+fn a_redundant_robot_becomes_a_node_and_is_redundant_again() {
+    let mission = mission("redundant-node");
+    let mut roles: Vec<_> = mission.periods.iter().map(|period| period.snapshot.roles[1]).collect();
+    roles.dedup();
+    assert_eq!(roles, [Role::Redundant, Role::Node, Role::Redundant]);
+
+    let hangs_on_second_access_point =
+        mission.last().tree.iter().any(|&(_, parent)| parent == mission.scenario.robot.len() + 1);
+    assert!(hangs_on_second_access_point);
+}
+
+/// The lanes beside the holes are 3.5ρ wide, so that no robot passes another in the corridor.
+#[test]
+fn robots_go_through_the_corridor_in_single_file() {
+    let mission = mission("corridor");
+    let is_inside = |snapshot: &Snapshot, robot: usize| {
+        let mouths = 0.9..2.2;
+        mouths.contains(&snapshot.positions[robot].x)
+    };
+    let mut longest = 0;
+    for pair in mission.periods.windows(2) {
+        let [before, after] = [&pair[0].snapshot, &pair[1].snapshot];
+        let mut file: Vec<_> = (0..before.positions.len())
+            .filter(|&robot| is_inside(before, robot) && is_inside(after, robot))
+            .collect();
+        file.sort_by(|&a, &b| before.positions[a].x.total_cmp(&before.positions[b].x));
+        assert!(file.is_sorted_by_key(|&robot| after.positions[robot].x), "k = {}", after.step);
+        longest = longest.max(file.len());
+    }
+    assert!(longest >= 3, "a file of {longest} robots");
+}
+
+/// Two geodesics are equally long; the first branch keeps to one side of the ring.
+#[test]
+fn the_first_branch_goes_round_the_ring_one_way() {
+    let mission = mission("ring");
+    let leader = leadership(mission, 0).leader;
+    let beyond_the_sides = |snapshot: &&Snapshot| (0.5..1.1).contains(&snapshot.positions[leader].y);
+    let east: BTreeSet<_> = (mission.periods.iter().map(|period| &period.snapshot))
+        .filter(beyond_the_sides)
+        .map(|snapshot| snapshot.positions[leader].x > 1.0)
+        .collect();
+    assert_eq!(east.len(), 1);
+}
+
+/// Remark 4.3: discs of radius 0.35 m, and they meet in aisles where one must give way.
+#[test]
+fn discs_meet_and_never_touch() {
+    let mission = mission("discs");
+    let exchanges = mission.events().filter(|(_, e)| matches!(e, Event::DutiesExchanged { .. }));
+    assert!(exchanges.count() > 0);
+    assert!(mission.extremes.pair_distance.as_ref().unwrap().value >= 2.0 * 0.35);
+    assert!(mission.extremes.clearance.as_ref().unwrap().value >= 0.35);
+}
+
+#[test]
+fn both_access_points_serve_where_there_are_two() {
+    for name in ["study-2", "two-clusters", "redundant-node"] {
+        let mission = mission(name);
+        let robots = mission.scenario.robot.len();
+        let parents: BTreeSet<_> = mission.last().tree.iter().map(|&(_, parent)| parent).collect();
+        assert!(parents.contains(&robots) && parents.contains(&(robots + 1)), "{name}");
+    }
+}
+
+#[test]
+fn each_cluster_leads_to_the_task_near_it() {
+    let leads = |task| leadership(mission("two-clusters"), task).leader;
+    assert!((0..7).contains(&leads(0)));
+    assert!((7..14).contains(&leads(1)));
+}
+
+#[test]
+fn an_end_without_service_says_why() {
+    let reason = &mission("too-few").end.reason;
+    assert!(reason.contains("task 1") && reason.contains("more robots are needed"), "{reason}");
+    let reason = &mission("unreachable").end.reason;
+    assert!(reason.contains("task 1"), "{reason}");
+    assert_eq!(mission("too-few").end.task, Some(1));
+    assert_eq!(mission("unreachable").end.task, Some(1));
+}
+
+// ---- What an oracle finds in their traces ------------------------------------------------------
+
+/// The trace of a mission as its file holds it.
+fn trace(mission: &Mission) -> Vec<u8> {
+    let mut writer = TraceWriter::new(Vec::new(), &mission.scenario).unwrap();
+    for period in &mission.periods {
+        writer.observe(&period.snapshot, &period.events).unwrap();
+    }
+    writer.end(&mission.end).unwrap();
+    writer.finish().unwrap()
+}
+
+#[test]
+fn the_oracle_agrees_with_the_monitor_on_every_shipped_scenario() {
+    for (name, ..) in SHIPPED {
+        let mission = mission(name);
+        let text = trace(mission);
+        let findings = oracle::audit(TraceReader::new(text.as_slice()).unwrap())
+            .unwrap_or_else(|fault| panic!("{name}: {fault}"));
+        let close = |name: &str, measured: f64, extreme: &Option<_>| {
+            let monitored: &pleach::verify::network::Extreme = extreme.as_ref().unwrap();
+            assert!((measured - monitored.value).abs() < 1e-9, "{name}: {measured} {monitored:?}");
+        };
+        close(name, findings.pair_distance, &mission.extremes.pair_distance);
+        close(name, findings.clearance, &mission.extremes.clearance);
+        close(name, findings.residual, &mission.extremes.residual);
+        close(name, findings.load, &mission.extremes.load);
+    }
+}
