@@ -1,8 +1,8 @@
 //! What a person needs in order to judge a mission that has ended.
 
+use crate::automaton::network::KernelTimes;
 use crate::automaton::network::record::{MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::{Scenario, Settings};
-use crate::automaton::network::KernelTimes;
 use crate::mission::{Completed, Watcher};
 use crate::verify::network::{Extreme, Extremes};
 use std::fmt;

@@ -48,7 +48,8 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
 
 fn open_album(scenario: &Scenario) -> Result<Album, Failure> {
     let site = Site::new(scenario).map_err(|error| Failure::Internal(error.to_string()))?;
-    let corners = |outline: &Vec<_>| outline.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
+    let corners =
+        |outline: &Vec<_>| outline.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
     Ok(Album::new(scenario, site.free_space.outline().iter().map(corners).collect()))
 }
 

@@ -61,10 +61,16 @@ pub enum Failure {
     Output(#[from] io::Error),
     /// The mission could not be run to an end.
     #[error(transparent)]
-    Mission(#[from] MissionError),
+    Mission(Box<MissionError>),
     /// Something that cannot go wrong with a valid scenario did.
     #[error("{0}")]
     Internal(String),
+}
+
+impl From<MissionError> for Failure {
+    fn from(error: MissionError) -> Self {
+        Failure::Mission(Box::new(error))
+    }
 }
 
 impl Failure {

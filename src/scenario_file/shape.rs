@@ -61,7 +61,7 @@ pub(super) const SCENARIO: &[Entry] = &[
             optional("max_steps", Shape::Count),
             optional("period", Shape::Number),
             optional("rounds_per_period", Shape::Count),
-            optional("routing_method", Shape::OneOf(&["dual", "adal"])),
+            optional("routing_method", Shape::OneOf(&["dual", "accelerated_dual", "adal"])),
             optional("routing_iterations", Shape::Count),
             optional("routing_reserve", Shape::Number),
             optional("slope_aversion", Shape::Number),

@@ -6,9 +6,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{
-    Agreement, Anchor, Bulletin, Election, IdSet, Lineage, NodeId,
-};
+use pleach_discrete::network::{Agreement, Anchor, Bulletin, Election, IdSet, Lineage, NodeId};
 
 use super::beacon::{Beacon, Notice};
 use super::duty::Hop;

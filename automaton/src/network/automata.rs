@@ -38,18 +38,58 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
     Automaton::builder(MISSION, Phase::Idle)
         .on(Step::Ended, mission::ended(), Reset::new("stop", Robot::leave_team))
-        .on(Step::Announced, mission::announced(), Reset::new("bid for the task", Robot::begin_leader_election))
-        .on(Step::Elected, mission::elected(), Reset::new("the winner leads", Robot::conclude_leader_election))
-        .on(Step::Bound, mission::bound(), Reset::new("call for a recruit", Robot::call_for_recruit))
-        .on(Step::Trapped, mission::trapped(), Reset::new("call for a recruit", Robot::call_for_recruit))
+        .on(
+            Step::Announced,
+            mission::announced(),
+            Reset::new("bid for the task", Robot::begin_leader_election),
+        )
+        .on(
+            Step::Elected,
+            mission::elected(),
+            Reset::new("the winner leads", Robot::conclude_leader_election),
+        )
+        .on(
+            Step::Bound,
+            mission::bound(),
+            Reset::new("call for a recruit", Robot::call_for_recruit),
+        )
+        .on(
+            Step::Trapped,
+            mission::trapped(),
+            Reset::new("call for a recruit", Robot::call_for_recruit),
+        )
         .on(Step::Blocked, mission::blocked(), Reset::new("say why", Robot::end_blocked))
-        .on(Step::Called, mission::called(), Reset::new("answer the call", Robot::begin_recruit_election))
+        .on(
+            Step::Called,
+            mission::called(),
+            Reset::new("answer the call", Robot::begin_recruit_election),
+        )
         .on(Step::Recruited, mission::recruited(), Reset::new("announce Σ", Robot::announce_path))
-        .on(Step::Unaided, mission::unaided(), Reset::new("ask other trees, or say why", Robot::end_unaided))
-        .on(Step::PathHeard, mission::path_heard(), Reset::new("vote on break points", Robot::begin_path))
-        .on(Step::PointsAgreed, mission::points_agreed(), Reset::new("form the subgroups", Robot::form_subgroups))
-        .on(Step::SubgroupArrived, mission::subgroup_arrived(), Reset::new("take the posts ahead", Robot::take_posts))
-        .on(Step::Relieved, mission::relieved(), Reset::new("join the primary team", Robot::join_team))
+        .on(
+            Step::Unaided,
+            mission::unaided(),
+            Reset::new("ask other trees, or say why", Robot::end_unaided),
+        )
+        .on(
+            Step::PathHeard,
+            mission::path_heard(),
+            Reset::new("vote on break points", Robot::begin_path),
+        )
+        .on(
+            Step::PointsAgreed,
+            mission::points_agreed(),
+            Reset::new("form the subgroups", Robot::form_subgroups),
+        )
+        .on(
+            Step::SubgroupArrived,
+            mission::subgroup_arrived(),
+            Reset::new("take the posts ahead", Robot::take_posts),
+        )
+        .on(
+            Step::Relieved,
+            mission::relieved(),
+            Reset::new("join the primary team", Robot::join_team),
+        )
         .on(Step::Resumed, mission::resumed(), Reset::new("resume", Robot::resume))
         .on(Step::Reached, mission::reached(), Reset::new("service the task", Robot::service_task))
         .on(Step::Serviced, mission::serviced(), Reset::new("leave the team", Robot::leave_team))

@@ -3,9 +3,9 @@
 pub mod access_point;
 pub mod automata;
 pub mod beacon;
+mod composition;
 pub mod duty;
 pub mod medium;
-mod network;
 pub mod observer;
 pub mod record;
 pub mod robot;
@@ -13,7 +13,7 @@ pub mod scenario;
 pub mod site;
 
 pub use automata::{mission_automaton, role_automaton};
+pub use composition::{KernelTimes, Network, NetworkError, NetworkJump};
 pub use medium::{Medium, Radio};
-pub use network::{KernelTimes, Network, NetworkError, NetworkJump};
 pub use robot::Robot;
 pub use site::{Site, SiteError};

@@ -5,9 +5,9 @@
 use pleach_discrete::network::{NodeId, Phase, PostKind};
 
 use super::beacon::Notice;
+use super::composition::Network;
 use super::duty::Duty;
 use super::medium::Medium;
-use super::network::Network;
 use super::record::{MissionEvent, PostView, Route, Snapshot};
 use super::robot::Robot;
 

@@ -97,8 +97,10 @@ pub struct Task {
 #[serde(rename_all = "snake_case")]
 pub enum RoutingMethod {
     /// The dual iteration (13)–(14).
-    #[default]
     Dual,
+    /// The dual iteration with momentum.
+    #[default]
+    AcceleratedDual,
     /// The accelerated distributed augmented Lagrangian method of Remark 3.1.
     Adal,
 }
@@ -132,7 +134,7 @@ pub struct Control {
     pub period: Option<f64>,
     /// Rounds of coordination messages in a control period. Default 8.
     pub rounds_per_period: Option<usize>,
-    /// How routes are computed. Default `dual`.
+    /// How routes are computed. Default `accelerated_dual`.
     pub routing_method: Option<RoutingMethod>,
     /// Iterations of the routing method in a control period. Default 5.
     pub routing_iterations: Option<usize>,

@@ -3,7 +3,9 @@
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
-use pleach_continuous::network::reliability::{CubicReliability, LinkReliability, ReliabilityError};
+use pleach_continuous::network::reliability::{
+    CubicReliability, LinkReliability, ReliabilityError,
+};
 
 use super::scenario::{Scenario, Settings};
 

@@ -34,7 +34,10 @@ impl Lineage {
     /// Whether this is the lineage of `post` extended from `parent`, without building it.
     pub fn extends(&self, parent: &Lineage, post: PostId) -> bool {
         self.root == parent.root
-            && self.posts.split_first().is_some_and(|(&first, rest)| first == post && rest == parent.posts)
+            && self
+                .posts
+                .split_first()
+                .is_some_and(|(&first, rest)| first == post && rest == parent.posts)
     }
 
     /// The number of links to the access point.

@@ -59,9 +59,14 @@ impl Robot {
         self.branches() > 0
     }
 
-    /// The number of branches that hang on this robot's post.
+    /// The number of branches that hang on this robot's post. A member of the primary team that
+    /// is about to hang itself on the newcomer behind it counts with the newcomer.
     pub(super) fn branches(&self) -> usize {
-        self.children().filter(|child| child.post().is_some_and(|post| !post.is_redundant())).count()
+        let posts = || self.children().filter_map(Neighbour::post);
+        let is_followed = |post: PostId| {
+            posts().any(|other| other.kind == PostKind::Primary { follows: Some(post) })
+        };
+        posts().filter(|post| !post.is_redundant() && !is_followed(post.id)).count()
     }
 
     pub(super) fn anchor(&self) -> Option<Anchor> {
@@ -205,9 +210,11 @@ impl Robot {
             let candidate = self.anchor_of(neighbour);
             if candidate == anchor
                 || !Self::accepts_redundant(neighbour)
-                || neighbour.beacon.lineage.as_ref().is_none_or(|lineage| {
-                    own.is_some_and(|own| lineage.contains(own))
-                })
+                || neighbour
+                    .beacon
+                    .lineage
+                    .as_ref()
+                    .is_none_or(|lineage| own.is_some_and(|own| lineage.contains(own)))
                 || neighbour.distance > self.site.build_length
                 || (goal - neighbour.position()).norm() >= nearest
                 || self.walk_to(neighbour) > self.site.build_length

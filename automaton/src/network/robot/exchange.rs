@@ -2,7 +2,8 @@
 //!
 //! A mover that touches a parked robot nearer to its goal offers it its duty; the parked robot
 //! takes it and leaves its post to the mover, which is within δ of it. With every exchange the
-//! way that remains gets shorter, so that exchanges come to an end.
+//! way that remains gets shorter, so that exchanges come to an end. A mover that cannot pass
+//! takes a partner somewhat farther from its goal too, but no robot twice in a row.
 
 use pleach_discrete::network::{Exchange, Phase, Reply};
 
@@ -17,6 +18,11 @@ const CONTACT: f64 = 2.6;
 const GAIN: f64 = 0.05;
 /// Control periods without progress after which a mover looks for an exchange.
 const PATIENCE: u32 = 2;
+/// Control periods without progress after which it takes a partner that is not nearer: one that
+/// leaves no room to pass, at a corner say.
+const LAST_RESORT: u32 = 10;
+/// How much farther from the goal, in ρ, such a partner may be.
+const CONCESSION: f64 = 4.0;
 
 impl Robot {
     /// Once a period: a mover that does not get on offers its duty to the robot in its way.
@@ -29,10 +35,14 @@ impl Robot {
             return;
         }
         let Some(goal) = self.goal() else { return };
+        let gain = if self.still_periods < LAST_RESORT { GAIN } else { -CONCESSION };
         let own_way = self.site.free_space.distance(self.position, goal);
-        let mut nearest = own_way - GAIN * self.clearance();
+        let mut nearest = own_way - gain * self.clearance();
         let mut partner = None;
         for neighbour in &self.neighbours {
+            if self.last_partner == Some(neighbour.id()) {
+                continue;
+            }
             if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
                 let way = self.site.free_space.distance(neighbour.position(), goal);
                 if way < nearest && self.could_be_replaced_by(neighbour) {
@@ -73,9 +83,11 @@ impl Robot {
             self.task_position(task)
                 .is_some_and(|place| near(place).norm() <= settings.service_radius)
         });
-        let link_holds = station.post.parent.and_then(|anchor| self.bearer(anchor)).is_some_and(
-            |parent| self.walk_to(parent) <= self.site.hard_length,
-        );
+        let link_holds = station
+            .post
+            .parent
+            .and_then(|anchor| self.bearer(anchor))
+            .is_some_and(|parent| self.walk_to(parent) <= self.site.hard_length);
         let children_hold = self
             .neighbours
             .iter()
@@ -128,6 +140,7 @@ impl Robot {
         }
         self.left_post = self.duty.post().map(|post| post.id);
         self.duty = duty;
+        self.last_partner = Some(partner);
         self.lineage = None;
         self.still_periods = 0;
         self.report(MissionEvent::DutiesExchanged { mover: self.id, parked: partner });
@@ -157,6 +170,7 @@ impl Robot {
         if accepted.is_some() {
             self.left_post = self.duty.post().map(|post| post.id);
             self.duty = duty;
+            self.last_partner = Some(to);
             self.lineage = None;
             self.still_periods = 0;
         }

@@ -119,10 +119,8 @@ impl Robot {
         self.measure_word(&mut facts);
         let best = self.election.as_ref().and_then(|election| election.best());
         let won = best.is_some_and(|(bid, robot)| robot == self.id && bid.rank > 0);
-        let over = self
-            .election
-            .as_ref()
-            .is_some_and(|election| election.is_complete(&self.roster));
+        let over =
+            self.election.as_ref().is_some_and(|election| election.is_complete(&self.roster));
         facts.election_over = yes(over);
         match self.phase {
             Phase::RecruitElection => {
@@ -138,10 +136,8 @@ impl Robot {
         }
         facts.bound = yes(self.awaits_release);
         facts.leads = yes(self.leads());
-        facts.recruited = yes(matches!(
-            self.duty,
-            Duty::Wait { place: 0, .. } | Duty::Shift { place: 0 }
-        ));
+        facts.recruited =
+            yes(matches!(self.duty, Duty::Wait { place: 0, .. } | Duty::Shift { place: 0 }));
         facts.free = yes(self.duty.is_redundant());
         facts.fixed = yes(self.duty.is_fixed());
         facts.serves = yes(self.duty.post().is_some_and(|post| post.task.is_some()));

@@ -73,9 +73,7 @@ impl Robot {
             Duty::Shift { place } => self.parent_under_way(*place, position),
             Duty::Hold(station) | Duty::Wait { station, .. } => match station.post.parent? {
                 Anchor::Access(access) => Some(self.site.robots + access),
-                Anchor::Post(post) => {
-                    self.holder_or_self(post).or_else(|| self.stand_in_for(post))
-                }
+                Anchor::Post(post) => self.holder_or_self(post).or_else(|| self.stand_in_for(post)),
             },
         }
     }
@@ -96,9 +94,8 @@ impl Robot {
                 .robot_at(place + 1)
                 .or_else(|| self.holder_or_self(path.hops.get(place + 1)?.post.id));
         }
-        let distance = |&access: &usize| {
-            self.site.free_space.distance(from, self.site.access_points[access])
-        };
+        let distance =
+            |&access: &usize| self.site.free_space.distance(from, self.site.access_points[access]);
         let nearest =
             hop.crossing.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied()?;
         Some(self.site.robots + nearest)

@@ -95,8 +95,11 @@ impl Robot {
         let gap = (task.target - task.position).norm();
         let distance = self.site.free_space.distance(self.position, task.target);
         let unit = BID_RESOLUTION * self.site.build_length;
-        (gap <= self.site.settings.service_radius && distance.is_finite())
-            .then(|| Bid { rank: 1, merit: -(distance / unit).round() as i64, economy: 0 })
+        (gap <= self.site.settings.service_radius && distance.is_finite()).then(|| Bid {
+            rank: 1,
+            merit: -(distance / unit).round() as i64,
+            economy: 0,
+        })
     }
 
     /// Every token is known: the winner leads, at once or after it has been released.
@@ -309,7 +312,11 @@ impl Robot {
         if let (Duty::Wait { place: 0, .. }, Some(path)) = (&self.duty, &self.path) {
             let robots: Vec<_> = path.hops.iter().map(|hop| hop.robot).collect();
             let break_points = points.iter().map(|&place| robots[place]).collect();
-            self.report(MissionEvent::RecruitElected { robot: self.id, path: robots, break_points });
+            self.report(MissionEvent::RecruitElected {
+                robot: self.id,
+                path: robots,
+                break_points,
+            });
         }
         self.walk_path();
     }
@@ -327,10 +334,8 @@ impl Robot {
             && (place == 0 || place > active.first || self.is_relieved_of(station.post.id))
         {
             if place == active.first {
-                self.report(MissionEvent::SubgroupStarted {
-                    subgroup: self.subgroup,
-                    robots: Vec::new(),
-                });
+                let robots = self.robots_at(active);
+                self.report(MissionEvent::SubgroupStarted { subgroup: self.subgroup, robots });
             }
             self.left_post = Some(station.post.id);
             self.duty = Duty::Shift { place };
@@ -342,6 +347,12 @@ impl Robot {
         {
             agreement.arrive(place);
         }
+    }
+
+    /// The robots that stood at the places of a subgroup when Σ was announced.
+    fn robots_at(&self, subgroup: Subgroup) -> Vec<NodeId> {
+        let hops = self.path.as_ref().and_then(|path| path.hops.get(subgroup.places()));
+        hops.into_iter().flatten().map(|hop| hop.robot).collect()
     }
 
     /// Whether another robot holds `post`.
@@ -364,10 +375,8 @@ impl Robot {
             && active.places().contains(&place)
         {
             if place == active.first {
-                self.report(MissionEvent::SubgroupArrived {
-                    subgroup: self.subgroup,
-                    robots: Vec::new(),
-                });
+                let robots = self.robots_at(active);
+                self.report(MissionEvent::SubgroupArrived { subgroup: self.subgroup, robots });
             }
             self.take_post_ahead();
         }
@@ -493,9 +502,9 @@ impl Robot {
 
     /// Geodesic distance to the announced task.
     pub(super) fn remaining(&self) -> f64 {
-        self.tasks.last().map_or(0.0, |task| {
-            self.site.free_space.distance(self.position, task.target)
-        })
+        self.tasks
+            .last()
+            .map_or(0.0, |task| self.site.free_space.distance(self.position, task.target))
     }
 
     /// Whether the robot has room to move: its link is neither at its limit nor is it bunched.

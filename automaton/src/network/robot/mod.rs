@@ -62,6 +62,7 @@ pub struct Robot {
     left_post: Option<PostId>,
     offer: Option<Exchange<Duty>>,
     offers_made: u32,
+    last_partner: Option<NodeId>,
     reply: Option<Reply<Duty>>,
 
     // What it hears and where it hangs.
@@ -87,7 +88,7 @@ pub struct Robot {
     team: Option<TeamReport>,
 
     // Communication variables.
-    multiplier: routing::Multiplier,
+    routing: routing::RoutingState,
     links: Vec<RouteLink>,
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
@@ -131,6 +132,7 @@ impl Robot {
             left_post: None,
             offer: None,
             offers_made: 0,
+            last_partner: None,
             reply: None,
             neighbours: Vec::new(),
             lineage: None,
@@ -150,7 +152,7 @@ impl Robot {
             subgroups: Vec::new(),
             subgroup: 0,
             team: None,
-            multiplier: routing::Multiplier::default(),
+            routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
             inflow: 0.0,
             inflows: Vec::new(),

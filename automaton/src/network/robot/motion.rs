@@ -141,9 +141,7 @@ impl Robot {
             .map(|n| Disc { center: n.position(), radius: KEEP_OUT * self.clearance() })
             .collect();
         let path = match free_space.detour(self.position, goal, &parked) {
-            Some(round)
-                if round.length <= direct.length + DETOUR_ALLOWANCE * self.clearance() =>
-            {
+            Some(round) if round.length <= direct.length + DETOUR_ALLOWANCE * self.clearance() => {
                 round
             }
             _ => direct,

@@ -7,11 +7,15 @@
 
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::reliability::LinkReliability;
-use pleach_continuous::network::routing::dual::{DualState, LinkCurvature, safe_step};
+use pleach_continuous::network::routing::adal::{
+    AdalLink, AdalRobot, AdalSettings, NeighbourReport, Workspace,
+};
+use pleach_continuous::network::routing::dual::{DualState, LinkCurvature, dual_step, safe_step};
 use pleach_continuous::network::routing::local::{LinkOffer, local_minimiser, weight};
 use pleach_continuous::network::routing::repair::{Share, meet_demand};
 use pleach_discrete::network::NodeId;
 
+use super::super::scenario::RoutingMethod;
 use super::Robot;
 
 /// Links with less reliability than this carry nothing unless they belong to the tree: a step of
@@ -22,12 +26,29 @@ const LEAST_USEFUL_RELIABILITY: f64 = 0.3;
 const BUDGET: f64 = 0.9;
 /// Shares below this are not used.
 const LEAST_SHARE: f64 = 1e-6;
-
 /// Residuals are sums of a few flows; this much of them is rounding.
 const RESIDUAL_ROUNDING: f64 = 1e-9;
 
-/// λ_i and what an accelerated iteration remembers.
-pub(super) type Multiplier = DualState;
+/// What a robot carries from one iteration of its routing method to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum RoutingState {
+    /// λ_i, with momentum where the iteration is accelerated.
+    Dual(DualState),
+    /// λ_i, the mismatch and the slack of ADAL.
+    Adal(AdalRobot),
+}
+
+impl RoutingState {
+    /// The state at the start of a mission.
+    pub fn new(method: RoutingMethod) -> Self {
+        match method {
+            RoutingMethod::Dual | RoutingMethod::AcceleratedDual => {
+                RoutingState::Dual(DualState::default())
+            }
+            RoutingMethod::Adal => RoutingState::Adal(AdalRobot::default()),
+        }
+    }
+}
 
 /// A link over which the robot may send.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,10 +59,12 @@ pub struct RouteLink {
     pub reliability: f64,
     /// w_ij.
     pub weight: f64,
-    /// λ_j as last heard; 0 for an access point.
-    pub multiplier: f64,
+    /// What the neighbour last said of its equation; none for an access point.
+    pub report: Option<NeighbourReport>,
     /// T_ij.
     pub share: f64,
+    /// T_ij as the routing method left it, before the sweep.
+    iterate: f64,
 }
 
 impl RouteLink {
@@ -72,44 +95,103 @@ impl Robot {
                 continue;
             }
             let known = old.iter().find(|link| link.to == to);
+            let iterate = known.map_or(0.0, |link| link.iterate);
             self.links.push(RouteLink {
                 to,
                 reliability,
                 weight: weight(aversion, &self.site.link, neighbour.distance),
-                multiplier: known.map_or(0.0, |link| link.multiplier),
-                share: 0.0,
+                report: known.and_then(|link| link.report),
+                share: iterate,
+                iterate,
             });
         }
     }
 
     /// λ_i.
     pub fn multiplier(&self) -> f64 {
-        self.multiplier.multiplier()
-    }
-
-    /// A neighbour tells its multiplier.
-    pub fn hear_multiplier(&mut self, from: NodeId, multiplier: f64) {
-        if let Ok(at) = self.links.binary_search_by_key(&from, |link| link.to) {
-            self.links[at].multiplier = multiplier;
+        match &self.routing {
+            RoutingState::Dual(state) => state.multiplier(),
+            RoutingState::Adal(state) => state.multiplier(),
         }
     }
 
-    /// The primal iteration (13): the shares that minimise the local Lagrangian.
-    pub fn minimise_locally(&mut self) {
+    /// The flows of the period before are known over the links as they are now.
+    pub fn begin_routing(&mut self) {
+        let (residual, reserve) = (self.balance(), self.site.settings.routing_reserve);
+        let robots = self.site.robots;
+        if let RoutingState::Adal(state) = &mut self.routing {
+            let between_robots =
+                self.links.iter().filter(|link| link.to < robots).map(|link| link.reliability);
+            state.measure(residual, reserve, between_robots);
+        }
+    }
+
+    /// What the robot says of its equation c_i ≥ η.
+    pub fn routing_report(&self) -> NeighbourReport {
+        match &self.routing {
+            RoutingState::Adal(state) => state.report(),
+            RoutingState::Dual(state) => {
+                NeighbourReport { multiplier: state.multiplier(), mismatch: 0.0, crowding: 1.0 }
+            }
+        }
+    }
+
+    /// A neighbour says how its equation stands.
+    pub fn hear_routing_report(&mut self, from: NodeId, report: NeighbourReport) {
+        if let Ok(at) = self.links.binary_search_by_key(&from, |link| link.to) {
+            self.links[at].report = Some(report);
+        }
+    }
+
+    /// The primal iteration (13), or that of ADAL.
+    pub fn primal_step(&mut self) {
+        match self.routing {
+            RoutingState::Dual(_) => self.minimise_locally(),
+            RoutingState::Adal(state) => self.approach_minimiser(state),
+        }
+        for link in &mut self.links {
+            if link.share < LEAST_SHARE {
+                link.share = 0.0;
+            }
+            link.iterate = link.share;
+        }
+    }
+
+    /// The shares that minimise the local Lagrangian, eq. (13).
+    fn minimise_locally(&mut self) {
         let offers: Vec<LinkOffer> = self
             .links
             .iter()
             .map(|link| LinkOffer {
                 reliability: link.reliability,
                 weight: link.weight,
-                neighbour_multiplier: link.multiplier,
+                neighbour_multiplier: link.report.map_or(0.0, |report| report.multiplier),
             })
             .collect();
         let mut shares = Vec::with_capacity(offers.len());
         local_minimiser(self.multiplier(), &offers, BUDGET, &mut shares);
         for (link, share) in self.links.iter_mut().zip(shares) {
-            link.share = if share < LEAST_SHARE { 0.0 } else { share };
+            link.share = share;
         }
+    }
+
+    /// Part of the way to the shares that minimise the local augmented Lagrangian.
+    fn approach_minimiser(&mut self, mut state: AdalRobot) {
+        let mut links: Vec<AdalLink> = self
+            .links
+            .iter()
+            .map(|link| AdalLink {
+                reliability: link.reliability,
+                weight: link.weight,
+                share: link.share,
+                report: link.report,
+            })
+            .collect();
+        state.primal_step(&mut links, &AdalSettings::default(), &mut Workspace::default());
+        for (link, moved) in self.links.iter_mut().zip(links) {
+            link.share = moved.share;
+        }
+        self.routing = RoutingState::Adal(state);
     }
 
     /// What the robot sends to each neighbour now.
@@ -142,17 +224,38 @@ impl Robot {
         self.links.iter().map(RouteLink::flow).sum()
     }
 
-    /// The dual iteration (14).
-    pub fn step_multiplier(&mut self) {
-        let reserve = self.site.settings.routing_reserve;
-        let residual = self.outflow() - self.inflow - self.rate;
+    /// out − in − r with the flows known now.
+    fn balance(&self) -> f64 {
+        self.outflow() - self.inflow - self.rate
+    }
+
+    /// The dual iteration (14), or that of ADAL.
+    pub fn dual_step(&mut self) {
+        let (residual, reserve) = (self.balance(), self.site.settings.routing_reserve);
+        let step = self.safe_dual_step();
+        match &mut self.routing {
+            RoutingState::Adal(state) => {
+                state.dual_step(residual, reserve, &AdalSettings::default())
+            }
+            RoutingState::Dual(state) => {
+                *state = match self.site.settings.routing_method {
+                    RoutingMethod::Dual => {
+                        DualState::new(dual_step(state.multiplier(), step, residual, reserve))
+                    }
+                    _ => state.step(step, residual, reserve),
+                };
+            }
+        }
+    }
+
+    /// ε of (14), from the links that meet in this robot's equation.
+    fn safe_dual_step(&self) -> f64 {
         let robots = self.site.robots;
-        let step = safe_step(self.links.iter().map(|link| LinkCurvature {
+        safe_step(self.links.iter().map(|link| LinkCurvature {
             reliability: link.reliability,
             weight: link.weight,
             to_access_point: link.to >= robots,
-        }));
-        self.multiplier = self.multiplier.step(step, residual, reserve);
+        }))
     }
 
     /// The sweep: sends over the tree link what is missing for c_i ≥ η. Returns by how much the
@@ -191,13 +294,12 @@ impl Robot {
 
     /// All flows are known: eq. (5).
     pub fn settle_residual(&mut self) {
-        self.residual = self.outflow() - self.inflow - self.rate;
+        self.residual = self.balance();
     }
 
     /// The worst load h_i whichever of the proposed moves are carried out.
     pub(super) fn worst_load(&self, own: Segment, move_of: impl Fn(NodeId) -> Segment) -> f64 {
-        let receivers: Vec<_> =
-            self.routes().map(|link| (link.flow(), move_of(link.to))).collect();
+        let receivers: Vec<_> = self.routes().map(|link| (link.flow(), move_of(link.to))).collect();
         pleach_continuous::network::acceptance::worst_load(own, &receivers, &self.site.link)
     }
 

@@ -1,23 +1,29 @@
 //! The motion problem as the second-order cone program that it is, solved by clarabel.
 
+use super::exact::{project, relevant_constraints};
 use super::{Motion, MotionOutcome, MotionProblem};
-use crate::{Point, Vector};
+use crate::Vector;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
     SupportedConeT,
 };
 
-/// Sweeps of [`MotionProblem::pull_inside`] over the constraints; each shrinks what is violated by a
-/// constant factor.
-const SWEEPS: usize = 20;
+/// How far outside the constraints the solver's answer may lie, as a share of the smallest disc.
+///
+/// An interior-point method with the default tolerances ends up to 1e-8 outside of feasible sets
+/// that are segments or narrow corners. An answer farther out than this is no solution.
+const SOLVER_TOLERANCE: f64 = 1e-6;
 
 impl MotionProblem {
     /// Solves (21) with an interior-point method.
     ///
     /// The answer is as accurate as the solver, about 1e-5 of the trust region and at worst 1e-3,
-    /// but it is feasible: it is checked against every constraint and brought back inside. The
-    /// robot stays with the outcome [`Undecided`](MotionOutcome::Undecided) if the solver ends
+    /// but it is feasible: what the solver leaves outside is projected onto the constraints. Merely
+    /// shortening the step would not do, since a robot that touches a constraint would be frozen by
+    /// an excess of 1e-11.
+    ///
+    /// The robot stays with the outcome [`Undecided`](MotionOutcome::Undecided) if the solver ends
     /// with anything but a solution; since the robot's own position is feasible, even "infeasible"
     /// means only that the solver could not tell.
     pub fn solve_conic(&self) -> Motion {
@@ -28,55 +34,29 @@ impl MotionProblem {
         if !goal.iter().all(|component| component.is_finite()) {
             return Motion::stay(self, MotionOutcome::Undecided);
         }
-        match cone_program(self, goal) {
-            Some(step) => {
-                let inside = self.pull_inside(self.position + step);
-                let target = self.shrink_to_feasible(inside);
-                Motion { target, outcome: MotionOutcome::Optimal }
-            }
-            None => Motion::stay(self, MotionOutcome::Undecided),
+        let unit = unit_of_length(self);
+        let Some(answer) = cone_program(self, goal, unit) else {
+            return Motion::stay(self, MotionOutcome::Undecided);
+        };
+        if self.smallest_margin(&(self.position + answer)) < -SOLVER_TOLERANCE * unit {
+            return Motion::stay(self, MotionOutcome::Undecided);
         }
+        let inside = project(answer, &relevant_constraints(self));
+        let target = self.shrink_to_feasible(self.position + inside);
+        Motion { target, outcome: MotionOutcome::Optimal }
     }
+}
 
-    /// Moves a point onto every constraint that it breaks, one after the other, a few times over.
-    ///
-    /// An interior-point method ends up to 1e-8 outside of feasible sets without interior. This
-    /// brings its answer back where merely shrinking the step would freeze the robot.
-    fn pull_inside(&self, point: Point) -> Point {
-        let mut point = point;
-        for _ in 0..SWEEPS {
-            if self.admits(&point) {
-                break;
-            }
-            for line in &self.half_planes {
-                let margin = line.margin(point);
-                if margin < 0.0 {
-                    point += line.normal.into_inner() * margin;
-                }
-            }
-            for disc in &self.discs {
-                let from_center = point - disc.center;
-                let distance = from_center.norm();
-                if distance > disc.radius {
-                    point = disc.center + from_center * (disc.radius / distance);
-                }
-            }
-        }
-        point
-    }
+/// The radius of the smallest disc, so that the solver's absolute tolerances fit; 1 without discs.
+fn unit_of_length(problem: &MotionProblem) -> f64 {
+    let radii = problem.discs.iter().map(|disc| disc.radius).filter(|radius| *radius > 0.0);
+    let smallest = radii.fold(f64::INFINITY, f64::min);
+    if smallest.is_finite() { smallest } else { 1.0 }
 }
 
 /// The step that clarabel finds, in displacements from the robot: with the origin there its
 /// answers are about four times as accurate as in the coordinates of the workspace.
-fn cone_program(problem: &MotionProblem, goal: Vector) -> Option<Vector> {
-    // Lengths are in units of the smallest disc, so that the solver's absolute tolerances fit.
-    let unit = problem
-        .discs
-        .iter()
-        .map(|disc| disc.radius)
-        .filter(|radius| *radius > 0.0)
-        .fold(f64::INFINITY, f64::min);
-    let unit = if unit.is_finite() { unit } else { 1.0 };
+fn cone_program(problem: &MotionProblem, goal: Vector, unit: f64) -> Option<Vector> {
     let goal = goal / unit;
 
     let (mut entries, mut bounds, mut cones) = (Entries::default(), Vec::new(), Vec::new());

@@ -30,7 +30,7 @@ impl MotionProblem {
 }
 
 /// The point nearest to `goal` that meets all constraints; the origin meets them.
-fn project(goal: Vector, constraints: &[Constraint]) -> Vector {
+pub(super) fn project(goal: Vector, constraints: &[Constraint]) -> Vector {
     let admitted = |step: &Vector| {
         constraints.iter().all(|constraint| constraint.margin(step) >= -USABLE_TOLERANCE)
     };
@@ -67,7 +67,7 @@ fn project(goal: Vector, constraints: &[Constraint]) -> Vector {
 
 /// A constraint on the displacement.
 #[derive(Clone, Copy, Debug)]
-enum Constraint {
+pub(super) enum Constraint {
     /// normal·step ≤ margin.
     Line { normal: Vector, margin: f64 },
     /// ‖step − center‖ ≤ radius.
@@ -75,7 +75,7 @@ enum Constraint {
 }
 
 /// The constraints that reach into the smallest disc. The others hold wherever that disc holds.
-fn relevant_constraints(problem: &MotionProblem) -> Vec<Constraint> {
+pub(super) fn relevant_constraints(problem: &MotionProblem) -> Vec<Constraint> {
     let mut constraints = Vec::with_capacity(problem.half_planes.len() + problem.discs.len());
     let discs = || problem.discs.iter().enumerate();
     let smallest = discs().min_by(|(_, a), (_, b)| a.radius.total_cmp(&b.radius));

@@ -58,12 +58,18 @@ fn agrees_with_clarabel(problem: &RoutingProblem, method: Method) -> Result<(), 
     // Close to the limit of what can be carried multipliers are large and every method is slow.
     prop_assume!(oracle.multipliers.iter().all(|multiplier| *multiplier < 20.0));
     let mut rounds = Rounds::new(problem, method);
-    let ended = rounds.run(MISS, 200_000);
+    // ADAL's shares are on the way to a minimiser, not one: it meets the residuals a little earlier.
+    let tolerance = if matches!(method, Method::Adal(_)) { 0.1 * MISS } else { MISS };
+    let ended = rounds.run(tolerance, 200_000);
     prop_assert!(ended.is_some(), "{method:?} still misses by {}", rounds.miss());
 
     let allowed = 2.0 * MISS * (1.0 + oracle.multipliers.iter().sum::<f64>());
     let objective = problem.objective(rounds.shares());
-    prop_assert!((objective - oracle.objective).abs() < allowed, "{objective} {oracle:?}");
+    let excess = objective - oracle.objective;
+    prop_assert!(
+        excess.abs() < allowed,
+        "{method:?}: objective off by {excess}, more than {allowed}"
+    );
     for (share, expected) in rounds.shares().iter().zip(&oracle.shares) {
         prop_assert!((share - expected).abs() < allowed.sqrt(), "{share}, not {expected}");
     }
@@ -159,9 +165,14 @@ proptest! {
     fn a_problem_is_infeasible_exactly_if_its_widest_reserve_is_too_small(problem in networks()) {
         let widest = widest_reserve(&problem).unwrap();
         prop_assume!((widest - problem.reserve()).abs() > 1e-6);
-        let solved = solve_central(&problem);
-        prop_assert_eq!(solved.is_ok(), widest > problem.reserve());
-        prop_assert_eq!(feasible(&problem, 1e-7).unwrap(), solved.is_ok());
+        let carried = widest > problem.reserve();
+        prop_assert_eq!(feasible(&problem, 1e-7).unwrap(), carried);
+        match solve_central(&problem) {
+            Ok(_) => prop_assert!(carried, "solved, but the widest reserve is {widest}"),
+            Err(CentralError::NoRouting { .. }) => prop_assert!(!carried, "{widest} is possible"),
+            // The solver admits that it cannot tell: no contradiction.
+            Err(CentralError::Undecided { .. }) => {}
+        }
     }
 }
 

@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 use pleach_continuous::Point;
 use pleach_discrete::network::{MissionStep, NodeId, Phase, Role, RoleEvent};
 
-use crate::executor::{Round, System};
 use crate::automaton::Jump;
+use crate::executor::{Round, System};
 
 use super::access_point::AccessPoint;
 use super::automata::{MissionAutomaton, RoleAutomaton, mission_automaton, role_automaton};
@@ -23,7 +23,7 @@ use super::beacon::{Beacon, Notice};
 use super::medium::{Medium, Radio};
 use super::record::{End, MissionEvent, Outcome};
 use super::robot::{Objection, Proposal, Robot};
-use super::scenario::Scenario;
+use super::scenario::{RoutingMethod, Scenario};
 use super::site::{Site, SiteError};
 
 /// Rounds in which proposals are checked and halved; whoever still meets an objection in the last
@@ -219,18 +219,16 @@ impl<M: Medium> Network<M> {
 
     /// Primal and dual iterations, then the sweep up the tree.
     fn route(&mut self) {
-        for robot in &mut self.robots {
-            robot.survey_links();
+        self.robots.iter_mut().for_each(Robot::survey_links);
+        if self.site.settings.routing_method == RoutingMethod::Adal {
+            self.exchange_flows();
+            self.robots.iter_mut().for_each(Robot::begin_routing);
         }
         for _ in 0..self.site.settings.routing_iterations {
-            self.exchange_multipliers();
-            for robot in &mut self.robots {
-                robot.minimise_locally();
-            }
+            self.exchange_routing_reports();
+            self.robots.iter_mut().for_each(Robot::primal_step);
             self.exchange_flows();
-            for robot in &mut self.robots {
-                robot.step_multiplier();
-            }
+            self.robots.iter_mut().for_each(Robot::dual_step);
         }
         self.sweep();
         self.exchange_flows();
@@ -242,9 +240,9 @@ impl<M: Medium> Network<M> {
         }
     }
 
-    fn exchange_multipliers(&mut self) {
-        let multipliers: Vec<f64> = self.robots.iter().map(Robot::multiplier).collect();
-        self.broadcast(&multipliers, |robot, from, &told| robot.hear_multiplier(from, told));
+    fn exchange_routing_reports(&mut self) {
+        let reports: Vec<_> = self.robots.iter().map(Robot::routing_report).collect();
+        self.broadcast(&reports, |robot, from, &report| robot.hear_routing_report(from, report));
     }
 
     fn exchange_flows(&mut self) {
@@ -270,8 +268,7 @@ impl<M: Medium> Network<M> {
     /// Paper-notes' repair of (13)–(14): deepest first, every robot sends what is missing to its
     /// parent, once it has heard from all its children.
     fn sweep(&mut self) {
-        let mut awaited: Vec<usize> =
-            self.robots.iter().map(Robot::tree_degree).collect();
+        let mut awaited: Vec<usize> = self.robots.iter().map(Robot::tree_degree).collect();
         let mut ready: Vec<NodeId> =
             (0..self.robots.len()).filter(|&robot| awaited[robot] == 0).collect();
         while let Some(robot) = ready.pop() {
@@ -342,7 +339,9 @@ impl<M: Medium> Network<M> {
         let audience: Vec<NodeId> = self.medium.audience(sender).to_vec();
         audience
             .into_iter()
-            .filter(|&receiver| receiver < self.robots.len() && self.medium.delivers(sender, receiver))
+            .filter(|&receiver| {
+                receiver < self.robots.len() && self.medium.delivers(sender, receiver)
+            })
             .collect()
     }
 
