@@ -73,6 +73,7 @@ impl AccessPoint {
             route: self.route.clone(),
             crossing: self.crossing.clone(),
             lineage: Some(Arc::new(Lineage::of_access_point(self.number))),
+            parent: None,
             below: Arc::clone(&self.roster),
             duty: None,
             parked: false,

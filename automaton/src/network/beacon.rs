@@ -91,6 +91,8 @@ pub struct Beacon {
     pub crossing: Vec<usize>,
     /// Its way to an access point.
     pub lineage: Option<Arc<Lineage>>,
+    /// The node that it hangs on.
+    pub parent: Option<NodeId>,
     /// The robots that hang on it, itself included.
     pub below: Arc<IdSet>,
     /// What it does; none for an access point.

@@ -265,10 +265,18 @@ impl<M: Medium> Network<M> {
         }
     }
 
-    /// Paper-notes' repair of (13)–(14): deepest first, every robot sends what is missing to its
-    /// parent, once it has heard from all its children.
+    /// The repair of (13)–(14): every robot tells its parent that it hangs on it; then, deepest
+    /// first, each sends what is missing to its parent once it has heard from all its children.
     fn sweep(&mut self) {
-        let mut awaited: Vec<usize> = self.robots.iter().map(Robot::tree_degree).collect();
+        let mut awaited = vec![0_usize; self.robots.len()];
+        for child in 0..self.robots.len() {
+            let parent = self.robots[child].tree_parent().filter(|&node| node < awaited.len());
+            if let Some(parent) = parent
+                && self.medium.delivers(child, parent)
+            {
+                awaited[parent] += 1;
+            }
+        }
         let mut ready: Vec<NodeId> =
             (0..self.robots.len()).filter(|&robot| awaited[robot] == 0).collect();
         while let Some(robot) = ready.pop() {

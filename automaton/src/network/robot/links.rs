@@ -20,9 +20,17 @@ pub struct TreeLink {
 }
 
 impl Robot {
-    /// The node that this robot hangs on.
+    /// The node that this robot hangs on: the one that its duty names or, while that is not
+    /// heard of, the one that it hung on before.
     pub fn tree_parent(&self) -> Option<NodeId> {
-        self.parent_of(&self.duty, self.position)
+        self.named_parent()
+            .filter(|&parent| parent != self.id)
+            .or_else(|| self.parent.filter(|&parent| self.neighbour(parent).is_some()))
+    }
+
+    /// Keeps in mind whom it hangs on.
+    pub(super) fn remember_parent(&mut self) {
+        self.parent = self.tree_parent();
     }
 
     /// The links of the tree at this robot: to its parent first, then to its children.
@@ -41,21 +49,9 @@ impl Robot {
         Some(TreeLink { to, limit: self.limit_of(Some(&self.duty)) })
     }
 
-    /// The robots that hang on this one now.
-    pub(super) fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
-        self.neighbours.iter().filter(|neighbour| {
-            neighbour
-                .beacon
-                .duty
-                .as_ref()
-                .and_then(|duty| self.parent_of(duty, neighbour.position()))
-                == Some(self.id)
-        })
-    }
-
-    /// How many robots hang on this one now.
-    pub fn tree_degree(&self) -> usize {
-        self.tree_children().count()
+    /// The robots that say that they hang on this one.
+    fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
+        self.neighbours.iter().filter(|neighbour| neighbour.beacon.parent == Some(self.id))
     }
 
     /// Links are made within d_build; those of the primary team stay so, and d_hard is never
@@ -67,35 +63,36 @@ impl Robot {
         }
     }
 
-    /// The node on which a robot with this duty hangs, as far as this robot hears.
-    fn parent_of(&self, duty: &Duty, position: pleach_continuous::Point) -> Option<NodeId> {
-        match duty {
-            Duty::Shift { place } => self.parent_under_way(*place, position),
+    fn named_parent(&self) -> Option<NodeId> {
+        match &self.duty {
+            Duty::Shift { place } => self.parent_under_way(*place),
             Duty::Hold(station) | Duty::Wait { station, .. } => match station.post.parent? {
                 Anchor::Access(access) => Some(self.site.robots + access),
-                Anchor::Post(post) => self.holder_or_self(post).or_else(|| self.stand_in_for(post)),
+                Anchor::Post(post) => {
+                    self.holder(post).map(Neighbour::id).or_else(|| self.stand_in_for(post))
+                }
             },
         }
     }
 
     /// The parent of the robot that has left `place`.
-    fn parent_under_way(&self, place: usize, from: pleach_continuous::Point) -> Option<NodeId> {
+    fn parent_under_way(&self, place: usize) -> Option<NodeId> {
         let path = self.path.as_ref()?;
         let active = self.subgroups.get(self.subgroup)?;
         let hop = path.hops.get(place)?;
         if path.descends(active.first) {
             return match place == active.first {
-                true => self.holder_or_self(hop.post.id),
+                true => self.holder(hop.post.id).map(Neighbour::id),
                 false => self.robot_at(place - 1),
             };
         }
         if hop.crossing.is_empty() {
             return self
                 .robot_at(place + 1)
-                .or_else(|| self.holder_or_self(path.hops.get(place + 1)?.post.id));
+                .or_else(|| self.holder(path.hops.get(place + 1)?.post.id).map(Neighbour::id));
         }
         let distance =
-            |&access: &usize| self.site.free_space.distance(from, self.site.access_points[access]);
+            |&access: &usize| self.site.free_space.distance(self.position, self.site.access_points[access]);
         let nearest =
             hop.crossing.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied()?;
         Some(self.site.robots + nearest)
@@ -114,19 +111,9 @@ impl Robot {
 
     /// The robot that waits at or has left `place` of the path.
     fn robot_at(&self, place: usize) -> Option<NodeId> {
-        if self.duty.place() == Some(place) {
-            return Some(self.id);
-        }
         self.neighbours
             .iter()
             .find(|n| n.beacon.duty.as_ref().and_then(Duty::place) == Some(place))
             .map(Neighbour::id)
-    }
-
-    fn holder_or_self(&self, post: pleach_discrete::network::PostId) -> Option<NodeId> {
-        match self.duty.post() {
-            Some(own) if own.id == post => Some(self.id),
-            _ => self.holder(post).map(Neighbour::id),
-        }
     }
 }

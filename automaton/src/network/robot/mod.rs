@@ -67,6 +67,7 @@ pub struct Robot {
 
     // What it hears and where it hangs.
     neighbours: Vec<Neighbour>,
+    parent: Option<NodeId>,
     lineage: Option<Arc<Lineage>>,
     below: Arc<IdSet>,
     can_detach: bool,
@@ -135,6 +136,7 @@ impl Robot {
             last_partner: None,
             reply: None,
             neighbours: Vec::new(),
+            parent: None,
             lineage: None,
             below: Arc::new(IdSet::singleton(id)),
             can_detach: false,
@@ -178,6 +180,7 @@ impl Robot {
             route: self.route.clone(),
             crossing: Vec::new(),
             lineage: self.lineage.clone(),
+            parent: self.parent,
             below: Arc::clone(&self.below),
             duty: Some(self.duty),
             parked: self.is_parked(),
@@ -257,6 +260,7 @@ impl Robot {
         self.keep_place();
         self.reattach();
         self.hear_word();
+        self.remember_parent();
     }
 
     /// Takes at most one transition of the mission automaton.

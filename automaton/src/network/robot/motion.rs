@@ -174,6 +174,7 @@ impl Robot {
         ));
         half_planes.extend(self.linearised_residual());
         let mut discs = vec![Disc { center: self.position, radius: step }];
+        discs.extend(self.post_discs());
         discs.extend(self.tree_links().iter().filter_map(|link| self.link_disc(link)));
         MotionProblem { position: self.position, waypoint, half_planes, discs }
     }
@@ -205,6 +206,17 @@ impl Robot {
         let id = neighbour.id();
         let flow = self.inflows.iter().find(|(from, _)| *from == id).map_or(0.0, |(_, flow)| *flow);
         if flow > 0.0 { flow / neighbour.reliability } else { 0.0 }
+    }
+
+    /// The holder of a fixed post stays within δ of it, and of the task serviced from it.
+    fn post_discs(&self) -> impl Iterator<Item = Disc> {
+        let station = self.duty.station().filter(|station| station.post.is_fixed());
+        let task = station.and_then(|s| s.post.task).and_then(|task| self.task_position(task));
+        let radius = self.site.settings.service_radius;
+        station.map(|station| station.reference).into_iter().chain(task).map(move |center| Disc {
+            center,
+            radius: radius.max((center - self.position).norm()),
+        })
     }
 
     /// The disc in which the robot keeps a link of the tree within its limit, with the other end
