@@ -33,8 +33,10 @@ const NEGOTIATION_ROUNDS: usize = 8;
 /// Where a control period stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// Messages are exchanged; so many rounds remain, and then routes are computed.
-    Exchange(usize),
+    /// Messages are exchanged.
+    Exchange,
+    /// Routes are computed.
+    Route,
     /// Moves are proposed and certified.
     Move,
     /// Time passes.
@@ -100,6 +102,7 @@ pub struct Network<M = Radio> {
     positions: Vec<Point>,
     inboxes: Vec<Vec<Arc<Beacon>>>,
     stage: Stage,
+    rounds: usize,
     times: KernelTimes,
 }
 
@@ -144,6 +147,7 @@ impl<M: Medium> Network<M> {
             positions: Vec::with_capacity(nodes),
             inboxes: vec![Vec::new(); nodes],
             stage: Stage::Flow,
+            rounds: 0,
             times: KernelTimes::default(),
             site,
             robots,
@@ -188,7 +192,8 @@ impl<M: Medium> Network<M> {
         self.positions.extend(self.robots.iter().map(Robot::position));
         self.positions.extend(self.access_points.iter().map(AccessPoint::position));
         self.medium.update(&self.positions);
-        self.stage = Stage::Exchange(self.site.settings.rounds_per_period);
+        self.rounds = 0;
+        self.stage = Stage::Exchange;
     }
 
     /// One round: every node repeats its public state to those that hear it.
@@ -387,20 +392,23 @@ impl<M: Medium> Network<M> {
                 self.times.coordination += begin.elapsed();
                 NetworkJump::Sample
             }
-            Stage::Exchange(0) => {
+            Stage::Exchange => {
+                if self.rounds == 0 {
+                    self.robots.iter_mut().for_each(Robot::begin_period);
+                }
+                self.exchange_beacons();
+                self.rounds += 1;
+                if self.has_exchanged_enough() {
+                    self.stage = Stage::Route;
+                }
+                self.times.coordination += begin.elapsed();
+                NetworkJump::Exchange
+            }
+            Stage::Route => {
                 self.route();
                 self.stage = Stage::Move;
                 self.times.routing += begin.elapsed();
                 NetworkJump::Route
-            }
-            Stage::Exchange(rounds) => {
-                if rounds == self.site.settings.rounds_per_period {
-                    self.robots.iter_mut().for_each(Robot::begin_period);
-                }
-                self.exchange_beacons();
-                self.stage = Stage::Exchange(rounds - 1);
-                self.times.coordination += begin.elapsed();
-                NetworkJump::Exchange
             }
             Stage::Move => {
                 self.negotiate();
@@ -408,6 +416,16 @@ impl<M: Medium> Network<M> {
                 NetworkJump::Move
             }
         }
+    }
+
+    /// A control period has a fixed number of rounds. Before the first one the robots are given as
+    /// many as news can take to cross the network, so that the tree stands when the clock starts.
+    fn has_exchanged_enough(&self) -> bool {
+        let longest_way = self.robots.len() + self.access_points.len();
+        let stands = self.step > 0
+            || self.rounds >= longest_way
+            || self.robots.iter().all(|robot| robot.tree_parent().is_some());
+        stands && self.rounds >= self.site.settings.rounds_per_period
     }
 
     /// Whether the clocks call for the next sample.

@@ -5,6 +5,7 @@
 //! chooses from the lineages that its neighbours tell it. Fixed and primary posts keep their
 //! parents; only p₁ may change its own (Remark 5.6).
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pleach_discrete::network::{Anchor, IdSet, Lineage, Phase, PostId, PostKind};
@@ -28,6 +29,7 @@ impl Robot {
         if self.duty.is_redundant() && (!self.tree_is_frozen() || self.anchor().is_none()) {
             self.choose_parent();
         }
+        self.reattach();
         self.trace_lineage();
         self.can_detach = self.duty.is_redundant() && self.finds_other_parent();
         self.collect_below();
@@ -45,7 +47,6 @@ impl Robot {
             && let Some(station) = self.duty.station_mut()
         {
             station.post.kind = PostKind::Redundant;
-            station.reference = self.position;
         }
     }
 
@@ -66,7 +67,12 @@ impl Robot {
         let is_followed = |post: PostId| {
             posts().any(|other| other.kind == PostKind::Primary { follows: Some(post) })
         };
-        posts().filter(|post| !post.is_redundant() && !is_followed(post.id)).count()
+        // During a hand-over two robots hold the same post.
+        let branches: BTreeSet<PostId> = posts()
+            .filter(|post| !post.is_redundant() && !is_followed(post.id))
+            .map(|post| post.id)
+            .collect();
+        branches.len()
     }
 
     pub(super) fn anchor(&self) -> Option<Anchor> {
@@ -115,11 +121,29 @@ impl Robot {
                 && !lineage.contains(own)
                 && avoided.is_none_or(|avoided| !lineage.contains(avoided))
                 && self.may_build(self.walk_to(neighbour))
+                && self.confirms(lineage)
             {
                 best = Some((hops, neighbour.reliability, self.anchor_of(neighbour)));
             }
         }
         best.map(|(hops, _, anchor)| (hops, anchor))
+    }
+
+    /// Whether no robot on the way says otherwise: what it says itself is newer than what others
+    /// tell of it, so that robots that lose their parent at once do not hang on one another.
+    fn confirms(&self, lineage: &Lineage) -> bool {
+        self.neighbours.iter().all(|neighbour| {
+            let place = neighbour.post().and_then(|post| {
+                lineage.posts().iter().position(|&passed| passed == post.id)
+            });
+            place.is_none_or(|place| {
+                neighbour
+                    .beacon
+                    .lineage
+                    .as_ref()
+                    .is_some_and(|own| own.posts() == &lineage.posts()[place..])
+            })
+        })
     }
 
     fn anchor_of(&self, neighbour: &Neighbour) -> Anchor {
@@ -183,13 +207,12 @@ impl Robot {
             && let Some(station) = self.duty.station_mut()
         {
             station.post.kind = PostKind::Fixed;
-            station.reference = self.position;
         }
     }
 
     /// Remark 5.6: p₁ hangs itself on a fixed or redundant robot or an access point that is
     /// nearer to its target, if there is one within d_build.
-    pub fn reattach(&mut self) {
+    fn reattach(&mut self) {
         if self.phase != Phase::Advance || !self.is_first() && self.awaited_parent().is_none() {
             return;
         }

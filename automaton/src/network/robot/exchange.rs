@@ -131,13 +131,7 @@ impl Robot {
         }
         let (partner, accepted) = (offer.to, reply.accepted);
         self.offer = None;
-        let Some(mut duty) = accepted else { return };
-        let position = self.position;
-        if let Some(station) = duty.station_mut()
-            && station.post.is_redundant()
-        {
-            station.reference = position;
-        }
+        let Some(duty) = accepted else { return };
         self.left_post = self.duty.post().map(|post| post.id);
         self.duty = duty;
         self.last_partner = Some(partner);

@@ -112,10 +112,7 @@ impl Robot {
         if let Some(station) = self.duty.station_mut() {
             match (conflict, station.post.kind) {
                 (false, _) => station.post.kind = PostKind::Primary { follows: None },
-                (true, PostKind::Redundant) => {
-                    station.post.kind = PostKind::Fixed;
-                    station.reference = self.position;
-                }
+                (true, PostKind::Redundant) => station.post.kind = PostKind::Fixed,
                 (true, _) => {}
             }
         }
@@ -337,7 +334,8 @@ impl Robot {
                 let robots = self.robots_at(active);
                 self.report(MissionEvent::SubgroupStarted { subgroup: self.subgroup, robots });
             }
-            self.left_post = Some(station.post.id);
+            // The recruit's own place is given up; every other is taken over by the robot behind.
+            self.left_post = (place > 0).then_some(station.post.id);
             self.duty = Duty::Shift { place };
             self.still_periods = 0;
         }
@@ -407,7 +405,7 @@ impl Robot {
         let mut post = pleach_discrete::network::Post::redundant(id);
         post.kind = PostKind::Primary { follows };
         post.parent = parent;
-        self.left_post = Some(station.post.id);
+        self.left_post = (!self.subgroups.is_empty()).then_some(station.post.id);
         self.duty = Duty::Hold(Station { post, reference: self.position });
         self.still_periods = 0;
         self.awaits_release = false;

@@ -258,7 +258,6 @@ impl Robot {
     pub fn deliberate(&mut self) {
         self.handle_exchange();
         self.keep_place();
-        self.reattach();
         self.hear_word();
         self.remember_parent();
     }

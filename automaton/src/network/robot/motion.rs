@@ -79,7 +79,7 @@ impl Robot {
             return if waits { None } else { self.team_goal() };
         }
         let station = self.duty.station()?;
-        (station.post.is_fixed() && self.is_off(station.reference)).then_some(station.reference)
+        self.is_off(station.reference).then_some(station.reference)
     }
 
     /// Redundant robots still hang on the new leader: they need a moment to hang elsewhere.
