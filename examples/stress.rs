@@ -78,7 +78,10 @@ fn mission(family: Family, seed: u64, folder: Option<&Path>) -> Result<(), Box<d
     if outcome != format!("{:?}", Outcome::Serviced)
         && let Some(folder) = folder
     {
-        std::fs::write(folder.join(format!("{}.toml", scenario.name)), toml::to_string(&scenario)?)?;
+        std::fs::write(
+            folder.join(format!("{}.toml", scenario.name)),
+            toml::to_string(&scenario)?,
+        )?;
     }
     Ok(())
 }

@@ -126,18 +126,18 @@ fn any_plan(dice: &mut Dice) -> Brief {
 
 /// Three to four rooms on each side of a corridor; the access point is in the corridor or a room.
 fn office(dice: &mut Dice) -> Brief {
-    let rooms = dice.count(2, 4);
-    let depth = dice.between(0.9, 1.6);
+    let rooms = dice.count(2, 5);
+    let depth = dice.between(0.9, 2.4);
     let corridor = dice.between(0.25, 0.7);
     let mut right = 0.0;
     let mut floor = Floor::default();
     let mut doorways = Vec::new();
     for _ in 0..rooms {
         let left = right;
-        right = left + dice.between(0.8, 1.6);
+        right = left + dice.between(0.8, 2.2);
         for side in [1.0, -1.0] {
             let door = dice.between(6.0 * CLEARANCE, 0.5);
-            let at = dice.between(left + 0.1, right - 0.2 - door);
+            let at = dice.between(left + 0.1, right - WALL - 0.1 - door);
             let y = |distance: f64| side * (corridor / 2.0 + distance);
             let room = |near: f64, far: f64, left: f64, right: f64| {
                 Rectangle::new(left, y(near).min(y(far)), right, y(near).max(y(far)))
@@ -160,7 +160,7 @@ fn office(dice: &mut Dice) -> Brief {
 /// One or two rings; a task may lie exactly opposite the access point.
 fn ring(dice: &mut Dice) -> Brief {
     let width = dice.between(0.2, 0.6);
-    let (wide, high) = (dice.between(1.6, 3.0), dice.between(1.4, 2.4));
+    let (wide, high) = (dice.scale(1.6, 6.0), dice.scale(1.4, 5.0));
     let rings = dice.count(1, 2);
     let total = rings as f64 * (wide - width) + width;
     let mut floor = Floor::of(vec![Rectangle::new(0.0, 0.0, total, high)]);
@@ -179,12 +179,12 @@ fn ring(dice: &mut Dice) -> Brief {
 /// Rooms behind each other with doors of this width between them.
 fn suite(door: f64, dice: &mut Dice) -> Brief {
     let rooms = dice.count(2, 4);
-    let height = dice.between(0.8, 1.6);
+    let height = dice.between(0.8, 2.4);
     let mut right = 0.0;
     let mut floor = Floor::default();
     for room in 0..rooms {
         let left = right;
-        right = left + dice.between(0.7, 1.4);
+        right = left + dice.between(0.7, 2.4);
         if room > 0 {
             let bottom = dice.between(0.1, height - 0.1 - door);
             floor.rooms.push(Rectangle::new(left - WALL, bottom, left, bottom + door));
@@ -217,7 +217,7 @@ fn hall(dice: &mut Dice) -> Brief {
 
 /// Clusters at the ends of a long floor: a hall, a corridor between two rooms, or a suite.
 fn two_clusters(dice: &mut Dice) -> Brief {
-    let long = dice.between(4.0, 7.0);
+    let long = dice.between(4.0, 9.0);
     let high = dice.between(1.0, 2.0);
     let mut floor = match dice.chance(0.5) {
         true => Floor::of(vec![Rectangle::new(0.0, 0.0, long, high)]),
@@ -257,7 +257,7 @@ fn discs(dice: &mut Dice) -> Brief {
 fn corridors(dice: &mut Dice) -> Brief {
     let width = CLEARANCE * dice.between(2.3, 4.0);
     let (wide, high) = (dice.between(0.9, 1.6), dice.between(0.8, 1.4));
-    let long = dice.between(0.3, 1.5);
+    let long = dice.between(0.3, 2.5);
     let floor_at = dice.between(0.1, high - 0.2);
     let mut floor = Floor::of(vec![
         Rectangle::new(0.0, 0.0, wide, high),
@@ -284,9 +284,9 @@ fn corridors(dice: &mut Dice) -> Brief {
 }
 
 fn clutter(dice: &mut Dice) -> Brief {
-    let (wide, high) = (dice.between(2.0, 4.5), dice.between(1.8, 3.5));
+    let (wide, high) = (dice.scale(2.0, 8.0), dice.scale(1.8, 6.0));
     let mut floor = Floor::of(vec![Rectangle::new(0.0, 0.0, wide, high)]);
-    for _ in 0..dice.count(1, 4) {
+    for _ in 0..dice.count(1, 8) {
         let (x, y) = (dice.between(0.3, wide - 0.3), dice.between(0.3, high - 0.3));
         let length = dice.between(0.4, 1.4);
         floor.walls.push(match dice.chance(0.5) {
@@ -294,7 +294,7 @@ fn clutter(dice: &mut Dice) -> Brief {
             false => Rectangle::new(x, y, (x + length).min(wide), y + WALL),
         });
     }
-    let count = dice.count(0, 5);
+    let count = dice.count(0, 8);
     pillars(&mut floor, count, dice);
     let home = [dice.between(0.3, wide - 0.3), dice.between(0.3, high - 0.3)];
     let mut brief = Brief::new(floor, home);
@@ -326,9 +326,7 @@ fn pillars(floor: &mut Floor, count: usize, dice: &mut Dice) {
 /// Robots in every doorway and all along the corridor of an office, or in narrow corridors.
 fn parked(dice: &mut Dice) -> Brief {
     let mut brief = if dice.chance(0.5) { office(dice) } else { corridors(dice) };
-    let narrow = |room: &&Rectangle| {
-        (room.right - room.left).min(room.top - room.bottom) < 0.75
-    };
+    let narrow = |room: &&Rectangle| (room.right - room.left).min(room.top - room.bottom) < 0.75;
     let narrow: Vec<Rectangle> = brief.floor.rooms.iter().filter(narrow).copied().collect();
     for room in narrow {
         for _ in 0..dice.count(0, 3) {
