@@ -77,6 +77,7 @@ impl AccessPoint {
             below: Arc::clone(&self.roster),
             duty: None,
             parked: false,
+            way: None,
             can_detach: false,
             offer: None,
             reply: None,

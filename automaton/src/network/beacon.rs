@@ -99,6 +99,8 @@ pub struct Beacon {
     pub duty: Option<Duty>,
     /// Whether it stands still unless it is asked for.
     pub parked: bool,
+    /// Where it wants to go next, if it has been stuck for a while.
+    pub way: Option<Point>,
     /// For a redundant robot: whether it could hang on another node than its parent.
     pub can_detach: bool,
     /// A standing offer to exchange duties.

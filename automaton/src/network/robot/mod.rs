@@ -3,8 +3,8 @@
 //! Everything here is local. A robot knows its own position and duty, what every robot knows
 //! from the beginning ([`Site`]), and the beacons of the neighbours that it hears. The chapters
 //! follow the day of a robot: it [listens](hearing), keeps its [place in the tree](attachment),
-//! takes part in the [mission](mission), [exchanges duties](exchange) with a robot in its way,
-//! [routes](routing) its packets and [moves](motion).
+//! takes part in the [mission](mission), [exchanges duties](exchange) with a robot in its way or
+//! [makes way](yielding), [routes](routing) its packets and [moves](motion).
 
 mod attachment;
 mod exchange;
@@ -14,6 +14,7 @@ mod links;
 mod mission;
 mod motion;
 mod routing;
+mod yielding;
 
 use std::sync::Arc;
 
@@ -97,6 +98,7 @@ pub struct Robot {
 
     // Motion.
     destination: Option<Destination>,
+    waypoint: Option<Point>,
     proposal: Option<Proposal>,
     heard_moves: Vec<(NodeId, Segment)>,
     arrival: Point,
@@ -160,6 +162,7 @@ impl Robot {
             inflows: Vec::new(),
             residual: 0.0,
             destination: None,
+            waypoint: None,
             proposal: None,
             heard_moves: Vec::new(),
             arrival: position,
@@ -184,6 +187,7 @@ impl Robot {
             below: Arc::clone(&self.below),
             duty: Some(self.duty),
             parked: self.is_parked(),
+            way: self.way_asked_for(),
             can_detach: self.can_detach,
             offer: self.offer.clone(),
             reply: self.reply.clone(),
