@@ -213,14 +213,22 @@ const NOBODY_NEEDS: NodeId = 0;
 fn probe_jam() {
     for from in [0u64, 1, 100, 400_000] {
         for robot in [0, 1, 5, 12] {
-        let mut network = network_over(&shipped("study-1"), |site| {
-            Lossy::new(site, move |before, sender, receiver| {
-                before >= from && (sender == robot || receiver == robot)
-            })
-        });
-        let (periods, end) = run_unmonitored(&mut network, 3_000);
-        let events: Vec<_> = periods.iter().flat_map(|p| p.events.iter().filter(|e| !matches!(e, Event::RouteInfeasible{..})).map(move |e| (p.snapshot.step, e))).collect();
-        println!("{from} {robot}: {} {end:?} {:?}", periods.len(), events.last());
+            let mut network = network_over(&shipped("study-1"), |site| {
+                Lossy::new(site, move |before, sender, receiver| {
+                    before >= from && (sender == robot || receiver == robot)
+                })
+            });
+            let (periods, end) = run_unmonitored(&mut network, 3_000);
+            let events: Vec<_> = periods
+                .iter()
+                .flat_map(|p| {
+                    p.events
+                        .iter()
+                        .filter(|e| !matches!(e, Event::RouteInfeasible { .. }))
+                        .map(move |e| (p.snapshot.step, e))
+                })
+                .collect();
+            println!("{from} {robot}: {} {end:?} {:?}", periods.len(), events.last());
         }
     }
 }
