@@ -7,6 +7,7 @@ use pleach_automaton::{Automaton, Reset, diagram};
 use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency};
 use pleach_guards::{Guard, always, variable};
 use proptest::prelude::*;
+use std::collections::BTreeSet;
 
 #[test]
 fn mermaid_is_complete() {
@@ -150,8 +151,15 @@ proptest! {
             .expect("the parts fit");
         let svg = diagram::svg(&automaton);
         prop_assert!(!svg.contains("NaN") && !svg.contains("inf"), "{}", svg);
-        prop_assert_eq!(svg.matches("[always]").count(), targets.len());
-        prop_assert_eq!(svg.matches("url(#head)").count(), 1 + targets.len());
+        let dots = svg.matches("<circle class=\"dot\"").count();
+        prop_assert_eq!(dots, 1 + targets.len(), "the initial dot, and where each transition begins");
+        let arrows: BTreeSet<_> = targets
+            .iter()
+            .map(|((source, event), target)| (event, target, source.cmp(target)))
+            .collect();
+        prop_assert_eq!(svg.matches("url(#head)").count(), 1 + arrows.len());
+        let rows: BTreeSet<_> = arrows.iter().map(|(event, target, _)| (event, target)).collect();
+        prop_assert_eq!(svg.matches("[always]").count(), rows.len());
         prop_assert_eq!(diagram::svg(&automaton), svg);
     }
 }

@@ -4,7 +4,7 @@
 //! | --- | --- | --- |
 //! | [`mermaid`] | a Mermaid state diagram | Markdown pages |
 //! | [`dot`] | a graph in the DOT language | Graphviz |
-//! | [`svg`] | a picture, laid out without any other program | everything else |
+//! | [`svg`] | a picture, one column a location and one row an event | everything else |
 //! | [`table`] | the location × event table, with the guards and resets of the events | Markdown pages |
 //!
 //! A transition shows `event [guard] / reset`, then its urgency and priority; a location shows its

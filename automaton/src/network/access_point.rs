@@ -8,7 +8,7 @@ use std::sync::Arc;
 use pleach_continuous::Point;
 use pleach_discrete::network::{Agreement, Anchor, Bulletin, Election, IdSet, Lineage, NodeId};
 
-use super::beacon::{Beacon, Notice};
+use super::beacon::{Beacon, Notice, Voice};
 use super::duty::Hop;
 use super::record::{MissionEvent, Outcome};
 use super::site::Site;
@@ -31,6 +31,7 @@ pub struct AccessPoint {
     crossing: Vec<usize>,
     roster: Arc<IdSet>,
     settled_rounds: usize,
+    voice: Voice,
     log: Vec<MissionEvent>,
 }
 
@@ -49,6 +50,7 @@ impl AccessPoint {
             crossing: Vec::new(),
             roster: Arc::default(),
             settled_rounds: 0,
+            voice: Voice::default(),
             log: Vec::new(),
         }
     }
@@ -62,8 +64,14 @@ impl AccessPoint {
         self.position
     }
 
-    /// What it tells its neighbours and, over the wire, the other access points.
-    pub fn beacon(&self) -> Beacon {
+    /// What it tells its neighbours and, over the wire, the other access points: the very same
+    /// beacon as before unless something in it has changed.
+    pub fn speak(&mut self) -> Arc<Beacon> {
+        let (beacon, _) = self.voice.say(self.public_state());
+        beacon
+    }
+
+    fn public_state(&self) -> Beacon {
         Beacon {
             sender: self.id(),
             position: self.position,
@@ -77,6 +85,7 @@ impl AccessPoint {
             below: Arc::clone(&self.roster),
             duty: None,
             parked: false,
+            way: None,
             can_detach: false,
             offer: None,
             reply: None,
@@ -85,9 +94,9 @@ impl AccessPoint {
     }
 
     /// Takes in one round of beacons.
-    pub fn hear(&mut self, beacons: impl Iterator<Item = Arc<Beacon>>) {
+    pub fn hear<'a>(&mut self, beacons: impl Iterator<Item = &'a Arc<Beacon>>) {
         self.heard.clear();
-        self.heard.extend(beacons);
+        self.heard.extend(beacons.map(Arc::clone));
         self.hear_word();
         self.find_route();
         self.call_roll();

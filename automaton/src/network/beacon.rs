@@ -73,7 +73,7 @@ pub struct TeamReport {
 }
 
 /// The public state of a node.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Beacon {
     /// Who sends.
     pub sender: NodeId,
@@ -99,6 +99,8 @@ pub struct Beacon {
     pub duty: Option<Duty>,
     /// Whether it stands still unless it is asked for.
     pub parked: bool,
+    /// Where it wants to go next, if it has been stuck for a while.
+    pub way: Option<Point>,
     /// For a redundant robot: whether it could hang on another node than its parent.
     pub can_detach: bool,
     /// A standing offer to exchange duties.
@@ -107,4 +109,30 @@ pub struct Beacon {
     pub reply: Option<Reply<Duty>>,
     /// What the primary team knows of itself, for the next member towards p₁.
     pub team: Option<TeamReport>,
+}
+
+/// What a node said last. A node with nothing new to say sends the very same beacon again, and
+/// who hears it knows without reading it.
+#[derive(Debug, Default)]
+pub struct Voice {
+    last: Option<Arc<Beacon>>,
+}
+
+impl Voice {
+    /// The beacon sent last, if any.
+    pub fn last(&self) -> Option<Arc<Beacon>> {
+        self.last.clone()
+    }
+
+    /// The beacon to send now, and whether it differs from the last one.
+    pub fn say(&mut self, now: Beacon) -> (Arc<Beacon>, bool) {
+        match &self.last {
+            Some(last) if **last == now => (Arc::clone(last), false),
+            _ => {
+                let beacon = Arc::new(now);
+                self.last = Some(Arc::clone(&beacon));
+                (beacon, true)
+            }
+        }
+    }
 }

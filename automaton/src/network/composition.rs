@@ -100,7 +100,10 @@ pub struct Network<M = Radio> {
     mission: MissionAutomaton,
     tasks: Vec<Point>,
     positions: Vec<Point>,
-    inboxes: Vec<Vec<Arc<Beacon>>>,
+    /// What each node said in the current round.
+    beacons: Vec<Arc<Beacon>>,
+    /// The senders that each node hears in the current round, ascending.
+    inboxes: Vec<Vec<NodeId>>,
     stage: Stage,
     rounds: usize,
     times: KernelTimes,
@@ -145,6 +148,7 @@ impl<M: Medium> Network<M> {
             mission: mission_automaton()?,
             tasks: scenario.task.iter().map(|task| task.position.into()).collect(),
             positions: Vec::with_capacity(nodes),
+            beacons: Vec::with_capacity(nodes),
             inboxes: vec![Vec::new(); nodes],
             stage: Stage::Flow,
             rounds: 0,
@@ -198,24 +202,24 @@ impl<M: Medium> Network<M> {
 
     /// One round: every node repeats its public state to those that hear it.
     fn exchange_beacons(&mut self) {
-        let robots = self.robots.iter().map(Robot::beacon);
-        let access_points = self.access_points.iter().map(AccessPoint::beacon);
-        let beacons: Vec<Arc<Beacon>> = robots.chain(access_points).map(Arc::new).collect();
-        for (sender, beacon) in beacons.iter().enumerate() {
+        self.beacons.clear();
+        self.beacons.extend(self.robots.iter_mut().map(Robot::speak));
+        self.beacons.extend(self.access_points.iter_mut().map(AccessPoint::speak));
+        for sender in 0..self.beacons.len() {
             for at in 0..self.medium.audience(sender).len() {
                 let receiver = self.medium.audience(sender)[at];
                 if self.medium.delivers(sender, receiver) {
-                    self.inboxes[receiver].push(Arc::clone(beacon));
+                    self.inboxes[receiver].push(sender);
                 }
             }
         }
         let (to_robots, to_access_points) = self.inboxes.split_at_mut(self.robots.len());
         for (robot, inbox) in self.robots.iter_mut().zip(to_robots) {
-            robot.hear(inbox.drain(..));
+            robot.hear(inbox.drain(..).map(|sender| &self.beacons[sender]));
             robot.deliberate();
         }
         for (access_point, inbox) in self.access_points.iter_mut().zip(to_access_points) {
-            access_point.hear(inbox.drain(..));
+            access_point.hear(inbox.drain(..).map(|sender| &self.beacons[sender]));
         }
         if let Some(first) = self.access_points.first_mut() {
             first.speak_for_user(&self.tasks);

@@ -62,15 +62,17 @@ impl<P> Path<P> {
     /// Whether the robot at `place` is a break point of Σ.
     ///
     /// The paper names junctions and leaves. A robot is one in effect if it services a task, if
-    /// it has a tree neighbour off Σ, if it stands behind an access point that Σ crosses, or if
-    /// it is the last that Σ relieves; and b₁ = s₁.
+    /// it has a tree neighbour off Σ, if Σ crosses an access point just before or behind it, or
+    /// if it is the last that Σ relieves; and b₁ = s₁. A crossing is thus walked by one robot
+    /// alone, which hangs on the access point: two in a chain would hold each other back.
     pub fn is_break_point(&self, place: usize, ties: Ties) -> bool {
         let last = self.last_break_point();
-        let behind_crossing =
-            place.checked_sub(1).is_some_and(|before| !self.hops[before].crossing.is_empty());
+        let crosses =
+            |place: usize| self.hops.get(place).is_some_and(|hop| !hop.crossing.is_empty());
+        let at_crossing = crosses(place) || place.checked_sub(1).is_some_and(crosses);
         place == 0
             || place == last
-            || place < last && (ties.services_task || ties.bears_others || behind_crossing)
+            || place < last && (ties.services_task || ties.bears_others || at_crossing)
     }
 
     /// The place that `post` has on the path.
@@ -104,5 +106,32 @@ impl Subgroup {
     /// The places of its members.
     pub const fn places(self) -> std::ops::Range<usize> {
         self.first..self.end
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::PostId;
+    use super::*;
+
+    /// A path of so many places that crosses an access point behind `before`.
+    fn path(places: usize, before: usize) -> Path<()> {
+        let hop = |place| Hop {
+            robot: place,
+            post: Post::redundant(PostId(place as u32)),
+            place: (),
+            crossing: if place == before { vec![0] } else { vec![] },
+        };
+        Path { hops: (0..places).map(hop).collect(), releases_leader: true }
+    }
+
+    #[test]
+    fn robots_on_both_sides_of_a_crossing_are_break_points() {
+        let path = path(6, 2);
+        let points: Vec<usize> =
+            (0..path.len()).filter(|&place| path.is_break_point(place, Ties::default())).collect();
+        assert_eq!(points, [0, 2, 3, 5]);
+        let crossing = subgroups(&points).find(|subgroup| subgroup.first == 2);
+        assert_eq!(crossing, Some(Subgroup { first: 2, end: 3 }), "one robot crosses alone");
     }
 }

@@ -55,6 +55,13 @@ impl<'a> Period<'a> {
         Period { before: snapshot, after: snapshot, motions }
     }
 
+    /// The motions of which something is new: every one when the mission opens, then those of the
+    /// robots that move. Where a robot rests, it stands at the end of an earlier motion.
+    fn news(&self) -> impl Iterator<Item = (usize, &Segment)> {
+        let opens = std::ptr::eq(self.before, self.after);
+        self.motions.iter().enumerate().filter(move |(_, motion)| opens || motion.from != motion.to)
+    }
+
     fn start(&self) -> Instant {
         Instant::of(self.before)
     }
@@ -88,7 +95,7 @@ pub fn separation(period: &Period, limits: &Limits) -> Result<Option<Extreme>, V
     Ok(Some(Extreme { value, instant, robots }))
 }
 
-/// [`Property::Clearance`]; the smallest clearance, for the summary.
+/// [`Property::Clearance`]; the smallest clearance of a robot that moves, for the summary.
 ///
 /// Exact for the whole segment; outside the workspace it is not positive. The instant reported
 /// is the start of the period.
@@ -99,8 +106,8 @@ pub fn separation(period: &Period, limits: &Limits) -> Result<Option<Extreme>, V
 pub fn clearance(period: &Period, limits: &Limits) -> Result<Option<Extreme>, Violation> {
     let bound = limits.clearance();
     let of_motion = |motion: &Segment| limits.workspace().segment_clearance(motion.from, motion.to);
-    let clearances = period.motions.iter().map(of_motion);
-    let smallest = clearances.enumerate().min_by(|one, other| one.1.total_cmp(&other.1));
+    let clearances = period.news().map(|(robot, motion)| (robot, of_motion(motion)));
+    let smallest = clearances.min_by(|one, other| one.1.total_cmp(&other.1));
     let Some((robot, value)) = smallest else { return Ok(None) };
     let instant = period.start();
     if value.is_nan() || value < bound - SLACK {

@@ -1,168 +1,172 @@
-//! What `layout-rs` draws on. Its own canvas sets text in a serif font along the curves of the
-//! edges and misjudges the height of the page, so this is another one: plain, with a style sheet.
+//! The strokes that a picture of an automaton is made of. Colours and lines are up to one style
+//! sheet, in which the classes of the strokes are named.
 
-use std::fmt::Write;
+use svg::Document;
+use svg::node::element::{Circle, Definitions, Line, Marker, Path, Rectangle, Style, Text};
 
-use layout::core::format::{ClipHandle, RenderBackend};
-use layout::core::geometry::Point;
-use layout::core::style::StyleAttr;
-
-use super::LINE_HEIGHT;
-
-/// White around the drawing, in pixels.
-const MARGIN: f64 = 12.0;
+/// The size of the text, in pixels.
+const FONT_SIZE: f64 = 13.0;
+/// From one line of text to the next, in pixels.
+pub(super) const LINE_HEIGHT: f64 = 17.0;
+/// The mean width of a character of a sans-serif font, as a share of its size, on the safe side.
+const CHARACTER_WIDTH: f64 = 0.6;
+/// From the middle of a line of text down to its base line, as a share of the size of the font.
+const DESCENT: f64 = 0.35;
+/// The radius of the dot where an arrow begins, in pixels.
+const DOT: f64 = 4.5;
+/// How far a loop reaches up and to the right, in pixels.
+const LOOP: [f64; 2] = [26.0, 15.0];
 
 const STYLE: &str = "\
-text { font-family: 'DejaVu Sans', 'Segoe UI', Helvetica, Arial, sans-serif; \
-text-anchor: middle; fill: #1b1f24; }
+text { font-family: 'DejaVu Sans', 'Segoe UI', Helvetica, Arial, sans-serif; fill: #1b1f24; }
+.middle { text-anchor: middle; }
 .name { font-weight: bold; }
-.location { fill: #eef3fa; stroke: #34527a; stroke-width: 1.5; }
-.transition { fill: #ffffff; stroke: #c5ccd6; stroke-width: 0.8; }
-.initial { fill: #1b1f24; }
-path { fill: none; stroke: #1b1f24; stroke-width: 1.2; }
+.condition { fill: #3b4554; }
+.key { fill: #6a7482; font-style: italic; }
+.paper { fill: #ffffff; }
+.stripe { fill: #f4f6f9; }
+.location { fill: #dfe9f6; stroke: #34527a; stroke-width: 1.5; }
+.column { stroke: #a9b8cc; stroke-width: 1; }
+.dot { fill: #1b1f24; }
+.arrow { fill: none; stroke: #1b1f24; stroke-width: 1.2; }
 .may { stroke-dasharray: 5 4; }
 .at-once { stroke-width: 2.2; }
-.head { fill: #1b1f24; stroke: none; }
-";
+.head { fill: #1b1f24; }";
 
-/// The triangle at the end of an arrow; its tip lies where the line ends.
-const MARKER: &str = "<defs><marker id=\"head\" viewBox=\"0 0 10 8\" refX=\"10\" refY=\"4\" \
-markerWidth=\"10\" markerHeight=\"8\" markerUnits=\"userSpaceOnUse\" \
-orient=\"auto-start-reverse\"><path class=\"head\" d=\"M 0 0 L 10 4 L 0 8 z\"/></marker></defs>\n";
+/// A place in the picture, in pixels; y grows downwards.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub x: f64,
+    pub y: f64,
+}
 
-/// An SVG document while it is being drawn. The properties of shapes are their classes.
+/// The size of a rectangle, in pixels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Size {
+    pub width: f64,
+    pub height: f64,
+}
+
+/// How wide a line of text is, estimated without its font.
+pub(super) fn text_width(text: &str) -> f64 {
+    text.chars().count() as f64 * FONT_SIZE * CHARACTER_WIDTH
+}
+
+/// An SVG document while it is being drawn.
 pub(super) struct Canvas {
-    content: String,
-    low: Point,
-    high: Point,
+    document: Document,
 }
 
 impl Canvas {
     pub fn new() -> Self {
-        let (low, high) = (Point::splat(f64::INFINITY), Point::splat(f64::NEG_INFINITY));
-        Canvas { content: String::new(), low, high }
+        let triangle = Path::new().set("class", "head").set("d", "M 0 0 L 10 4 L 0 8 z");
+        let head = Marker::new()
+            .set("id", "head")
+            .set("viewBox", "0 0 10 8")
+            .set("refX", 10)
+            .set("refY", 4)
+            .set("markerWidth", 11)
+            .set("markerHeight", 9)
+            .set("markerUnits", "userSpaceOnUse")
+            .set("orient", "auto")
+            .add(triangle);
+        let paper =
+            Rectangle::new().set("class", "paper").set("width", "100%").set("height", "100%");
+        let document = Document::new()
+            .set("font-size", FONT_SIZE)
+            .add(Style::new(STYLE))
+            .add(Definitions::new().add(head))
+            .add(paper);
+        Canvas { document }
     }
 
-    pub fn finish(self) -> String {
-        let (x, y) = (self.low.x - MARGIN, self.low.y - MARGIN);
-        let (width, height) = (self.high.x + MARGIN - x, self.high.y + MARGIN - y);
-        let content = self.content;
-        format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
-             viewBox=\"{x:.1} {y:.1} {width:.1} {height:.1}\">\n<style>\n{STYLE}</style>\n{MARKER}\
-             <rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
-             fill=\"#ffffff\"/>\n{content}</svg>\n"
-        )
+    pub fn finish(self, Size { width, height }: Size) -> String {
+        let (width, height) = (number(width), number(height));
+        let view = format!("0 0 {width} {height}");
+        let document = self.document.set("width", width).set("height", height).set("viewBox", view);
+        format!("{document}\n")
     }
 
-    fn line(&mut self, line: std::fmt::Arguments<'_>) {
-        // Writing into a string cannot fail.
-        let _ = self.content.write_fmt(line);
-        self.content.push('\n');
+    fn add(&mut self, element: impl Into<Box<dyn svg::Node>>) {
+        svg::Node::append(&mut self.document, element.into());
     }
 
-    fn include(&mut self, point: Point) {
-        self.low = Point::new(self.low.x.min(point.x), self.low.y.min(point.y));
-        self.high = Point::new(self.high.x.max(point.x), self.high.y.max(point.y));
-    }
-}
-
-impl RenderBackend for Canvas {
-    fn draw_rect(
-        &mut self,
-        corner: Point,
-        size: Point,
-        _look: &StyleAttr,
-        class: Option<String>,
-        _clip: Option<ClipHandle>,
-    ) {
-        self.include(corner);
-        self.include(corner.add(size));
-        let (class, Point { x, y }) = (class.unwrap_or_default(), corner);
-        let (width, height) = (size.x, size.y);
-        self.line(format_args!(
-            "<rect class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" \
-             height=\"{height:.1}\" rx=\"8\"/>"
-        ));
+    /// A line of text whose middle is at the height of `place`.
+    pub fn label(&mut self, place: Place, text: &str, class: &str) {
+        let base = place.y + DESCENT * FONT_SIZE;
+        let text = Text::new(text).set("class", class);
+        self.add(text.set("x", number(place.x)).set("y", number(base)));
     }
 
-    fn draw_line(&mut self, from: Point, to: Point, look: &StyleAttr, class: Option<String>) {
-        self.draw_arrow(&[(from, from), (to, to)], false, (false, false), look, class, "");
+    /// The box of a location.
+    pub fn location(&mut self, corner: Place, size: Size) {
+        self.add(rectangle(corner, size).set("class", "location").set("rx", 8));
     }
 
-    fn draw_circle(
-        &mut self,
-        centre: Point,
-        size: Point,
-        _look: &StyleAttr,
-        class: Option<String>,
-    ) {
-        let radius = size.scale(0.5);
-        self.include(centre.sub(radius));
-        self.include(centre.add(radius));
-        let class = class.unwrap_or_default();
-        self.line(format_args!(
-            "<ellipse class=\"{class}\" cx=\"{:.1}\" cy=\"{:.1}\" rx=\"{:.1}\" ry=\"{:.1}\"/>",
-            centre.x, centre.y, radius.x, radius.y
-        ));
+    /// The ground of a row.
+    pub fn stripe(&mut self, corner: Place, size: Size) {
+        self.add(rectangle(corner, size).set("class", "stripe"));
     }
 
-    /// Lines of text around `centre`, the first of them bold.
-    fn draw_text(&mut self, centre: Point, text: &str, look: &StyleAttr) {
-        let font = look.font_size as f64;
-        let spacing = font * LINE_HEIGHT;
-        /// From the middle of a line down to its base line, as a share of the size of the font.
-        const DESCENT: f64 = 0.35;
-        let above = (text.lines().count() as f64 - 1.0) / 2.0;
-        let first = centre.y - above * spacing + DESCENT * font;
-        for (number, line) in text.lines().enumerate() {
-            let (x, y) = (centre.x, first + number as f64 * spacing);
-            let class = if number == 0 { " class=\"name\"" } else { "" };
-            let line = escaped(line);
-            self.line(format_args!(
-                "<text{class} x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{font}\">{line}</text>"
-            ));
-        }
+    /// The line below a location.
+    pub fn column_line(&mut self, x: f64, top: f64, bottom: f64) {
+        let line = line(Place { x, y: top }, Place { x, y: bottom });
+        self.add(line.set("class", "column"));
     }
 
-    /// A smooth curve: the first pair holds its start and a control point, each further pair a
-    /// control point and where the curve passes.
-    fn draw_arrow(
-        &mut self,
-        path: &[(Point, Point)],
-        _dashed: bool,
-        (at_start, at_end): (bool, bool),
-        _look: &StyleAttr,
-        class: Option<String>,
-        _text: &str,
-    ) {
-        let [(start, control), rest @ ..] = path else { return };
-        let mut curve = format!("M {:.1} {:.1}", start.x, start.y);
-        self.include(*start);
-        for (number, (before, end)) in rest.iter().enumerate() {
-            let command = match number {
-                0 => format!(" C {:.1} {:.1},", control.x, control.y),
-                _ => " S".to_owned(),
-            };
-            self.include(*end);
-            let _ = write!(
-                curve,
-                "{command} {:.1} {:.1}, {:.1} {:.1}",
-                before.x, before.y, end.x, end.y
-            );
-        }
-        let class = class.unwrap_or_default();
-        let head = if at_start { " marker-start=\"url(#head)\"" } else { "" };
-        let tail = if at_end { " marker-end=\"url(#head)\"" } else { "" };
-        self.line(format_args!("<path class=\"{class}\" d=\"{curve}\"{head}{tail}/>"));
+    /// Where a transition begins.
+    pub fn dot(&mut self, at: Place) {
+        let circle = Circle::new().set("class", "dot").set("r", DOT);
+        self.add(circle.set("cx", number(at.x)).set("cy", number(at.y)));
     }
 
-    /// Nothing here is clipped.
-    fn create_clip(&mut self, _corner: Point, _size: Point, _rounded: usize) -> ClipHandle {
-        0
+    /// An arrow with its head at `to`.
+    pub fn arrow(&mut self, from: Place, to: Place, class: &str) {
+        let line = line(from, to).set("class", format!("arrow {class}"));
+        self.add(line.set("marker-end", "url(#head)"));
+    }
+
+    /// From a dot above `at` round to `at`.
+    pub fn returning_arrow(&mut self, at: Place, class: &str) {
+        let [reach, height] = LOOP;
+        let above = at.y - height;
+        self.dot(Place { x: at.x, y: above });
+        let curve = format!(
+            "M {x} {above} C {far} {above} {far} {y} {x} {y}",
+            x = number(at.x),
+            far = number(at.x + reach),
+            above = number(above),
+            y = number(at.y),
+        );
+        let path = Path::new().set("class", format!("arrow {class}")).set("d", curve);
+        self.add(path.set("marker-end", "url(#head)"));
+    }
+
+    /// The arrow from nowhere to the initial location, whose box is `length` below.
+    pub fn initial_arrow(&mut self, from: Place, length: f64) {
+        let start = Place { y: from.y + DOT, ..from };
+        self.dot(start);
+        self.arrow(start, Place { y: from.y + length, ..from }, "must");
     }
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+fn rectangle(corner: Place, size: Size) -> Rectangle {
+    Rectangle::new()
+        .set("x", number(corner.x))
+        .set("y", number(corner.y))
+        .set("width", number(size.width))
+        .set("height", number(size.height))
+}
+
+fn line(from: Place, to: Place) -> Line {
+    Line::new()
+        .set("x1", number(from.x))
+        .set("y1", number(from.y))
+        .set("x2", number(to.x))
+        .set("y2", number(to.y))
+}
+
+/// A tenth of a pixel is fine enough.
+fn number(value: f64) -> String {
+    format!("{value:.1}")
 }

@@ -79,8 +79,6 @@ facts! {
     distance,
     /// The distance that counts as servicing it.
     reach,
-    /// Geodesic distance from the leader to its task, as the team reports it.
-    remaining,
     /// This robot is the recruit on its way.
     recruited,
     /// It holds the post of a redundant robot.
@@ -100,6 +98,9 @@ facts! {
 impl Robot {
     /// Measures the facts; says whether a guard may hold that did not hold before.
     pub fn measure(&mut self) -> bool {
+        if !std::mem::take(&mut self.is_unmeasured) {
+            return false;
+        }
         let facts = self.facts_now();
         let may_jump = facts != self.facts || !self.is_quiet;
         self.facts = facts;
@@ -127,7 +128,6 @@ impl Robot {
                 facts.won = yes(over && won);
                 let aided = best.is_some_and(|(bid, _)| bid.rank > 0);
                 facts.unaided = yes(over && !aided && self.is_caller());
-                facts.remaining = self.remaining();
             }
             Phase::PathAgreement => facts.points_agreed = yes(self.break_points().is_some()),
             Phase::Shift => self.measure_shift(&mut facts),
@@ -193,7 +193,6 @@ impl Robot {
         if let Some(team) = self.team {
             facts.still = f64::from(team.still);
             facts.slack = if team.slack.is_some() { 1.0 } else { 0.0 };
-            facts.remaining = team.remaining;
         }
         facts.first = if self.is_first() { 1.0 } else { 0.0 };
         facts.pending = if self.is_pending() { 1.0 } else { 0.0 };

@@ -1,6 +1,7 @@
 //! Listening: the table of neighbours and what each of them last said.
 
 use std::cell::OnceCell;
+use std::ops::Range;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -9,6 +10,7 @@ use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
 use super::super::beacon::Beacon;
 use super::super::duty::Station;
+use super::super::site::Site;
 use super::Robot;
 
 /// A node that the robot hears, R_ij > 0.
@@ -22,6 +24,18 @@ pub(super) struct Neighbour {
 }
 
 impl Neighbour {
+    /// A node as heard from `own`.
+    fn new(beacon: &Arc<Beacon>, own: Point, site: &Site) -> Self {
+        let distance = (beacon.position - own).norm();
+        Neighbour {
+            beacon: Arc::clone(beacon),
+            distance,
+            reliability: site.link.reliability(distance),
+            walk: OnceCell::new(),
+            measured: (own, beacon.position),
+        }
+    }
+
     pub fn id(&self) -> NodeId {
         self.beacon.sender
     }
@@ -45,21 +59,50 @@ impl Neighbour {
 
 impl Robot {
     /// Takes in the beacons heard in one round, in ascending order of their senders.
-    pub fn hear(&mut self, beacons: impl Iterator<Item = Arc<Beacon>>) {
-        let mut known = std::mem::take(&mut self.neighbours).into_iter().peekable();
+    pub fn hear<'a>(&mut self, beacons: impl Iterator<Item = &'a Arc<Beacon>>) {
+        let mut heard = 0;
         for beacon in beacons {
-            while known.next_if(|neighbour| neighbour.id() < beacon.sender).is_some() {}
-            let measured = (self.position, beacon.position);
-            let neighbour = match known.next_if(|neighbour| neighbour.id() == beacon.sender) {
-                Some(old) if old.measured == measured => Neighbour { beacon, ..old },
+            let rest = &self.neighbours[heard..];
+            let silent = rest.iter().take_while(|known| known.id() < beacon.sender).count();
+            self.forget(heard..heard + silent);
+            match self.neighbours.get(heard) {
+                Some(known) if known.id() == beacon.sender => self.renew(heard, beacon),
                 _ => {
-                    let distance = (beacon.position - self.position).norm();
-                    let reliability = self.site.link.reliability(distance);
-                    Neighbour { beacon, distance, reliability, walk: OnceCell::new(), measured }
+                    self.neighbours
+                        .insert(heard, Neighbour::new(beacon, self.position, &self.site));
+                    self.receive_news();
                 }
-            };
-            self.neighbours.push(neighbour);
+            }
+            heard += 1;
         }
+        self.forget(heard..self.neighbours.len());
+    }
+
+    /// A neighbour that the robot knows is heard again.
+    fn renew(&mut self, at: usize, beacon: &Arc<Beacon>) {
+        let known = &mut self.neighbours[at];
+        let has_moved = known.measured != (self.position, beacon.position);
+        if has_moved {
+            *known = Neighbour::new(beacon, self.position, &self.site);
+        } else if !Arc::ptr_eq(&known.beacon, beacon) {
+            known.beacon = Arc::clone(beacon);
+        } else {
+            return;
+        }
+        self.receive_news();
+    }
+
+    /// Neighbours are not heard any more.
+    fn forget(&mut self, silent: Range<usize>) {
+        if !silent.is_empty() {
+            self.neighbours.drain(silent);
+            self.receive_news();
+        }
+    }
+
+    /// What the robot hears has changed.
+    fn receive_news(&mut self) {
+        (self.has_news, self.is_unmeasured) = (true, true);
     }
 
     /// The geodesic length of the link to a neighbour.

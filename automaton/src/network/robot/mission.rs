@@ -234,7 +234,6 @@ impl Robot {
     /// The caller finds that nobody can be recruited: other trees may try, or the mission ends.
     pub fn end_unaided(&mut self) {
         let stranded = self.election.as_ref().and_then(Election::best).is_some();
-        let remaining = self.facts.remaining;
         let Some(task) = self.tasks.last().copied() else { return };
         let own_root = self.lineage.as_ref().map(|lineage| lineage.root());
         let others: IdSet = self.eligible.iter().filter(|&root| Some(root) != own_root).collect();
@@ -249,7 +248,7 @@ impl Robot {
             });
             return;
         }
-        let wanted = (remaining / self.site.build_length).ceil().max(1.0);
+        let wanted = (self.remaining() / self.site.build_length).ceil().max(1.0);
         let reason = format!(
             "task {} needs another recruit, and no redundant robot is left that can come; about \
              {wanted} more robots are needed",

@@ -2,9 +2,10 @@
 //!
 //! Everything here is local. A robot knows its own position and duty, what every robot knows
 //! from the beginning ([`Site`]), and the beacons of the neighbours that it hears. The chapters
-//! follow the day of a robot: it [listens](hearing), keeps its [place in the tree](attachment),
-//! takes part in the [mission](mission), [exchanges duties](exchange) with a robot in its way,
-//! [routes](routing) its packets and [moves](motion).
+//! follow the day of a robot: it listens (`hearing`), keeps its place in the tree (`attachment`,
+//! `links`), takes part in the mission (`mission`), exchanges duties with a robot in its way
+//! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
+//! what its guards see of all this are `facts`.
 
 mod attachment;
 mod exchange;
@@ -14,6 +15,7 @@ mod links;
 mod mission;
 mod motion;
 mod routing;
+mod yielding;
 
 use std::sync::Arc;
 
@@ -32,7 +34,7 @@ pub use routing::{FlowReport, RouteLink};
 use crate::automaton::{GuardError, Jump};
 
 use super::automata::{MissionAutomaton, RoleAutomaton};
-use super::beacon::{Beacon, Notice, TeamReport};
+use super::beacon::{Beacon, Notice, TeamReport, Voice};
 use super::duty::{Duty, Hop, Path, Station};
 use super::record::MissionEvent;
 use super::site::Site;
@@ -56,6 +58,12 @@ pub struct Robot {
     phase: Phase,
     facts: Facts,
     is_quiet: bool,
+
+    // What has changed since it last deliberated, spoke and measured its facts.
+    has_news: bool,
+    is_unspoken: bool,
+    is_unmeasured: bool,
+    voice: Voice,
 
     // Its duty, and the exchange of duties that it is engaged in.
     duty: Duty,
@@ -97,6 +105,7 @@ pub struct Robot {
 
     // Motion.
     destination: Option<Destination>,
+    waypoint: Option<Point>,
     proposal: Option<Proposal>,
     heard_moves: Vec<(NodeId, Segment)>,
     arrival: Point,
@@ -129,6 +138,10 @@ impl Robot {
             phase: Phase::Idle,
             facts: Facts::default(),
             is_quiet: false,
+            has_news: true,
+            is_unspoken: true,
+            is_unmeasured: true,
+            voice: Voice::default(),
             duty: Duty::Hold(Station { post, reference: position }),
             left_post: None,
             offer: None,
@@ -160,6 +173,7 @@ impl Robot {
             inflows: Vec::new(),
             residual: 0.0,
             destination: None,
+            waypoint: None,
             proposal: None,
             heard_moves: Vec::new(),
             arrival: position,
@@ -169,8 +183,20 @@ impl Robot {
         }
     }
 
-    /// What the robot tells its neighbours now.
-    pub fn beacon(&self) -> Beacon {
+    /// What the robot tells its neighbours now: the very same beacon as before unless something
+    /// in it has changed.
+    pub fn speak(&mut self) -> Arc<Beacon> {
+        if !std::mem::take(&mut self.is_unspoken)
+            && let Some(beacon) = self.voice.last()
+        {
+            return beacon;
+        }
+        let (beacon, is_new) = self.voice.say(self.public_state());
+        self.has_news |= is_new;
+        beacon
+    }
+
+    fn public_state(&self) -> Beacon {
         Beacon {
             sender: self.id,
             position: self.position,
@@ -184,6 +210,7 @@ impl Robot {
             below: Arc::clone(&self.below),
             duty: Some(self.duty),
             parked: self.is_parked(),
+            way: self.way_asked_for(),
             can_detach: self.can_detach,
             offer: self.offer.clone(),
             reply: self.reply.clone(),
@@ -250,12 +277,21 @@ impl Robot {
 
     /// A control period begins: what is looked at once a period.
     pub fn begin_period(&mut self) {
+        self.stir();
         self.retire_if_barren();
         self.consider_exchange();
     }
 
     /// After each round of messages: the robot puts together what it has heard.
+    ///
+    /// What comes of it depends on nothing but what the robot hears and its own state. Where
+    /// neither has changed, and the robot does not count rounds, there is nothing to do.
     pub fn deliberate(&mut self) {
+        let counts_rounds = self.phase == Phase::RecruitElection;
+        if !std::mem::take(&mut self.has_news) && !counts_rounds {
+            return;
+        }
+        (self.is_unspoken, self.is_unmeasured) = (true, true);
         self.handle_exchange();
         self.keep_place();
         self.hear_word();
@@ -276,6 +312,7 @@ impl Robot {
         self.phase = jump.target;
         step.fire(&mut phase, self);
         self.is_quiet = false;
+        self.stir();
         Ok(Some(jump))
     }
 
@@ -290,13 +327,21 @@ impl Robot {
         let mut role = self.role;
         let jump = automaton.step(&mut role, self)?;
         self.role = role;
-        self.is_quiet &= jump.is_none();
+        if jump.is_some() {
+            self.is_quiet = false;
+            self.stir();
+        }
         Ok(jump)
     }
 
     /// Takes what it has told observers since the last call.
     pub fn drain_log(&mut self) -> std::vec::Drain<'_, MissionEvent> {
         self.log.drain(..)
+    }
+
+    /// The robot's state has changed: it has something to think over, to say and to measure.
+    fn stir(&mut self) {
+        (self.has_news, self.is_unspoken, self.is_unmeasured) = (true, true, true);
     }
 
     fn report(&mut self, event: MissionEvent) {

@@ -79,7 +79,9 @@ impl Robot {
             return if waits { None } else { self.team_goal() };
         }
         let station = self.duty.station()?;
-        self.is_off(station.reference).then_some(station.reference)
+        self.place_aside().or_else(|| {
+            (self.is_off(station.reference) && !self.is_near_mover()).then_some(station.reference)
+        })
     }
 
     /// Redundant robots still hang on the new leader: they need a moment to hang elsewhere.
@@ -96,23 +98,33 @@ impl Robot {
         self.goal().is_some()
     }
 
-    /// Eq. (26): within δ of the place that it goes to along Σ, and of the task serviced there.
+    /// Eq. (26): within δ of the place that it goes to along Σ, and of the task serviced there,
+    /// on the whole way that is left.
     pub(super) fn has_arrived(&self) -> bool {
         let Some(hop) = self.next_hop() else { return false };
         let radius = self.site.settings.service_radius;
-        let near = |place: Point| (self.position - place).norm() <= radius;
-        let task = hop.post.task.and_then(|task| self.task_position(task));
-        near(hop.place.reference) && task.is_none_or(near)
+        let near = |from: Point, place: Point| (from - place).norm() <= radius;
+        if !near(self.position, hop.place.reference) {
+            return false;
+        }
+        let Some(task) = hop.post.task.and_then(|task| self.task_position(task)) else {
+            return true;
+        };
+        let way = self.site.free_space.geodesic(self.position, hop.place.reference);
+        near(self.position, task)
+            && way.is_some_and(|way| way.waypoints.iter().all(|&corner| near(corner, task)))
     }
 
     /// Lines 4 to 7 of Algorithm 5: the next position, if the robot moves.
     pub fn propose(&mut self) {
         self.proposal = None;
+        self.waypoint = None;
         let Some(goal) = self.goal() else { return };
         if self.is_infeasible() {
             return;
         }
-        let Some(waypoint) = self.first_waypoint(goal) else { return };
+        self.waypoint = self.first_waypoint(goal);
+        let Some(waypoint) = self.waypoint else { return };
         let problem = self.motion_problem(waypoint);
         let motion = match self.site.settings.motion_solver {
             MotionSolver::Exact => problem.solve_exact(),
@@ -321,11 +333,13 @@ impl Robot {
         self.still_periods = if still { self.still_periods.saturating_add(1) } else { 0 };
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
+        self.stir();
         segment.to
     }
 
     /// A new control period begins.
     pub fn restart_clock(&mut self) {
+        self.stir();
         self.position = self.arrival;
         self.velocity = Vector::zeros();
         self.clock = 0.0;

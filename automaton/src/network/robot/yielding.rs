@@ -1,0 +1,81 @@
+//! Making way: a parked robot steps aside for a mover that cannot pass.
+//!
+//! Exchanging duties does not help where two robots stand beside the mouth of a corridor and
+//! neither can turn in while the other is there. A mover that has been stuck for a while says
+//! where it wants to go; a parked robot in its way moves aside, never farther than δ from the
+//! place of its post, and comes back when no mover is near.
+
+use pleach_continuous::geometry::Segment;
+use pleach_continuous::{Point, Vector};
+
+use super::Robot;
+use super::hearing::Neighbour;
+
+/// Control periods without progress after which a mover asks for way.
+const ASKING: u32 = 16;
+/// How far ahead, in ρ, a mover asks for way.
+const WAY_AHEAD: f64 = 4.0;
+/// A robot this many ρ from the way of a mover lets it pass.
+const PASSING: f64 = 2.2;
+/// Robots within this many ρ of a mover do not settle: they would close the way again.
+const COURTESY: f64 = 4.0;
+/// Places considered when stepping aside: so many directions, at so many multiples of ρ.
+const DIRECTIONS: u32 = 16;
+const PACES: u32 = 3;
+/// A place is better only if it is farther from the way by this share of ρ.
+const WORTH_A_STEP: f64 = 0.1;
+
+impl Robot {
+    /// Where this robot wants to go next, if it has been stuck for a while.
+    pub(super) fn way_asked_for(&self) -> Option<Point> {
+        self.waypoint.filter(|_| !self.is_parked() && self.still_periods >= ASKING)
+    }
+
+    /// Whether a mover is so near that this robot should not settle now.
+    pub(super) fn is_near_mover(&self) -> bool {
+        self.neighbours.iter().any(|neighbour| {
+            !neighbour.is_access_point()
+                && !neighbour.beacon.parked
+                && neighbour.distance <= COURTESY * self.clearance()
+        })
+    }
+
+    /// The place to step aside to, if a mover nearby asks for way.
+    pub(super) fn place_aside(&self) -> Option<Point> {
+        let station = self.duty.station()?;
+        let asking = self.neighbours.iter().find_map(|neighbour| {
+            let way = self.way_of(neighbour)?;
+            (way.distance(self.position) < PASSING * self.clearance()).then_some(way)
+        })?;
+        let leash = self
+            .site
+            .settings
+            .service_radius
+            .max((self.position - station.reference).norm());
+        let room = |place: Point| asking.distance(place).min(PASSING * self.clearance());
+        let mut best = (room(self.position) + WORTH_A_STEP * self.clearance(), None);
+        for pace in 1..=PACES {
+            for direction in 0..DIRECTIONS {
+                let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
+                let step = Vector::new(angle.cos(), angle.sin()) * f64::from(pace);
+                let place = self.position + step * self.clearance();
+                if room(place) > best.0
+                    && (place - station.reference).norm() <= leash
+                    && self.site.free_space.sees(self.position, place)
+                {
+                    best = (room(place), Some(place));
+                }
+            }
+        }
+        best.1
+    }
+
+    /// The stretch ahead of a mover that asks for way.
+    fn way_of(&self, mover: &Neighbour) -> Option<Segment> {
+        let target = mover.beacon.way?;
+        let from = mover.position();
+        let ahead = target - from;
+        let share = (WAY_AHEAD * self.clearance() / ahead.norm()).min(1.0);
+        Some(Segment::new(from, from + ahead * share))
+    }
+}

@@ -1,0 +1,2 @@
+//! How long each kernel takes.
+fn main() {}

@@ -1,0 +1,87 @@
+//! Runs random missions and prints a line for each.
+//!
+//! `cargo run --release --example stress -- FAMILY FIRST_SEED COUNT [FOLDER]`, with `all` for
+//! every family; scenarios that are not serviced are written to the folder.
+
+#[path = "../tests/floor_plans/mod.rs"]
+mod floor_plans;
+
+use floor_plans::{Family, scenario};
+use pleach::automaton::network::record::{MissionEvent, Outcome, Snapshot};
+use pleach::discrete::network::Role;
+use pleach::mission::{Watcher, run};
+use std::error::Error;
+use std::io;
+use std::path::Path;
+use std::time::Instant;
+
+/// Remembers how things stand.
+#[derive(Default)]
+struct LastSight {
+    step: usize,
+    /// When something was reported last.
+    eventful: usize,
+    redundant: usize,
+}
+
+impl Watcher for LastSight {
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        self.step = snapshot.step;
+        if !events.is_empty() {
+            self.eventful = snapshot.step;
+        }
+        self.redundant = snapshot.roles.iter().filter(|&&role| role == Role::Redundant).count();
+        Ok(())
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [family, first, count, folder @ ..] = &arguments[..] else {
+        return Err("usage: stress FAMILY FIRST_SEED COUNT [FOLDER]".into());
+    };
+    let families: Vec<Family> = (Family::ALL.into_iter())
+        .filter(|known| family == "all" || family == known.name())
+        .collect();
+    let (first, count): (u64, u64) = (first.parse()?, count.parse()?);
+    for family in families {
+        for seed in first..first + count {
+            mission(family, seed, folder.first().map(Path::new))?;
+        }
+    }
+    Ok(())
+}
+
+fn mission(family: Family, seed: u64, folder: Option<&Path>) -> Result<(), Box<dyn Error>> {
+    let scenario = scenario(family, seed);
+    let mut sight = LastSight::default();
+    let start = Instant::now();
+    let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        run(&scenario, &mut [&mut sight])
+    }));
+    let (outcome, reason) = match caught {
+        Ok(Ok(completed)) => (format!("{:?}", completed.end.outcome), completed.end.reason),
+        Ok(Err(error)) => ("Error".to_owned(), error.to_string()),
+        Err(_) => ("Panic".to_owned(), String::new()),
+    };
+    println!(
+        "{:12} {seed:4} {outcome:18} steps {:5} (eventful until {:5}) {:6.1} s, {} robots, {} \
+         redundant left, {} tasks. {reason}",
+        family.name(),
+        sight.step,
+        sight.eventful,
+        start.elapsed().as_secs_f64(),
+        scenario.robot.len(),
+        sight.redundant,
+        scenario.task.len(),
+    );
+    if outcome != format!("{:?}", Outcome::Serviced)
+        && let Some(folder) = folder
+    {
+        std::fs::write(
+            folder.join(format!("{}.toml", scenario.name)),
+            toml::to_string(&scenario)?,
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,310 @@
+//! The documents say what the code says: drawings are regenerated and compared, and what tables
+//! name exists.
+//!
+//! `PLEACH_UPDATE_DOCS=1 cargo test --test documents` writes the generated documents anew.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use std::{fs, io};
+
+use pleach::automaton::network::record::{MissionEvent, Snapshot};
+use pleach::automaton::network::scenario::{Control, Scenario};
+use pleach::automaton::network::{Site, mission_automaton, role_automaton};
+use pleach::automaton::{Automaton, diagram};
+use pleach::discrete::{Event, Location};
+use pleach::figures::Album;
+use pleach::guards::Valuation;
+use pleach::mission::{self, Watcher};
+use pleach::summary::Summary;
+use pleach::{scenario_file, story};
+
+const UPDATE: &str = "PLEACH_UPDATE_DOCS";
+
+/// The documents that people write, with their links and tables.
+const WRITTEN: [&str; 4] =
+    ["README.md", "docs/architecture.md", "docs/model.md", "docs/automata.md"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &str) -> String {
+    fs::read_to_string(root().join(path)).unwrap()
+}
+
+fn is_update() -> bool {
+    std::env::var_os(UPDATE).is_some()
+}
+
+/// Compares a generated document with the file, or writes the file.
+fn keep_up_to_date(path: &str, document: &str) {
+    let file = root().join(path);
+    if is_update() {
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(&file, document).unwrap();
+    }
+    let kept = fs::read_to_string(&file).unwrap_or_default();
+    assert!(
+        kept == document,
+        "{path} is out of date; refresh it with `{UPDATE}=1 cargo test --test documents`"
+    );
+}
+
+// ---- The automata ------------------------------------------------------------------------------
+
+#[test]
+fn the_drawing_of_the_role_automaton_is_up_to_date() {
+    keep_up_to_date("docs/pictures/role.svg", &diagram::svg(&role_automaton().unwrap()));
+}
+
+#[test]
+fn the_drawing_of_the_mission_automaton_is_up_to_date() {
+    keep_up_to_date("docs/pictures/mission.svg", &diagram::svg(&mission_automaton().unwrap()));
+}
+
+#[test]
+fn the_page_on_the_automata_is_up_to_date() {
+    let (role, mission) = (role_automaton().unwrap(), mission_automaton().unwrap());
+    let page = format!(
+        "{INTRODUCTION}\n{}\n{}",
+        chapter("The role of a robot", "role", ROLE, &role),
+        chapter("The mission as one robot sees it", "mission", MISSION, &mission),
+    );
+    keep_up_to_date("docs/automata.md", &page);
+}
+
+const INTRODUCTION: &str = "\
+<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test documents -->
+
+# The two automata of a robot
+
+Every robot runs two automata over its own state. This page is written by the library from the
+transition tables, guards and resets that the robots run. A transition reads `event [guard] /
+reset (urgency, priority)`; all of them are taken *at once*, and where several could be, the
+smaller priority goes first. The words in the guards are the facts that a robot measures of
+itself; yes-or-no facts are 0 or 1. They are explained where they are measured, in
+[`facts.rs`](../automaton/src/network/robot/facts.rs).
+";
+
+const ROLE: &str = "\
+The role says what a robot is for the network. It is read off the robot's duty, so that its
+transitions reset nothing.
+";
+
+const MISSION: &str = "\
+The phase says where the mission stands for this robot. Transitions of priority 0 follow the newest
+word that the robot has heard; those of priority 1 are what it finds out itself, and their resets
+issue the next word. Robots are in different phases while a word spreads.
+";
+
+fn chapter<L: Location, E: Event, S: Valuation>(
+    title: &str,
+    name: &str,
+    text: &str,
+    automaton: &Automaton<L, E, S>,
+) -> String {
+    let (graph, table) = (diagram::mermaid(automaton), diagram::table(automaton));
+    format!(
+        "## {title}\n\n{text}\n\
+         ![The {name} automaton](pictures/{name}.svg)\n\n\
+         ```mermaid\n{graph}```\n\n\
+         Rows are locations, columns are events; a cell names the location that the event leads \
+         to.\n\n{table}"
+    )
+}
+
+// ---- The run in the README ---------------------------------------------------------------------
+
+/// How many sentences of the story the README shows.
+const SENTENCES: usize = 12;
+
+/// The sentences of the story, as the program shows them.
+#[derive(Default)]
+struct Story(Vec<String>);
+
+impl Watcher for Story {
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        let telling = events.iter().filter(|event| story::is_telling(event));
+        let line = |event| format!("k = {:<6} {}", snapshot.step, story::tell(event));
+        self.0.extend(telling.map(line));
+        Ok(())
+    }
+}
+
+/// The pictures are drawn anew with everything else, and not compared.
+#[test]
+fn the_run_in_the_readme_is_up_to_date() {
+    let scenario = study();
+    let (mut story, mut summary) = (Story::default(), Summary::new(&scenario));
+    let mut album = album(&scenario);
+    let completed = mission::run(&scenario, &mut [&mut story, &mut summary, &mut album]).unwrap();
+    if is_update() {
+        let folder = std::env::temp_dir().join(format!("pleach-{}", std::process::id()));
+        let figures = album.write(&folder, &completed.end).unwrap();
+        keep_picture(&figures, "stationary", 1, "study-1-stuck.svg");
+        keep_picture(&figures, "-end", 0, "study-1-end.svg");
+        fs::remove_dir_all(folder).unwrap();
+    }
+    let summary = summary.completed(completed, Duration::ZERO).to_string();
+    let untimed = summary.lines().take_while(|line| !line.starts_with("  time "));
+    let (first, last) = (&story.0[..SENTENCES], &story.0[story.0.len() - 1..]);
+    let run: Vec<&str> = first
+        .iter()
+        .map(String::as_str)
+        .chain(["…"])
+        .chain(last.iter().map(String::as_str))
+        .chain([""])
+        .chain(untimed)
+        .collect();
+
+    let readme = read("README.md");
+    let (before, rest) = readme.split_once(BEGIN_OF_RUN).unwrap();
+    let (_, after) = rest.split_once(END_OF_RUN).unwrap();
+    let run = run.join("\n");
+    let refreshed = format!("{before}{BEGIN_OF_RUN}\n```text\n{run}\n```\n{END_OF_RUN}{after}");
+    keep_up_to_date("README.md", &refreshed);
+}
+
+const BEGIN_OF_RUN: &str =
+    "<!-- begin of the run: PLEACH_UPDATE_DOCS=1 cargo test --test documents -->";
+const END_OF_RUN: &str = "<!-- end of the run -->";
+
+fn album(scenario: &Scenario) -> Album {
+    let site = Site::new(scenario).unwrap();
+    let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
+    Album::new(scenario, site.free_space.outline().iter().map(corners).collect())
+}
+
+/// Copies the picture that is number `which` of those whose name contains `word`.
+fn keep_picture(figures: &[PathBuf], word: &str, which: usize, name: &str) {
+    let mut named = figures.iter().filter(|path| path.to_string_lossy().contains(word));
+    fs::copy(named.nth(which).unwrap(), root().join("docs/pictures").join(name)).unwrap();
+}
+
+fn study() -> Scenario {
+    scenario_file::read(&root().join("scenarios/study-1.toml")).unwrap()
+}
+
+// ---- Links and names ---------------------------------------------------------------------------
+
+/// A link in Markdown: its text and its target.
+struct Link {
+    text: String,
+    target: PathBuf,
+}
+
+/// The links of a document to files of this project, as paths from its root.
+fn links(document: &str) -> Vec<Link> {
+    let folder = Path::new(document).parent().unwrap();
+    let text = read(document);
+    let mut links = Vec::new();
+    for (at, _) in text.match_indices("](") {
+        let target = text[at + 2..].split(')').next().unwrap();
+        if target.contains("://") || target.starts_with('#') {
+            continue;
+        }
+        let name = text[..at].rsplit('[').next().unwrap();
+        let target = folder.join(target.split('#').next().unwrap());
+        links.push(Link { text: name.to_owned(), target });
+    }
+    links
+}
+
+#[test]
+fn every_link_leads_to_a_file() {
+    for document in WRITTEN {
+        let links = links(document);
+        assert!(!links.is_empty(), "{document} has no links");
+        for Link { text, target } in links {
+            assert!(root().join(&target).exists(), "{document}: [{text}] leads to {target:?}");
+        }
+    }
+}
+
+/// `[`name`](path.rs)` promises that path.rs has something called `name`; for a test the word
+/// stands after `fn`.
+#[test]
+fn every_item_named_in_the_documents_exists() {
+    let (mut items, mut missing) = (0, Vec::new());
+    for document in WRITTEN {
+        for Link { text, target } in links(document) {
+            let Some(item) = text.strip_prefix('`').and_then(|text| text.strip_suffix('`')) else {
+                continue;
+            };
+            let is_source = target.extension().is_some_and(|extension| extension == "rs");
+            if is_source && item.chars().all(is_part_of_name) {
+                let source = fs::read_to_string(root().join(&target)).unwrap();
+                items += 1;
+                if !declares(&source, item) {
+                    missing.push(format!("{document}: {} has no `{item}`", target.display()));
+                }
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+    assert!(items > 100, "only {items} items are named");
+}
+
+/// Whether the source has a function, type, constant or module called `name`, or an enum variant or
+/// field on a line of its own.
+fn declares(source: &str, name: &str) -> bool {
+    const KEYWORDS: [&str; 8] = ["fn", "struct", "enum", "trait", "type", "const", "mod", "static"];
+    source.lines().map(str::trim_start).any(|line| {
+        let words: Vec<&str> = line.split(|c| !is_part_of_name(c)).collect();
+        let declared = words.windows(2).any(|pair| KEYWORDS.contains(&pair[0]) && pair[1] == name);
+        let member = line.strip_prefix("pub ").unwrap_or(line).strip_prefix(name);
+        declared
+            || member.is_some_and(|rest| {
+                rest.starts_with([',', ':', '(']) || rest == " {" || rest.starts_with(" { ")
+            })
+    })
+}
+
+fn is_part_of_name(character: char) -> bool {
+    character.is_alphanumeric() || character == '_'
+}
+
+// ---- The README --------------------------------------------------------------------------------
+
+#[test]
+fn the_readme_lists_every_scenario() {
+    let readme = read("README.md");
+    for entry in fs::read_dir(root().join("scenarios")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(readme.contains(&format!("(scenarios/{name})")), "{name} is not in the README");
+    }
+}
+
+/// Every key of `[control]` has a row that ends with the default its documentation states.
+#[test]
+fn the_readme_explains_every_control_key() {
+    let readme = read("README.md");
+    let control = toml::Table::try_from(settled_control()).unwrap();
+    assert!(control.len() > 10);
+    for key in control.keys() {
+        assert!(readme.contains(&format!("| `{key}` |")), "`{key}` is not in the README");
+    }
+}
+
+/// The defaults that do not depend on other keys stand in the README as they are.
+#[test]
+fn the_readme_states_the_defaults() {
+    let readme = read("README.md");
+    let control = toml::Table::try_from(settled_control()).unwrap();
+    for (key, value) in control {
+        if matches!(&*key, "clearance" | "service_radius" | "step_radius") {
+            continue;
+        }
+        let row = readme.lines().find(|line| line.starts_with(&format!("| `{key}` |"))).unwrap();
+        let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let stated = row.split('|').nth(2).unwrap().trim().trim_matches('`').replace(' ', "");
+        let same = stated == value || stated.parse::<f64>().ok() == value.parse::<f64>().ok();
+        assert!(same, "`{key}` defaults to {value}, the README says {stated}");
+    }
+}
+
+fn settled_control() -> Control {
+    Scenario { control: Control::default(), ..study() }.with_defaults().control
+}

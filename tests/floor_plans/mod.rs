@@ -1,0 +1,34 @@
+//! Random missions on floor plans that nobody tuned the robots to.
+//!
+//! A [`Family`] and a seed give a [`Scenario`], always the same one. It can start (it passes
+//! [`Scenario::validate`]), its tasks can be reached, and it has more robots than a tree of
+//! shortest paths to its tasks needs.
+
+#![allow(dead_code)] // not every test needs everything
+
+mod brief;
+mod dice;
+mod families;
+mod outline;
+mod places;
+
+pub use families::Family;
+
+use dice::Dice;
+use pleach::automaton::network::scenario::Scenario;
+
+/// Drafts that may fail (a crowd that finds no room, walls that meet) before a family is at fault.
+const ATTEMPTS: u64 = 200;
+
+/// The mission of `family` with this seed.
+pub fn scenario(family: Family, seed: u64) -> Scenario {
+    let name = format!("{}-{seed}", family.name());
+    (0..ATTEMPTS)
+        .filter_map(|attempt| {
+            let mut dice = Dice::new(&[family as u64, seed, attempt]);
+            let brief = family.brief(&mut dice);
+            brief.scenario(name.clone(), &mut dice)
+        })
+        .find(|scenario| scenario.validate().is_ok())
+        .unwrap_or_else(|| panic!("{name}: none of {ATTEMPTS} drafts is a valid scenario"))
+}

@@ -1,0 +1,151 @@
+//! The layering that `docs/architecture.md` describes, read off manifests and sources.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The packages with their product sources, the root package first.
+const PACKAGES: [&str; 6] = ["", "guards", "discrete", "continuous", "automaton", "verify"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A source file: its path from the root of the workspace, and its lines of code without comments.
+struct Source {
+    path: String,
+    lines: Vec<(usize, String)>,
+}
+
+impl Source {
+    fn read(path: &Path) -> Self {
+        let text = fs::read_to_string(path).unwrap();
+        let is_test_module = |line: &str| line.starts_with("#[cfg(test)]");
+        // By convention a file's tests come last.
+        let end = text.lines().position(|line| line.starts_with("mod tests {"));
+        let lines = text
+            .lines()
+            .enumerate()
+            .take(end.unwrap_or(usize::MAX))
+            .map(|(number, line)| (number + 1, without_comment(line).to_owned()))
+            .filter(|(_, line)| !is_test_module(line))
+            .collect();
+        let path = path.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/");
+        Source { path, lines }
+    }
+
+    /// Whether the file belongs to the part of its package that knows of robots.
+    fn is_about_the_network(&self) -> bool {
+        self.path.contains("/network/")
+    }
+
+    fn package(&self) -> &str {
+        self.path.split('/').next().unwrap_or_default()
+    }
+
+    /// The lines that contain one of `words`, as `path:line: text`.
+    fn lines_with(&self, words: &[&str]) -> Vec<String> {
+        let found = self.lines.iter().filter(|(_, line)| words.iter().any(|w| line.contains(w)));
+        found.map(|(number, line)| format!("{}:{number}: {}", self.path, line.trim())).collect()
+    }
+}
+
+fn without_comment(line: &str) -> &str {
+    line.find("//").map_or(line, |at| &line[..at])
+}
+
+/// Every product source; files that hold nothing but tests are none.
+fn sources() -> Vec<Source> {
+    let mut files = Vec::new();
+    for package in PACKAGES {
+        collect(&root().join(package).join("src"), &mut files);
+    }
+    files.retain(|path| path.file_name().is_none_or(|name| name != "tests.rs"));
+    files.sort();
+    assert!(files.len() > 50, "the sources are not where they are looked for");
+    files.iter().map(|path| Source::read(path)).collect()
+}
+
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            collect(&path, files);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+}
+
+fn assert_none(offences: Vec<String>, rule: &str) {
+    assert!(offences.is_empty(), "{rule}:\n{}", offences.join("\n"));
+}
+
+/// The names in the `[dependencies]` table of a package.
+fn dependencies(package: &str) -> Vec<String> {
+    let manifest = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
+    let manifest: toml::Table = manifest.parse().unwrap();
+    let dependencies = manifest.get("dependencies").and_then(toml::Value::as_table);
+    dependencies.map(|table| table.keys().cloned().collect()).unwrap_or_default()
+}
+
+#[test]
+fn only_network_modules_know_of_the_network() {
+    let offences = sources()
+        .iter()
+        .filter(|source| !matches!(source.package(), "src" | "verify"))
+        .filter(|source| !source.is_about_the_network())
+        .flat_map(|source| source.lines_with(&["network::", "network}", "network,"]))
+        .collect();
+    assert_none(offences, "outside a network module nothing is imported from one");
+}
+
+#[test]
+fn the_layers_know_only_those_below_them() {
+    let layers: [(&str, &[&str]); 5] = [
+        ("guards", &[]),
+        ("discrete", &[]),
+        ("continuous", &["pleach-guards"]),
+        ("automaton", &["pleach-guards", "pleach-discrete", "pleach-continuous"]),
+        ("verify", &["pleach-guards", "pleach-discrete", "pleach-continuous", "pleach-automaton"]),
+    ];
+    for (package, below) in layers {
+        for dependency in dependencies(package) {
+            let allowed = !dependency.starts_with("pleach") || below.contains(&&*dependency);
+            assert!(allowed, "{package} depends on {dependency}");
+        }
+    }
+}
+
+#[test]
+fn guards_and_the_discrete_layer_need_the_standard_library_only() {
+    for package in ["guards", "discrete"] {
+        assert_eq!(dependencies(package), Vec::<String>::new(), "dependencies of {package}");
+    }
+}
+
+#[test]
+fn there_is_no_unsafe_code() {
+    let offences = sources().iter().flat_map(|s| s.lines_with(&["unsafe "])).collect();
+    assert_none(offences, "unsafe code is forbidden");
+}
+
+#[test]
+fn nothing_depends_on_an_order_that_changes_from_run_to_run() {
+    let offences = sources().iter().flat_map(|s| s.lines_with(&["HashMap", "HashSet"])).collect();
+    assert_none(offences, "hash maps iterate in random order");
+}
+
+/// Clocks measure how long a run takes; they have no influence on it.
+#[test]
+fn only_those_who_report_times_read_the_clock() {
+    const REPORTERS: [&str; 3] =
+        ["automaton/src/network/composition.rs", "src/cli/", "src/summary.rs"];
+    let offences = sources()
+        .iter()
+        .filter(|source| !REPORTERS.iter().any(|reporter| source.path.starts_with(reporter)))
+        .flat_map(|source| source.lines_with(&["std::time", "Instant::now", "SystemTime"]))
+        .collect();
+    assert_none(offences, "the result of a run does not depend on the time of day");
+}
