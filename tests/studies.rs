@@ -74,7 +74,10 @@ fn the_bounds_are_kept_in_every_shipped_scenario() {
             extreme.value
         };
         assert_eq!(settings.residual_tolerance, 0.0, "{name}: the default");
-        assert!(value(&mission.extremes.pair_distance) >= 2.0 * settings.clearance - SLACK, "{name}");
+        assert!(
+            value(&mission.extremes.pair_distance) >= 2.0 * settings.clearance - SLACK,
+            "{name}"
+        );
         assert!(value(&mission.extremes.clearance) >= settings.clearance - SLACK, "{name}");
         assert!(value(&mission.extremes.residual) >= -SLACK, "{name}");
         assert!(value(&mission.extremes.load) <= 1.0 + SLACK, "{name}");
@@ -120,7 +123,8 @@ fn leadership(mission: &Mission, task: usize) -> Leadership<'_> {
     };
     let at = events.iter().position(|entry| elected(entry).is_some()).unwrap();
     let (k, leader, conflict) = elected(&events[at]).unwrap();
-    let serviced = |event: &Event| matches!(event, Event::TaskServiced { task: of, .. } if *of == task);
+    let serviced =
+        |event: &Event| matches!(event, Event::TaskServiced { task: of, .. } if *of == task);
     let rest = events[at..].iter().map(|(_, event)| *event);
     Leadership {
         leader,
@@ -220,7 +224,8 @@ fn robots_go_through_the_corridor_in_single_file() {
 fn the_first_branch_goes_round_the_ring_one_way() {
     let mission = mission("ring");
     let leader = leadership(mission, 0).leader;
-    let beyond_the_sides = |snapshot: &&Snapshot| (0.5..1.1).contains(&snapshot.positions[leader].y);
+    let beyond_the_sides =
+        |snapshot: &&Snapshot| (0.5..1.1).contains(&snapshot.positions[leader].y);
     let east: BTreeSet<_> = (mission.periods.iter().map(|period| &period.snapshot))
         .filter(beyond_the_sides)
         .map(|snapshot| snapshot.positions[leader].x > 1.0)

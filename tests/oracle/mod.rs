@@ -3,8 +3,8 @@
 //! Nothing here comes from the crates under test but the reader of traces. Distances along
 //! segments are exact; loads are sampled.
 
-use pleach::automaton::network::scenario::Scenario;
 use pleach::automaton::network::record::{Route, Snapshot};
+use pleach::automaton::network::scenario::Scenario;
 use pleach::trace::{TraceEntry, TraceReader};
 use std::io::BufRead;
 
