@@ -225,10 +225,11 @@ impl Robot {
         let station = self.duty.station().filter(|station| station.post.is_fixed());
         let task = station.and_then(|s| s.post.task).and_then(|task| self.task_position(task));
         let radius = self.site.settings.service_radius;
-        station.map(|station| station.reference).into_iter().chain(task).map(move |center| Disc {
-            center,
-            radius: radius.max((center - self.position).norm()),
-        })
+        station
+            .map(|station| station.reference)
+            .into_iter()
+            .chain(task)
+            .map(move |center| Disc { center, radius: radius.max((center - self.position).norm()) })
     }
 
     /// The disc in which the robot keeps a link of the tree within its limit, with the other end
