@@ -106,6 +106,11 @@ impl Mission {
         Mission { scenario, periods: recorder.periods, end, extremes }
     }
 
+    /// The mission as far as control period `last`.
+    pub fn up_to(&self, last: usize) -> Self {
+        Mission { periods: self.periods[..=last].to_vec(), ..self.clone() }
+    }
+
     /// The number of tasks serviced.
     pub fn serviced(&self) -> usize {
         let serviced = |(_, event): &(usize, &MissionEvent)| {
