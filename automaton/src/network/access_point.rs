@@ -11,6 +11,7 @@ use pleach_discrete::network::{Agreement, Anchor, Bulletin, Election, IdSet, Lin
 use super::beacon::{Beacon, Notice, Voice};
 use super::duty::Hop;
 use super::record::{MissionEvent, Outcome};
+use super::shared::Shared;
 use super::site::Site;
 
 /// The first task is announced when the roster has not changed for this many rounds: between two
@@ -24,10 +25,10 @@ pub struct AccessPoint {
     site: Arc<Site>,
     position: Point,
     heard: Vec<Arc<Beacon>>,
-    bulletin: Arc<Bulletin<Notice>>,
+    bulletin: Shared<Bulletin<Notice>>,
     election: Option<Election>,
     agreement: Option<Agreement>,
-    route: Option<(u32, Arc<Vec<Hop>>)>,
+    route: Option<(u32, Shared<Vec<Hop>>)>,
     crossing: Vec<usize>,
     roster: Arc<IdSet>,
     settled_rounds: usize,
@@ -43,7 +44,7 @@ impl AccessPoint {
             position: site.access_points[number],
             site,
             heard: Vec::new(),
-            bulletin: Arc::new(Bulletin::first(Notice::Quiet)),
+            bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
             election: None,
             agreement: None,
             route: None,
@@ -75,7 +76,7 @@ impl AccessPoint {
         Beacon {
             sender: self.id(),
             position: self.position,
-            bulletin: Arc::clone(&self.bulletin),
+            bulletin: self.bulletin.clone(),
             election: self.election.clone(),
             agreement: self.agreement.clone(),
             route: self.route.clone(),
@@ -107,7 +108,7 @@ impl AccessPoint {
         if let Some(newest) = newest
             && newest.sequence() > self.bulletin.sequence()
         {
-            self.take_up(Arc::clone(newest));
+            self.take_up(newest.clone());
         }
         for beacon in &self.heard {
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
@@ -119,7 +120,7 @@ impl AccessPoint {
         }
     }
 
-    fn take_up(&mut self, bulletin: Arc<Bulletin<Notice>>) {
+    fn take_up(&mut self, bulletin: Shared<Bulletin<Notice>>) {
         let number = bulletin.sequence();
         match bulletin.notice() {
             Notice::Task { .. } | Notice::Call { .. } => {
@@ -151,7 +152,7 @@ impl AccessPoint {
                 .is_some_and(|duty| duty.post().is_some_and(|post| post.parent == Some(own)));
             let changeover = beacon.duty.is_none() && self.is_within_changeover(beacon.position);
             if hangs_here || changeover {
-                self.route = Some((number, Arc::clone(onward)));
+                self.route = Some((number, onward.clone()));
                 self.crossing = vec![self.number];
                 self.crossing.extend(&beacon.crossing);
                 return;
@@ -239,7 +240,7 @@ impl AccessPoint {
     }
 
     fn issue(&mut self, notice: Notice) {
-        self.take_up(Arc::new(self.bulletin.next(notice)));
+        self.take_up(Shared::new(self.bulletin.next(notice)));
     }
 
     /// The newest word on the mission that it knows.
