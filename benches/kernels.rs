@@ -24,9 +24,9 @@ const ROUNDS_UNTIL_SETTLED: usize = 20;
 /// Links and routes.
 fn communication(criterion: &mut Criterion) {
     let scene = Scene::new();
-    let (leader, site) = (scene.leader(), &scene.site);
+    let (robot, site) = (scene.busiest(), &scene.site);
     let distances: Vec<f64> =
-        scene.others(leader).iter().map(|other| (other - scene.position(leader)).norm()).collect();
+        scene.others(robot).iter().map(|other| (other - scene.position(robot)).norm()).collect();
     criterion.bench_function("link_reliability", |bencher| {
         bencher
             .iter(|| black_box(&distances).iter().map(|&d| site.link.reliability(d)).sum::<f64>())
@@ -42,7 +42,7 @@ fn communication(criterion: &mut Criterion) {
         })
         .filter(|offer| offer.reliability > 0.0)
         .collect();
-    let multiplier = scene.snapshot.multipliers[leader] + 1.0;
+    let multiplier = scene.snapshot.multipliers[robot] + 1.0;
     let mut shares = Vec::new();
     criterion.bench_function("local_minimiser", |bencher| {
         bencher.iter(|| local_minimiser(multiplier, black_box(&offers), TIME_BUDGET, &mut shares))

@@ -44,6 +44,12 @@ impl Scene {
         *self.snapshot.primary_team.last().expect("a team with a leader")
     }
 
+    /// The robot that hears the most others.
+    pub fn busiest(&self) -> usize {
+        let audiences = self.audiences();
+        (0..audiences.len()).max_by_key(|&robot| audiences[robot].len()).expect("a robot")
+    }
+
     /// Where a robot is.
     pub fn position(&self, robot: usize) -> Point {
         self.snapshot.positions[robot]
