@@ -1,8 +1,8 @@
 //! What nodes tell their neighbours.
 //!
-//! A beacon is a copy of its sender's public state. Every protocol of the network works by
-//! repeating such copies and taking maxima, so that a message lost, doubled or late does no
-//! harm; the next one says the same or better.
+//! A beacon is a copy of its sender's public state. Every agreement of the network works by
+//! repeating such copies and taking maxima: a message that is doubled or late does no harm to it,
+//! and after one that is lost the next says the same or better.
 
 use std::sync::Arc;
 

@@ -245,8 +245,8 @@ impl<M: Medium> Network<M> {
             self.exchange_flows();
             self.robots.iter_mut().for_each(Robot::dual_step);
         }
-        for _ in 0..MAX_SWEEPS {
-            self.sweep();
+        for sweep in 0..MAX_SWEEPS {
+            self.sweep(sweep == 0);
             self.exchange_flows();
             self.robots.iter_mut().for_each(Robot::settle_residual);
             if !self.relieve_overloaded() {
@@ -303,7 +303,8 @@ impl<M: Medium> Network<M> {
 
     /// The repair of (13)–(14): every robot tells its parent that it hangs on it; then, deepest
     /// first, each sends what is missing to its parent once it has heard from all its children.
-    fn sweep(&mut self) {
+    /// A further sweep changes nothing where nothing is missing.
+    fn sweep(&mut self, is_first: bool) {
         let mut awaited = vec![0_usize; self.robots.len()];
         for child in 0..self.robots.len() {
             let parent = self.robots[child].tree_parent().filter(|&node| node < awaited.len());
@@ -317,7 +318,7 @@ impl<M: Medium> Network<M> {
             (0..self.robots.len()).filter(|&robot| awaited[robot] == 0).collect();
         while let Some(robot) = ready.pop() {
             let Some(parent) = self.robots[robot].tree_parent() else { continue };
-            let more = self.robots[robot].meet_demand();
+            let more = self.robots[robot].meet_demand(is_first);
             if parent < self.robots.len() && self.medium.delivers(robot, parent) {
                 self.robots[parent].expect_more(more);
                 awaited[parent] = awaited[parent].saturating_sub(1);

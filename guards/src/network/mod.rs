@@ -92,8 +92,7 @@ pub mod mission {
 
     /// The team, or a robot on Σ, has not moved for long, and no recruit could help.
     pub fn blocked() -> Guard {
-        let patience = variable("window") * 10.0;
-        Guard::new("blocked", variable("stalled").at_least(patience))
+        Guard::new("blocked", variable("stalled").at_least(variable("patience")))
     }
 
     /// A recruit is called for.

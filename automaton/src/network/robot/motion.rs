@@ -33,6 +33,8 @@ const DETOUR_ALLOWANCE: f64 = 8.0;
 const QUEUE: f64 = 2.2;
 /// A way as good as another but for this many ρ is kept: robots do not waver between two sides.
 const CONSTANCY: f64 = 1.0;
+/// A waypoint this many ρ away is not kept: the robot is about to pass it.
+const PASSED: f64 = 0.5;
 /// A move shorter than this share of σ is none.
 const STILL: f64 = 0.02;
 /// A proposed move shorter than this share of σ is not made.
@@ -195,8 +197,7 @@ impl Robot {
 
     /// Whether the robot could still go by the waypoint of the period before.
     fn may_keep(&self, waypoint: Point) -> bool {
-        let reached = ROUNDING * self.site.workspace.extent();
-        (waypoint - self.position).norm() > reached
+        (waypoint - self.position).norm() > PASSED * self.clearance()
             && self.site.free_space.sees(self.position, waypoint)
     }
 

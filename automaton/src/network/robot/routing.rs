@@ -258,11 +258,11 @@ impl Robot {
         }))
     }
 
-    /// The sweep: sends exactly what c_i = η takes. What is missing goes over the tree link; what
-    /// is too much, because the iteration has not converged, is taken off all links alike, so that
-    /// nobody is asked to pass on what is not there. Returns by how much the flow to the parent has
-    /// changed.
-    pub fn meet_demand(&mut self) -> f64 {
+    /// The sweep: sends what c_i = η takes. What is missing goes over the tree link; in the first
+    /// sweep, what is too much, because the iteration has not converged, is taken off all links
+    /// alike, so that nobody is asked to pass on what is not there. Returns by how much the flow to
+    /// the parent has changed.
+    pub fn meet_demand(&mut self, is_first: bool) -> f64 {
         let Some(parent) = self.tree_parent() else { return 0.0 };
         let Some(tree_link) = self.links.iter().position(|link| link.to == parent) else {
             return 0.0;
@@ -270,9 +270,9 @@ impl Robot {
         let before = self.links[tree_link].flow();
         let demand = self.inflow + self.rate + self.site.settings.routing_reserve;
         let outflow = self.outflow();
-        if outflow > demand {
+        if outflow > demand && is_first {
             self.links.iter_mut().for_each(|link| link.share *= demand / outflow);
-        } else {
+        } else if outflow < demand {
             self.raise_outflow(demand, tree_link);
         }
         self.links[tree_link].flow() - before
