@@ -291,7 +291,7 @@ impl Plan {
             let (robot, largest) =
                 load.into_iter().enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
             findings.load = findings.load.max(largest);
-            if !(largest <= 1.0 + SLACK) {
+            if largest.is_nan() || largest > 1.0 + SLACK {
                 return Err(format!("robot {robot} has load {largest}"));
             }
         }
