@@ -5,12 +5,11 @@
 mod missions;
 
 use missions::{Mission, Period, network_over, run, run_over, run_unmonitored, shipped};
-use pleach::automaton::network::record::{End, MissionEvent as Event, Outcome};
+use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
 use pleach::automaton::network::scenario::{RobotStart, Scenario};
 use pleach::automaton::network::{Medium, Radio, Site};
 use pleach::continuous::Point;
 use pleach::discrete::network::NodeId;
-use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 fn study_one() -> &'static Mission {
@@ -67,22 +66,34 @@ impl Medium for Inspected {
     }
 }
 
-/// A radio some of whose messages are lost; `loses` is told how many messages there were before,
-/// and between whom.
+/// A message on its way.
+#[derive(Clone, Copy, Debug)]
+struct Message {
+    /// How many messages were sent before.
+    number: u64,
+    /// k.
+    period: usize,
+    sender: NodeId,
+    receiver: NodeId,
+}
+
+/// A radio some of whose messages are lost.
 struct Lossy<F> {
     radio: Radio,
     messages: u64,
+    periods: usize,
     loses: F,
 }
 
-impl<F: FnMut(u64, NodeId, NodeId) -> bool> Lossy<F> {
+impl<F: Fn(Message) -> bool> Lossy<F> {
     fn new(site: &Site, loses: F) -> Self {
-        Lossy { radio: Radio::new(site), messages: 0, loses }
+        Lossy { radio: Radio::new(site), messages: 0, periods: 0, loses }
     }
 }
 
-impl<F: FnMut(u64, NodeId, NodeId) -> bool> Medium for Lossy<F> {
+impl<F: Fn(Message) -> bool> Medium for Lossy<F> {
     fn update(&mut self, positions: &[Point]) {
+        self.periods += 1;
         self.radio.update(positions);
     }
 
@@ -91,8 +102,9 @@ impl<F: FnMut(u64, NodeId, NodeId) -> bool> Medium for Lossy<F> {
     }
 
     fn delivers(&mut self, sender: NodeId, receiver: NodeId) -> bool {
+        let (number, period) = (self.messages, self.periods - 1);
         self.messages += 1;
-        !(self.loses)(self.messages - 1, sender, receiver)
+        !(self.loses)(Message { number, period, sender, receiver })
     }
 }
 
@@ -108,21 +120,19 @@ fn no_message_goes_where_there_is_no_link() {
     assert!(network.medium().longest > 0.99 * range, "the whole range is used");
 }
 
-/// Without messages nobody learns of a task, sends anything or moves: whatever robots know of
-/// each other has gone through the medium.
+/// Whatever robots know of each other has gone through the medium: without it nobody learns of a
+/// task, sends anything or moves.
 #[test]
 fn without_messages_nothing_happens() {
-    let scenario = shipped("study-1");
-    let mut network = network_over(&scenario, |site| Lossy::new(site, |_, _, _| true));
-    let (periods, end) = run_unmonitored(&mut network, 50);
-    assert_eq!(end, None);
+    let mut network = network_over(&shipped("study-1"), |site| Lossy::new(site, |_| true));
+    let (periods, _) = run_unmonitored(&mut network, 50);
     for Period { snapshot, events } in &periods {
         assert_eq!(snapshot.positions, periods[0].snapshot.positions);
         assert!(snapshot.routes.is_empty());
-        let idle = |event: &Event| {
-            matches!(event, Event::TaskAnnounced { .. } | Event::RouteInfeasible { .. })
+        let of_a_robot = |event: &&Event| {
+            !matches!(event, Event::TaskAnnounced { .. } | Event::RouteInfeasible { .. })
         };
-        assert!(events.iter().all(idle), "{events:?}");
+        assert_eq!(events.iter().find(of_a_robot), None);
     }
 }
 
@@ -206,33 +216,67 @@ fn one_round_a_period_and_fifty_both_service_study_one() {
 
 // ---- Messages that are lost --------------------------------------------------------------------
 
-/// A redundant robot on which nobody hangs.
+/// A redundant robot of Study I on which nobody hangs and which is never called.
 const NOBODY_NEEDS: NodeId = 0;
 
-#[test]
-fn probe_jam() {
-    for from in [0u64, 1, 100, 400_000] {
-        for robot in [0, 1, 5, 12] {
-        let mut network = network_over(&shipped("study-1"), |site| {
-            Lossy::new(site, move |before, sender, receiver| {
-                before >= from && (sender == robot || receiver == robot)
-            })
-        });
-        let (periods, end) = run_unmonitored(&mut network, 3_000);
-        let events: Vec<_> = periods.iter().flat_map(|p| p.events.iter().filter(|e| !matches!(e, Event::RouteInfeasible{..})).map(move |e| (p.snapshot.step, e))).collect();
-        println!("{from} {robot}: {} {end:?} {:?}", periods.len(), events.last());
-        }
+/// Every message from or to that robot from control period `begin` on.
+fn jammed_from(begin: usize) -> impl Fn(Message) -> bool {
+    move |Message { period, sender, receiver, .. }| {
+        period >= begin && [sender, receiver].contains(&NOBODY_NEEDS)
     }
 }
 
+/// One message of `n`.
+fn one_of(n: u64) -> impl Fn(Message) -> bool {
+    move |message| message.number % n == n - 1
+}
+
+/// Who is never heard is in no roster, so that no election waits for it.
 #[test]
-fn probe_loss() {
-    for name in ["study-1", "leaf-leader", "study-2", "corridor", "redundant-node"] {
-        for every in [1000u64, 100, 10, 7, 3] {
-            let (mission, _) = run_over(shipped(name), |site| {
-                Lossy::new(site, move |before, _, _| before % every == every - 1)
-            });
-            println!("{name} {every}: {} {:?}", mission.periods.len(), mission.end);
+fn a_robot_that_was_never_heard_is_not_missed() {
+    let mut network = network_over(&shipped("study-1"), |site| Lossy::new(site, jammed_from(0)));
+    let (periods, end) = run_unmonitored(&mut network, 5_000);
+    assert_eq!(end.unwrap().outcome, Outcome::Serviced);
+    let first = &periods[0].snapshot.positions[NOBODY_NEEDS];
+    assert!(periods.iter().all(|period| &period.snapshot.positions[NOBODY_NEEDS] == first));
+}
+
+/// Who falls silent stays in the roster: the next election waits for its token, nobody moves on
+/// a guess, and the mission is given up when its time has passed.
+#[test]
+fn an_election_waits_for_a_robot_that_falls_silent() {
+    let mut scenario = shipped("study-1");
+    scenario.control.max_steps = Some(600);
+    let mut network = network_over(&scenario, |site| Lossy::new(site, jammed_from(100)));
+    let (periods, end) = run_unmonitored(&mut network, 5_000);
+    assert_eq!(end.unwrap().outcome, Outcome::StepLimit);
+    let calls = |period: &&Period| {
+        period.events.iter().any(|event| matches!(event, Event::Stationary { .. }))
+    };
+    let call = periods.iter().rfind(calls).unwrap().snapshot.step;
+    assert!((100..300).contains(&call), "{call}");
+    let settled = &periods[call + 20..];
+    assert!(settled.iter().all(|period| period.snapshot.active.is_empty()));
+}
+
+#[test]
+#[ignore = "routing, proposals and objections are not protected against loss yet"]
+fn the_mission_bears_the_loss_of_every_tenth_message() {
+    for name in ["study-1", "study-2"] {
+        run_over(shipped(name), |site| Lossy::new(site, one_of(10))).0.assert_serviced();
+    }
+}
+
+/// Losses may end a mission by the monitor or by its step limit, but never in a panic.
+#[test]
+fn losses_end_in_a_stated_outcome() {
+    for name in ["study-2", "leaf-leader"] {
+        for n in [3, 10, 100] {
+            let mut scenario = shipped(name);
+            scenario.control.max_steps = Some(500);
+            let mut network = network_over(&scenario, |site| Lossy::new(site, one_of(n)));
+            let (_, end) = run_unmonitored(&mut network, 5_000);
+            assert!(end.is_some(), "{name}, every message of {n}");
         }
     }
 }

@@ -33,6 +33,27 @@ fn the_scenario_without_the_mistake_is_read() {
     assert_eq!(scenario.robot[1].rate, 0.075);
 }
 
+/// No number of a scenario may be anything but finite, wherever it stands.
+#[test]
+fn every_number_of_a_scenario_must_be_finite() {
+    let text = std::fs::read_to_string("scenarios/redundant-node.toml").unwrap();
+    let is_number = |word: &&str| word.parse::<f64>().is_ok();
+    let statements = text.split_once("[workspace]").unwrap().1;
+    let numbers = statements.split([' ', ',', '[', ']', '\n']).filter(is_number);
+    let mut count = 0;
+    for number in numbers {
+        let at = number.as_ptr() as usize - text.as_ptr() as usize;
+        for odd in ["nan", "-nan", "inf", "-inf"] {
+            let faulty = format!("{}{odd}{}", &text[..at], &text[at + number.len()..]);
+            let error = pleach::scenario_file::parse(&faulty, Path::new("odd.toml")).unwrap_err();
+            let line = 1 + text[..at].matches('\n').count();
+            assert!(error.to_string().starts_with(&format!("odd.toml:{line}:")), "{error}");
+        }
+        count += 1;
+    }
+    assert!(count > 30);
+}
+
 #[test]
 fn a_missing_file_is_named() {
     let error = read(Path::new("tests/scenarios/nowhere.toml")).unwrap_err();

@@ -6,9 +6,10 @@
 mod missions;
 mod oracle;
 
-use missions::{Mission, run, shipped};
+use missions::{Mission, Period, run, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::Settings;
+use pleach::continuous::Point;
 use pleach::discrete::network::Role;
 use pleach::mission::Watcher;
 use pleach::trace::{TraceReader, TraceWriter};
@@ -73,7 +74,10 @@ fn the_bounds_are_kept_in_every_shipped_scenario() {
             extreme.value
         };
         assert_eq!(settings.residual_tolerance, 0.0, "{name}: the default");
-        assert!(value(&mission.extremes.pair_distance) >= 2.0 * settings.clearance - SLACK, "{name}");
+        assert!(
+            value(&mission.extremes.pair_distance) >= 2.0 * settings.clearance - SLACK,
+            "{name}"
+        );
         assert!(value(&mission.extremes.clearance) >= settings.clearance - SLACK, "{name}");
         assert!(value(&mission.extremes.residual) >= -SLACK, "{name}");
         assert!(value(&mission.extremes.load) <= 1.0 + SLACK, "{name}");
@@ -119,7 +123,8 @@ fn leadership(mission: &Mission, task: usize) -> Leadership<'_> {
     };
     let at = events.iter().position(|entry| elected(entry).is_some()).unwrap();
     let (k, leader, conflict) = elected(&events[at]).unwrap();
-    let serviced = |event: &Event| matches!(event, Event::TaskServiced { task: of, .. } if *of == task);
+    let serviced =
+        |event: &Event| matches!(event, Event::TaskServiced { task: of, .. } if *of == task);
     let rest = events[at..].iter().map(|(_, event)| *event);
     Leadership {
         leader,
@@ -219,7 +224,8 @@ fn robots_go_through_the_corridor_in_single_file() {
 fn the_first_branch_goes_round_the_ring_one_way() {
     let mission = mission("ring");
     let leader = leadership(mission, 0).leader;
-    let beyond_the_sides = |snapshot: &&Snapshot| (0.5..1.1).contains(&snapshot.positions[leader].y);
+    let beyond_the_sides =
+        |snapshot: &&Snapshot| (0.5..1.1).contains(&snapshot.positions[leader].y);
     let east: BTreeSet<_> = (mission.periods.iter().map(|period| &period.snapshot))
         .filter(beyond_the_sides)
         .map(|snapshot| snapshot.positions[leader].x > 1.0)
@@ -292,4 +298,54 @@ fn the_oracle_agrees_with_the_monitor_on_every_shipped_scenario() {
         close(name, findings.residual, &mission.extremes.residual);
         close(name, findings.load, &mission.extremes.load);
     }
+}
+
+/// Each of these spoils one thing in a mission that is flawless otherwise.
+#[test]
+fn the_oracle_notices_what_is_wrong() {
+    type Spoil = fn(&mut Snapshot);
+    let spoils: [(Spoil, &str); 10] = [
+        (|now| now.positions[0].x += 0.02, "robot 0 steps 0.0"),
+        (|now| now.positions[0].x += 0.001, "robot 0 steps 0.001"),
+        (|now| now.routes[0].reliability -= 0.01, "route "),
+        (|now| now.routes[0].share += 0.01, "residual"),
+        (|now| now.residuals[5] += 0.001, "robot 5: residual"),
+        (|now| now.routes.retain(|route| route.from != 7), "residual"),
+        (|now| now.tree.push((0, 1)), "robot 0 has two parents"),
+        (|now| now.tree.retain(|&(child, _)| child != 9), "hangs on 9, which hangs on nothing"),
+        (|now| now.tree = vec![(0, 1), (1, 2), (2, 0)], "the tree has a cycle"),
+        (|now| now.serviced.clear(), "task 0 is left"),
+    ];
+    for (spoil, expected) in spoils {
+        let mut mission = mission("study-1").up_to(350);
+        spoil(&mut mission.periods[350].snapshot);
+        assert_fault(&mission, expected);
+    }
+}
+
+/// The same for the way from one instant to the next, when robots may leap.
+#[test]
+fn the_oracle_looks_between_two_instants() {
+    type Spoil = fn(&mut Snapshot);
+    let spoils: [(Spoil, &str); 5] = [
+        (|now| now.positions.swap(0, 1), "robots 0 and 1 are 0 apart"),
+        (|now| now.positions[0] = now.positions[1], "robots 0 and 1 are 0 apart"),
+        (|now| now.positions[0].x = 0.005, "robot 0 comes within 0.005"),
+        (|now| now.positions[0] = Point::new(0.8, 1.4), "robot 0 comes within 0 of"),
+        (|now| now.positions[12].x += 0.25, "robot 12 has load"),
+    ];
+    for (spoil, expected) in spoils {
+        let mut mission = mission("study-1").up_to(350);
+        mission.scenario.control.step_radius = Some(10.0);
+        let Period { snapshot: before, .. } = &mut mission.periods[349];
+        before.active = (0..before.positions.len()).collect();
+        spoil(&mut mission.periods[350].snapshot);
+        assert_fault(&mission, expected);
+    }
+}
+
+fn assert_fault(mission: &Mission, expected: &str) {
+    let text = trace(mission);
+    let fault = oracle::audit(TraceReader::new(text.as_slice()).unwrap()).unwrap_err();
+    assert!(fault.starts_with("k = 350: ") && fault.contains(expected), "{expected}: {fault}");
 }

@@ -96,7 +96,7 @@ fn pictures_show_every_label_and_are_the_same_every_time() {
     for label in
         ["off", "on", "Ṫ = −1", "while temperature ≤ 25", "[measured ≤ 19]", "(at once, 0)"]
     {
-        assert!(svg.contains(&format!(">{label}</text>")), "{label}");
+        assert!(svg.lines().any(|line| line == label), "{label}");
     }
     let heads = svg.matches("url(#head)").count();
     assert_eq!(heads, 1 + 2, "the initial arrow and two transitions");

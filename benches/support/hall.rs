@@ -37,9 +37,8 @@ pub fn hall(robots: usize, tasks: usize) -> Scenario {
         .map(|block| (columns - 1 - block / rows, block % rows))
         .map(|(column, row)| [column as f64 * BLOCK, row as f64 * BLOCK])
         .collect();
-    let within = |corner: [f64; 2], [x, y]: [f64; 2]| {
-        [corner[0] + x * SPACING, corner[1] + y * SPACING]
-    };
+    let within =
+        |corner: [f64; 2], [x, y]: [f64; 2]| [corner[0] + x * SPACING, corner[1] + y * SPACING];
     let place = |robot: usize| {
         let cell = robot % (SIDE * SIDE);
         let at = [(cell % SIDE) as f64 + 0.5, (cell / SIDE) as f64 + 0.5];

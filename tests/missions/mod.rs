@@ -56,10 +56,7 @@ pub fn run_over<M: Medium>(
 }
 
 /// The network of a scenario over a medium of the test's own.
-pub fn network_over<M: Medium>(
-    scenario: &Scenario,
-    medium: impl FnOnce(&Site) -> M,
-) -> Network<M> {
+pub fn network_over<M: Medium>(scenario: &Scenario, medium: impl FnOnce(&Site) -> M) -> Network<M> {
     let site = Arc::new(Site::new(scenario).expect("a valid site"));
     let medium = medium(&site);
     Network::with_medium(scenario, site, medium).expect("a network")
@@ -109,6 +106,11 @@ impl Mission {
         Mission { scenario, periods: recorder.periods, end, extremes }
     }
 
+    /// The mission as far as control period `last`.
+    pub fn up_to(&self, last: usize) -> Self {
+        Mission { periods: self.periods[..=last].to_vec(), ..self.clone() }
+    }
+
     /// The number of tasks serviced.
     pub fn serviced(&self) -> usize {
         let serviced = |(_, event): &(usize, &MissionEvent)| {
@@ -119,9 +121,9 @@ impl Mission {
 
     /// Every event with its k, in order.
     pub fn events(&self) -> impl Iterator<Item = (usize, &MissionEvent)> {
-        self.periods.iter().flat_map(|period| {
-            period.events.iter().map(|event| (period.snapshot.step, event))
-        })
+        self.periods
+            .iter()
+            .flat_map(|period| period.events.iter().map(|event| (period.snapshot.step, event)))
     }
 
     /// The last thing that the observers saw.
@@ -131,16 +133,21 @@ impl Mission {
 
     /// The mission as a story: one line an event, and its outcome.
     pub fn story(&self) -> String {
-        let mut lines: Vec<_> = (self.events())
-            .map(|(k, event)| format!("{k:>4}  {}", story::tell(event)))
-            .collect();
+        let mut lines: Vec<_> =
+            (self.events()).map(|(k, event)| format!("{k:>4}  {}", story::tell(event))).collect();
         lines.push(format!("      {}", self.end.outcome.name()));
         lines.join("\n")
     }
 
     /// Says why a mission that should have serviced every task has not.
     pub fn assert_serviced(&self) {
-        assert_eq!(self.end.outcome, Outcome::Serviced, "{}: {}", self.scenario.name, self.end.reason);
+        assert_eq!(
+            self.end.outcome,
+            Outcome::Serviced,
+            "{}: {}",
+            self.scenario.name,
+            self.end.reason
+        );
         assert_eq!(self.serviced(), self.scenario.task.len(), "{}", self.scenario.name);
     }
 }

@@ -3,8 +3,8 @@
 //! Nothing here comes from the crates under test but the reader of traces. Distances along
 //! segments are exact; loads are sampled.
 
-use pleach::automaton::network::scenario::Scenario;
 use pleach::automaton::network::record::{Route, Snapshot};
+use pleach::automaton::network::scenario::Scenario;
 use pleach::trace::{TraceEntry, TraceReader};
 use std::io::BufRead;
 
@@ -42,9 +42,9 @@ pub fn audit<R: BufRead>(reader: TraceReader<R>) -> Result<Findings, String> {
     for entry in reader {
         let TraceEntry::Step(now) = entry.map_err(|error| error.to_string())? else { continue };
         let fault = |what: String| format!("k = {}: {what}", now.step);
-        plan.stand(&now, &mut findings).map_err(fault)?;
         let start = before.as_deref().unwrap_or(&now);
         plan.journey(start, &now, &mut findings).map_err(fault)?;
+        plan.stand(&now, &mut findings).map_err(fault)?;
         before = Some(now);
     }
     Ok(findings)
@@ -67,7 +67,8 @@ struct Plan {
 impl Plan {
     /// The trace's header has every default filled in.
     fn of(scenario: &Scenario) -> Self {
-        let polygons = scenario.workspace.holes.iter().chain([&scenario.workspace.boundary]);
+        let outline = &scenario.workspace;
+        let polygons = outline.holes.iter().chain([&outline.boundary]);
         let sides = |polygon: &Vec<Place>| -> Vec<[Place; 2]> {
             let next = polygon.iter().cycle().skip(1);
             polygon.iter().zip(next).map(|(&from, &to)| [from, to]).collect()
@@ -255,8 +256,6 @@ impl Plan {
         Ok(())
     }
 
-    /// Two segments that do not cross are nearest at an end of one of them; a robot that crossed
-    /// a wall would be outside.
     fn robots_keep_from_walls(
         &self,
         paths: &[[Place; 2]],
@@ -264,9 +263,7 @@ impl Plan {
     ) -> Result<(), String> {
         for (robot, &path) in paths.iter().enumerate() {
             for &wall in &self.walls {
-                let ends = path.map(|end| distance_to_segment(end, wall));
-                let corners = wall.map(|corner| distance_to_segment(corner, path));
-                let distance = ends.into_iter().chain(corners).fold(f64::INFINITY, f64::min);
+                let distance = distance_of_segments(path, wall);
                 findings.clearance = findings.clearance.min(distance);
                 if distance < self.clearance - SLACK {
                     return Err(format!("robot {robot} comes within {distance} of {wall:?}"));
@@ -331,4 +328,19 @@ fn distance_to_segment(place: Place, [from, to]: [Place; 2]) -> f64 {
     let product = along[0] * offset[0] + along[1] * offset[1];
     let share = if square > 0.0 { (product / square).clamp(0.0, 1.0) } else { 0.0 };
     length([offset[0] - share * along[0], offset[1] - share * along[1]])
+}
+
+/// Two segments that do not cross are nearest at an end of one of them.
+fn distance_of_segments(one: [Place; 2], other: [Place; 2]) -> f64 {
+    let side = |[from, to]: [Place; 2], place| {
+        let (along, offset) = (difference(from, to), difference(from, place));
+        along[0] * offset[1] - along[1] * offset[0]
+    };
+    let parts = |line, [from, to]: [Place; 2]| side(line, from) * side(line, to) < 0.0;
+    if parts(one, other) && parts(other, one) {
+        return 0.0;
+    }
+    let ends = one.map(|end| distance_to_segment(end, other));
+    let other_ends = other.map(|end| distance_to_segment(end, one));
+    ends.into_iter().chain(other_ends).fold(f64::INFINITY, f64::min)
 }

@@ -17,6 +17,10 @@ use super::site::Site;
 /// robots whose links to an access point differ by one, news of them come two rounds apart.
 const ROUNDS_UNTIL_ROSTER_SETTLES: usize = 8;
 
+/// An election takes at most this many times the rounds that news can be under way: redundant
+/// robots wait twice that long for the way to the caller before they place their token.
+const PATIENCE_WITH_ELECTIONS: usize = 4;
+
 /// An access point.
 #[derive(Debug)]
 pub struct AccessPoint {
@@ -25,7 +29,9 @@ pub struct AccessPoint {
     position: Point,
     heard: Vec<Arc<Beacon>>,
     bulletin: Arc<Bulletin<Notice>>,
+    announced: Option<(usize, Arc<IdSet>)>,
     election: Option<Election>,
+    election_rounds: usize,
     agreement: Option<Agreement>,
     route: Option<(u32, Arc<Vec<Hop>>)>,
     crossing: Vec<usize>,
@@ -44,7 +50,9 @@ impl AccessPoint {
             site,
             heard: Vec::new(),
             bulletin: Arc::new(Bulletin::first(Notice::Quiet)),
+            announced: None,
             election: None,
+            election_rounds: 0,
             agreement: None,
             route: None,
             crossing: Vec::new(),
@@ -121,9 +129,13 @@ impl AccessPoint {
 
     fn take_up(&mut self, bulletin: Arc<Bulletin<Notice>>) {
         let number = bulletin.sequence();
+        if let Notice::Task { task, roster, .. } = bulletin.notice() {
+            self.announced = Some((*task, Arc::clone(roster)));
+        }
         match bulletin.notice() {
             Notice::Task { .. } | Notice::Call { .. } => {
                 self.election = Some(Election::new(number));
+                self.election_rounds = 0;
                 self.route = None;
                 self.crossing.clear();
             }
@@ -193,10 +205,15 @@ impl AccessPoint {
             Notice::Quiet if self.settled_rounds < ROUNDS_UNTIL_ROSTER_SETTLES => return,
             Notice::Quiet => 0,
             Notice::Serviced { task } => task + 1,
-            Notice::Task { task, .. } => return self.find_unreachable(*task),
+            Notice::Task { .. } | Notice::Call { .. } => return self.supervise_election(),
             _ => return,
         };
         let notice = match tasks.get(next) {
+            Some(_) if self.roster.is_empty() => Notice::Ended {
+                outcome: Outcome::InsufficientRobots,
+                reason: "no robot is connected to an access point".into(),
+                task: Some(next),
+            },
             Some(&position) => {
                 self.log.push(MissionEvent::TaskAnnounced { task: next });
                 Notice::Task {
@@ -215,27 +232,34 @@ impl AccessPoint {
         self.issue(notice);
     }
 
-    /// No robot bids for a task that none can come close to.
-    fn find_unreachable(&mut self, task: usize) {
-        let (Some(election), Notice::Task { roster, .. }) =
-            (&self.election, self.bulletin.notice())
-        else {
-            return;
-        };
-        if election.number() == self.bulletin.sequence()
-            && election.is_complete(roster)
-            && election.best().is_none()
-        {
+    /// Ends the mission if no robot bids for a task, because none can come close to it, or if
+    /// robots that took part do not answer any more.
+    fn supervise_election(&mut self) {
+        let Some((task, roster)) = self.announced.clone() else { return };
+        let Some(election) = &self.election else { return };
+        self.election_rounds += 1;
+        let is_leader_election = matches!(self.bulletin.notice(), Notice::Task { .. });
+        let longest = self.site.robots + self.site.access_points.len();
+        let (outcome, reason) = if election.is_complete(&roster) {
+            if !is_leader_election || election.best().is_some() {
+                return;
+            }
             let reason = format!(
                 "no robot can come within the service radius of task {task}: it lies in a wall, \
                  too near to one, or in a part of the workspace that no robot can enter"
             );
-            self.issue(Notice::Ended {
-                outcome: Outcome::UnreachableTask,
-                reason: reason.into(),
-                task: Some(task),
-            });
-        }
+            (Outcome::UnreachableTask, reason)
+        } else if self.election_rounds > PATIENCE_WITH_ELECTIONS * longest {
+            let missing: Vec<NodeId> =
+                roster.iter().filter(|&robot| !election.has_token(robot)).collect();
+            let reason = format!(
+                "the election for task {task} cannot end: robots {missing:?} do not answer any more"
+            );
+            (Outcome::Blocked, reason)
+        } else {
+            return;
+        };
+        self.issue(Notice::Ended { outcome, reason: reason.into(), task: Some(task) });
     }
 
     fn issue(&mut self, notice: Notice) {

@@ -30,6 +30,10 @@ use super::site::{Site, SiteError};
 /// one gives its move up.
 const NEGOTIATION_ROUNDS: usize = 8;
 
+/// Sweeps until the routes are feasible: with each, overloaded robots are relieved of what does
+/// not come over the tree, and a tree that can carry the rates needs few.
+const MAX_SWEEPS: usize = 6;
+
 /// Where a control period stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
@@ -221,7 +225,9 @@ impl<M: Medium> Network<M> {
         for (access_point, inbox) in self.access_points.iter_mut().zip(to_access_points) {
             access_point.hear(inbox.drain(..).map(|sender| &self.beacons[sender]));
         }
-        if let Some(first) = self.access_points.first_mut() {
+        if self.step > 0
+            && let Some(first) = self.access_points.first_mut()
+        {
             first.speak_for_user(&self.tasks);
         }
     }
@@ -239,14 +245,35 @@ impl<M: Medium> Network<M> {
             self.exchange_flows();
             self.robots.iter_mut().for_each(Robot::dual_step);
         }
-        self.sweep();
-        self.exchange_flows();
-        for (id, robot) in self.robots.iter_mut().enumerate() {
-            robot.settle_residual();
+        for _ in 0..MAX_SWEEPS {
+            self.sweep();
+            self.exchange_flows();
+            self.robots.iter_mut().for_each(Robot::settle_residual);
+            if !self.relieve_overloaded() {
+                return;
+            }
+        }
+        for (id, robot) in self.robots.iter().enumerate() {
             if robot.is_infeasible() {
                 self.events.push(MissionEvent::RouteInfeasible { robot: id });
             }
         }
+    }
+
+    /// Robots that cannot pass on what they are sent say so; whoever does not hang on them sends
+    /// them nothing more, and the sweep is repeated. Says whether there are any.
+    fn relieve_overloaded(&mut self) -> bool {
+        let overloaded: Vec<NodeId> =
+            (0..self.robots.len()).filter(|&robot| self.robots[robot].is_infeasible()).collect();
+        for &robot in &overloaded {
+            for receiver in self.audience_of(robot) {
+                self.robots[receiver].spare(robot);
+            }
+        }
+        if !overloaded.is_empty() {
+            self.exchange_flows();
+        }
+        !overloaded.is_empty()
     }
 
     fn exchange_routing_reports(&mut self) {
@@ -423,13 +450,13 @@ impl<M: Medium> Network<M> {
     }
 
     /// A control period has a fixed number of rounds. Before the first one the robots are given as
-    /// many as news can take to cross the network, so that the tree stands when the clock starts.
+    /// many as news can take to cross the network and come back, so that the tree stands when the
+    /// clock starts.
     fn has_exchanged_enough(&self) -> bool {
-        let longest_way = self.robots.len() + self.access_points.len();
-        let stands = self.step > 0
-            || self.rounds >= longest_way
-            || self.robots.iter().all(|robot| robot.tree_parent().is_some());
-        stands && self.rounds >= self.site.settings.rounds_per_period
+        let there_and_back = 2 * (self.robots.len() + self.access_points.len());
+        let in_a_period = self.site.settings.rounds_per_period;
+        let enough = if self.step == 0 { in_a_period.max(there_and_back) } else { in_a_period };
+        self.rounds >= enough
     }
 
     /// Whether the clocks call for the next sample.

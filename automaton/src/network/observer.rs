@@ -150,7 +150,7 @@ impl<M: Medium> Network<M> {
             .robots
             .iter()
             .enumerate()
-            .filter_map(|(id, robot)| Some((robot.answers_for()?.post.task?, id)))
+            .filter_map(|(id, robot)| Some((robot.duty().post()?.task?, id)))
             .collect();
         serviced.sort_unstable();
         serviced.dedup_by_key(|(task, _)| *task);
@@ -162,11 +162,12 @@ impl<M: Medium> Network<M> {
             .iter()
             .enumerate()
             .filter_map(|(holder, robot)| {
-                let station = robot.answers_for().filter(|station| station.post.is_fixed())?;
+                let station = robot.duty().station().filter(|station| station.post.is_fixed())?;
                 let children = self.robots.iter().filter(|child| {
-                    child.answers_for().is_some_and(|held| {
-                        held.post.hangs_on(station.post.id) && !held.post.is_redundant()
-                    })
+                    child
+                        .duty()
+                        .post()
+                        .is_some_and(|held| held.hangs_on(station.post.id) && !held.is_redundant())
                 });
                 Some(PostView {
                     reference: station.reference,

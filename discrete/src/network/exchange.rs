@@ -1,9 +1,10 @@
 //! The exchange of duties between a mover and the robot that stands in its way.
 //!
 //! Robots are alike: where a mover would have to pass a parked robot, the two exchange duties
-//! instead, which is Algorithm 4's "adopts the role" without the walk. The protocol never leaves
-//! a duty without a robot: the parked robot takes the mover's duty and goes on answering for its
-//! post until it hears that the mover holds it.
+//! instead, which is Algorithm 4's "adopts the role" without the walk. The mover offers its duty;
+//! the parked robot answers with its own and goes on doing it; the mover takes that and gives its
+//! offer up; then the parked robot takes what was offered. Each step is seen in the beacon of the
+//! one who took it, so that messages may be repeated or come late.
 
 use super::NodeId;
 

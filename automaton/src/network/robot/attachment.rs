@@ -133,9 +133,9 @@ impl Robot {
     /// tell of it, so that robots that lose their parent at once do not hang on one another.
     fn confirms(&self, lineage: &Lineage) -> bool {
         self.neighbours.iter().all(|neighbour| {
-            let place = neighbour.post().and_then(|post| {
-                lineage.posts().iter().position(|&passed| passed == post.id)
-            });
+            let place = neighbour
+                .post()
+                .and_then(|post| lineage.posts().iter().position(|&passed| passed == post.id));
             place.is_none_or(|place| {
                 neighbour
                     .beacon
@@ -232,12 +232,12 @@ impl Robot {
         let mut better = None;
         for neighbour in self.neighbours.iter().filter(|n| Self::accepts_redundant(n)) {
             let candidate = self.anchor_of(neighbour);
+            let hangs_here = neighbour.beacon.parent == Some(self.id)
+                || neighbour.beacon.lineage.as_ref().is_none_or(|lineage| {
+                    own.is_some_and(|own| lineage.contains(own)) || !self.confirms(lineage)
+                });
             if candidate == anchor
-                || neighbour
-                    .beacon
-                    .lineage
-                    .as_ref()
-                    .is_none_or(|lineage| own.is_some_and(|own| lineage.contains(own)))
+                || hangs_here
                 || neighbour.distance > self.site.build_length
                 || (goal - neighbour.position()).norm() >= nearest
                 || self.walk_to(neighbour) > self.site.build_length

@@ -1,11 +1,13 @@
 //! Exchanging duties with the robot that stands in the way.
 //!
-//! A mover that touches a parked robot nearer to its goal offers it its duty; the parked robot
-//! takes it and leaves its post to the mover, which is within δ of it. With every exchange the
+//! A mover that touches a parked robot nearer to its goal offers it its duty. The parked robot
+//! answers with its own; the mover, which is within δ of the post, takes it; and when the parked
+//! robot sees that, it takes the mover's duty. A post is never without a robot, and no duty is
+//! ever done by two. With every exchange the
 //! way that remains gets shorter, so that exchanges come to an end. A mover that cannot pass
 //! takes a partner somewhat farther from its goal too, but no robot twice in a row.
 
-use pleach_discrete::network::{Exchange, Phase, Reply};
+use pleach_discrete::network::{Exchange, NodeId, Phase, Reply};
 
 use super::super::duty::Duty;
 use super::super::record::MissionEvent;
@@ -40,12 +42,10 @@ impl Robot {
         let mut nearest = own_way - gain * self.clearance();
         let mut partner = None;
         for neighbour in &self.neighbours {
-            if self.last_partner == Some(neighbour.id()) {
-                continue;
-            }
             if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
                 let way = self.site.free_space.distance(neighbour.position(), goal);
-                if way < nearest && self.could_be_replaced_by(neighbour) {
+                let is_return = way >= own_way && self.last_partner == Some(neighbour.id());
+                if way < nearest && !is_return && self.could_be_replaced_by(neighbour) {
                     (nearest, partner) = (way, Some(neighbour.id()));
                 }
             }
@@ -118,7 +118,7 @@ impl Robot {
     /// One round of the protocol: answer offers, complete exchanges.
     pub fn handle_exchange(&mut self) {
         self.complete_own_offer();
-        self.forget_heard_reply();
+        self.conclude_reply();
         self.answer_offer();
     }
 
@@ -133,21 +133,25 @@ impl Robot {
         self.offer = None;
         let Some(duty) = accepted else { return };
         self.left_post = self.duty.post().map(|post| post.id);
-        self.duty = duty;
-        self.last_partner = Some(partner);
-        self.lineage = None;
-        self.still_periods = 0;
+        self.take_over(duty, partner);
         self.report(MissionEvent::DutiesExchanged { mover: self.id, parked: partner });
     }
 
-    /// The reply stands until the mover shows that it has heard it: its offer is gone.
-    fn forget_heard_reply(&mut self) {
+    /// The reply stands until the mover's offer is gone: then it has taken the post, and this
+    /// robot takes the duty.
+    fn conclude_reply(&mut self) {
         let Some(reply) = &self.reply else { return };
-        let heard = self.neighbour(reply.to).is_some_and(|mover| {
-            mover.beacon.offer.as_ref().is_none_or(|offer| offer.number != reply.number)
+        let (to, number) = (reply.to, reply.number);
+        let concluded = self.neighbour(to).is_some_and(|mover| {
+            mover.beacon.offer.as_ref().is_none_or(|offer| offer.number != number)
         });
-        if heard {
-            self.reply = None;
+        if !concluded {
+            return;
+        }
+        self.reply = None;
+        if let Some(duty) = self.taking.take() {
+            self.left_post = self.duty.post().map(|post| post.id);
+            self.take_over(duty, to);
         }
     }
 
@@ -157,18 +161,19 @@ impl Robot {
         }
         let offered = self.neighbours.iter().find_map(|neighbour| {
             let offer = neighbour.beacon.offer.as_ref()?;
-            (offer.to == self.id).then(|| (neighbour.id(), offer.number, offer.duty))
+            (offer.to == self.id).then_some((neighbour.id(), offer.number, offer.duty))
         });
         let Some((to, number, duty)) = offered else { return };
         let accepted = self.may_be_relieved().then_some(self.duty);
-        if accepted.is_some() {
-            self.left_post = self.duty.post().map(|post| post.id);
-            self.duty = duty;
-            self.last_partner = Some(to);
-            self.lineage = None;
-            self.still_periods = 0;
-        }
+        self.taking = accepted.map(|_| duty);
         self.reply = Some(Reply { to, number, accepted });
+    }
+
+    fn take_over(&mut self, duty: Duty, partner: NodeId) {
+        self.duty = duty;
+        self.last_partner = Some(partner);
+        self.lineage = None;
+        self.still_periods = 0;
     }
 
     /// Whether this robot may leave its post to a mover.

@@ -72,6 +72,7 @@ pub struct Robot {
     offers_made: u32,
     last_partner: Option<NodeId>,
     reply: Option<Reply<Duty>>,
+    taking: Option<Duty>,
 
     // What it hears and where it hangs.
     neighbours: Vec<Neighbour>,
@@ -148,6 +149,7 @@ impl Robot {
             offers_made: 0,
             last_partner: None,
             reply: None,
+            taking: None,
             neighbours: Vec::new(),
             parent: None,
             lineage: None,
@@ -261,13 +263,6 @@ impl Robot {
     /// The task announced last, as far as it knows.
     pub fn current_task(&self) -> Option<usize> {
         self.tasks.last().map(|task| task.number)
-    }
-
-    /// The station that it is answerable for: the one it holds, or the one that it has left and
-    /// whose new holder has not shown up yet.
-    pub fn answers_for(&self) -> Option<&Station> {
-        let handed_over = self.reply.as_ref().and_then(|reply| reply.accepted.as_ref());
-        handed_over.unwrap_or(&self.duty).station()
     }
 
     /// c_i at the last sample.

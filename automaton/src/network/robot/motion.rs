@@ -29,6 +29,8 @@ const KEEP_OUT: f64 = 2.1;
 /// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
 /// goes straight on and exchanges duties with whoever is in its way.
 const DETOUR_ALLOWANCE: f64 = 8.0;
+/// A way as good as another but for this many ρ is kept: robots do not waver between two sides.
+const CONSTANCY: f64 = 1.0;
 /// A move shorter than this share of σ is none.
 const STILL: f64 = 0.02;
 /// A proposed move shorter than this share of σ is not made.
@@ -118,13 +120,15 @@ impl Robot {
     /// Lines 4 to 7 of Algorithm 5: the next position, if the robot moves.
     pub fn propose(&mut self) {
         self.proposal = None;
-        self.waypoint = None;
-        let Some(goal) = self.goal() else { return };
+        let Some(goal) = self.goal() else {
+            self.waypoint = None;
+            return;
+        };
         if self.is_infeasible() {
             return;
         }
-        self.waypoint = self.first_waypoint(goal);
-        let Some(waypoint) = self.waypoint else { return };
+        let Some(waypoint) = self.first_waypoint(goal) else { return };
+        self.waypoint = Some(waypoint);
         let problem = self.motion_problem(waypoint);
         let motion = match self.site.settings.motion_solver {
             MotionSolver::Exact => problem.solve_exact(),
@@ -152,13 +156,29 @@ impl Robot {
             .filter(|neighbour| !neighbour.is_access_point() && neighbour.beacon.parked)
             .map(|n| Disc { center: n.position(), radius: KEEP_OUT * self.clearance() })
             .collect();
-        let path = match free_space.detour(self.position, goal, &parked) {
-            Some(round) if round.length <= direct.length + DETOUR_ALLOWANCE * self.clearance() => {
-                round
-            }
+        let allowance = DETOUR_ALLOWANCE * self.clearance();
+        let around = |from: Point, direct: Geodesic| match free_space.detour(from, goal, &parked) {
+            Some(round) if round.length <= direct.length + allowance => round,
             _ => direct,
         };
-        Some(self.next_corner(&path).unwrap_or(goal))
+        let path = around(self.position, direct);
+        let corner = self.next_corner(&path).unwrap_or(goal);
+        match self.waypoint.filter(|&kept| kept != corner && self.may_keep(kept)) {
+            Some(kept) => {
+                let onward = free_space.geodesic_to(kept, self.destination.as_ref()?)?;
+                let length = (kept - self.position).norm() + around(kept, onward).length;
+                let constancy = CONSTANCY * self.clearance();
+                Some(if length <= path.length + constancy { kept } else { corner })
+            }
+            None => Some(corner),
+        }
+    }
+
+    /// Whether the robot could still go by the waypoint of the period before.
+    fn may_keep(&self, waypoint: Point) -> bool {
+        let reached = ROUNDING * self.site.workspace.extent();
+        (waypoint - self.position).norm() > reached
+            && self.site.free_space.sees(self.position, waypoint)
     }
 
     /// The first waypoint that the robot has not reached.
@@ -225,10 +245,11 @@ impl Robot {
         let station = self.duty.station().filter(|station| station.post.is_fixed());
         let task = station.and_then(|s| s.post.task).and_then(|task| self.task_position(task));
         let radius = self.site.settings.service_radius;
-        station.map(|station| station.reference).into_iter().chain(task).map(move |center| Disc {
-            center,
-            radius: radius.max((center - self.position).norm()),
-        })
+        station
+            .map(|station| station.reference)
+            .into_iter()
+            .chain(task)
+            .map(move |center| Disc { center, radius: radius.max((center - self.position).norm()) })
     }
 
     /// The disc in which the robot keeps a link of the tree within its limit, with the other end

@@ -258,18 +258,27 @@ impl Robot {
         }))
     }
 
-    /// The sweep: sends over the tree link what is missing for c_i ≥ η. Returns by how much the
-    /// flow to the parent has risen.
+    /// The sweep: sends exactly what c_i = η takes. What is missing goes over the tree link; what
+    /// is too much, because the iteration has not converged, is taken off all links alike, so that
+    /// nobody is asked to pass on what is not there. Returns by how much the flow to the parent has
+    /// changed.
     pub fn meet_demand(&mut self) -> f64 {
         let Some(parent) = self.tree_parent() else { return 0.0 };
         let Some(tree_link) = self.links.iter().position(|link| link.to == parent) else {
             return 0.0;
         };
-        let demand = self.inflow + self.rate + self.site.settings.routing_reserve;
-        if self.outflow() >= demand {
-            return 0.0;
-        }
         let before = self.links[tree_link].flow();
+        let demand = self.inflow + self.rate + self.site.settings.routing_reserve;
+        let outflow = self.outflow();
+        if outflow > demand {
+            self.links.iter_mut().for_each(|link| link.share *= demand / outflow);
+        } else {
+            self.raise_outflow(demand, tree_link);
+        }
+        self.links[tree_link].flow() - before
+    }
+
+    fn raise_outflow(&mut self, demand: f64, tree_link: usize) {
         let mut shares: Vec<Share> = self
             .links
             .iter()
@@ -279,10 +288,19 @@ impl Robot {
         for (link, repaired) in self.links.iter_mut().zip(shares) {
             link.share = repaired.share;
         }
-        self.links[tree_link].flow() - before
     }
 
-    /// A tree child has raised its flow by so much in the sweep.
+    /// A neighbour cannot pass on what it is sent: from now on it gets only what comes over the
+    /// tree.
+    pub fn spare(&mut self, overloaded: NodeId) {
+        if self.tree_parent() != Some(overloaded)
+            && let Ok(at) = self.links.binary_search_by_key(&overloaded, |link| link.to)
+        {
+            self.links[at].share = 0.0;
+        }
+    }
+
+    /// A tree child has changed its flow by so much in the sweep.
     pub fn expect_more(&mut self, flow: f64) {
         self.inflow += flow;
     }

@@ -47,11 +47,8 @@ impl Robot {
             let way = self.way_of(neighbour)?;
             (way.distance(self.position) < PASSING * self.clearance()).then_some(way)
         })?;
-        let leash = self
-            .site
-            .settings
-            .service_radius
-            .max((self.position - station.reference).norm());
+        let leash =
+            self.site.settings.service_radius.max((self.position - station.reference).norm());
         let room = |place: Point| asking.distance(place).min(PASSING * self.clearance());
         let mut best = (room(self.position) + WORTH_A_STEP * self.clearance(), None);
         for pace in 1..=PACES {

@@ -1,0 +1,226 @@
+//! Every mission ends, with an outcome that says what happened.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+mod missions;
+
+use missions::{Mission, run, run_over, shipped};
+use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
+use pleach::automaton::network::scenario::{
+    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
+};
+use pleach::automaton::network::{Medium, Radio, Site};
+use pleach::continuous::Point;
+use pleach::discrete::network::NodeId;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const CLEARANCE: f64 = 0.01;
+const SERVICE_RADIUS: f64 = 0.03;
+
+/// A room of 2 by 1 with a pillar and a narrow wedge at its right end, six robots at its left
+/// end and one task.
+fn room(task: [f64; 2]) -> Scenario {
+    let places = [[0.1, 0.3], [0.3, 0.3], [0.5, 0.3], [0.1, 0.7], [0.3, 0.7], [0.5, 0.7]];
+    Scenario {
+        name: "room".into(),
+        description: None,
+        workspace: WorkspaceOutline {
+            boundary: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 0.9], [2.4, 1.0], [0.0, 1.0]],
+            holes: vec![vec![[1.0, 0.4], [1.2, 0.4], [1.2, 0.6], [1.0, 0.6]]],
+        },
+        link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+        control: Control {
+            clearance: Some(CLEARANCE),
+            service_radius: Some(SERVICE_RADIUS),
+            ..Control::default()
+        },
+        access_point: vec![AccessPoint { position: [0.3, 0.5] }],
+        robot: places.map(|position| RobotStart { position, rate: 0.075 }).into(),
+        task: vec![Task { position: task }],
+    }
+}
+
+/// The mission ended without this task, and says so.
+fn assert_unserviced(mission: &Mission, outcome: Outcome, task: usize) {
+    assert_eq!(mission.end.outcome, outcome, "{}", mission.end.reason);
+    assert_eq!(mission.end.task, Some(task));
+    assert!(mission.end.reason.contains(&format!("task {task}")), "{}", mission.end.reason);
+    assert_eq!(mission.serviced(), task);
+}
+
+// ---- Where a task may be -----------------------------------------------------------------------
+
+/// A task is serviced from the nearest place where a robot may be, dist(q, 𝒲_f) ≤ δ.
+#[test]
+fn a_task_within_the_service_radius_of_the_free_space_is_serviced() {
+    let places = [
+        ("in the open", [1.5, 0.5]),
+        ("within ρ of the pillar", [0.995, 0.5]),
+        ("within ρ of the boundary", [1.5, 0.004]),
+        ("on a wall", [1.2, 0.5]),
+        ("behind the surface of a wall", [1.5, -0.015]),
+        ("in a right corner", [2.0, 0.0]),
+        ("at a corner of the pillar", [1.2, 0.6]),
+        ("at the access point", [0.3, 0.5]),
+        ("where a robot stands", [0.5, 0.7]),
+    ];
+    for (place, task) in places {
+        let mission = run(room(task));
+        assert_eq!(mission.end.outcome, Outcome::Serviced, "{place}: {}", mission.end.reason);
+        let &(_, robot) = mission.last().serviced.first().unwrap();
+        let distance = (mission.last().positions[robot] - Point::from(task)).norm();
+        assert!(distance <= SERVICE_RADIUS + 1e-6, "{place}: from {distance}");
+    }
+}
+
+/// In the tip of a wedge of angle θ robots stay ρ/sin(θ/2) away from it, which is more than δ.
+#[test]
+fn a_task_farther_from_the_free_space_is_unreachable() {
+    let places = [
+        ("in the pillar", [1.1, 0.5]),
+        ("outside the workspace", [1.5, -0.05]),
+        ("far outside", [30.0, -40.0]),
+        ("in the tip of a wedge", [2.4, 1.0]),
+    ];
+    for (place, task) in places {
+        let mission = run(room(task));
+        println!("{place}");
+        assert_unserviced(&mission, Outcome::UnreachableTask, 0);
+        let first = &mission.periods[0].snapshot.positions;
+        assert_eq!(first, &mission.last().positions, "{place}: nobody goes anywhere");
+    }
+}
+
+#[test]
+fn a_task_in_another_component_is_unreachable() {
+    assert_unserviced(&run(shipped("unreachable")), Outcome::UnreachableTask, 1);
+}
+
+/// What was serviced before stays serviced, and what comes after an impossible task is not tried.
+#[test]
+fn an_impossible_task_ends_the_mission() {
+    let mut scenario = room([1.5, 0.5]);
+    scenario.task.extend([[1.1, 0.5], [1.5, 0.2]].map(|position| Task { position }));
+    let mission = run(scenario);
+    assert_unserviced(&mission, Outcome::UnreachableTask, 1);
+    assert_eq!(mission.last().serviced.len(), 1);
+    assert!(!mission.events().any(|(_, event)| *event == Event::TaskAnnounced { task: 2 }));
+}
+
+#[test]
+fn two_tasks_in_one_place_are_both_serviced() {
+    let mut scenario = room([1.5, 0.5]);
+    scenario.task.push(scenario.task[0]);
+    run(scenario).assert_serviced();
+}
+
+#[test]
+fn a_mission_without_tasks_is_over() {
+    let mut scenario = room([0.0, 0.0]);
+    scenario.task.clear();
+    let mission = run(scenario);
+    mission.assert_serviced();
+    assert!(mission.periods.len() < 20);
+}
+
+// ---- Robots and time ---------------------------------------------------------------------------
+
+#[test]
+fn too_few_robots_are_told_how_many_are_missing() {
+    for robots in 1..=3 {
+        let mut scenario = room([1.9, 0.2]);
+        scenario.robot.truncate(robots);
+        let mission = run(scenario);
+        assert_unserviced(&mission, Outcome::InsufficientRobots, 0);
+        assert!(mission.end.reason.contains("more robot"), "{}", mission.end.reason);
+    }
+}
+
+/// Each robot more goes farther; as many as it takes service the task.
+#[test]
+fn enough_robots_are_enough() {
+    run(room([1.9, 0.2])).assert_serviced();
+}
+
+#[test]
+fn a_mission_takes_no_more_control_periods_than_allowed() {
+    for limit in [1, 2, 37] {
+        let mut scenario = room([1.9, 0.2]);
+        scenario.control.max_steps = Some(limit);
+        let mission = run(scenario);
+        assert_eq!(mission.end.outcome, Outcome::StepLimit);
+        assert_eq!(mission.periods.len(), limit);
+        assert!(mission.end.reason.contains(&limit.to_string()), "{}", mission.end.reason);
+    }
+}
+
+// ---- The monitor -------------------------------------------------------------------------------
+
+/// A radio that stops for one robot, so that what it generates goes nowhere.
+struct Muting {
+    radio: Radio,
+    muted: NodeId,
+    periods: usize,
+    from: usize,
+}
+
+impl Medium for Muting {
+    fn update(&mut self, positions: &[Point]) {
+        self.periods += 1;
+        self.radio.update(positions);
+    }
+
+    fn audience(&self, sender: NodeId) -> &[NodeId] {
+        self.radio.audience(sender)
+    }
+
+    fn delivers(&mut self, sender: NodeId, receiver: NodeId) -> bool {
+        self.periods <= self.from || ![sender, receiver].contains(&self.muted)
+    }
+}
+
+#[test]
+fn the_monitor_stops_a_mission_at_the_first_violation() {
+    let (muted, from) = (0, 20);
+    let medium = |site: &Site| Muting { radio: Radio::new(site), muted, periods: 0, from };
+    let (mission, _) = run_over(room([1.9, 0.2]), medium);
+    assert_eq!(mission.end.outcome, Outcome::InvariantViolated);
+    assert_eq!(mission.last().step, from);
+    let reason = &mission.end.reason;
+    for said in ["residual", "step 20", "t = 20.000 s", "robot 0"] {
+        assert!(reason.contains(said), "{said}: {reason}");
+    }
+}
+
+// ---- The program -------------------------------------------------------------------------------
+
+fn pleach(scenario: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pleach"))
+        .args(["run", "--no-figures", "--quiet"])
+        .arg(scenario)
+        .output()
+        .expect("the program starts")
+}
+
+/// Exit status 4 is tested where outcomes become statuses: no scenario violates an invariant.
+#[test]
+fn the_program_tells_outcomes_by_its_exit_status() {
+    let hasty = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hasty.toml");
+    let mut scenario = shipped("redundant-node");
+    scenario.control.max_steps = Some(3);
+    std::fs::write(&hasty, toml::to_string(&scenario).unwrap()).unwrap();
+    let expected = [
+        (Path::new("scenarios/redundant-node.toml"), 0, "serviced"),
+        (Path::new("tests/scenarios/faulty/empty.toml"), 2, ""),
+        (Path::new("scenarios/too-few.toml"), 3, "insufficient robots: task 1"),
+        (Path::new("scenarios/unreachable.toml"), 3, "unreachable task: "),
+        (&hasty, 3, "step limit: "),
+    ];
+    for (scenario, status, outcome) in expected {
+        let output = pleach(scenario);
+        assert_eq!(output.status.code(), Some(status), "{}", scenario.display());
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(said.contains(outcome), "{said}");
+    }
+}
