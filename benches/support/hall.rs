@@ -39,11 +39,8 @@ pub fn hall(robots: usize, tasks: usize) -> Scenario {
         .collect();
     let within =
         |corner: [f64; 2], [x, y]: [f64; 2]| [corner[0] + x * SPACING, corner[1] + y * SPACING];
-    let place = |robot: usize| {
-        let cell = robot % (SIDE * SIDE);
-        let at = [(cell % SIDE) as f64 + 0.5, (cell / SIDE) as f64 + 0.5];
-        within(corners[robot / (SIDE * SIDE)], at)
-    };
+    let cells = cells_around_access_point();
+    let place = |robot: usize| within(corners[robot / cells.len()], cells[robot % cells.len()]);
     let pillar = |[x, y]: [f64; 2]| {
         [[-PILLAR, -PILLAR], [PILLAR, -PILLAR], [PILLAR, PILLAR], [-PILLAR, PILLAR]]
             .map(|[right, up]| [x + right, y + up])
@@ -71,4 +68,15 @@ pub fn hall(robots: usize, tasks: usize) -> Scenario {
             .map(|y| Task { position: [width - 0.1, y] })
             .collect(),
     }
+}
+
+/// The places of a block's robots, the nearest to the access point first: a block that is not full
+/// is connected.
+fn cells_around_access_point() -> Vec<[f64; 2]> {
+    let mut cells: Vec<[f64; 2]> = (0..SIDE * SIDE)
+        .map(|cell| [(cell % SIDE) as f64 + 0.5, (cell / SIDE) as f64 + 0.5])
+        .collect();
+    let distance = |[x, y]: [f64; 2]| f64::hypot(x - ACCESS_POINT[0], y - ACCESS_POINT[1]);
+    cells.sort_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+    cells
 }

@@ -4,6 +4,7 @@
 
 pub mod course;
 pub mod hall;
+pub mod scene;
 
 use std::path::Path;
 use std::time::Duration;

@@ -11,6 +11,7 @@ use pleach_discrete::network::{Agreement, Anchor, Bulletin, Election, IdSet, Lin
 use super::beacon::{Beacon, Notice, Voice};
 use super::duty::Hop;
 use super::record::{MissionEvent, Outcome};
+use super::shared::Shared;
 use super::site::Site;
 
 /// The first task is announced when the roster has not changed for this many rounds: between two
@@ -28,12 +29,12 @@ pub struct AccessPoint {
     site: Arc<Site>,
     position: Point,
     heard: Vec<Arc<Beacon>>,
-    bulletin: Arc<Bulletin<Notice>>,
+    bulletin: Shared<Bulletin<Notice>>,
     announced: Option<(usize, Arc<IdSet>)>,
     election: Option<Election>,
     election_rounds: usize,
     agreement: Option<Agreement>,
-    route: Option<(u32, Arc<Vec<Hop>>)>,
+    route: Option<(u32, Shared<Vec<Hop>>)>,
     crossing: Vec<usize>,
     roster: Arc<IdSet>,
     settled_rounds: usize,
@@ -49,7 +50,7 @@ impl AccessPoint {
             position: site.access_points[number],
             site,
             heard: Vec::new(),
-            bulletin: Arc::new(Bulletin::first(Notice::Quiet)),
+            bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
             announced: None,
             election: None,
             election_rounds: 0,
@@ -83,7 +84,7 @@ impl AccessPoint {
         Beacon {
             sender: self.id(),
             position: self.position,
-            bulletin: Arc::clone(&self.bulletin),
+            bulletin: self.bulletin.clone(),
             election: self.election.clone(),
             agreement: self.agreement.clone(),
             route: self.route.clone(),
@@ -115,7 +116,7 @@ impl AccessPoint {
         if let Some(newest) = newest
             && newest.sequence() > self.bulletin.sequence()
         {
-            self.take_up(Arc::clone(newest));
+            self.take_up(newest.clone());
         }
         for beacon in &self.heard {
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
@@ -127,7 +128,7 @@ impl AccessPoint {
         }
     }
 
-    fn take_up(&mut self, bulletin: Arc<Bulletin<Notice>>) {
+    fn take_up(&mut self, bulletin: Shared<Bulletin<Notice>>) {
         let number = bulletin.sequence();
         if let Notice::Task { task, roster, .. } = bulletin.notice() {
             self.announced = Some((*task, Arc::clone(roster)));
@@ -163,7 +164,7 @@ impl AccessPoint {
                 .is_some_and(|duty| duty.post().is_some_and(|post| post.parent == Some(own)));
             let changeover = beacon.duty.is_none() && self.is_within_changeover(beacon.position);
             if hangs_here || changeover {
-                self.route = Some((number, Arc::clone(onward)));
+                self.route = Some((number, onward.clone()));
                 self.crossing = vec![self.number];
                 self.crossing.extend(&beacon.crossing);
                 return;
@@ -263,7 +264,7 @@ impl AccessPoint {
     }
 
     fn issue(&mut self, notice: Notice) {
-        self.take_up(Arc::new(self.bulletin.next(notice)));
+        self.take_up(Shared::new(self.bulletin.next(notice)));
     }
 
     /// The newest word on the mission that it knows.

@@ -13,6 +13,7 @@ use pleach_discrete::network::{
 
 use super::duty::{Duty, Hop, Path};
 use super::record::Outcome;
+use super::shared::Shared;
 
 /// The newest word on the mission.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,13 +81,13 @@ pub struct Beacon {
     /// Where it is.
     pub position: Point,
     /// The newest word on the mission that it knows.
-    pub bulletin: Arc<Bulletin<Notice>>,
+    pub bulletin: Shared<Bulletin<Notice>>,
     /// Its view of the current election.
     pub election: Option<Election>,
     /// Its view of the agreement about the current path.
     pub agreement: Option<Agreement>,
     /// Its way over the tree to the robot that calls for a recruit; the number is the call's.
-    pub route: Option<(u32, Arc<Vec<Hop>>)>,
+    pub route: Option<(u32, Shared<Vec<Hop>>)>,
     /// The access points that the way crosses first, when the sender is an access point.
     pub crossing: Vec<usize>,
     /// Its way to an access point.

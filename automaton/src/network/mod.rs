@@ -10,6 +10,7 @@ pub mod observer;
 pub mod record;
 pub mod robot;
 pub mod scenario;
+pub mod shared;
 pub mod site;
 
 pub use automata::{mission_automaton, role_automaton};

@@ -7,7 +7,7 @@
 //! way that remains gets shorter, so that exchanges come to an end. A mover that cannot pass
 //! takes a partner somewhat farther from its goal too, but no robot twice in a row.
 
-use pleach_discrete::network::{Exchange, NodeId, Phase, Reply};
+use pleach_discrete::network::{Exchange, NodeId, Phase, PostKind, Reply};
 
 use super::super::duty::Duty;
 use super::super::record::MissionEvent;
@@ -73,11 +73,8 @@ impl Robot {
         let settings = &self.site.settings;
         let near = |place| (self.position - place) as pleach_continuous::Vector;
         let within_reach = match station.post.kind {
-            pleach_discrete::network::PostKind::Primary { .. } => false,
-            pleach_discrete::network::PostKind::Redundant => true,
-            pleach_discrete::network::PostKind::Fixed => {
-                near(station.reference).norm() <= settings.service_radius
-            }
+            PostKind::Primary { .. } | PostKind::Redundant => true,
+            PostKind::Fixed => near(station.reference).norm() <= settings.service_radius,
         };
         let services = station.post.task.is_none_or(|task| {
             self.task_position(task)
@@ -181,7 +178,6 @@ impl Robot {
         self.is_parked()
             && self.offer.is_none()
             && !self.awaits_release
-            && !self.duty.is_primary()
             && self.duty.station().is_some()
     }
 

@@ -13,6 +13,7 @@ use pleach_discrete::network::{
 use super::super::beacon::{Beacon, Notice, TeamReport};
 use super::super::duty::{Duty, Hop, Path, Place, Station};
 use super::super::record::{MissionEvent, Outcome};
+use super::super::shared::Shared;
 use super::hearing::Neighbour;
 use super::{Robot, TaskNotice};
 
@@ -42,7 +43,7 @@ impl Robot {
         if let Some(newest) = newest
             && newest.sequence() > self.bulletin.sequence()
         {
-            self.bulletin = Arc::clone(newest);
+            self.bulletin = newest.clone();
         }
         for neighbour in &self.neighbours {
             if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {
@@ -61,7 +62,7 @@ impl Robot {
     }
 
     fn issue(&mut self, notice: Notice) {
-        self.bulletin = Arc::new(self.bulletin.next(notice));
+        self.bulletin = Shared::new(self.bulletin.next(notice));
     }
 
     // ---- Leader election (Algorithm 1) -------------------------------------------------------
@@ -73,7 +74,7 @@ impl Robot {
         self.path = None;
         self.agreement = None;
         self.route = None;
-        let bulletin = Arc::clone(&self.bulletin);
+        let bulletin = self.bulletin.clone();
         let Notice::Task { task, position, roster, eligible } = bulletin.notice() else { return };
         let (task, position) = (*task, *position);
         self.roster = Arc::clone(roster);
@@ -146,10 +147,10 @@ impl Robot {
     pub fn begin_recruit_election(&mut self) {
         let number = self.bulletin.sequence();
         self.election = Some(Election::new(number));
-        self.waited_rounds = 0;
+        self.waited_rounds = 1;
         self.route = None;
         if matches!(*self.bulletin.notice(), Notice::Call { caller, .. } if caller == self.id) {
-            self.route = self.own_hop(Vec::new()).map(|hop| (number, Arc::new(vec![hop])));
+            self.route = self.own_hop(Vec::new()).map(|hop| (number, Shared::new(vec![hop])));
         }
         self.answer_call();
     }
@@ -160,6 +161,17 @@ impl Robot {
         Some(Hop { robot: self.id, post: station.post, place, crossing })
     }
 
+    /// Counts one more round of an election of a recruit; says whether a wait is over, so that the
+    /// robot may do what it might not do before.
+    pub(super) fn count_round(&mut self) -> bool {
+        if self.phase != Phase::RecruitElection {
+            return false;
+        }
+        self.waited_rounds += 1;
+        self.waited_rounds == self.longest_wait() + 1
+            || self.waited_rounds == 2 * self.longest_wait()
+    }
+
     /// Finds the way over the tree to the caller (footnote 10) and places a token: redundant
     /// robots on which nobody hangs with a bid, once they know the way.
     fn answer_call(&mut self) {
@@ -168,9 +180,8 @@ impl Robot {
         if election.number() != number {
             return;
         }
-        self.waited_rounds += 1;
         if self.route.as_ref().is_none_or(|&(known, _)| known != number) {
-            self.route = self.find_route(number).map(|route| (number, Arc::new(route)));
+            self.route = self.find_route(number).map(|route| (number, Shared::new(route)));
         }
         let bid = match &self.route {
             _ if !self.duty.is_redundant() || self.children().next().is_some() => None,
@@ -383,7 +394,12 @@ impl Robot {
 
     fn take_post_ahead(&mut self) {
         if let Some(hop) = self.next_hop() {
-            let station = Station { post: hop.post, reference: hop.place.reference };
+            // A plain node that queues behind the next member makes its place where it stands.
+            let place = hop.place.reference;
+            let radius = self.site.settings.service_radius;
+            let queues = (self.position - place).norm() > radius;
+            let reference = if queues { self.position } else { place };
+            let station = Station { post: hop.post, reference };
             self.duty = Duty::Hold(station);
             self.left_post = None;
         }

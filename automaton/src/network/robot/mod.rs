@@ -37,6 +37,7 @@ use super::automata::{MissionAutomaton, RoleAutomaton};
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
 use super::duty::{Duty, Hop, Path, Station};
 use super::record::MissionEvent;
+use super::shared::Shared;
 use super::site::Site;
 use hearing::Neighbour;
 
@@ -83,13 +84,13 @@ pub struct Robot {
     barren_periods: u32,
 
     // What it was told of the mission.
-    bulletin: Arc<Bulletin<Notice>>,
+    bulletin: Shared<Bulletin<Notice>>,
     tasks: Vec<TaskNotice>,
     roster: Arc<IdSet>,
     eligible: Arc<IdSet>,
     election: Option<Election>,
     waited_rounds: usize,
-    route: Option<(u32, Arc<Vec<Hop>>)>,
+    route: Option<(u32, Shared<Vec<Hop>>)>,
     awaits_release: bool,
     path: Option<Arc<Path>>,
     agreement: Option<Agreement>,
@@ -156,7 +157,7 @@ impl Robot {
             below: Arc::new(IdSet::singleton(id)),
             can_detach: false,
             barren_periods: 0,
-            bulletin: Arc::new(Bulletin::first(Notice::Quiet)),
+            bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
             tasks: Vec::new(),
             roster: Arc::default(),
             eligible: Arc::default(),
@@ -202,7 +203,7 @@ impl Robot {
         Beacon {
             sender: self.id,
             position: self.position,
-            bulletin: Arc::clone(&self.bulletin),
+            bulletin: self.bulletin.clone(),
             election: self.election.clone(),
             agreement: self.agreement.clone(),
             route: self.route.clone(),
@@ -280,10 +281,10 @@ impl Robot {
     /// After each round of messages: the robot puts together what it has heard.
     ///
     /// What comes of it depends on nothing but what the robot hears and its own state. Where
-    /// neither has changed, and the robot does not count rounds, there is nothing to do.
+    /// neither has changed, and no wait is over, there is nothing to do.
     pub fn deliberate(&mut self) {
-        let counts_rounds = self.phase == Phase::RecruitElection;
-        if !std::mem::take(&mut self.has_news) && !counts_rounds {
+        let is_due = self.count_round();
+        if !std::mem::take(&mut self.has_news) && !is_due {
             return;
         }
         (self.is_unspoken, self.is_unmeasured) = (true, true);

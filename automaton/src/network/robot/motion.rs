@@ -29,6 +29,8 @@ const KEEP_OUT: f64 = 2.1;
 /// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
 /// goes straight on and exchanges duties with whoever is in its way.
 const DETOUR_ALLOWANCE: f64 = 8.0;
+/// A robot this many ρ behind another stands in a queue.
+const QUEUE: f64 = 2.2;
 /// A way as good as another but for this many ρ is kept: robots do not waver between two sides.
 const CONSTANCY: f64 = 1.0;
 /// A move shorter than this share of σ is none.
@@ -107,7 +109,7 @@ impl Robot {
         let radius = self.site.settings.service_radius;
         let near = |from: Point, place: Point| (from - place).norm() <= radius;
         if !near(self.position, hop.place.reference) {
-            return false;
+            return self.queues_behind_arrived();
         }
         let Some(task) = hop.post.task.and_then(|task| self.task_position(task)) else {
             return true;
@@ -115,6 +117,23 @@ impl Robot {
         let way = self.site.free_space.geodesic(self.position, hop.place.reference);
         near(self.position, task)
             && way.is_some_and(|way| way.waypoints.iter().all(|&corner| near(corner, task)))
+    }
+
+    /// Whether the robot stands right behind the next member of its subgroup, which has arrived:
+    /// the places of a team that had bunched may be too close together for all to be within δ of
+    /// theirs while the break point at the end is still there.
+    fn queues_behind_arrived(&self) -> bool {
+        let (Some(place), Some(active)) = (self.duty.place(), self.active_subgroup()) else {
+            return false;
+        };
+        let ahead = place + 1;
+        ahead < active.end
+            && self.agreement.as_ref().is_some_and(|known| known.have_arrived(ahead..ahead + 1))
+            && self
+                .neighbours
+                .iter()
+                .find(|n| n.beacon.duty.as_ref().and_then(Duty::place) == Some(ahead))
+                .is_some_and(|next| next.distance <= QUEUE * self.clearance())
     }
 
     /// Lines 4 to 7 of Algorithm 5: the next position, if the robot moves.
