@@ -62,7 +62,7 @@ fn any_family() -> impl Strategy<Value = Family> {
 
 proptest! {
     #![proptest_config(Config {
-        cases: 24,
+        cases: 200,
         max_shrink_iters: 0,
         rng_seed: RngSeed::Fixed(1),
         failure_persistence: None,
