@@ -120,6 +120,8 @@ fn any_plan(dice: &mut Dice) -> Brief {
         corridors,
         clutter,
         clutter,
+        two_clusters,
+        parked,
     ]);
     plan(dice)
 }

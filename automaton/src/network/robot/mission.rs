@@ -69,6 +69,9 @@ impl Robot {
 
     /// A task is announced: place a bid for it (Remark 5.3).
     pub fn begin_leader_election(&mut self) {
+        // A released leader may service its task at once: the others then hear of the next task
+        // before they have heard that the team advances.
+        self.resume();
         self.leave_team();
         self.awaits_release = false;
         self.path = None;

@@ -33,8 +33,10 @@ const DETOUR_ALLOWANCE: f64 = 8.0;
 const QUEUE: f64 = 2.2;
 /// A way as good as another but for this many ρ is kept: robots do not waver between two sides.
 const CONSTANCY: f64 = 1.0;
-/// A waypoint this many ρ away is not kept: the robot is about to pass it.
-const PASSED: f64 = 0.5;
+/// A waypoint this many ρ away is as good as reached: no reason to keep to it.
+const NEARBY: f64 = 0.1;
+/// Control periods without progress after which a robot does not keep to its way any more.
+const OBSTINACY: u32 = 3;
 /// A move shorter than this share of σ is none.
 const STILL: f64 = 0.02;
 /// A proposed move shorter than this share of σ is not made.
@@ -195,9 +197,11 @@ impl Robot {
         }
     }
 
-    /// Whether the robot could still go by the waypoint of the period before.
+    /// Whether the robot could still go by the waypoint of the period before. One that it has all
+    /// but reached would hold it: solvers end short of a waypoint by a little.
     fn may_keep(&self, waypoint: Point) -> bool {
-        (waypoint - self.position).norm() > PASSED * self.clearance()
+        self.still_periods < OBSTINACY
+            && (waypoint - self.position).norm() > NEARBY * self.clearance()
             && self.site.free_space.sees(self.position, waypoint)
     }
 

@@ -1,0 +1,118 @@
+//! Missions on floor plans that nobody tuned the robots to.
+//!
+//! A few run in every `cargo test`; many with
+//! `cargo test --release --test random_missions -- --ignored --nocapture`. To look at single
+//! ones: `cargo run --release --example stress -- FAMILY FIRST_SEED COUNT FOLDER`.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+mod floor_plans;
+
+use floor_plans::{Family, scenario};
+use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use pleach::automaton::network::scenario::Scenario;
+use pleach::discrete::network::Role;
+use pleach::mission::{Watcher, run};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed};
+use std::io;
+
+/// Missions of each family in every run; one in fifty may fail.
+const DAILY: u64 = 10;
+/// Missions of each family in the long run.
+const MANY: u64 = 100;
+/// Missions of the hall, which take some fifty times as long.
+const MANY_HALLS: u64 = 5;
+
+/// Counts the robots that nobody needs.
+#[derive(Default)]
+struct Reserve {
+    redundant: usize,
+}
+
+impl Watcher for Reserve {
+    fn observe(&mut self, snapshot: &Snapshot, _: &[MissionEvent]) -> io::Result<()> {
+        self.redundant = snapshot.roles.iter().filter(|&&role| role == Role::Redundant).count();
+        Ok(())
+    }
+}
+
+/// How a mission ends, and how many robots nobody needs then.
+fn end_of(scenario: &Scenario) -> (End, usize) {
+    let mut reserve = Reserve::default();
+    let end = run(scenario, &mut [&mut reserve]).unwrap().end;
+    (end, reserve.redundant)
+}
+
+/// What is wrong with the end of a mission, if anything is. Tasks can be reached, so that it ends
+/// with all of them serviced, or without a robot left in reach.
+fn complaint(family: Family, seed: u64) -> Option<String> {
+    let scenario = scenario(family, seed);
+    let (end, redundant) = end_of(&scenario);
+    let fair = match end.outcome {
+        Outcome::Serviced => true,
+        Outcome::InsufficientRobots => redundant == 0 || scenario.access_point.len() > 1,
+        _ => false,
+    };
+    (!fair).then(|| {
+        format!("{}: {:?}, {redundant} redundant: {}", scenario.name, end.outcome, end.reason)
+    })
+}
+
+/// Every family but the hall, which takes too long for every day.
+fn any_family() -> impl Strategy<Value = Family> {
+    let families = Family::ALL.into_iter().filter(|&family| family != Family::Hall);
+    proptest::sample::select(families.collect::<Vec<_>>())
+}
+
+proptest! {
+    #![proptest_config(Config {
+        cases: 200,
+        max_shrink_iters: 0,
+        rng_seed: RngSeed::Fixed(1),
+        failure_persistence: None,
+        ..Config::default()
+    })]
+
+    #[test]
+    fn a_mission_comes_to_an_end_and_keeps_its_promises(
+        family in any_family(),
+        seed in 0_u64..1000,
+    ) {
+        let (end, _) = end_of(&scenario(family, seed));
+        let stated = !matches!(end.outcome, Outcome::InvariantViolated | Outcome::StepLimit);
+        prop_assert!(stated, "{:?}: {}", end.outcome, end.reason);
+    }
+}
+
+#[test]
+fn nearly_all_missions_are_serviced() {
+    let families = Family::ALL.into_iter().filter(|&family| family != Family::Hall);
+    let missions: Vec<_> =
+        families.flat_map(|family| (1..=DAILY).map(move |seed| (family, seed))).collect();
+    let complaints: Vec<_> =
+        missions.iter().filter_map(|&(family, seed)| complaint(family, seed)).collect();
+    let most = missions.len() / 50;
+    assert!(complaints.len() <= most, "{}", complaints.join("\n"));
+}
+
+#[test]
+fn a_family_and_a_seed_are_one_scenario() {
+    for family in Family::ALL {
+        assert_eq!(scenario(family, 3), scenario(family, 3));
+        assert_ne!(scenario(family, 3).robot, scenario(family, 4).robot);
+    }
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test --release --test random_missions -- --ignored --nocapture"]
+fn many_missions_of_every_family() {
+    let mut complaints = Vec::new();
+    for family in Family::ALL {
+        let count = if family == Family::Hall { MANY_HALLS } else { MANY };
+        let before = complaints.len();
+        complaints.extend((1..=count).filter_map(|seed| complaint(family, seed)));
+        println!("{:12} {count} missions, {} complaints", family.name(), complaints.len() - before);
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
