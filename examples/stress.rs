@@ -57,11 +57,11 @@ fn mission(family: Family, seed: u64, folder: Option<&Path>) -> Result<(), Box<d
     let mut sight = LastSight::default();
     let start = Instant::now();
     let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        run(&scenario, &mut [&mut sight])
+        run(&scenario, &mut [&mut sight]).map_err(|error| error.to_string())
     }));
     let (outcome, reason) = match caught {
         Ok(Ok(completed)) => (format!("{:?}", completed.end.outcome), completed.end.reason),
-        Ok(Err(error)) => ("Error".to_owned(), error.to_string()),
+        Ok(Err(error)) => ("Error".to_owned(), error),
         Err(_) => ("Panic".to_owned(), String::new()),
     };
     println!(
