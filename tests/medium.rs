@@ -190,7 +190,6 @@ fn a_robot_out_of_range_changes_nothing_for_the_others() {
 }
 
 #[test]
-#[ignore = "the sweeps of routing end when no robot anywhere is overloaded, and this one always is"]
 fn a_robot_out_of_range_that_cannot_send_changes_nothing_for_the_others() {
     assert_unchanged_by_hermit(0.075);
 }

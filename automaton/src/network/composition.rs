@@ -250,7 +250,7 @@ impl<M: Medium> Network<M> {
             self.exchange_flows();
             self.robots.iter_mut().for_each(Robot::settle_residual);
             if !self.relieve_overloaded() {
-                return;
+                break;
             }
         }
         for (id, robot) in self.robots.iter().enumerate() {
@@ -261,19 +261,20 @@ impl<M: Medium> Network<M> {
     }
 
     /// Robots that cannot pass on what they are sent say so; whoever does not hang on them sends
-    /// them nothing more, and the sweep is repeated. Says whether there are any.
+    /// them nothing more. Says whether anybody did: then the sweep is repeated.
     fn relieve_overloaded(&mut self) -> bool {
         let overloaded: Vec<NodeId> =
             (0..self.robots.len()).filter(|&robot| self.robots[robot].is_infeasible()).collect();
+        let mut is_relieved = false;
         for &robot in &overloaded {
             for receiver in self.audience_of(robot) {
-                self.robots[receiver].spare(robot);
+                is_relieved |= self.robots[receiver].spare(robot);
             }
         }
-        if !overloaded.is_empty() {
+        if is_relieved {
             self.exchange_flows();
         }
-        !overloaded.is_empty()
+        is_relieved
     }
 
     fn exchange_routing_reports(&mut self) {

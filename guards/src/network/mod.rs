@@ -135,10 +135,13 @@ pub mod mission {
         Guard::new("resumed", is("resumed"))
     }
 
-    /// The leader is near enough to its task, eq. (2).
+    /// The leader is near enough to its task, eq. (2): near enough for a replacer behind it to
+    /// service it as well or, where it cannot get as near as that, within δ.
     pub fn reached() -> Guard {
         let near = variable("distance").at_most(variable("reach"));
-        Guard::new("reached", is("leads").and(near).and(is_not("bound")))
+        let stuck = variable("still").at_least(variable("window"));
+        let within = variable("distance").at_most(variable("radius")).and(stuck);
+        Guard::new("reached", is("leads").and(is_not("bound")).and(near.or(within)))
     }
 
     /// The task is said to be serviced.

@@ -77,8 +77,10 @@ facts! {
     pending,
     /// Euclidean distance to the announced task.
     distance,
-    /// The distance that counts as servicing it.
+    /// The distance at which the leader stops.
     reach,
+    /// δ: the distance that counts as servicing it.
+    radius,
     /// This robot is the recruit on its way.
     recruited,
     /// It holds the post of a redundant robot.
@@ -114,6 +116,7 @@ impl Robot {
             window: f64::from(STATIONARY_WINDOW),
             patience: self.patience(),
             reach: self.reach(),
+            radius: self.site.settings.service_radius,
             distance: f64::INFINITY,
             ..Facts::default()
         };

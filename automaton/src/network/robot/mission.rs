@@ -488,7 +488,7 @@ impl Robot {
         }
     }
 
-    /// The distance from the announced task that counts as servicing it.
+    /// The distance from the announced task at which the leader stops.
     pub(super) fn reach(&self) -> f64 {
         let settings = &self.site.settings;
         let gap = self.tasks.last().map_or(0.0, |task| (task.target - task.position).norm());

@@ -272,7 +272,7 @@ impl Robot {
         let outflow = self.outflow();
         if outflow > demand && is_first {
             self.links.iter_mut().for_each(|link| link.share *= demand / outflow);
-        } else if outflow < demand {
+        } else if demand - outflow > RESIDUAL_ROUNDING {
             self.raise_outflow(demand, tree_link);
         }
         self.links[tree_link].flow() - before
@@ -291,12 +291,12 @@ impl Robot {
     }
 
     /// A neighbour cannot pass on what it is sent: from now on it gets only what comes over the
-    /// tree.
-    pub fn spare(&mut self, overloaded: NodeId) {
-        if self.tree_parent() != Some(overloaded)
-            && let Ok(at) = self.links.binary_search_by_key(&overloaded, |link| link.to)
-        {
-            self.links[at].share = 0.0;
+    /// tree. Says whether it was sent anything else.
+    pub fn spare(&mut self, overloaded: NodeId) -> bool {
+        let hangs_there = self.tree_parent() == Some(overloaded);
+        match self.links.binary_search_by_key(&overloaded, |link| link.to) {
+            Ok(at) if !hangs_there => std::mem::take(&mut self.links[at].share) > 0.0,
+            _ => false,
         }
     }
 

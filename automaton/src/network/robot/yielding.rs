@@ -31,11 +31,13 @@ impl Robot {
         self.waypoint.filter(|_| !self.is_parked() && self.still_periods >= ASKING)
     }
 
-    /// Whether a mover is so near that this robot should not settle now.
+    /// Whether a mover is so near that this robot should not settle now. One that is stuck may be
+    /// waiting for just that.
     pub(super) fn is_near_mover(&self) -> bool {
         self.neighbours.iter().any(|neighbour| {
             !neighbour.is_access_point()
                 && !neighbour.beacon.parked
+                && neighbour.beacon.way.is_none()
                 && neighbour.distance <= COURTESY * self.clearance()
         })
     }
