@@ -136,11 +136,12 @@ pub mod mission {
     }
 
     /// The leader is near enough to its task, eq. (2): near enough for a replacer behind it to
-    /// service it as well or, where it cannot get as near as that, within δ.
+    /// service it as well or, where it cannot get as near as that although its link is slack,
+    /// within δ.
     pub fn reached() -> Guard {
         let near = variable("distance").at_most(variable("reach"));
         let stuck = variable("still").at_least(variable("window"));
-        let within = variable("distance").at_most(variable("radius")).and(stuck);
+        let within = variable("distance").at_most(variable("radius")).and(stuck).and(is("slack"));
         Guard::new("reached", is("leads").and(is_not("bound")).and(near.or(within)))
     }
 

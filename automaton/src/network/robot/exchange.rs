@@ -168,6 +168,7 @@ impl Robot {
 
     fn take_over(&mut self, duty: Duty, partner: NodeId) {
         self.duty = duty;
+        self.awaits_release = self.waits_as_leader();
         self.last_partner = Some(partner);
         self.lineage = None;
         self.still_periods = 0;
@@ -175,10 +176,14 @@ impl Robot {
 
     /// Whether this robot may leave its post to a mover.
     fn may_be_relieved(&self) -> bool {
-        self.is_parked()
-            && self.offer.is_none()
-            && !self.awaits_release
-            && self.duty.station().is_some()
+        self.is_parked() && self.offer.is_none() && self.duty.station().is_some()
+    }
+
+    /// Whether its duty is that of the leader who is to be released: the last place of Σ.
+    fn waits_as_leader(&self) -> bool {
+        let last =
+            self.path.as_ref().filter(|path| path.releases_leader).map(|path| path.len() - 1);
+        matches!(self.duty, Duty::Wait { place, .. } if Some(place) == last)
     }
 
     /// Whether an exchange is under way; the robot then stands still.

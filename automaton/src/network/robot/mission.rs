@@ -25,6 +25,8 @@ const BID_RESOLUTION: f64 = 1e-6;
 const RESIDUAL_RESOLUTION: f64 = 1e-3;
 /// The leader stops at δ − 2.2ρ from its task, so that a robot 2ρ behind it is within δ as well.
 const STAND_OFF: f64 = 2.2;
+/// A replacer stands this many ρ beside the robot that it relieves.
+const BESIDE: f64 = 2.1;
 /// How near to a target that it cannot get closer to a leader goes, as a share of ρ.
 const TOUCH: f64 = 0.1;
 /// A member of the primary team this many ρ behind the next is bunched: more room would not help.
@@ -99,10 +101,21 @@ impl Robot {
         let gap = (task.target - task.position).norm();
         let distance = self.site.free_space.distance(self.position, task.target);
         let unit = BID_RESOLUTION * self.site.build_length;
-        (gap <= self.site.settings.service_radius && distance.is_finite()).then(|| Bid {
-            rank: 1,
+        let within_reach = gap <= self.site.settings.service_radius && distance.is_finite();
+        within_reach.then(|| Bid {
+            rank: if self.could_be_relieved() { 1 } else { 0 },
             merit: -(distance / unit).round() as i64,
             economy: 0,
+        })
+    }
+
+    /// Whether another robot beside this one could service its task as well, so that it can be
+    /// relieved of it: not where the task lies so deep in a wall that only one comes near enough.
+    fn could_be_relieved(&self) -> bool {
+        let task = self.duty.post().and_then(|post| post.task);
+        task.and_then(|task| self.task_position(task)).is_none_or(|place| {
+            let away = (self.position - place).norm();
+            away.hypot(BESIDE * self.clearance()) <= self.site.settings.service_radius
         })
     }
 
@@ -529,10 +542,11 @@ impl Robot {
             .anchor()
             .and_then(|anchor| self.bearer(anchor))
             .is_none_or(|parent| self.walk_to(parent) >= SLACK * self.site.build_length);
-        let bunched = self
-            .team_goal()
-            .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance());
-        !bound && !bunched
+        let bunched = || {
+            self.team_goal()
+                .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance())
+        };
+        !bound && (self.leads() || !bunched())
     }
 
     /// The leader is within reach of its task.

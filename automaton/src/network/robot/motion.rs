@@ -374,7 +374,10 @@ impl Robot {
     pub fn set_off(&mut self) -> Point {
         let segment = self.own_move();
         let step = self.site.settings.step_radius;
-        let still = segment.length() < STILL * step;
+        // Going to and fro is standing still as well.
+        let returns = (segment.to - self.came_from).norm() < STILL * step;
+        let still = segment.length() < STILL * step || returns;
+        self.came_from = segment.from;
         self.still_periods = if still { self.still_periods.saturating_add(1) } else { 0 };
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
