@@ -260,21 +260,24 @@ impl<M: Medium> Network<M> {
         }
     }
 
-    /// Robots that cannot pass on what they are sent say so; whoever does not hang on them sends
-    /// them nothing more. Says whether anybody did: then the sweep is repeated.
+    /// Robots that cannot pass on what they are sent say so. Whoever does not hang on them sends
+    /// them nothing more; whoever does lets go of its reserve and passes the word on. Says whether
+    /// there is news: then the sweep is repeated.
     fn relieve_overloaded(&mut self) -> bool {
-        let overloaded: Vec<NodeId> =
-            (0..self.robots.len()).filter(|&robot| self.robots[robot].is_infeasible()).collect();
-        let mut is_relieved = false;
-        for &robot in &overloaded {
+        let mut short: Vec<NodeId> =
+            (0..self.robots.len()).filter(|&robot| self.robots[robot].admit_shortage()).collect();
+        let has_news = !short.is_empty();
+        while let Some(robot) = short.pop() {
             for receiver in self.audience_of(robot) {
-                is_relieved |= self.robots[receiver].spare(robot);
+                if self.robots[receiver].hear_shortage(robot) {
+                    short.push(receiver);
+                }
             }
         }
-        if is_relieved {
+        if has_news {
             self.exchange_flows();
         }
-        is_relieved
+        has_news
     }
 
     fn exchange_routing_reports(&mut self) {

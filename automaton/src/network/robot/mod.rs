@@ -104,6 +104,7 @@ pub struct Robot {
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
     residual: f64,
+    is_frugal: bool,
 
     // Motion.
     destination: Option<Destination>,
@@ -176,6 +177,7 @@ impl Robot {
             inflow: 0.0,
             inflows: Vec::new(),
             residual: 0.0,
+            is_frugal: false,
             destination: None,
             waypoint: None,
             proposal: None,

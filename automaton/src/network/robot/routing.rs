@@ -84,6 +84,7 @@ pub struct FlowReport {
 impl Robot {
     /// Finds the links over which the robot may send from here, keeping what it knows of them.
     pub fn survey_links(&mut self) {
+        self.is_frugal = false;
         let old = std::mem::take(&mut self.links);
         let tree = self.tree_links();
         let aversion = self.site.settings.slope_aversion;
@@ -268,9 +269,9 @@ impl Robot {
             return 0.0;
         };
         let before = self.links[tree_link].flow();
-        let demand = self.inflow + self.rate + self.site.settings.routing_reserve;
+        let demand = self.inflow + self.rate + self.reserve();
         let outflow = self.outflow();
-        if outflow > demand && is_first {
+        if outflow > demand && (is_first || self.is_frugal) {
             self.links.iter_mut().for_each(|link| link.share *= demand / outflow);
         } else if demand - outflow > RESIDUAL_ROUNDING {
             self.raise_outflow(demand, tree_link);
@@ -290,14 +291,28 @@ impl Robot {
         }
     }
 
-    /// A neighbour cannot pass on what it is sent: from now on it gets only what comes over the
-    /// tree. Says whether it was sent anything else.
-    pub fn spare(&mut self, overloaded: NodeId) -> bool {
-        let hangs_there = self.tree_parent() == Some(overloaded);
-        match self.links.binary_search_by_key(&overloaded, |link| link.to) {
-            Ok(at) if !hangs_there => std::mem::take(&mut self.links[at].share) > 0.0,
-            _ => false,
+    /// A neighbour cannot pass on what it is sent. Whoever hangs on it does without its reserve
+    /// from now on, and so must those behind; everybody else sends it nothing more. Says whether
+    /// this robot has to tell those that hang on it.
+    pub fn hear_shortage(&mut self, overloaded: NodeId) -> bool {
+        if self.tree_parent() == Some(overloaded) {
+            return !std::mem::replace(&mut self.is_frugal, true);
         }
+        if let Ok(at) = self.links.binary_search_by_key(&overloaded, |link| link.to) {
+            self.links[at].share = 0.0;
+        }
+        false
+    }
+
+    /// This robot cannot pass on what it is sent: it does without its reserve. Says whether that
+    /// is new in this period.
+    pub fn admit_shortage(&mut self) -> bool {
+        self.is_infeasible() && !std::mem::replace(&mut self.is_frugal, true)
+    }
+
+    /// η, or nothing when the tree can carry no more than the rates.
+    fn reserve(&self) -> f64 {
+        if self.is_frugal { 0.0 } else { self.site.settings.routing_reserve }
     }
 
     /// A tree child has changed its flow by so much in the sweep.
