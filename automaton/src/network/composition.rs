@@ -8,6 +8,9 @@
 //! The network passes messages on and never looks into a robot to tell another of it. What
 //! observers see is put together in [`crate::network::observer`].
 
+mod moves;
+mod routes;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -22,17 +25,9 @@ use super::automata::{MissionAutomaton, RoleAutomaton, mission_automaton, role_a
 use super::beacon::{Beacon, Notice};
 use super::medium::{Medium, Radio};
 use super::record::{End, MissionEvent, Outcome};
-use super::robot::{Objection, Proposal, Robot};
-use super::scenario::{RoutingMethod, Scenario};
+use super::robot::Robot;
+use super::scenario::Scenario;
 use super::site::{Site, SiteError};
-
-/// Rounds in which proposals are checked and halved; whoever still meets an objection in the last
-/// one gives its move up.
-const NEGOTIATION_ROUNDS: usize = 8;
-
-/// Sweeps until the routes are feasible: with each, overloaded robots are relieved of what does
-/// not come over the tree, and a tree that can carry the rates needs few.
-const MAX_SWEEPS: usize = 6;
 
 /// Where a control period stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -230,157 +225,6 @@ impl<M: Medium> Network<M> {
         {
             first.speak_for_user(&self.tasks);
         }
-    }
-
-    /// Primal and dual iterations, then the sweep up the tree.
-    fn route(&mut self) {
-        self.robots.iter_mut().for_each(Robot::survey_links);
-        if self.site.settings.routing_method == RoutingMethod::Adal {
-            self.exchange_flows();
-            self.robots.iter_mut().for_each(Robot::begin_routing);
-        }
-        for _ in 0..self.site.settings.routing_iterations {
-            self.exchange_routing_reports();
-            self.robots.iter_mut().for_each(Robot::primal_step);
-            self.exchange_flows();
-            self.robots.iter_mut().for_each(Robot::dual_step);
-        }
-        for sweep in 0..MAX_SWEEPS {
-            self.sweep(sweep == 0);
-            self.exchange_flows();
-            self.robots.iter_mut().for_each(Robot::settle_residual);
-            if !self.relieve_overloaded() {
-                break;
-            }
-        }
-        for (id, robot) in self.robots.iter().enumerate() {
-            if robot.is_infeasible() {
-                self.events.push(MissionEvent::RouteInfeasible { robot: id });
-            }
-        }
-    }
-
-    /// Robots that cannot pass on what they are sent say so. Whoever does not hang on them sends
-    /// them nothing more; whoever does lets go of its reserve and passes the word on. Says whether
-    /// there is news: then the sweep is repeated.
-    fn relieve_overloaded(&mut self) -> bool {
-        let mut short: Vec<NodeId> =
-            (0..self.robots.len()).filter(|&robot| self.robots[robot].admit_shortage()).collect();
-        let has_news = !short.is_empty();
-        while let Some(robot) = short.pop() {
-            for receiver in self.audience_of(robot) {
-                if self.robots[receiver].hear_shortage(robot) {
-                    short.push(receiver);
-                }
-            }
-        }
-        if has_news {
-            self.exchange_flows();
-        }
-        has_news
-    }
-
-    fn exchange_routing_reports(&mut self) {
-        let reports: Vec<_> = self.robots.iter().map(Robot::routing_report).collect();
-        self.broadcast(&reports, |robot, from, &report| robot.hear_routing_report(from, report));
-    }
-
-    fn exchange_flows(&mut self) {
-        let reports: Vec<_> = self.robots.iter().map(Robot::flow_report).collect();
-        for robot in &mut self.robots {
-            robot.clear_inflow();
-        }
-        self.broadcast(&reports, Robot::hear_flows);
-    }
-
-    /// Every robot sends a message to all robots that hear it.
-    fn broadcast<T>(&mut self, messages: &[T], mut hear: impl FnMut(&mut Robot, NodeId, &T)) {
-        for (sender, message) in messages.iter().enumerate() {
-            for at in 0..self.medium.audience(sender).len() {
-                let receiver = self.medium.audience(sender)[at];
-                if receiver < self.robots.len() && self.medium.delivers(sender, receiver) {
-                    hear(&mut self.robots[receiver], sender, message);
-                }
-            }
-        }
-    }
-
-    /// The repair of (13)–(14): every robot tells its parent that it hangs on it; then, deepest
-    /// first, each sends what is missing to its parent once it has heard from all its children.
-    /// A further sweep changes nothing where nothing is missing.
-    fn sweep(&mut self, is_first: bool) {
-        let mut awaited = vec![0_usize; self.robots.len()];
-        for child in 0..self.robots.len() {
-            let parent = self.robots[child].tree_parent().filter(|&node| node < awaited.len());
-            if let Some(parent) = parent
-                && self.medium.delivers(child, parent)
-            {
-                awaited[parent] += 1;
-            }
-        }
-        let mut ready: Vec<NodeId> =
-            (0..self.robots.len()).filter(|&robot| awaited[robot] == 0).collect();
-        while let Some(robot) = ready.pop() {
-            let Some(parent) = self.robots[robot].tree_parent() else { continue };
-            let more = self.robots[robot].meet_demand(is_first);
-            if parent < self.robots.len() && self.medium.delivers(robot, parent) {
-                self.robots[parent].expect_more(more);
-                awaited[parent] = awaited[parent].saturating_sub(1);
-                if awaited[parent] == 0 {
-                    ready.push(parent);
-                }
-            }
-        }
-    }
-
-    /// Proposals, objections, halving; what is left is carried out.
-    fn negotiate(&mut self) {
-        let begin = Instant::now();
-        for robot in &mut self.robots {
-            robot.propose();
-        }
-        self.times.motion += begin.elapsed();
-        let begin = Instant::now();
-        for round in 0..=NEGOTIATION_ROUNDS {
-            if !self.negotiation_round(round == NEGOTIATION_ROUNDS) {
-                break;
-            }
-        }
-        for robot in &mut self.robots {
-            robot.set_off();
-        }
-        self.times.acceptance += begin.elapsed();
-    }
-
-    /// Whether anybody objected.
-    fn negotiation_round(&mut self, last: bool) -> bool {
-        let proposals: Vec<(NodeId, Proposal)> = self
-            .robots
-            .iter()
-            .enumerate()
-            .filter_map(|(id, robot)| Some((id, *robot.proposal()?)))
-            .collect();
-        for robot in &mut self.robots {
-            robot.clear_proposals();
-        }
-        for (mover, proposal) in &proposals {
-            for receiver in self.audience_of(*mover) {
-                self.robots[receiver].hear_proposal(*mover, proposal);
-            }
-        }
-        let objections: Vec<(NodeId, Objection)> = self
-            .robots
-            .iter()
-            .enumerate()
-            .filter_map(|(id, robot)| Some((id, robot.objection()?)))
-            .collect();
-        for (objector, objection) in &objections {
-            self.robots[*objector].yield_to(objection, last);
-            for receiver in self.audience_of(*objector) {
-                self.robots[receiver].yield_to(objection, last);
-            }
-        }
-        !objections.is_empty()
     }
 
     /// The robots that a message of `sender` reaches.

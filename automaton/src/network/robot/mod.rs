@@ -3,7 +3,8 @@
 //! Everything here is local. A robot knows its own position and duty, what every robot knows
 //! from the beginning ([`Site`]), and the beacons of the neighbours that it hears. The chapters
 //! follow the day of a robot: it listens (`hearing`), keeps its place in the tree (`attachment`,
-//! `links`), takes part in the mission (`mission`), exchanges duties with a robot in its way
+//! `links`), takes part in the mission (`mission`,
+//! `leader`, `recruit`, `path`, `team`), exchanges duties with a robot in its way
 //! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
 //! what its guards see of all this are `facts`.
 
@@ -11,10 +12,14 @@ mod attachment;
 mod exchange;
 mod facts;
 mod hearing;
+mod leader;
 mod links;
 mod mission;
 mod motion;
+mod path;
+mod recruit;
 mod routing;
+mod team;
 mod yielding;
 
 use std::sync::Arc;

@@ -1,0 +1,156 @@
+//! The election of a recruit (Remark 5.4) and its way over the tree to the robot that calls.
+
+use std::sync::Arc;
+
+use pleach_discrete::network::{Anchor, Bid, Election, IdSet, Phase};
+
+use super::super::beacon::{Beacon, Notice};
+use super::super::duty::{Hop, Path, Place};
+use super::super::record::{MissionEvent, Outcome};
+use super::super::shared::Shared;
+use super::Robot;
+use super::hearing::Neighbour;
+
+/// Residuals in bids are compared in units of this: routes aim at the same reserve everywhere,
+/// and what is left of differences is the dual iteration's noise.
+const RESIDUAL_RESOLUTION: f64 = 1e-3;
+
+impl Robot {
+    /// p₁ is stuck, or the leader has past duties: call for a recruit.
+    pub fn call_for_recruit(&mut self) {
+        if !self.awaits_release {
+            self.report(MissionEvent::Stationary { robot: self.id, team: Vec::new() });
+        }
+        self.issue(Notice::Call { caller: self.id, releases_leader: self.awaits_release });
+        self.begin_recruit_election();
+    }
+
+    /// A recruit is called for.
+    pub fn begin_recruit_election(&mut self) {
+        let number = self.bulletin.sequence();
+        self.election = Some(Election::new(number));
+        self.waited_rounds = 1;
+        self.route = None;
+        if matches!(*self.bulletin.notice(), Notice::Call { caller, .. } if caller == self.id) {
+            self.route = self.own_hop(Vec::new()).map(|hop| (number, Shared::new(vec![hop])));
+        }
+        self.answer_call();
+    }
+
+    fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
+        let station = self.duty.station()?;
+        let place = Place { reference: station.reference, position: self.position };
+        Some(Hop { robot: self.id, post: station.post, place, crossing })
+    }
+
+    /// Counts one more round of an election of a recruit; says whether a wait is over, so that the
+    /// robot may do what it might not do before.
+    pub(super) fn count_round(&mut self) -> bool {
+        if self.phase != Phase::RecruitElection {
+            return false;
+        }
+        self.waited_rounds += 1;
+        self.waited_rounds == self.longest_wait() + 1
+            || self.waited_rounds == 2 * self.longest_wait()
+    }
+
+    /// Finds the way over the tree to the caller (footnote 10) and places a token: redundant
+    /// robots on which nobody hangs with a bid, once they know the way.
+    pub(super) fn answer_call(&mut self) {
+        let number = self.bulletin.sequence();
+        let Some(election) = &self.election else { return };
+        if election.number() != number {
+            return;
+        }
+        if self.route.as_ref().is_none_or(|&(known, _)| known != number) {
+            self.route = self.find_route(number).map(|route| (number, Shared::new(route)));
+        }
+        let bid = match &self.route {
+            _ if !self.duty.is_redundant() || self.children().next().is_some() => None,
+            Some((_, route)) => Some(self.recruit_bid(route.len())),
+            None if self.waited_rounds < 2 * self.longest_wait() => return,
+            None => self.stranded_bid(),
+        };
+        if let Some(election) = &mut self.election {
+            election.place(self.id, bid);
+        }
+    }
+
+    /// The larger the residual, the better; ties go to the shorter path.
+    fn recruit_bid(&self, hops: usize) -> Bid {
+        let merit = (self.residual / RESIDUAL_RESOLUTION).round() as i64;
+        Bid { rank: 1, merit, economy: -(hops as i64) }
+    }
+
+    /// A redundant robot that no tree connects to the caller only says where it could help.
+    fn stranded_bid(&self) -> Option<Bid> {
+        let root = self.lineage.as_ref()?.root();
+        Some(Bid { rank: 0, merit: -(root as i64), economy: 0 })
+    }
+
+    /// No message is longer under way than there are robots to pass it on.
+    fn longest_wait(&self) -> usize {
+        self.site.robots + self.site.access_points.len()
+    }
+
+    /// The way to the caller, through a tree neighbour that knows one; where the trees of two
+    /// access points are not connected, through any link that may be built.
+    fn find_route(&self, number: u32) -> Option<Vec<Hop>> {
+        let own = *self.duty.post()?;
+        let known = |beacon: &Beacon| beacon.route.as_ref().is_some_and(|&(at, _)| at == number);
+        let may_cross = self.waited_rounds > self.longest_wait();
+        let joins = |neighbour: &Neighbour| match neighbour.post() {
+            None => own.parent == Some(Anchor::Access(neighbour.id() - self.site.robots)),
+            Some(post) => {
+                post.hangs_on(own.id)
+                    || own.hangs_on(post.id)
+                    || may_cross && !post.is_primary() && self.may_build(self.walk_to(neighbour))
+            }
+        };
+        let via = self.neighbours.iter().find(|n| known(&n.beacon) && joins(n))?;
+        let (_, onward) = via.beacon.route.as_ref()?;
+        let mut route = Vec::with_capacity(onward.len() + 1);
+        route.push(self.own_hop(via.beacon.crossing.clone())?);
+        route.extend(onward.iter().cloned());
+        Some(route)
+    }
+
+    /// The recruit announces the path Σ that it has found.
+    pub fn announce_path(&mut self) {
+        let Notice::Call { releases_leader, .. } = *self.bulletin.notice() else { return };
+        let Some((_, hops)) = self.route.take() else { return };
+        let path = Path { hops: hops.to_vec(), releases_leader };
+        self.issue(Notice::Path(Arc::new(path)));
+        self.begin_path();
+    }
+
+    /// The caller finds that nobody can be recruited: other trees may try, or the mission ends.
+    pub fn end_unaided(&mut self) {
+        let stranded = self.election.as_ref().and_then(Election::best).is_some();
+        let Some(task) = self.tasks.last().copied() else { return };
+        let own_root = self.lineage.as_ref().map(|lineage| lineage.root());
+        let others: IdSet = self.eligible.iter().filter(|&root| Some(root) != own_root).collect();
+        if stranded && !others.is_empty() {
+            let roster = Arc::clone(&self.roster);
+            self.report(MissionEvent::ElectionRepeated { task: task.number });
+            self.issue(Notice::Task {
+                task: task.number,
+                position: task.position,
+                roster,
+                eligible: Arc::new(others),
+            });
+            return;
+        }
+        let wanted = (self.remaining() / self.site.build_length).ceil().max(1.0);
+        let reason = format!(
+            "task {} needs another recruit, and no redundant robot is left that can come; about \
+             {wanted} more robots are needed",
+            task.number
+        );
+        self.issue(Notice::Ended {
+            outcome: Outcome::InsufficientRobots,
+            reason: reason.into(),
+            task: Some(task.number),
+        });
+    }
+}

@@ -1,0 +1,154 @@
+//! The primary team (Sec. V-A): who leads, who follows whom, and when it is stuck.
+
+use pleach_continuous::Point;
+use pleach_discrete::network::{Phase, PostId, PostKind};
+
+use super::super::beacon::{Notice, TeamReport};
+use super::super::duty::Duty;
+use super::super::record::{MissionEvent, Outcome};
+use super::Robot;
+
+/// The leader stops at δ − 2.2ρ from its task, so that a robot 2ρ behind it is within δ as well.
+const STAND_OFF: f64 = 2.2;
+/// How near to a target that it cannot get closer to a leader goes, as a share of ρ.
+const TOUCH: f64 = 0.1;
+/// A member of the primary team this many ρ behind the next is bunched: more room would not help.
+const BUNCHED: f64 = 2.6;
+/// A link shorter than this share of d_build is slack.
+const SLACK: f64 = 0.95;
+
+impl Robot {
+    /// Whether this robot heads the network's effort, released or not.
+    pub fn leads(&self) -> bool {
+        self.awaits_release || self.duty.post().is_some_and(|post| post.is_leading())
+    }
+
+    /// Whether this robot is p₁: nobody of the team follows it.
+    pub(super) fn is_first(&self) -> bool {
+        let Some(post) = self.duty.post().filter(|post| post.is_primary()) else { return false };
+        let follower = PostKind::Primary { follows: Some(post.id) };
+        let told = matches!(*self.bulletin.notice(),
+            Notice::Advance { joined: Some((_, followed)) } if followed == post.id);
+        !told && !self.neighbours.iter().any(|n| n.post().is_some_and(|p| p.kind == follower))
+    }
+
+    /// The post of a newcomer that this robot should hang on but does not yet reach.
+    pub(super) fn awaited_parent(&self) -> Option<PostId> {
+        let post = self.duty.post()?;
+        match *self.bulletin.notice() {
+            Notice::Advance { joined: Some((newcomer, followed)) }
+                if followed == post.id && !post.hangs_on(newcomer) =>
+            {
+                Some(newcomer)
+            }
+            _ => None,
+        }
+    }
+
+    /// ψ of a member of the primary team, eq. (24).
+    pub(super) fn team_goal(&self) -> Option<Point> {
+        match self.duty.post()?.kind {
+            PostKind::Primary { follows: None } => self.tasks.last().map(|task| task.target),
+            PostKind::Primary { follows: Some(ahead) } => match self.holder(ahead) {
+                Some(neighbour) => Some(neighbour.position()),
+                // Not heard yet: where it stood when it called.
+                None => self.path.as_ref()?.hops.last().map(|hop| hop.place.position),
+            },
+            _ => None,
+        }
+    }
+
+    /// The distance from the announced task at which the leader stops.
+    pub(super) fn reach(&self) -> f64 {
+        let settings = &self.site.settings;
+        let gap = self.tasks.last().map_or(0.0, |task| (task.target - task.position).norm());
+        let stand_off = settings.service_radius - STAND_OFF * settings.clearance;
+        stand_off.max(gap + TOUCH * settings.clearance).min(settings.service_radius)
+    }
+
+    /// What the team knows of itself, from the leader back to this robot.
+    pub(super) fn review_team(&mut self) {
+        self.team = None;
+        if self.phase != Phase::Advance || !self.duty.is_primary() {
+            return;
+        }
+        let own_slack = self.is_slack().then_some(self.id);
+        let still = self.still_periods;
+        self.team = match self.duty.post().map(|post| post.kind) {
+            Some(PostKind::Primary { follows: Some(ahead) }) => {
+                self.holder(ahead).and_then(|n| n.beacon.team).map(|front| TeamReport {
+                    still: front.still.min(still),
+                    slack: front.slack.or(own_slack),
+                    ..front
+                })
+            }
+            _ => Some(TeamReport { still, slack: own_slack, remaining: self.remaining() }),
+        };
+    }
+
+    /// Geodesic distance to the announced task.
+    pub(super) fn remaining(&self) -> f64 {
+        self.tasks
+            .last()
+            .map_or(0.0, |task| self.site.free_space.distance(self.position, task.target))
+    }
+
+    /// Whether the robot has room to move: its link is neither at its limit nor is it bunched.
+    fn is_slack(&self) -> bool {
+        let bound = self
+            .anchor()
+            .and_then(|anchor| self.bearer(anchor))
+            .is_none_or(|parent| self.walk_to(parent) >= SLACK * self.site.build_length);
+        let bunched = || {
+            self.team_goal()
+                .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance())
+        };
+        !bound && (self.leads() || !bunched())
+    }
+
+    /// The leader is within reach of its task.
+    pub fn service_task(&mut self) {
+        let Some(task) = self.tasks.last().map(|task| task.number) else { return };
+        self.leave_team();
+        if let Some(station) = self.duty.station_mut() {
+            station.post.task = Some(task);
+        }
+        self.report(MissionEvent::TaskServiced { task, robot: self.id });
+        self.issue(Notice::Serviced { task });
+    }
+
+    /// The team is dissolved: its posts become fixed where they are.
+    pub fn leave_team(&mut self) {
+        let position = self.position;
+        if let Some(station) = self.duty.station_mut()
+            && station.post.is_primary()
+        {
+            station.post.kind = PostKind::Fixed;
+            station.reference = position;
+        }
+        if let Duty::Wait { station, .. } = self.duty {
+            self.duty = Duty::Hold(station);
+        }
+    }
+
+    /// The active team cannot go on, and a recruit would not help.
+    pub fn end_blocked(&mut self) {
+        let task = self.tasks.last().map(|task| task.number);
+        let reason = match (self.duty.place(), self.team.and_then(|team| team.slack)) {
+            (Some(_), _) => format!(
+                "robot {} cannot get to the place of Σ that it should take: something stands in \
+                 its way",
+                self.id
+            ),
+            (None, Some(slack)) => format!(
+                "the primary team stands still although robot {slack} has room on its link: \
+                 something stands in its way, and a recruit would not help"
+            ),
+            (None, None) => format!(
+                "robot {} has joined the primary team but cannot reach the robot that it follows",
+                self.id
+            ),
+        };
+        self.issue(Notice::Ended { outcome: Outcome::Blocked, reason: reason.into(), task });
+    }
+}
