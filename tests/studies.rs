@@ -207,6 +207,7 @@ fn robots_go_through_the_corridor_in_single_file() {
         mouths.contains(&snapshot.positions[robot].x)
     };
     let mut longest = 0;
+    let mut closest = f64::INFINITY;
     for pair in mission.periods.windows(2) {
         let [before, after] = [&pair[0].snapshot, &pair[1].snapshot];
         let mut file: Vec<_> = (0..before.positions.len())
@@ -215,8 +216,16 @@ fn robots_go_through_the_corridor_in_single_file() {
         file.sort_by(|&a, &b| before.positions[a].x.total_cmp(&before.positions[b].x));
         assert!(file.is_sorted_by_key(|&robot| after.positions[robot].x), "k = {}", after.step);
         longest = longest.max(file.len());
+        for pair in file.windows(2) {
+            let gap = (after.positions[pair[0]] - after.positions[pair[1]]).norm();
+            closest = closest.min(gap);
+        }
     }
     assert!(longest >= 3, "a file of {longest} robots");
+    let touch = 2.1 * Settings::resolve(&mission.scenario).clearance;
+    assert!(closest < touch, "the robots queue, no nearer than {closest}");
+    let exchanges = |event: &&Event| matches!(event, Event::DutiesExchanged { .. });
+    assert!(mission.events().any(|(_, event)| exchanges(&event)), "duties are handed on");
 }
 
 /// Two geodesics are equally long; the first branch keeps to one side of the ring.

@@ -10,7 +10,7 @@ use pleach::mission::{self, Watcher};
 use pleach::scenario_file;
 use pleach::summary::Summary;
 use pleach::trace::TraceWriter;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -23,6 +23,9 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
     let mut trace =
         arguments.trace.as_deref().map(|path| start_trace(path, &scenario)).transpose()?;
     let folder = figures_folder(arguments, &scenario);
+    if let Some(folder) = &folder {
+        create_folder(folder)?;
+    }
     let mut album = folder.as_ref().map(|_| open_album(&scenario)).transpose()?;
 
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, &mut progress];
@@ -57,6 +60,11 @@ fn start_trace(path: &Path, scenario: &Scenario) -> Result<TraceWriter<BufWriter
     let file =
         File::create(path).map_err(|source| Failure::Creation { path: path.to_owned(), source })?;
     Ok(TraceWriter::new(BufWriter::new(file), scenario)?)
+}
+
+/// A folder that cannot be written is told before the mission, not after it.
+fn create_folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(|source| Failure::Creation { path: path.to_owned(), source })
 }
 
 /// Where figures go, unless they are not wanted.

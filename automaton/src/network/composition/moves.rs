@@ -13,7 +13,8 @@ use super::Network;
 const NEGOTIATION_ROUNDS: usize = 8;
 
 impl<M: Medium> Network<M> {
-    /// Proposals, objections, halving; what is left is carried out.
+    /// Proposals, objections, halving; what is left is carried out. A round without an objection
+    /// is followed by rounds that change nothing, so that they need not be played.
     pub(super) fn negotiate(&mut self) {
         let begin = Instant::now();
         for robot in &mut self.robots {
