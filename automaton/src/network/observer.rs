@@ -6,7 +6,6 @@ use pleach_discrete::network::{NodeId, Phase, PostKind};
 
 use super::beacon::Notice;
 use super::composition::Network;
-use super::duty::Duty;
 use super::medium::Medium;
 use super::record::{MissionEvent, PostView, Route, Snapshot};
 use super::robot::Robot;
@@ -67,7 +66,7 @@ impl<M: Medium> Network<M> {
     }
 
     fn newest(&self) -> Option<&Robot> {
-        self.robots.iter().max_by_key(|robot| robot.word_number())
+        self.robots.iter().max_by_key(|robot| (robot.word_number(), robot.subgroups_done()))
     }
 
     fn task(&self) -> Option<usize> {
@@ -103,11 +102,11 @@ impl<M: Medium> Network<M> {
         match self.phase() {
             Phase::Advance => self.primary_team(),
             Phase::Shift => {
+                let active = self.newest().and_then(Robot::active_subgroup);
+                let places = active.map_or(0..0, |subgroup| subgroup.places());
                 let mut members: Vec<(usize, NodeId)> = (0..self.robots.len())
-                    .filter_map(|id| match *self.robots[id].duty() {
-                        Duty::Shift { place } => Some((place, id)),
-                        _ => None,
-                    })
+                    .filter_map(|id| Some((self.robots[id].duty().place()?, id)))
+                    .filter(|(place, _)| places.contains(place))
                     .collect();
                 members.sort_unstable();
                 members.into_iter().map(|(_, id)| id).collect()

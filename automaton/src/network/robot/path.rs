@@ -68,8 +68,13 @@ impl Robot {
         self.walk_path();
     }
 
+    /// How many subgroups of the path have arrived, as far as it knows.
+    pub fn subgroups_done(&self) -> usize {
+        self.subgroup
+    }
+
     /// The subgroup that is the active team, while one is.
-    pub(super) fn active_subgroup(&self) -> Option<Subgroup> {
+    pub fn active_subgroup(&self) -> Option<Subgroup> {
         (self.phase == Phase::Shift).then(|| self.subgroups.get(self.subgroup).copied())?
     }
 
