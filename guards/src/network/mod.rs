@@ -122,12 +122,12 @@ pub mod mission {
 
     /// Every member of the active subgroup has arrived, eq. (26).
     pub fn subgroup_arrived() -> Guard {
-        Guard::new("subgroup arrived", is("subgroup_arrived"))
+        Guard::new("subgroup arrived", is("subgroup_arrived").and(is_not("engaged")))
     }
 
     /// Another robot holds the post of the last robot that Σ relieves.
     pub fn relieved() -> Guard {
-        Guard::new("relieved", is("relieved"))
+        Guard::new("relieved", is("relieved").and(is_not("engaged")))
     }
 
     /// The primary team is said to be the active team.
@@ -142,7 +142,8 @@ pub mod mission {
         let near = variable("distance").at_most(variable("reach"));
         let stuck = variable("still").at_least(variable("window"));
         let within = variable("distance").at_most(variable("radius")).and(stuck).and(is("slack"));
-        Guard::new("reached", is("leads").and(is_not("bound")).and(near.or(within)))
+        let free = is_not("bound").and(is_not("engaged"));
+        Guard::new("reached", is("leads").and(free).and(near.or(within)))
     }
 
     /// The task is said to be serviced.

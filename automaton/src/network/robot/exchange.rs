@@ -60,7 +60,8 @@ impl Robot {
     fn may_hand_over(&self) -> bool {
         match self.duty {
             Duty::Shift { place } => {
-                self.active_subgroup().is_some_and(|active| active.places().contains(&place))
+                let active = self.active_subgroup();
+                active.is_some_and(|active| active.places().contains(&place)) && !self.has_arrived()
             }
             Duty::Hold(_) => self.duty.is_primary() && self.phase == Phase::Advance,
             Duty::Wait { .. } => false,
@@ -115,6 +116,7 @@ impl Robot {
     /// One round of the protocol: answer offers, complete exchanges.
     pub fn handle_exchange(&mut self) {
         self.complete_own_offer();
+        self.keep_offer_true();
         self.conclude_reply();
         self.answer_offer();
     }
@@ -134,6 +136,13 @@ impl Robot {
         self.report(MissionEvent::DutiesExchanged { mover: self.id, parked: partner });
     }
 
+    /// What is offered is the duty as it is now: the mission goes on meanwhile.
+    fn keep_offer_true(&mut self) {
+        if let Some(offer) = &mut self.offer {
+            offer.duty = self.duty;
+        }
+    }
+
     /// The reply stands until the mover's offer is gone: then it has taken the post, and this
     /// robot takes the duty.
     fn conclude_reply(&mut self) {
@@ -143,12 +152,21 @@ impl Robot {
             mover.beacon.offer.as_ref().is_none_or(|offer| offer.number != number)
         });
         if !concluded {
-            return;
+            return self.note_offer(to);
         }
         self.reply = None;
         if let Some(duty) = self.taking.take() {
             self.left_post = self.duty.post().map(|post| post.id);
             self.take_over(duty, to);
+        }
+    }
+
+    /// The duty offered, as the mover's last beacon has it.
+    fn note_offer(&mut self, mover: NodeId) {
+        let offered =
+            self.neighbour(mover).and_then(|n| n.beacon.offer.as_ref()).map(|offer| offer.duty);
+        if let (Some(taking), Some(offered)) = (&mut self.taking, offered) {
+            *taking = offered;
         }
     }
 

@@ -59,6 +59,8 @@ facts! {
     end_announced,
     /// The elected leader has past duties.
     bound,
+    /// It is exchanging duties with another robot.
+    engaged,
     /// This robot leads.
     leads,
     /// This robot is p₁.
@@ -138,6 +140,7 @@ impl Robot {
             _ => {}
         }
         facts.bound = yes(self.awaits_release);
+        facts.engaged = yes(self.is_engaged());
         facts.leads = yes(self.leads());
         facts.recruited =
             yes(matches!(self.duty, Duty::Wait { place: 0, .. } | Duty::Shift { place: 0 }));

@@ -117,7 +117,7 @@ pub struct Robot {
     proposal: Option<Proposal>,
     heard_moves: Vec<(NodeId, Segment)>,
     arrival: Point,
-    came_from: Point,
+    resting_place: Point,
     still_periods: u32,
 
     // What it tells observers; no robot reads it.
@@ -188,7 +188,7 @@ impl Robot {
             proposal: None,
             heard_moves: Vec::new(),
             arrival: position,
-            came_from: position,
+            resting_place: position,
             still_periods: 0,
             log: Vec::new(),
             site,

@@ -37,8 +37,8 @@ const CONSTANCY: f64 = 1.0;
 const NEARBY: f64 = 0.1;
 /// Control periods without progress after which a robot does not keep to its way any more.
 const OBSTINACY: u32 = 3;
-/// A move shorter than this share of σ is none.
-const STILL: f64 = 0.02;
+/// A robot that stays within this share of ρ or σ, the smaller one, stands still.
+const STILL: f64 = 0.3;
 /// A proposed move shorter than this share of σ is not made.
 const LEAST_MOVE: f64 = 1e-6;
 /// Tolerances of lengths against limits, relative.
@@ -375,10 +375,13 @@ impl Robot {
         let segment = self.own_move();
         let step = self.site.settings.step_radius;
         // Going to and fro is standing still as well.
-        let returns = (segment.to - self.came_from).norm() < STILL * step;
-        let still = segment.length() < STILL * step || returns;
-        self.came_from = segment.from;
-        self.still_periods = if still { self.still_periods.saturating_add(1) } else { 0 };
+        let leash = STILL * self.clearance().min(step);
+        if (segment.to - self.resting_place).norm() > leash {
+            self.resting_place = segment.to;
+            self.still_periods = 0;
+        } else {
+            self.still_periods = self.still_periods.saturating_add(1);
+        }
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
         self.stir();

@@ -81,6 +81,9 @@ impl Robot {
     /// Sets out when it is this robot's turn, and says so when it has arrived.
     pub(super) fn walk_path(&mut self) {
         let Some(active) = self.subgroups.get(self.subgroup).copied() else { return };
+        if self.is_engaged() {
+            return;
+        }
         if let Duty::Wait { station, place } = self.duty
             && active.places().contains(&place)
             && (place == 0 || place > active.first || self.is_relieved_of(station.post.id))
