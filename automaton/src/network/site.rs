@@ -3,9 +3,7 @@
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
-use pleach_continuous::network::reliability::{
-    CubicReliability, LinkReliability, ReliabilityError,
-};
+use pleach_continuous::network::reliability::{CubicReliability, ReliabilityError};
 
 use super::scenario::{Scenario, Settings};
 
@@ -51,26 +49,17 @@ impl Site {
     /// When polygons, clearance or ranges are not valid.
     pub fn new(scenario: &Scenario) -> Result<Self, SiteError> {
         let settings = Settings::resolve(scenario);
-        let workspace = Workspace::new(
-            scenario.workspace.boundary.iter().map(|&p| Point::from(p)).collect(),
-            scenario
-                .workspace
-                .holes
-                .iter()
-                .map(|hole| hole.iter().map(|&p| Point::from(p)).collect())
-                .collect(),
-        )?;
+        let workspace = scenario.workspace()?;
         let free_space = FreeSpace::new(&workspace, settings.clearance)?;
         let link = CubicReliability::new(scenario.link.full_range, scenario.link.max_range)?;
-        let hard_length = link.distance_at(settings.tree_reliability);
         Ok(Site {
             workspace,
             free_space,
             access_points: scenario.access_point.iter().map(|ap| ap.position.into()).collect(),
             link,
             robots: scenario.robot.len(),
-            build_length: hard_length - settings.service_radius,
-            hard_length,
+            build_length: settings.longest_new_link(),
+            hard_length: settings.longest_tree_link(),
             settings,
         })
     }

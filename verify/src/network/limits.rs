@@ -56,14 +56,10 @@ impl Limits {
     /// The faults of a scenario from which no mission can start.
     pub fn of(scenario: &Scenario) -> Result<Self, LimitError> {
         scenario.validate().map_err(LimitError::Scenario)?;
-        let outline = &scenario.workspace;
-        let polygon =
-            |vertices: &Vec<[f64; 2]>| vertices.iter().copied().map(Point::from).collect();
-        let holes = outline.holes.iter().map(polygon).collect();
         let access_points = scenario.access_point.iter().map(|point| point.position);
         let tasks = scenario.task.iter().map(|task| task.position);
         Ok(Limits {
-            workspace: Workspace::new(polygon(&outline.boundary), holes)?,
+            workspace: scenario.workspace()?,
             settings: Settings::resolve(scenario),
             rates: scenario.robot.iter().map(|robot| robot.rate).collect(),
             access_points: access_points.map(Point::from).collect(),

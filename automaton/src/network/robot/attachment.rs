@@ -13,9 +13,7 @@ use pleach_discrete::network::{Anchor, IdSet, Lineage, Phase, PostId, PostKind};
 use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
-
-/// Relative slack when a length is compared with d_build: such lengths are sums of rounded ones.
-const ROUNDING: f64 = 1e-9;
+use super::motion::ROUNDING;
 
 /// p₁ changes its parent only if that brings it nearer to its target by this share of d_build.
 const REATTACHMENT_GAIN: f64 = 0.05;

@@ -230,9 +230,14 @@ impl Robot {
         }
     }
 
-    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly.
+    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; at the sample the robot is where
+    /// its certified move ends, to the last bit.
     pub fn flow(&mut self, duration: f64) {
         self.clock += duration;
+        self.position = match self.time_to_sample() > 0.0 {
+            true => self.position + self.velocity * duration,
+            false => self.arrival,
+        };
     }
 
     /// Time until the clock calls for the next sample.

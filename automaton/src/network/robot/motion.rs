@@ -41,8 +41,8 @@ const OBSTINACY: u32 = 3;
 const STILL: f64 = 0.3;
 /// A proposed move shorter than this share of σ is not made.
 const LEAST_MOVE: f64 = 1e-6;
-/// Tolerances of lengths against limits, relative.
-const ROUNDING: f64 = 1e-9;
+/// Relative slack when lengths are compared with limits: they are sums of rounded ones.
+pub(super) const ROUNDING: f64 = 1e-9;
 /// How much of a load a sender may be given, just short of all its time.
 const FULL_LOAD: f64 = 1.0 - 1e-9;
 
@@ -370,8 +370,8 @@ impl Robot {
         };
     }
 
-    /// The move is certified: eq. (23) until the next sample. Returns where the robot will be.
-    pub fn set_off(&mut self) -> Point {
+    /// The move is certified: eq. (23) until the next sample.
+    pub fn set_off(&mut self) {
         let segment = self.own_move();
         let step = self.site.settings.step_radius;
         // Going to and fro is standing still as well.
@@ -385,13 +385,11 @@ impl Robot {
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
         self.stir();
-        segment.to
     }
 
     /// A new control period begins.
     pub fn restart_clock(&mut self) {
         self.stir();
-        self.position = self.arrival;
         self.velocity = Vector::zeros();
         self.clock = 0.0;
     }
