@@ -44,10 +44,12 @@ pub mod guard;
 pub mod network;
 pub mod predicate;
 pub mod print;
+pub mod program;
 pub mod valuation;
 
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
 pub use expression::{Expression, constant, variable};
 pub use guard::Guard;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
+pub use program::{CompiledPredicate, Program};
 pub use valuation::{EvaluationError, Valuation};
