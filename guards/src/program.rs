@@ -37,6 +37,7 @@ const SHALLOW: usize = 16;
 /// An expression compiled by [`Expression::compile`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
+    start: Operand,
     instructions: Box<[Instruction]>,
     depth: usize,
 }
@@ -91,9 +92,12 @@ impl Expression {
     ///
     /// [`EvaluationError::UnknownVariable`] if a variable of the expression is not listed.
     pub fn compile(&self, variables: &[impl AsRef<str>]) -> Result<Program, EvaluationError> {
-        let mut compiler = Compiler { variables, instructions: Vec::new(), height: 0, depth: 0 };
+        let mut compiler =
+            Compiler { variables, start: None, instructions: Vec::new(), height: 0, depth: 0 };
         compiler.expression(self)?;
-        Ok(Program { instructions: compiler.instructions.into(), depth: compiler.depth })
+        let Compiler { start, instructions, depth, .. } = compiler;
+        let start = start.unwrap_or(Operand::Constant(f64::NAN));
+        Ok(Program { start, instructions: instructions.into(), depth })
     }
 }
 
@@ -111,10 +115,10 @@ impl Program {
 
     #[inline]
     fn run(&self, value: impl Fn(usize) -> Option<f64>) -> f64 {
-        if self.depth <= SHALLOW {
-            self.run_on(&mut [0.0; SHALLOW], value)
-        } else {
-            self.run_on(&mut vec![0.0; self.depth], value)
+        match self.depth {
+            0 => self.run_on(&mut [], value),
+            1..=SHALLOW => self.run_on(&mut [0.0; SHALLOW], value),
+            depth => self.run_on(&mut vec![0.0; depth], value),
         }
     }
 
@@ -126,7 +130,7 @@ impl Program {
             Operand::Variable(variable) => value(variable),
             Operand::Scaled(factor, variable) => factor * value(variable),
         };
-        let mut current = 0.0;
+        let mut current = read(self.start);
         let mut height = 0;
         for instruction in &self.instructions {
             current = match *instruction {
@@ -172,6 +176,7 @@ fn raise_number(base: f64, exponent: f64) -> f64 {
 
 struct Compiler<'a, N> {
     variables: &'a [N],
+    start: Option<Operand>,
     instructions: Vec<Instruction>,
     height: usize,
     depth: usize,
@@ -180,9 +185,7 @@ struct Compiler<'a, N> {
 impl<N: AsRef<str>> Compiler<'_, N> {
     fn expression(&mut self, expression: &Expression) -> Result<(), EvaluationError> {
         if let Some(operand) = self.operand(expression)? {
-            self.height += 1;
-            self.depth = self.depth.max(self.height);
-            self.instructions.push(Instruction::Load(operand));
+            self.load(operand);
             return Ok(());
         }
         match expression {
@@ -219,6 +222,16 @@ impl<N: AsRef<str>> Compiler<'_, N> {
             self.instructions.push(Instruction::Binary(operator));
         }
         Ok(())
+    }
+
+    fn load(&mut self, operand: Operand) {
+        if self.start.is_none() {
+            self.start = Some(operand);
+        } else {
+            self.height += 1;
+            self.depth = self.depth.max(self.height);
+            self.instructions.push(Instruction::Load(operand));
+        }
     }
 
     fn operand(&self, expression: &Expression) -> Result<Option<Operand>, EvaluationError> {
