@@ -34,12 +34,14 @@
 //!
 //! # Where things are
 //!
-//! [`expression`] and [`predicate`] are the data, [`valuation`] is what they are evaluated on,
+//! [`expression`] and [`predicate`] are the data, [`function`] is the way out where data cannot say
+//! it, [`valuation`] is what they are evaluated on,
 //! [`guard`] gives a predicate its name, [`crossing`] follows margins over time, and [`mod@print`]
 //! writes all of it as Unicode text and LaTeX.
 
 pub mod crossing;
 pub mod expression;
+pub mod function;
 pub mod guard;
 pub mod network;
 pub mod predicate;
@@ -48,7 +50,8 @@ pub mod program;
 pub mod valuation;
 
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
-pub use expression::{Expression, constant, variable};
+pub use expression::{Expression, constant, norm, variable};
+pub use function::NamedFunction;
 pub use guard::Guard;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
 pub use program::{CompiledPredicate, Program};
