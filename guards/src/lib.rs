@@ -46,6 +46,7 @@ pub mod guard;
 pub mod network;
 pub mod predicate;
 pub mod print;
+pub mod program;
 pub mod valuation;
 
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
@@ -53,4 +54,5 @@ pub use expression::{Expression, constant, norm, variable};
 pub use function::NamedFunction;
 pub use guard::Guard;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
+pub use program::{CompiledPredicate, Program};
 pub use valuation::{EvaluationError, Valuation};
