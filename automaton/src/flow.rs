@@ -88,6 +88,19 @@ impl<S> Flow<S> {
         }
     }
 
+    /// Carries `state` over `duration` seconds, at least 0, and says whether it did: only an
+    /// [exact](Flow::exact) flow can by itself.
+    #[must_use]
+    pub fn advance(&self, state: &mut S, duration: f64) -> bool {
+        match &self.motion {
+            Motion::Exact(_, advance) => {
+                advance(state, duration);
+                true
+            }
+            Motion::Rates(_) | Motion::Field(..) => false,
+        }
+    }
+
     pub(crate) fn motion(&self) -> &Motion<S> {
         &self.motion
     }

@@ -5,7 +5,9 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use pleach_guards::Expression;
+use pleach_guards::{EvaluationError, Expression};
+
+use crate::coordinates::Coordinates;
 
 /// The reset of a transition.
 ///
@@ -26,13 +28,16 @@ use pleach_guards::Expression;
 /// assert_eq!(halt.to_string(), "halt");
 /// ```
 pub struct Reset<S> {
-    action: Action<S>,
+    form: Form<S>,
+    apply: Arc<Apply<S>>,
 }
 
-pub(crate) enum Action<S> {
+enum Form<S> {
     Assignments(Arc<[Assignment<S>]>),
-    Function(Arc<str>, Arc<dyn Fn(&mut S) + Send + Sync>),
+    Function(Arc<str>),
 }
+
+type Apply<S> = dyn Fn(&mut S) -> Result<(), EvaluationError> + Send + Sync;
 
 /// One coordinate's new value, as a formula over x⁻; made by
 /// [`Coordinate::becomes`](crate::Coordinate::becomes).
@@ -61,59 +66,89 @@ impl<S> Assignment<S> {
 impl<S> Reset<S> {
     /// The reset that `apply` carries out; `name` says it in a few words or as a formula.
     pub fn new(name: &str, apply: impl Fn(&mut S) + Send + Sync + 'static) -> Self {
-        Reset { action: Action::Function(name.into(), Arc::new(apply)) }
+        let apply = move |state: &mut S| {
+            apply(state);
+            Ok(())
+        };
+        Reset { form: Form::Function(name.into()), apply: Arc::new(apply) }
     }
 
     /// The reset that changes nothing, x⁺ = x⁻.
     pub fn identity() -> Self {
-        Reset { action: Action::Assignments(Arc::new([])) }
+        Reset { form: Form::Assignments(Arc::new([])), apply: Arc::new(|_| Ok(())) }
     }
 
     /// Whether it changes nothing.
     pub fn is_identity(&self) -> bool {
-        matches!(&self.action, Action::Assignments(assignments) if assignments.is_empty())
+        self.assignments().is_some_and(<[_]>::is_empty)
     }
 
     /// The assignments, unless the reset is a function.
     pub fn assignments(&self) -> Option<&[Assignment<S>]> {
-        match &self.action {
-            Action::Assignments(assignments) => Some(assignments),
-            Action::Function(..) => None,
+        match &self.form {
+            Form::Assignments(assignments) => Some(assignments),
+            Form::Function(_) => None,
         }
     }
 
     /// The name or the formula, as text; empty for the identity.
     pub fn name(&self) -> Cow<'_, str> {
-        match &self.action {
-            Action::Assignments(assignments) => {
+        match &self.form {
+            Form::Assignments(assignments) => {
                 let texts: Vec<String> = assignments.iter().map(Assignment::to_string).collect();
                 Cow::Owned(texts.join(", "))
             }
-            Action::Function(name, _) => Cow::Borrowed(name),
+            Form::Function(name) => Cow::Borrowed(name),
         }
     }
 
-    pub(crate) fn action(&self) -> &Action<S> {
-        &self.action
+    /// Turns x⁻ into x⁺.
+    ///
+    /// # Errors
+    ///
+    /// The first formula that has no value in x⁻; the state is then as before.
+    pub fn apply(&self, state: &mut S) -> Result<(), EvaluationError> {
+        (self.apply)(state)
     }
 }
 
-impl<S, const N: usize> From<[Assignment<S>; N]> for Reset<S> {
-    fn from(assignments: [Assignment<S>; N]) -> Self {
-        Reset { action: Action::Assignments(Arc::new(assignments)) }
-    }
-}
-
-impl<S> From<Vec<Assignment<S>>> for Reset<S> {
+impl<S: Coordinates> From<Vec<Assignment<S>>> for Reset<S> {
     fn from(assignments: Vec<Assignment<S>>) -> Self {
-        Reset { action: Action::Assignments(assignments.into()) }
+        let assignments: Arc<[Assignment<S>]> = assignments.into();
+        let listed = assignments.clone();
+        let apply = Arc::new(move |state: &mut S| {
+            *state = assign(&listed, state)?;
+            Ok(())
+        });
+        Reset { form: Form::Assignments(assignments), apply }
     }
 }
 
-impl<S> From<Assignment<S>> for Reset<S> {
-    fn from(assignment: Assignment<S>) -> Self {
-        [assignment].into()
+impl<S: Coordinates, const N: usize> From<[Assignment<S>; N]> for Reset<S> {
+    fn from(assignments: [Assignment<S>; N]) -> Self {
+        Vec::from(assignments).into()
     }
+}
+
+impl<S: Coordinates> From<Assignment<S>> for Reset<S> {
+    fn from(assignment: Assignment<S>) -> Self {
+        vec![assignment].into()
+    }
+}
+
+/// x⁺, where every formula reads x⁻.
+fn assign<S: Coordinates>(
+    assignments: &[Assignment<S>],
+    before: &S,
+) -> Result<S, EvaluationError> {
+    let mut after = before.to_values();
+    for assignment in assignments {
+        let value = assignment.value.evaluate(before)?;
+        let place = S::NAMES.iter().position(|name| *name == assignment.coordinate);
+        let unknown = || EvaluationError::UnknownVariable { variable: assignment.coordinate.into() };
+        after[place.ok_or_else(unknown)?] = value;
+    }
+    Ok(S::from_values(&after))
 }
 
 // Written by hand, because derives would ask the same of S.
@@ -126,15 +161,15 @@ impl<S> Clone for Assignment<S> {
 
 impl<S> Clone for Reset<S> {
     fn clone(&self) -> Self {
-        Reset { action: self.action.clone() }
+        Reset { form: self.form.clone(), apply: self.apply.clone() }
     }
 }
 
-impl<S> Clone for Action<S> {
+impl<S> Clone for Form<S> {
     fn clone(&self) -> Self {
         match self {
-            Action::Assignments(assignments) => Action::Assignments(assignments.clone()),
-            Action::Function(name, apply) => Action::Function(name.clone(), apply.clone()),
+            Form::Assignments(assignments) => Form::Assignments(assignments.clone()),
+            Form::Function(name) => Form::Function(name.clone()),
         }
     }
 }
