@@ -27,6 +27,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::expression::{BinaryOperator, Expression, UnaryOperator, raise};
+use crate::function::NamedFunction;
 use crate::predicate::{Comparison, Predicate, Relation, Verdict};
 use crate::valuation::{EvaluationError, Valuation};
 
@@ -82,6 +83,7 @@ enum Test {
     Not(Box<Test>),
     All(Box<[Test]>),
     Any(Box<[Test]>),
+    Function(NamedFunction),
 }
 
 impl Expression {
@@ -274,7 +276,8 @@ fn folded(expression: &Expression) -> Option<f64> {
 
 impl Predicate {
     /// The predicate as a program on slices in which place *i* holds the value of `variables[i]`;
-    /// of a name that is listed twice, the first place counts.
+    /// of a name that is listed twice, the first place counts. A named function in it is called as
+    /// it is, with the slice under the listed names as its state.
     ///
     /// # Errors
     ///
@@ -365,10 +368,11 @@ impl Test {
             Predicate::Not(inner) => Test::Not(Box::new(Test::of(inner, names)?)),
             Predicate::All(parts) => Test::All(all(parts)?),
             Predicate::Any(parts) => Test::Any(all(parts)?),
+            Predicate::Function(function) => Test::Function(function.clone()),
         })
     }
 
-    /// The verdict, or `None` where a part is not a number.
+    /// The verdict, or `None` where a part is not a number or a function has an error.
     fn judge<F: Fn(usize) -> Option<f64> + Copy>(&self, state: &Listed<'_, F>) -> Option<Verdict> {
         match self {
             Test::Comparison { left, relation, right } => {
@@ -382,6 +386,10 @@ impl Test {
             Test::Any(parts) => parts
                 .iter()
                 .try_fold(Verdict::NEVER, |verdict, part| Some(verdict.or(part.judge(state)?))),
+            Test::Function(function) => {
+                let margin = function.margin(state).ok()?;
+                Some(Verdict { margin, holds: margin >= 0.0 })
+            }
         }
     }
 }
