@@ -237,14 +237,14 @@ impl<N: AsRef<str>> Compiler<'_, N> {
     }
 
     fn operand(&self, expression: &Expression) -> Result<Option<Operand>, EvaluationError> {
-        if let Some(value) = folded(expression) {
+        if let Some(value) = expression.folded() {
             return Ok(Some(Operand::Constant(value)));
         }
         match expression {
             Expression::Variable(name) => Ok(Some(Operand::Variable(self.place(name)?))),
             Expression::Binary(BinaryOperator::Product, left, right) => match (&**left, &**right) {
                 (Expression::Variable(name), factor) | (factor, Expression::Variable(name)) => {
-                    let Some(factor) = folded(factor) else { return Ok(None) };
+                    let Some(factor) = factor.folded() else { return Ok(None) };
                     Ok(Some(Operand::Scaled(factor, self.place(name)?)))
                 }
                 _ => Ok(None),
@@ -261,16 +261,18 @@ impl<N: AsRef<str>> Compiler<'_, N> {
     }
 }
 
-/// The value of an expression without variables, NaN where it has none.
-fn folded(expression: &Expression) -> Option<f64> {
-    match expression {
-        Expression::Constant(value) => Some(*value),
-        Expression::Variable(_) => None,
-        Expression::Unary(operator, operand) => Some(operator.apply(folded(operand)?)),
-        Expression::Binary(operator, left, right) => {
-            Some(combine(*operator, folded(left)?, folded(right)?))
+impl Expression {
+    /// The value of an expression without variables, NaN where it has none.
+    pub(crate) fn folded(&self) -> Option<f64> {
+        match self {
+            Expression::Constant(value) => Some(*value),
+            Expression::Variable(_) => None,
+            Expression::Unary(operator, operand) => Some(operator.apply(operand.folded()?)),
+            Expression::Binary(operator, left, right) => {
+                Some(combine(*operator, left.folded()?, right.folded()?))
+            }
+            Expression::Power(base, exponent) => Some(raise_number(base.folded()?, *exponent)),
         }
-        Expression::Power(base, exponent) => Some(raise_number(folded(base)?, *exponent)),
     }
 }
 
