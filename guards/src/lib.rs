@@ -40,19 +40,29 @@
 //! writes all of it as Unicode text and LaTeX.
 
 pub mod crossing;
+pub mod derivative;
 pub mod expression;
 pub mod function;
 pub mod guard;
+pub mod interval;
+pub mod linear;
 pub mod network;
+pub mod normal_form;
 pub mod predicate;
 pub mod print;
 pub mod program;
+pub mod range;
+pub mod substitution;
 pub mod valuation;
 
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
 pub use expression::{Expression, constant, norm, variable};
 pub use function::NamedFunction;
 pub use guard::Guard;
+pub use interval::Interval;
+pub use linear::LinearForm;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
 pub use program::{CompiledPredicate, Program};
+pub use range::{Ranges, Truth};
+pub use substitution::Substitution;
 pub use valuation::{EvaluationError, Valuation};
