@@ -13,16 +13,26 @@
 
 pub mod automaton;
 pub mod builder;
+pub mod coordinates;
 pub mod diagram;
+pub mod edge;
 pub mod executor;
+pub mod flow;
 pub mod network;
 pub mod reset;
 pub mod time;
 pub mod trajectory;
 
-pub use automaton::{Automaton, GuardError, Jump, Mode, Step, Transition};
+pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
+pub use coordinates::{Coordinate, Coordinates, Vector};
+pub use edge::{Edge, from};
 pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
-pub use reset::{Flow, Reset};
+pub use flow::{Flow, Rate};
+pub use reset::{Assignment, Reset};
 pub use time::HybridTime;
+
+// For the macros.
 pub use trajectory::{Participants, Trace, TraceEntry};
+#[doc(hidden)]
+pub use {pleach_discrete as discrete, pleach_guards as guards};

@@ -204,7 +204,7 @@ impl Expression {
 }
 
 impl UnaryOperator {
-    fn apply(self, operand: f64) -> f64 {
+    pub(crate) fn apply(self, operand: f64) -> f64 {
         match self {
             UnaryOperator::Negation => -operand,
             UnaryOperator::AbsoluteValue => operand.abs(),
@@ -217,7 +217,7 @@ impl UnaryOperator {
 }
 
 impl BinaryOperator {
-    fn apply(self, left: f64, right: f64) -> f64 {
+    pub(crate) fn apply(self, left: f64, right: f64) -> f64 {
         match self {
             BinaryOperator::Sum => left + right,
             BinaryOperator::Difference => left - right,
@@ -231,7 +231,7 @@ impl BinaryOperator {
 
 /// Squares and roots go through operations that IEEE 754 rounds exactly, so that they are the same
 /// on every machine.
-fn raise(base: f64, exponent: f64) -> f64 {
+pub(crate) fn raise(base: f64, exponent: f64) -> f64 {
     if exponent == 2.0 {
         base * base
     } else if exponent == 0.5 {

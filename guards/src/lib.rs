@@ -72,6 +72,7 @@ pub mod network;
 pub mod parse;
 pub mod predicate;
 pub mod print;
+pub mod program;
 #[cfg(feature = "serde")]
 pub mod serialization;
 pub mod valuation;
@@ -82,4 +83,5 @@ pub use function::NamedFunction;
 pub use guard::Guard;
 pub use parse::ParseError;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
+pub use program::{CompiledPredicate, Program};
 pub use valuation::{EvaluationError, Valuation};

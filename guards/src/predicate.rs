@@ -286,7 +286,7 @@ impl Comparison {
 
 impl Relation {
     /// Equal sides have margin 0 also at infinity, where a difference would not be a number.
-    fn judge(self, left: f64, right: f64) -> Verdict {
+    pub(crate) fn judge(self, left: f64, right: f64) -> Verdict {
         let slack = if left == right { 0.0 } else { right - left };
         match self {
             Relation::AtMost => Verdict { margin: slack, holds: left <= right },
@@ -298,18 +298,18 @@ impl Relation {
 }
 
 impl Verdict {
-    const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
-    const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
+    pub(crate) const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
+    pub(crate) const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
 
-    fn and(self, other: Verdict) -> Verdict {
+    pub(crate) fn and(self, other: Verdict) -> Verdict {
         Verdict { margin: self.margin.min(other.margin), holds: self.holds && other.holds }
     }
 
-    fn or(self, other: Verdict) -> Verdict {
+    pub(crate) fn or(self, other: Verdict) -> Verdict {
         Verdict { margin: self.margin.max(other.margin), holds: self.holds || other.holds }
     }
 
-    fn opposite(self) -> Verdict {
+    pub(crate) fn opposite(self) -> Verdict {
         Verdict { margin: -self.margin, holds: !self.holds }
     }
 }
