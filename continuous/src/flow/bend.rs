@@ -14,38 +14,51 @@ pub(super) struct Bend {
 const GENEROSITY: f64 = 2.0;
 
 impl Bend {
-    /// The highest of at least three samples, in order of time, with the two next to it.
+    /// The highest of at least three samples, in order of time, with the two next to it; at either
+    /// end of the samples, with the two that follow or precede it.
     pub(super) fn around_highest(path: &[Sample]) -> Bend {
-        let mut highest = 1;
-        for index in 2..path.len() - 1 {
-            if path[index].verdict.margin > path[highest].verdict.margin {
+        let mut highest = 0;
+        for (index, sample) in path.iter().enumerate() {
+            if sample.verdict.margin > path[highest].verdict.margin {
                 highest = index;
             }
         }
-        Bend { samples: [path[highest - 1], path[highest], path[highest + 1]] }
+        let middle = highest.clamp(1, path.len() - 2);
+        Bend { samples: [path[middle - 1], path[middle], path[middle + 1]] }
     }
 
-    /// When the parabola peaks, if it does so between the samples and the margin may reach zero.
-    pub(super) fn reachable_top(&self) -> Option<f64> {
+    /// Which of the three is the highest.
+    pub(super) fn highest(&self) -> usize {
+        let [a, b, c] = self.samples.map(|sample| sample.verdict.margin);
+        if b >= a && b >= c { 1 } else { 2 * usize::from(c > a) }
+    }
+
+    /// Whether a margin that bends like this may reach zero in between.
+    pub(super) fn may_reach_zero(&self) -> bool {
         let [a, b, c] = self.samples;
-        let (left, right) = (b.time - a.time, c.time - b.time);
-        let rise = (b.verdict.margin - a.verdict.margin) / left;
-        let fall = (c.verdict.margin - b.verdict.margin) / right;
-        let quadratic = (fall - rise) / (left + right);
-        let slope = rise + quadratic * left;
-        let top = b.time - slope / (2.0 * quadratic);
-
-        let highest = self.samples.map(|sample| sample.verdict.margin);
-        let highest = highest.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let reach = -GENEROSITY * quadratic * left.max(right).powi(2);
-        (quadratic < 0.0 && a.time < top && top < c.time && highest + reach >= 0.0).then_some(top)
+        let reach = -self.quadratic() * (b.time - a.time).max(c.time - b.time).powi(2);
+        let highest = self.samples[self.highest()].verdict.margin;
+        reach > 0.0 && reach.is_finite() && highest + GENEROSITY * reach >= 0.0
     }
 
-    pub(super) fn left_middle(&self) -> f64 {
-        0.5 * (self.samples[0].time + self.samples[1].time)
+    /// Where to look next: the middles of both halves and the top of the parabola.
+    pub(super) fn next_looks(&self) -> [f64; 3] {
+        let [a, b, c] = self.samples;
+        let slope = slope(a, b) + self.quadratic() * (b.time - a.time);
+        let top = b.time - slope / (2.0 * self.quadratic());
+        let mut times =
+            [0.5 * (a.time + b.time), 0.5 * (b.time + c.time), top.clamp(a.time, c.time)];
+        times.sort_by(f64::total_cmp);
+        times
     }
 
-    pub(super) fn right_middle(&self) -> f64 {
-        0.5 * (self.samples[1].time + self.samples[2].time)
+    /// The quadratic coefficient of the parabola, half its second derivative.
+    fn quadratic(&self) -> f64 {
+        let [a, b, c] = self.samples;
+        (slope(b, c) - slope(a, b)) / (c.time - a.time)
     }
+}
+
+fn slope(from: Sample, to: Sample) -> f64 {
+    (to.verdict.margin - from.verdict.margin) / (to.time - from.time)
 }

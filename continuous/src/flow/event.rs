@@ -55,8 +55,7 @@ impl EventSearch {
     }
 }
 
-/// The narrowest bracket, in spacings of the floating-point numbers at the later end of the search:
-/// two, so that there is always a number in between to look at.
+/// The narrowest bracket, in spacings of the floating-point numbers at the look that ended it: two, so that there is always a number in between to look at.
 const SPACINGS: f64 = 2.0;
 
 /// How often to halve the surroundings of a peak: to 10⁻⁸ of the distance of two looks, where a
@@ -121,7 +120,6 @@ pub fn first_instant<C: Curve + ?Sized, E>(
     search: &EventSearch,
     verdict: &mut dyn FnMut(&[f64]) -> Result<Verdict, E>,
 ) -> Result<Option<Onset>, E> {
-    let tolerance = search.tolerance(from, to);
     let mut probe = Probe { curve, verdict, state: vec![0.0; curve.dimension()] };
     let mut last = probe.look(from)?;
     if last.verdict.holds {
@@ -130,12 +128,15 @@ pub fn first_instant<C: Curve + ?Sized, E>(
     let mut earlier = None;
     while last.time < to {
         let next = probe.look(next_look(curve, search, from, to, last.time))?;
-        let found = match earlier {
-            _ if next.verdict.holds => Some((last, next)),
-            Some(earlier) => probe.climb(Bend { samples: [earlier, last, next] })?,
-            None => None,
+        let bracket = if next.verdict.holds {
+            Some((last, next))
+        } else if let Some(earlier) = earlier {
+            probe.climb_peak(Bend { samples: [earlier, last, next] }, from, to)?
+        } else {
+            None
         };
-        if let Some((before, after)) = found {
+        if let Some((before, after)) = bracket {
+            let tolerance = search.tolerance(last.time, next.time);
             let (before, after) = narrow(before, after, tolerance, |time| probe.look(time))?;
             return Ok(Some(Onset { before: before.time, time: after.time }));
         }
@@ -173,23 +174,36 @@ impl<C: Curve + ?Sized, E> Probe<'_, C, E> {
         Ok(Sample { time, verdict: (self.verdict)(&self.state)? })
     }
 
-    /// Climbs the peak that three neighbouring looks suggest, as long as it may reach zero: the
-    /// instant at which the predicate holds, and one before it at which it does not.
-    fn climb(&mut self, mut bend: Bend) -> Result<Option<(Sample, Sample)>, E> {
+    /// Climbs the peak that three successive looks suggest, as long as the margin may reach zero:
+    /// an instant at which the predicate holds, and one before it at which it does not.
+    ///
+    /// The peak is about the middle look, or else at an end of the search; about any other look it
+    /// is the peak of other three.
+    fn climb_peak(
+        &mut self,
+        mut bend: Bend,
+        from: f64,
+        to: f64,
+    ) -> Result<Option<(Sample, Sample)>, E> {
+        let [first, _, last] = bend.samples;
+        if bend.highest() == 0 && first.time > from || bend.highest() == 2 && last.time < to {
+            return Ok(None);
+        }
         for _ in 0..HALVINGS {
-            let Some(top) = bend.reachable_top() else { return Ok(None) };
+            if !bend.may_reach_zero() {
+                break;
+            }
             let mut path = Vec::from(bend.samples);
-            let mut times = [bend.left_middle(), bend.right_middle(), top];
-            times.sort_by(f64::total_cmp);
-            for time in times {
-                let sample = self.look(time)?;
+            for time in bend.next_looks() {
                 let place = path.partition_point(|known| known.time < time);
+                if path[place].time == time {
+                    continue;
+                }
+                let sample = self.look(time)?;
                 if sample.verdict.holds {
-                    return Ok(Some((path[place.max(1) - 1], sample)));
+                    return Ok(Some((path[place - 1], sample)));
                 }
-                if path[place].time > time {
-                    path.insert(place, sample);
-                }
+                path.insert(place, sample);
             }
             bend = Bend::around_highest(&path);
         }
