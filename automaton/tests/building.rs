@@ -63,7 +63,7 @@ fn the_initial_location_is_in_the_table() {
 #[test]
 fn guards_and_invariants_read_variables_of_the_state() {
     let builder = sound().invariant(Heater::On, variable("humidity").at_most(1.0));
-    let text = "the invariant of `on` reads variable `humidity`, which the state does not have";
+    let text = "the invariant of `on` names variable `humidity`, which the state does not have";
     assert_eq!(message(builder), text);
 }
 

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use pleach_continuous::flow::{ConstantFlow, Curve, Integrator, LinearFlow, Onset, first_instant};
 use pleach_guards::Verdict;
 
-use super::blueprint::{Place, PlaceMotion};
+use super::blueprint::{Place, PlaceMotion, Solution};
 use super::simulation::{Failure, Simulation};
 use super::{Component, Composition};
 use crate::trajectory::Sample;
@@ -140,7 +140,7 @@ enum Kind {
 struct Field<'a> {
     /// With their place, and whether they solve their flow themselves.
     moving: Vec<(&'a Component, &'a Place)>,
-    exact: Vec<(&'a Component, &'a (dyn Fn(&mut [f64], f64) + Send + Sync))>,
+    exact: Vec<(&'a Component, &'a Solution)>,
     start: &'a [f64],
     /// Room for the coordinates of a component and their rates.
     scratch: RefCell<(Vec<f64>, Vec<f64>)>,
