@@ -33,6 +33,6 @@ pub use reset::{Assignment, Reset};
 pub use time::HybridTime;
 
 // For the macros.
-pub use trajectory::{Participants, Trace, TraceEntry};
 #[doc(hidden)]
 pub use {pleach_discrete as discrete, pleach_guards as guards};
+pub use trajectory::{Participants, Trace, TraceEntry};

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 
 use common::{Heater, Room, Sensed, Window, heater, window};
 use pleach_automaton::{
-    Automaton, Ending, Executor, HybridTime, Jump, Observer, Participants, Reason, Round, System,
-    Trace, TransitionError,
+    Automaton, Ending, Executor, TransitionError, HybridTime, Jump, Observer, Participants, Reason,
+    Round, System, Trace,
 };
 
 /// A jump of the composition.
