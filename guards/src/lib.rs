@@ -56,32 +56,52 @@
 //! [`Predicate::function`]. It is evaluated and combined like any other predicate, but what it
 //! reads is unknown; [`Predicate::functions`] tells which of them an analysis cannot see into.
 //!
+//! # Analysis
+//!
+//! Data can be asked more than its value in one state: where in a box of states a predicate can
+//! hold ([`Predicate::truth`]), which comparisons make it up ([`Predicate::disjunctive_form`]),
+//! whether an expression is affine ([`Expression::linear_form`]), how it changes
+//! ([`Expression::derivative`]), and what becomes of it when variables are replaced
+//! ([`Expression::substitute`]).
+//!
 //! # Where things are
 //!
 //! [`expression`] and [`predicate`] are the data, [`function`] is the way out of it, [`valuation`]
 //! is what they are evaluated on, [`guard`] gives a predicate its name, and [`crossing`] follows
 //! margins over time. [`mod@print`] writes all of it as Unicode text and LaTeX, [`parse`] reads
-//! the text, and `serialization` (feature `serde`) takes it into files.
+//! the text, and `serialization` (feature `serde`) takes it into files. [`interval`], [`range`],
+//! [`linear`], [`derivative`], [`substitution`] and [`normal_form`] analyse the data, and
+//! [`program`] evaluates it in hot loops.
 
 pub mod crossing;
+pub mod derivative;
 pub mod expression;
 pub mod function;
 pub mod guard;
+pub mod interval;
+pub mod linear;
 mod name;
 pub mod network;
+pub mod normal_form;
 pub mod parse;
 pub mod predicate;
 pub mod print;
 pub mod program;
+pub mod range;
 #[cfg(feature = "serde")]
 pub mod serialization;
+pub mod substitution;
 pub mod valuation;
 
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
 pub use expression::{Expression, constant, norm, variable};
 pub use function::NamedFunction;
 pub use guard::Guard;
+pub use interval::Interval;
+pub use linear::LinearForm;
 pub use parse::ParseError;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
 pub use program::{CompiledPredicate, Program};
+pub use range::{Ranges, Truth};
+pub use substitution::Substitution;
 pub use valuation::{EvaluationError, Valuation};

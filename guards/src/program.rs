@@ -27,6 +27,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::expression::{BinaryOperator, Expression, UnaryOperator, raise};
+use crate::function::NamedFunction;
 use crate::predicate::{Comparison, Predicate, Relation, Verdict};
 use crate::valuation::{EvaluationError, Valuation};
 
@@ -82,6 +83,7 @@ enum Test {
     Not(Box<Test>),
     All(Box<[Test]>),
     Any(Box<[Test]>),
+    Function(NamedFunction),
 }
 
 impl Expression {
@@ -235,14 +237,14 @@ impl<N: AsRef<str>> Compiler<'_, N> {
     }
 
     fn operand(&self, expression: &Expression) -> Result<Option<Operand>, EvaluationError> {
-        if let Some(value) = folded(expression) {
+        if let Some(value) = expression.folded() {
             return Ok(Some(Operand::Constant(value)));
         }
         match expression {
             Expression::Variable(name) => Ok(Some(Operand::Variable(self.place(name)?))),
             Expression::Binary(BinaryOperator::Product, left, right) => match (&**left, &**right) {
                 (Expression::Variable(name), factor) | (factor, Expression::Variable(name)) => {
-                    let Some(factor) = folded(factor) else { return Ok(None) };
+                    let Some(factor) = factor.folded() else { return Ok(None) };
                     Ok(Some(Operand::Scaled(factor, self.place(name)?)))
                 }
                 _ => Ok(None),
@@ -259,22 +261,25 @@ impl<N: AsRef<str>> Compiler<'_, N> {
     }
 }
 
-/// The value of an expression without variables, NaN where it has none.
-fn folded(expression: &Expression) -> Option<f64> {
-    match expression {
-        Expression::Constant(value) => Some(*value),
-        Expression::Variable(_) => None,
-        Expression::Unary(operator, operand) => Some(operator.apply(folded(operand)?)),
-        Expression::Binary(operator, left, right) => {
-            Some(combine(*operator, folded(left)?, folded(right)?))
+impl Expression {
+    /// The value of an expression without variables, NaN where it has none.
+    pub(crate) fn folded(&self) -> Option<f64> {
+        match self {
+            Expression::Constant(value) => Some(*value),
+            Expression::Variable(_) => None,
+            Expression::Unary(operator, operand) => Some(operator.apply(operand.folded()?)),
+            Expression::Binary(operator, left, right) => {
+                Some(combine(*operator, left.folded()?, right.folded()?))
+            }
+            Expression::Power(base, exponent) => Some(raise_number(base.folded()?, *exponent)),
         }
-        Expression::Power(base, exponent) => Some(raise_number(folded(base)?, *exponent)),
     }
 }
 
 impl Predicate {
     /// The predicate as a program on slices in which place *i* holds the value of `variables[i]`;
-    /// of a name that is listed twice, the first place counts.
+    /// of a name that is listed twice, the first place counts. A named function in it is called as
+    /// it is, with the slice under the listed names as its state.
     ///
     /// # Errors
     ///
@@ -365,10 +370,11 @@ impl Test {
             Predicate::Not(inner) => Test::Not(Box::new(Test::of(inner, names)?)),
             Predicate::All(parts) => Test::All(all(parts)?),
             Predicate::Any(parts) => Test::Any(all(parts)?),
+            Predicate::Function(function) => Test::Function(function.clone()),
         })
     }
 
-    /// The verdict, or `None` where a part is not a number.
+    /// The verdict, or `None` where a part is not a number or a function has an error.
     fn judge<F: Fn(usize) -> Option<f64> + Copy>(&self, state: &Listed<'_, F>) -> Option<Verdict> {
         match self {
             Test::Comparison { left, relation, right } => {
@@ -382,6 +388,10 @@ impl Test {
             Test::Any(parts) => parts
                 .iter()
                 .try_fold(Verdict::NEVER, |verdict, part| Some(verdict.or(part.judge(state)?))),
+            Test::Function(function) => {
+                let margin = function.margin(state).ok()?;
+                Some(Verdict { margin, holds: margin >= 0.0 })
+            }
         }
     }
 }

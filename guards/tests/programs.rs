@@ -78,6 +78,20 @@ fn of_a_name_that_is_listed_twice_the_first_place_counts() {
     assert!(guard.evaluate(&[0.0, 2.0]).is_err());
 }
 
+#[test]
+fn functions_see_the_slice_under_the_listed_names() {
+    let near = Predicate::function("near", |state| {
+        Ok(2.0 - (variable("x") - variable("y")).evaluate(state)?)
+    });
+    let guard = near.and(variable("x").at_least(0.0)).compile(&["y", "x"]).expect("x is listed");
+    let verdict = |margin, holds| Ok(Verdict { margin, holds });
+    assert_eq!(guard.evaluate(&[1.0, 2.5]), verdict(0.5, true));
+    assert_eq!(guard.evaluate_at(&[1.0, 2.0, 4.0], &[0, 2]), verdict(-1.0, false));
+    let error = EvaluationError::UnknownVariable { variable: "y".into() };
+    let blind = guard.predicate().compile(&["x"]).expect("what a function reads is not known");
+    assert_eq!(blind.evaluate(&[1.0]), Err(error));
+}
+
 /// Equal with the signs of zeros, or both not a number.
 fn same(left: f64, right: f64) -> bool {
     left.to_bits() == right.to_bits() || (left.is_nan() && right.is_nan())
