@@ -170,7 +170,11 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// # Errors
     ///
     /// [`TransitionError`] for the first guard before it that cannot be evaluated.
-    pub fn enabled(&self, location: L, state: &S) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
+    pub fn enabled(
+        &self,
+        location: L,
+        state: &S,
+    ) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
         self.first(location, state, |transition| transition.urgency.is_forced())
     }
 
@@ -195,7 +199,11 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// # Errors
     ///
     /// As for [`enabled`](Self::enabled); location and state are then as before.
-    pub fn step(&self, location: &mut L, state: &mut S) -> Result<Option<Jump<L, E>>, TransitionError> {
+    pub fn step(
+        &self,
+        location: &mut L,
+        state: &mut S,
+    ) -> Result<Option<Jump<L, E>>, TransitionError> {
         self.enabled(*location, state)?.map(|step| step.fire(location, state)).transpose()
     }
 

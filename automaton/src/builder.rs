@@ -288,7 +288,8 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     fn formulas(&self) -> Vec<Part> {
         let mut parts = Vec::new();
         let conditions = self.conditions.iter().map(|(event, guard, reset)| (*event, guard, reset));
-        let edges = self.edges.iter().map(|(row, guard, reset)| (self.rows[*row].event, guard, reset));
+        let edges =
+            self.edges.iter().map(|(row, guard, reset)| (self.rows[*row].event, guard, reset));
         for (event, guard, reset) in conditions.chain(edges) {
             parts.push(Part::reading(event.name(), "guard", guard.predicate()));
             let assignments = reset.assignments().into_iter().flatten();
@@ -310,7 +311,11 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         TransitionTable::new(&self.rows)
     }
 
-    fn transition_of(&self, number: usize, row: &Row<L, E>) -> Result<Transition<E, S>, BuildError> {
+    fn transition_of(
+        &self,
+        number: usize,
+        row: &Row<L, E>,
+    ) -> Result<Transition<E, S>, BuildError> {
         let edge = self.edges.iter().find(|(edge, ..)| *edge == number);
         let own = edge.map(|(_, guard, reset)| (guard, reset));
         let condition = self.conditions.iter().find(|(event, ..)| *event == row.event);

@@ -163,9 +163,27 @@ impl<S> fmt::Display for Rate<S> {
 /// A letter with a dot above, as one character where there is one: not every font combines them.
 fn dotted(letter: char, dot: char) -> String {
     let composed = match letter {
-        'a' => 'ȧ', 'b' => 'ḃ', 'c' => 'ċ', 'd' => 'ḋ', 'e' => 'ė', 'f' => 'ḟ', 'g' => 'ġ',
-        'h' => 'ḣ', 'm' => 'ṁ', 'n' => 'ṅ', 'o' => 'ȯ', 'p' => 'ṗ', 'r' => 'ṙ', 's' => 'ṡ',
-        't' => 'ṫ', 'w' => 'ẇ', 'x' => 'ẋ', 'y' => 'ẏ', 'z' => 'ż', 'T' => 'Ṫ', 'X' => 'Ẋ',
+        'a' => 'ȧ',
+        'b' => 'ḃ',
+        'c' => 'ċ',
+        'd' => 'ḋ',
+        'e' => 'ė',
+        'f' => 'ḟ',
+        'g' => 'ġ',
+        'h' => 'ḣ',
+        'm' => 'ṁ',
+        'n' => 'ṅ',
+        'o' => 'ȯ',
+        'p' => 'ṗ',
+        'r' => 'ṙ',
+        's' => 'ṡ',
+        't' => 'ṫ',
+        'w' => 'ẇ',
+        'x' => 'ẋ',
+        'y' => 'ẏ',
+        'z' => 'ż',
+        'T' => 'Ṫ',
+        'X' => 'Ẋ',
         _ => return format!("{letter}{dot}"),
     };
     composed.to_string()

@@ -39,9 +39,10 @@ pub use flow::{Flow, Rate};
 pub use reset::{Assignment, Reset};
 pub use time::HybridTime;
 
-// For the macros.
-#[doc(hidden)]
-pub use {pleach_discrete as discrete, pleach_guards as guards};
 pub use trace::{Participants, Trace, TraceEntry};
 pub use trajectory::Trajectory;
 pub use zeno::Zeno;
+
+// For the macros.
+#[doc(hidden)]
+pub use {pleach_discrete as discrete, pleach_guards as guards};

@@ -137,15 +137,13 @@ impl<S: Coordinates> From<Assignment<S>> for Reset<S> {
 }
 
 /// x⁺, where every formula reads x⁻.
-fn assign<S: Coordinates>(
-    assignments: &[Assignment<S>],
-    before: &S,
-) -> Result<S, EvaluationError> {
+fn assign<S: Coordinates>(assignments: &[Assignment<S>], before: &S) -> Result<S, EvaluationError> {
     let mut after = before.to_values();
     for assignment in assignments {
         let value = assignment.value.evaluate(before)?;
         let place = S::NAMES.iter().position(|name| *name == assignment.coordinate);
-        let unknown = || EvaluationError::UnknownVariable { variable: assignment.coordinate.into() };
+        let unknown =
+            || EvaluationError::UnknownVariable { variable: assignment.coordinate.into() };
         after[place.ok_or_else(unknown)?] = value;
     }
     Ok(S::from_values(&after))

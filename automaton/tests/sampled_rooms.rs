@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 
 use common::{Heater, Room, Sensed, Window, heater, window};
 use pleach_automaton::{
-    Automaton, Ending, Executor, TransitionError, HybridTime, Jump, Observer, Participants, Reason,
-    Round, System, Trace,
+    Automaton, Ending, Executor, HybridTime, Jump, Observer, Participants, Reason, Round, System,
+    Trace, TransitionError,
 };
 
 /// A jump of the composition.

@@ -36,7 +36,7 @@ pub use facts::{Facts, VARIABLES};
 pub use motion::{Objection, Proposal};
 pub use routing::{FlowReport, RouteLink};
 
-use crate::automaton::{TransitionError, Jump};
+use crate::automaton::{Jump, TransitionError};
 
 use super::automata::{MissionAutomaton, RoleAutomaton};
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
