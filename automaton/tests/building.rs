@@ -37,7 +37,7 @@ fn guards_need_a_row() {
 fn nothing_is_given_twice() {
     let text = "`cold` is given its guard twice: keep one";
     assert_eq!(message(sound().on(Sensed::Cold, cold(), Reset::identity())), text);
-    let still = || Flow::new("still", |_: &mut Room, _| {});
+    let still = || Flow::exact("still", |_: &mut Room, _| {});
     let builder = sound().flow(Heater::On, still()).flow(Heater::On, still());
     assert_eq!(message(builder), "`on` is given its flow twice: keep one");
 }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use petgraph::visit::EdgeRef;
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::{CompiledPredicate, EvaluationError, LinearForm, Program};
 

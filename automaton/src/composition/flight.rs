@@ -4,9 +4,7 @@
 use std::cell::RefCell;
 
 use nalgebra::{DMatrix, DVector};
-use pleach_continuous::flow::{
-    ConstantFlow, Curve, Integrator, LinearFlow, Onset, first_instant,
-};
+use pleach_continuous::flow::{ConstantFlow, Curve, Integrator, LinearFlow, Onset, first_instant};
 use pleach_guards::Verdict;
 
 use super::blueprint::{Place, PlaceMotion};
@@ -36,7 +34,7 @@ impl Simulation<'_> {
     /// The flow from here on, up to an event and for at most `limit` seconds.
     pub(super) fn plan(&self, limit: f64) -> Result<Flight, Failure> {
         let field = Field::of(self.composition, &self.locations, &self.values);
-        if self.leaves_invariant(&self.values)? {
+        if !self.invariants(&self.values)?.holds {
             return Ok(field.no_time());
         }
         match field.kind() {
@@ -46,7 +44,7 @@ impl Simulation<'_> {
                 self.follow(&field, curve, limit)
             }
             Kind::Linear(matrix, offset) => {
-                let curve = LinearFlow::new(&matrix, &offset, &self.values, limit)
+                let curve = LinearFlow::new(&matrix, offset.as_slice(), &self.values, limit)
                     .map_err(|fault| self.failure(fault.to_string()))?;
                 self.follow(&field, curve, limit)
             }
@@ -59,7 +57,7 @@ impl Simulation<'_> {
         let curve = Overlaid { curve, field };
         let onset = self.look(&curve)?;
         let end = onset.map_or(limit, |onset| onset.time);
-        let most = (end / curve.time_scale() * SAMPLES_PER_SCALE).min(MOST_SAMPLES);
+        let most = (end / curve.time_scale(0.0) * SAMPLES_PER_SCALE).min(MOST_SAMPLES);
         let pieces = if most > 1.0 { most.ceil() } else { 1.0 };
         let mut number = 0.0;
         let mut samples = Vec::new();
@@ -167,7 +165,9 @@ impl<'a> Field<'a> {
             Some((matrix, offset)) if matrix.iter().all(|entry| *entry == 0.0) => {
                 Kind::Constant(offset.iter().copied().collect())
             }
-            Some((matrix, offset)) if offset.len() <= LARGEST_LINEAR => Kind::Linear(matrix, offset),
+            Some((matrix, offset)) if offset.len() <= LARGEST_LINEAR => {
+                Kind::Linear(matrix, offset)
+            }
             _ => Kind::General,
         }
     }
@@ -183,7 +183,8 @@ impl<'a> Field<'a> {
                 let (form, row) = (form.as_ref()?, component.slots[*coordinate]);
                 offset[row] = *form.constant();
                 for (name, coefficient) in form.coefficients() {
-                    let named = component.blueprint.coordinates.iter().position(|one| *one == name)?;
+                    let named =
+                        component.blueprint.coordinates.iter().position(|one| *one == name)?;
                     let column = component.slots[named];
                     // What a component reads of one that solves its flow itself changes in a way
                     // that no matrix knows.
@@ -228,7 +229,8 @@ impl<'a> Field<'a> {
             match &place.motion {
                 PlaceMotion::Rates(formulas) => {
                     for (coordinate, rate, _) in formulas {
-                        rates[component.slots[*coordinate]] = rate.evaluate_at(state, &component.slots);
+                        rates[component.slots[*coordinate]] =
+                            rate.evaluate_at(state, &component.slots);
                     }
                 }
                 PlaceMotion::Field(field) => {
@@ -297,8 +299,8 @@ impl<C: Curve> Curve for Overlaid<'_, C> {
         self.field.overlay(time, state);
     }
 
-    fn time_scale(&self) -> f64 {
-        let scale = self.curve.time_scale();
+    fn time_scale(&self, time: f64) -> f64 {
+        let scale = self.curve.time_scale(time);
         if self.field.exact.is_empty() {
             scale
         } else {
