@@ -193,7 +193,8 @@ impl Reader<'_> {
 
     fn grown(&self, expression: Expression, below: usize) -> Result<Tree, ParseError> {
         if below == HEIGHT_LIMIT {
-            return Err(self.expected("at most 1000 operations that build on one another"));
+            let limit = format!("at most {HEIGHT_LIMIT} operations that build on one another");
+            return Err(self.expected(limit));
         }
         Ok(Tree { expression, height: below + 1 })
     }
