@@ -58,7 +58,7 @@ impl Predicate {
     /// let corners = (x.at_most(0.0) | x.at_least(1.0)) & (y.at_most(0.0) | y.at_least(1.0));
     /// assert_eq!(corners.disjunctive_form(4)?.len(), 4);
     /// assert!(corners.disjunctive_form(3).is_err());
-    /// # Ok::<(), pleach_guards::normal_form::NoDisjunctiveForm>(())
+    /// # Ok::<(), pleach_guards::NoDisjunctiveForm>(())
     /// ```
     pub fn disjunctive_form(
         &self,
@@ -82,7 +82,7 @@ impl Predicate {
     /// let close = variable("x").equals_within(1.0, 0.5);
     /// let text = "x − 1 ≥ 0 ∧ x − 1 ≤ 0.5 ∨ x − 1 ≤ 0 ∧ −(x − 1) ≤ 0.5";
     /// assert_eq!(close.by_cases(2)?.to_string(), text);
-    /// # Ok::<(), pleach_guards::normal_form::NoDisjunctiveForm>(())
+    /// # Ok::<(), pleach_guards::NoDisjunctiveForm>(())
     /// ```
     pub fn by_cases(&self, limit: usize) -> Result<Predicate, NoDisjunctiveForm> {
         let parts = |parts: &[Predicate]| -> Result<Arc<[Predicate]>, NoDisjunctiveForm> {

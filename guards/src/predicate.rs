@@ -198,8 +198,9 @@ impl Predicate {
     ///
     /// # Errors
     ///
-    /// Those of [`Expression::evaluate`] and [`NamedFunction::margin`]. Every part is evaluated, also where the verdict is
-    /// settled before, so that an error does not depend on the order of the parts.
+    /// Those of [`Expression::evaluate`] and [`NamedFunction::margin`]. Every part is evaluated,
+    /// also where the verdict is settled before, so that an error does not depend on the order of
+    /// the parts.
     pub fn evaluate(&self, state: &(impl Valuation + ?Sized)) -> Result<Verdict, EvaluationError> {
         match self {
             Predicate::Comparison(comparison) => comparison.evaluate(state),

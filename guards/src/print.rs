@@ -165,7 +165,10 @@ impl Printer<'_> {
         let (name, brackets) = match operator {
             UnaryOperator::Negation => {
                 self.out.write_str(self.notation.minus)?;
-                return self.operand(operand, Binding::Product);
+                // A minus right before a number is a part of the number.
+                let is_number = matches!(operand, Expression::Constant(_));
+                let is_loose = is_number || Binding::of_expression(operand) < Binding::Product;
+                return self.parenthesised_if(is_loose, |printer| printer.expression(operand));
             }
             UnaryOperator::AbsoluteValue => ("", self.notation.bars),
             UnaryOperator::Sine => (self.notation.sine, self.notation.parentheses),

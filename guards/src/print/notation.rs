@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Write};
 
+use crate::name::{self, RAISED_DIGITS, RAISED_MINUS};
+
 /// What differs between text and LaTeX.
 pub(super) struct Notation {
     pub always: &'static str,
@@ -55,7 +57,7 @@ pub(super) static TEXT: Notation = Notation {
     infinity: "∞",
     parentheses: ("(", ")"),
     bars: ("|", "|"),
-    write_name: |out, name| out.write_str(name),
+    write_name: name::write,
     write_exponent: write_raised,
 };
 
@@ -118,21 +120,10 @@ fn write_raised(out: &mut dyn Write, exponent: f64) -> fmt::Result {
     Ok(())
 }
 
+/// The digit or sign as it stands in an exponent.
 fn raised(character: char) -> char {
-    match character {
-        '-' => '⁻',
-        '0' => '⁰',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        '9' => '⁹',
-        other => other,
-    }
+    let digit = character.to_digit(10).and_then(|digit| RAISED_DIGITS.get(digit as usize));
+    *digit.unwrap_or(&RAISED_MINUS)
 }
 
 /// What follows the first underscore is a subscript.
