@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 
 use common::{Heater, Room, Sensed, Window, heater, window};
 use pleach_automaton::{
-    Automaton, Ending, Executor, GuardError, HybridTime, Jump, Observer, Participants, Reason,
-    Round, System, Trace,
+    Automaton, Ending, Executor, HybridTime, Jump, Observer, Participants, Reason, Round, System,
+    Trace, TransitionError,
 };
 
 /// A jump of the composition.
@@ -42,13 +42,13 @@ impl Building {
 impl System for Building {
     type Jump = Move;
     type Finish = &'static str;
-    type Error = GuardError;
+    type Error = TransitionError;
 
     fn finished(&self) -> Option<&'static str> {
         self.rooms.iter().any(|(_, _, room)| room.openings == 4).then_some("stuffy")
     }
 
-    fn jump(&mut self, round: &mut Round<'_, Move>) -> Result<(), GuardError> {
+    fn jump(&mut self, round: &mut Round<'_, Move>) -> Result<(), TransitionError> {
         if self.clock >= self.period {
             self.clock = 0.0;
             for (_, _, room) in &mut self.rooms {
@@ -68,11 +68,11 @@ impl System for Building {
         Ok(())
     }
 
-    fn time_to_jump(&self) -> Result<Option<f64>, GuardError> {
+    fn time_to_jump(&self) -> Result<Option<f64>, TransitionError> {
         Ok(Some(self.period - self.clock))
     }
 
-    fn flow(&mut self, duration: f64) -> Result<(), GuardError> {
+    fn flow(&mut self, duration: f64) -> Result<(), TransitionError> {
         let lands = duration == self.period - self.clock;
         self.clock = if lands { self.period } else { self.clock + duration };
         for (heater, _, room) in &mut self.rooms {

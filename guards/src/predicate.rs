@@ -298,18 +298,26 @@ impl Relation {
 }
 
 impl Verdict {
-    pub(crate) const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
-    pub(crate) const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
+    /// What [`always()`] says.
+    pub const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
+    /// What [`never()`] says.
+    pub const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
 
-    pub(crate) fn and(self, other: Verdict) -> Verdict {
+    /// The verdict on a conjunction of which this and `other` are the parts.
+    #[must_use]
+    pub fn and(self, other: Verdict) -> Verdict {
         Verdict { margin: self.margin.min(other.margin), holds: self.holds && other.holds }
     }
 
-    pub(crate) fn or(self, other: Verdict) -> Verdict {
+    /// The verdict on a disjunction of which this and `other` are the parts.
+    #[must_use]
+    pub fn or(self, other: Verdict) -> Verdict {
         Verdict { margin: self.margin.max(other.margin), holds: self.holds || other.holds }
     }
 
-    pub(crate) fn opposite(self) -> Verdict {
+    /// The verdict on the opposite.
+    #[must_use]
+    pub fn opposite(self) -> Verdict {
         Verdict { margin: -self.margin, holds: !self.holds }
     }
 }
