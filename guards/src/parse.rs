@@ -205,6 +205,13 @@ impl<'a> Reader<'a> {
         &self.tokens[self.position].token
     }
 
+    /// The next tokens.
+    fn ahead<const N: usize>(&self) -> [Option<&Token>; N] {
+        std::array::from_fn(|skipped| {
+            self.tokens.get(self.position + skipped).map(|located| &located.token)
+        })
+    }
+
     /// Whether the `wanted` tokens follow after the next `skipped`.
     fn follow(&self, skipped: usize, wanted: &[Token]) -> bool {
         let following = self.tokens[self.position..].iter().skip(skipped);
