@@ -15,6 +15,7 @@ pub mod automaton;
 pub mod builder;
 pub mod composition;
 pub mod coordinates;
+pub mod coverage;
 pub mod diagram;
 pub mod edge;
 pub mod executor;
@@ -33,6 +34,7 @@ pub use composition::{
     SimulationError,
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
+pub use coverage::{Coverage, CoverageError};
 pub use edge::{Edge, from};
 pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
 pub use flow::{Flow, Rate};
