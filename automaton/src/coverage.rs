@@ -40,10 +40,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use std::fmt;
+mod parts;
+mod report;
 
 use pleach_discrete::{Event, Location};
-use pleach_guards::{CompiledPredicate, EvaluationError, Predicate};
+use pleach_guards::EvaluationError;
 use thiserror::Error;
 
 use crate::automaton::Automaton;
@@ -52,6 +53,9 @@ use crate::composition::blueprint::Blueprint;
 use crate::coordinates::Coordinates;
 use crate::diagram::sketch::Sketch;
 use crate::trajectory::{Phase, Trajectory};
+use parts::Parts;
+
+pub use parts::{BoundaryCoverage, LocationCoverage, TransitionCoverage};
 
 /// What runs of a composition have been through; see the [module](self).
 #[derive(Clone, Debug)]
@@ -69,32 +73,6 @@ pub struct ComponentCoverage {
     transitions: Vec<TransitionCoverage>,
     /// By coordinate: where its value is in a sample.
     slots: Vec<usize>,
-}
-
-/// How often a location was entered.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LocationCoverage {
-    name: &'static str,
-    entered: usize,
-}
-
-/// How often a transition was taken, and what was seen of its guard.
-#[derive(Clone, Debug)]
-pub struct TransitionCoverage {
-    event: String,
-    source: usize,
-    target: usize,
-    rank: usize,
-    taken: usize,
-    boundaries: Vec<BoundaryCoverage>,
-}
-
-/// In how many samples a part of a guard was true, and in how many false.
-#[derive(Clone, Debug)]
-pub struct BoundaryCoverage {
-    condition: CompiledPredicate,
-    held: usize,
-    failed: usize,
 }
 
 /// A trajectory tells nothing of the coverage of a composition.
@@ -125,8 +103,8 @@ impl Coverage {
     /// [`CoverageError::Guard`] if a guard names a variable that the component does not have.
     pub fn of(composition: &Composition) -> Result<Coverage, CoverageError> {
         let components = composition.components.iter().map(|component| {
-            let Blueprinted { locations, transitions } =
-                Blueprinted::of(&component.blueprint, &component.events)
+            let Parts { locations, transitions } =
+                Parts::of(&component.blueprint, &component.events)
                     .map_err(|source| guard_error(&component.name, source))?;
             let (name, slots) = (component.name.clone(), component.slots.clone());
             Ok(ComponentCoverage { name, locations, transitions, slots })
@@ -146,8 +124,7 @@ impl Coverage {
         let failed = |source| guard_error(NAME, source);
         let blueprint = Blueprint::of(automaton).map_err(failed)?;
         let events: Vec<String> = blueprint.events.iter().map(ToString::to_string).collect();
-        let Blueprinted { locations, transitions } =
-            Blueprinted::of(&blueprint, &events).map_err(failed)?;
+        let Parts { locations, transitions } = Parts::of(&blueprint, &events).map_err(failed)?;
         let slots = (0..S::NAMES.len()).collect();
         let component = ComponentCoverage { name: NAME.into(), locations, transitions, slots };
         Ok(Coverage { components: vec![component], runs: 0 })
@@ -316,166 +293,6 @@ impl ComponentCoverage {
         transition.taken += 1;
         self.locations[target].entered += 1;
         Ok(())
-    }
-}
-
-impl LocationCoverage {
-    /// The name of the location.
-    pub fn name(&self) -> &'static str {
-        self.name
-    }
-
-    /// How often runs began in it or entered it.
-    pub fn entered(&self) -> usize {
-        self.entered
-    }
-}
-
-impl TransitionCoverage {
-    /// What the event is called in the component.
-    pub fn event(&self) -> &str {
-        &self.event
-    }
-
-    /// The number of the location that it leaves.
-    pub fn source(&self) -> usize {
-        self.source
-    }
-
-    /// The number of the location that it enters.
-    pub fn target(&self) -> usize {
-        self.target
-    }
-
-    /// How often it was taken.
-    pub fn taken(&self) -> usize {
-        self.taken
-    }
-
-    /// The comparisons of the guard, from left to right.
-    pub fn boundaries(&self) -> &[BoundaryCoverage] {
-        &self.boundaries
-    }
-}
-
-impl BoundaryCoverage {
-    /// The comparison, or the function under its name.
-    pub fn condition(&self) -> &Predicate {
-        self.condition.predicate()
-    }
-
-    /// In how many samples it was true.
-    pub fn held(&self) -> usize {
-        self.held
-    }
-
-    /// In how many samples it was false.
-    pub fn failed(&self) -> usize {
-        self.failed
-    }
-}
-
-impl fmt::Display for BoundaryCoverage {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let seen = match (self.held > 0, self.failed > 0) {
-            (true, true) => "both sides",
-            (true, false) => "only true",
-            (false, true) => "only false",
-            (false, false) => "unseen",
-        };
-        write!(formatter, "{}: {seen}", self.condition)
-    }
-}
-
-impl fmt::Display for Coverage {
-    /// For each component what is covered in numbers, and then a table of its transitions in
-    /// Markdown.
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (number, component) in self.components.iter().enumerate() {
-            if number > 0 {
-                writeln!(formatter)?;
-            }
-            write!(formatter, "{component}")?;
-        }
-        Ok(())
-    }
-}
-
-impl fmt::Display for ComponentCoverage {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let counts = self.counts().map(|(what, covered, all)| format!("{covered} of {all} {what}"));
-        writeln!(formatter, "{}: {}", self.name, counts.join(", "))?;
-        let unseen = self.locations.iter().filter(|location| location.entered == 0);
-        let unseen: Vec<&str> = unseen.map(|location| location.name).collect();
-        if !unseen.is_empty() {
-            writeln!(formatter, "never entered: {}", unseen.join(", "))?;
-        }
-        writeln!(formatter, "\n| transition | event | taken | guard |\n| --- | --- | --- | --- |")?;
-        for transition in &self.transitions {
-            let name = |location: usize| self.locations[location].name;
-            let boundaries: Vec<String> =
-                transition.boundaries.iter().map(ToString::to_string).collect();
-            writeln!(
-                formatter,
-                "| {} → {} | {} | {} | {} |",
-                name(transition.source),
-                name(transition.target),
-                transition.event,
-                transition.taken,
-                boundaries.join("; ").replace('|', r"\|"),
-            )?;
-        }
-        Ok(())
-    }
-}
-
-/// The parts of a component before any run.
-struct Blueprinted {
-    locations: Vec<LocationCoverage>,
-    transitions: Vec<TransitionCoverage>,
-}
-
-impl Blueprinted {
-    fn of(blueprint: &Blueprint, events: &[String]) -> Result<Blueprinted, EvaluationError> {
-        let locations = blueprint.places.iter();
-        let locations =
-            locations.map(|place| LocationCoverage { name: place.name, entered: 0 }).collect();
-        let mut transitions = Vec::new();
-        for (source, place) in blueprint.places.iter().enumerate() {
-            for (rank, leaving) in place.leaving.iter().enumerate() {
-                let mut conditions = Vec::new();
-                conditions_of(leaving.guard.predicate(), &mut conditions);
-                let boundaries = conditions.into_iter().map(|condition| {
-                    let condition = condition.compile(blueprint.coordinates)?;
-                    Ok(BoundaryCoverage { condition, held: 0, failed: 0 })
-                });
-                transitions.push(TransitionCoverage {
-                    event: events[leaving.event].clone(),
-                    source,
-                    target: leaving.target,
-                    rank,
-                    taken: 0,
-                    boundaries: boundaries.collect::<Result<_, EvaluationError>>()?,
-                });
-            }
-        }
-        Ok(Blueprinted { locations, transitions })
-    }
-}
-
-/// The comparisons and functions that a predicate is made of, each once.
-fn conditions_of(predicate: &Predicate, found: &mut Vec<Predicate>) {
-    match predicate {
-        Predicate::Comparison(_) | Predicate::Function(_) => {
-            if !found.contains(predicate) {
-                found.push(predicate.clone());
-            }
-        }
-        Predicate::Not(inner) => conditions_of(inner, found),
-        Predicate::All(parts) | Predicate::Any(parts) => {
-            parts.iter().for_each(|part| conditions_of(part, found));
-        }
-        _ => {}
     }
 }
 

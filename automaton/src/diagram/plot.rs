@@ -5,6 +5,8 @@ mod curve;
 mod portrait;
 mod sheet;
 
+use pleach_guards::constant;
+
 use crate::executor::{Ending, Reason};
 use crate::trajectory::Trajectory;
 use axis::{Axis, power_of_ten};
@@ -33,8 +35,8 @@ const FOOT: f64 = 52.0;
 const LEGEND: f64 = 22.0;
 /// About how many numbers a vertical axis has, and how many the time axis.
 const TICKS: [f64; 2] = [4.0, 9.0];
-/// With more jumps, their dots would hide the curve.
-const MOST_DOTS: usize = 60;
+/// Jumps closer than this have no dots, which would hide the curve, in pixels.
+const DOT_DISTANCE: f64 = 8.0;
 
 /// The trajectory over time as an SVG document: a panel for each variable and below them a strip
 /// for each component, coloured by its location. A jump is a dashed line from x⁻, an open dot, to
@@ -68,13 +70,24 @@ pub fn plot(trajectory: &Trajectory) -> String {
     sheet.finish(top)
 }
 
+/// What is plotted: the variables, or of a composition the components.
 fn title(trajectory: &Trajectory) -> String {
-    let names: Vec<&str> = trajectory.components().iter().map(|one| &*one.name).collect();
-    match &names[..] {
-        [first, second, third, _, ..] => {
-            format!("{first}, {second}, {third} and {} more", names.len() - 3)
+    let names = match trajectory.components() {
+        [_] => listed(trajectory.variables().iter().map(String::as_str)),
+        components => listed(components.iter().map(|one| &*one.name)),
+    };
+    format!("{names} over time")
+}
+
+/// The first few names, and how many more there are.
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    const MOST: usize = 5;
+    let names: Vec<&str> = names.collect();
+    match names.get(MOST..) {
+        Some(more) if !more.is_empty() => {
+            format!("{} and {} more", names[..MOST].join(", "), more.len())
         }
-        few => few.join(", "),
+        _ => names.join(", "),
     }
 }
 
@@ -82,13 +95,21 @@ fn subtitle(trajectory: &Trajectory) -> String {
     let Ending { at, reason } = trajectory.ending();
     let ending = match reason {
         Reason::Horizon => "up to the horizon".to_owned(),
-        Reason::Zeno(zeno) => format!("Zeno: jumps accumulate at {} s", zeno.accumulation),
+        Reason::Zeno(zeno) => {
+            format!("Zeno: jumps accumulate at {} s", rounded(zeno.accumulation))
+        }
         Reason::Finished(failure) => format!("failed: {failure}"),
         other => format!("ended: {other:?}"),
     };
     let jumps = trajectory.jumps().len();
     let noun = if jumps == 1 { "jump" } else { "jumps" };
-    format!("{} s, {jumps} {noun}; {ending}", at.t)
+    format!("{} s, {jumps} {noun}; {ending}", rounded(at.t))
+}
+
+/// To six digits, for reading.
+fn rounded(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    constant(rounded).to_string()
 }
 
 fn draw_panel(
@@ -125,21 +146,35 @@ fn draw_panel(
         path.push_str(&curve::path(&phase.samples, (Quantity::Time, time), (quantity, &vertical)));
         path.push(' ');
     }
-    let mut dots = Vec::new();
+    let mut jumps: Vec<[[f64; 2]; 2]> = Vec::new();
     for (pair, jump) in phases.windows(2).zip(trajectory.jumps()) {
-        let (Some(before), Some(after)) = (pair[0].samples.last(), pair[1].samples.first()) else {
-            continue;
-        };
-        let (before, after) = (quantity.value(before), quantity.value(after));
-        if before != after {
-            let (from, to) = (place(jump.at.t, before), place(jump.at.t, after));
-            sheet.line(from, to, "jump");
-            dots.extend([(from, "before"), (to, "after")]);
+        if let (Some(before), Some(after)) = (pair[0].samples.last(), pair[1].samples.first()) {
+            let (before, after) = (quantity.value(before), quantity.value(after));
+            if before != after {
+                jumps.push([place(jump.at.t, before), place(jump.at.t, after)]);
+            }
         }
     }
+    jumps.iter().for_each(|[from, to]| sheet.line(*from, *to, "jump"));
     sheet.curve(path.trim_end(), None);
-    if dots.len() <= 2 * MOST_DOTS {
-        dots.into_iter().for_each(|(at, class)| sheet.dot(at, class));
+    draw_dots(sheet, &jumps);
+}
+
+/// Dots at both ends of jumps, but for those that lie too close together.
+fn draw_dots(sheet: &mut Sheet, jumps: &[[[f64; 2]; 2]]) {
+    let distance = |one: usize, other: usize| match (jumps.get(one), jumps.get(other)) {
+        (Some([from, to]), Some([other_from, other_to])) => {
+            let apart = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+            apart(from, other_from).min(apart(to, other_to))
+        }
+        _ => f64::INFINITY,
+    };
+    for (number, [from, to]) in jumps.iter().enumerate() {
+        let before = distance(number, number.wrapping_sub(1));
+        if before.min(distance(number, number + 1)) >= DOT_DISTANCE {
+            sheet.dot(*from, "before");
+            sheet.dot(*to, "after");
+        }
     }
 }
 
@@ -152,7 +187,7 @@ fn draw_strip(
     top: f64,
 ) -> Vec<usize> {
     let participant = &trajectory.components()[component];
-    sheet.text(LEFT - 8.0, top + STRIP / 2.0, &shortened(&participant.name), "name end");
+    sheet.text(LEFT - 8.0, top + STRIP / 2.0, &strip_name(trajectory, component), "name end");
     let (mut named, mut unnamed) = (Vec::new(), Vec::new());
     for Stay { location, from, to } in stays(trajectory, component) {
         let name = &participant.locations[location];
@@ -221,7 +256,7 @@ fn draw_legend(
     top: f64,
 ) {
     let participant = &trajectory.components()[component];
-    sheet.text(LEFT - 8.0, top, &shortened(&participant.name), "quiet end");
+    sheet.text(LEFT - 8.0, top, &strip_name(trajectory, component), "quiet end");
     let mut x = LEFT;
     for &location in locations {
         let name = &participant.locations[location];
@@ -231,9 +266,13 @@ fn draw_legend(
     }
 }
 
-/// A name that fits left of the panels.
-fn shortened(name: &str) -> String {
+/// The name of the component, as far as there is room; a single one needs none.
+fn strip_name(trajectory: &Trajectory, component: usize) -> String {
     const MOST: usize = 11;
+    let name = match trajectory.components() {
+        [_] => "location",
+        components => &components[component].name,
+    };
     match name.chars().count() {
         count if count <= MOST => name.to_owned(),
         _ => name.chars().take(MOST - 1).chain(['…']).collect(),

@@ -30,24 +30,18 @@ const NOTHING: &str = "—";
 
 fn transitions<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Columns {
     let rows = rows(automaton);
-    let column = |cell: &dyn Fn(&Row<'_, E, S>) -> String| rows.iter().map(cell).collect();
+    let column = |cell: &dyn Fn(&Row<'_, L, E, S>) -> String| rows.iter().map(cell).collect();
     let mut columns: Columns =
         vec![("event", column(&|row| format!("**{}**", row.transition.event.name())))];
-    if rows.iter().any(|row| row.way.is_some()) {
-        let every = || "every one".to_owned();
-        columns.push((
-            "transition",
-            column(&|row| {
-                row.way.map_or_else(every, |(source, target)| format!("{source} → {target}"))
-            }),
-        ));
+    if rows.iter().any(|row| row.stands == Stands::Alone) {
+        columns.push(("transition", column(&|row| row.way())));
     }
-    let has_name = |row: &Row<'_, E, S>| {
+    let has_name = |row: &Row<'_, L, E, S>| {
         let guard = &row.transition.guard;
         guard.name() != guard.predicate().to_string()
     };
     if rows.iter().any(has_name) {
-        let name = |row: &Row<'_, E, S>| match has_name(row) {
+        let name = |row: &Row<'_, L, E, S>| match has_name(row) {
             true => row.transition.guard.name().to_owned(),
             false => NOTHING.to_owned(),
         };
@@ -58,28 +52,60 @@ fn transitions<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, 
     columns
 }
 
-/// A row of the table: a transition, with where it leads unless it stands for its whole event.
-struct Row<'a, E, S> {
+/// A row of the table.
+struct Row<'a, L, E, S> {
     transition: &'a Transition<E, S>,
-    way: Option<(&'static str, &'static str)>,
+    source: L,
+    target: L,
+    stands: Stands,
 }
 
-fn rows<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Vec<Row<'_, E, S>> {
+/// What a row stands for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stands {
+    /// One of the transitions on its event, which differ.
+    Alone,
+    /// The only transition on its event.
+    Only,
+    /// All transitions on its event.
+    ForAll,
+}
+
+impl<L: Location, E, S> Row<'_, L, E, S> {
+    fn way(&self) -> String {
+        match self.stands {
+            Stands::ForAll => "all".to_owned(),
+            Stands::Alone | Stands::Only => {
+                format!("{} → {}", self.source.name(), self.target.name())
+            }
+        }
+    }
+}
+
+fn rows<L: Location, E: Event, S: Valuation>(
+    automaton: &Automaton<L, E, S>,
+) -> Vec<Row<'_, L, E, S>> {
+    let table = automaton.table();
     let mut rows = Vec::new();
     for event in E::ALL {
-        let of_event = || {
-            let all = automaton.graph().edge_weights().zip(automaton.table().rows());
-            all.filter(|(transition, _)| transition.event == *event)
+        let of_event: Vec<_> = automaton
+            .graph()
+            .edge_weights()
+            .zip(table.rows())
+            .filter(|(transition, _)| transition.event == *event)
+            .collect();
+        let stands = match &of_event[..] {
+            [_] => Stands::Only,
+            [(first, _), others @ ..] if others.iter().all(|(other, _)| is_same(first, other)) => {
+                Stands::ForAll
+            }
+            _ => Stands::Alone,
         };
-        let Some((first, _)) = of_event().next() else { continue };
-        if of_event().all(|(other, _)| is_same(first, other)) {
-            rows.push(Row { transition: first, way: None });
-        } else {
-            rows.extend(of_event().map(|(transition, row)| Row {
-                transition,
-                way: Some((row.source.name(), row.target.name())),
-            }));
-        }
+        let shown = if stands == Stands::ForAll { 1 } else { of_event.len() };
+        rows.extend(of_event.into_iter().take(shown).map(|(transition, row)| {
+            let (source, target) = (row.source, row.target);
+            Row { transition, source, target, stands }
+        }));
     }
     rows
 }

@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::axis::{Axis, power_of_ten};
 use super::curve::{self, Quantity};
 use super::sheet::{Sheet, WIDTH, line_colour, text_width};
-use super::{LEFT, MOST_DOTS, RIGHT, subtitle};
+use super::{LEFT, RIGHT, draw_dots, subtitle};
 use crate::trajectory::{Phase, Sample, Trajectory};
 
 /// The height of the panel, in pixels.
@@ -106,16 +106,14 @@ impl Portrait<'_> {
 
     fn draw_curves(&self, sheet: &mut Sheet) {
         let phases = self.trajectory.phases();
-        let mut dots = Vec::new();
+        let mut jumps = Vec::new();
         for pair in phases.windows(2) {
-            let (Some(before), Some(after)) = (pair[0].samples.last(), pair[1].samples.first())
-            else {
-                continue;
-            };
-            let (from, to) = (self.place(before), self.place(after));
-            if from != to {
-                sheet.line(from, to, "jump");
-                dots.extend([(from, "before"), (to, "after")]);
+            if let (Some(before), Some(after)) = (pair[0].samples.last(), pair[1].samples.first()) {
+                let (from, to) = (self.place(before), self.place(after));
+                if from != to {
+                    sheet.line(from, to, "jump");
+                    jumps.push([from, to]);
+                }
             }
         }
         // Neighbouring phases of one colour share a path: a file of many jumps stays small.
@@ -127,9 +125,7 @@ impl Portrait<'_> {
             let path = paths.collect::<Vec<_>>().join(" ");
             sheet.curve(&path, group.first().map(|phase| line_colour(self.location(phase))));
         }
-        if dots.len() <= 2 * MOST_DOTS {
-            dots.into_iter().for_each(|(at, class)| sheet.dot(at, class));
-        }
+        draw_dots(sheet, &jumps);
         if let Some(first) = phases.first().and_then(|phase| phase.samples.first()) {
             sheet.dot(self.place(first), "start");
         }

@@ -12,8 +12,6 @@ const GAP: f64 = 28.0;
 const PADDING: f64 = 6.0;
 /// From the line of a label to the next, and likewise of connections, in pixels.
 const STEP: f64 = 30.0;
-/// From port to port along the lower side of a frame, in pixels.
-const PORT: f64 = 18.0;
 
 /// The composition as an SVG document.
 pub fn composition_svg(composition: &Composition) -> String {
@@ -29,7 +27,8 @@ pub fn composition_svg(composition: &Composition) -> String {
     for (name, sketch) in composition.sketches() {
         let (picture, size) = draw(&sketch);
         let width = (size.width + 2.0 * PADDING).max(text_width(name) + 2.0 * MARGIN);
-        frames.push(Frame { name: name.to_owned(), left, width, picture: Some((picture, size)) });
+        let picture = Some((picture, size));
+        frames.push(Frame { name: name.to_owned(), left, width, picture });
         left += width + GAP;
     }
     let tallest = frames.iter().filter_map(|frame| frame.picture.as_ref());
@@ -41,17 +40,30 @@ pub fn composition_svg(composition: &Composition) -> String {
     }
     for (number, (label, participants)) in labels.iter().enumerate() {
         let y = MARGIN + (number as f64 + 0.5) * STEP;
-        draw_label(&mut canvas, &frames, label, participants, number, [y, top]);
+        let places: Vec<f64> = participants
+            .iter()
+            .map(|&component| {
+                let known = labels.iter().filter(|(_, who)| who.contains(&component));
+                let (before, all) =
+                    (known.clone().position(|(one, _)| one == label), known.count());
+                frames[component].port(before.unwrap_or(0), all)
+            })
+            .collect();
+        draw_label(&mut canvas, &places, label, [y, top]);
     }
-    let mut ports = vec![0_u32; frames.len()];
+    let ends = |component: usize| {
+        let all = connections.iter().flat_map(|one| [one.output, one.input]);
+        all.filter(move |one| *one == component).count()
+    };
+    let mut ports = vec![0; frames.len()];
     for (number, connection) in connections.iter().enumerate() {
         let y = bottom + (number as f64 + 1.0) * STEP;
         let mut port = |component: usize| {
             ports[component] += 1;
-            frames[component].left + PORT * f64::from(ports[component])
+            frames[component].port(ports[component] - 1, ends(component))
         };
-        let ends = [port(connection.output), port(connection.input)];
-        draw_connection(&mut canvas, ends, &connection.label(), [y, bottom]);
+        let ways = [port(connection.output), port(connection.input)];
+        draw_connection(&mut canvas, ways, &connection.label(), [y, bottom]);
     }
     let below = connections.len() as f64 * STEP + if connections.is_empty() { 0.0 } else { STEP };
     canvas.finish(Size { width: left - GAP + MARGIN, height: bottom + below + MARGIN })
@@ -66,8 +78,9 @@ struct Frame {
 }
 
 impl Frame {
-    fn middle(&self) -> f64 {
-        self.left + self.width / 2.0
+    /// Where number `which` of `all` ways reaches the frame.
+    fn port(&self, which: usize, all: usize) -> f64 {
+        self.left + self.width * (which as f64 + 1.0) / (all as f64 + 1.0)
     }
 
     fn draw(&mut self, canvas: &mut Canvas, top: f64, height: f64) {
@@ -82,25 +95,14 @@ impl Frame {
     }
 }
 
-/// A line over all participants, with a way down to each; the ways of different labels stand
-/// beside each other.
-fn draw_label(
-    canvas: &mut Canvas,
-    frames: &[Frame],
-    label: &str,
-    participants: &[usize],
-    which: usize,
-    [y, top]: [f64; 2],
-) {
-    let shift = which as f64 * PORT;
-    let places: Vec<f64> =
-        participants.iter().map(|&component| frames[component].middle() + shift).collect();
+/// A line over all participants, with a way down to each.
+fn draw_label(canvas: &mut Canvas, places: &[f64], label: &str, [y, top]: [f64; 2]) {
     let (Some(first), Some(last)) = (places.first(), places.last()) else { return };
     if first < last {
         let (from, to) = (number(*first), number(*last));
         canvas.path(&format!("M {from} {} H {to}", number(y)), "wire", false);
     }
-    for &x in &places {
+    for &x in places {
         let (x_text, from, to) = (number(x), number(y), number(top));
         canvas.path(&format!("M {x_text} {from} V {to}"), "wire", false);
         canvas.dot_of(Place { x, y: top }, "wire-dot");
