@@ -3,8 +3,11 @@
 #[path = "common/classics.rs"]
 mod classics;
 
-use classics::{ball, gears, house, thermostat};
-use pleach_automaton::{Trajectory, diagram};
+use classics::{Ball, ball, gears, house, thermostat};
+use pleach_automaton::{Automaton, Trajectory, diagram, from};
+use pleach_discrete::{self as discrete, Location};
+use pleach_guards::always;
+use proptest::prelude::*;
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
@@ -90,25 +93,87 @@ fn every_transition_is_an_arrow_with_a_label() {
 }
 
 /// Each text takes a box of about its own size; no two of them meet.
-#[test]
-fn no_text_lies_on_another() {
+fn assert_legible(picture: &str) {
     const LETTER: f64 = 7.0;
     const LINE: f64 = 16.0;
-    for picture in [diagram::svg(&ball()), diagram::svg(&thermostat()), diagram::svg(&gears())] {
-        let boxes: Vec<_> = texts(&picture)
-            .into_iter()
-            .map(|(words, [x, y], class)| {
-                let width = words.chars().count() as f64 * LETTER;
-                let left = if class.contains("middle") { x - width / 2.0 } else { x };
-                (words, [left, left + width], y)
-            })
-            .collect();
-        for (number, (one, [left, right], y)) in boxes.iter().enumerate() {
-            for (other, [other_left, other_right], other_y) in &boxes[..number] {
-                let beside = right <= other_left || other_right <= left;
-                assert!(beside || (y - other_y).abs() >= LINE, "`{one}` lies on `{other}`");
-            }
+    let boxes: Vec<_> = texts(picture)
+        .into_iter()
+        .map(|(words, [x, y], class)| {
+            let width = words.replace("&lt;", "<").chars().count() as f64 * LETTER;
+            let left = if class.contains("middle") { x - width / 2.0 } else { x };
+            (words, [left, left + width], y)
+        })
+        .collect();
+    for (number, (one, [left, right], y)) in boxes.iter().enumerate() {
+        for (other, [other_left, other_right], other_y) in &boxes[..number] {
+            let beside = right <= other_left || other_right <= left;
+            assert!(beside || (y - other_y).abs() >= LINE, "`{one}` lies on `{other}`: {picture}");
         }
+    }
+}
+
+#[test]
+fn no_text_lies_on_another() {
+    assert_legible(&diagram::svg(&ball()));
+    assert_legible(&diagram::svg(&thermostat()));
+    assert_legible(&diagram::svg(&gears()));
+}
+
+/// One of four locations, or an event of as many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Number(usize);
+
+const NUMBERS: [Number; 4] = [Number(0), Number(1), Number(2), Number(3)];
+const NAMES: [&str; 4] = ["one", "two", "three", "a fourth one with a long name"];
+
+impl Location for Number {
+    const ALL: &'static [Self] = &NUMBERS;
+
+    fn name(self) -> &'static str {
+        NAMES[self.0]
+    }
+}
+
+impl discrete::Event for Number {
+    const ALL: &'static [Self] = &NUMBERS;
+
+    fn name(self) -> &'static str {
+        NAMES[self.0]
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn any_small_graph_is_legible(
+        targets in prop::collection::btree_map((0..4usize, 0..4usize), 0..4usize, 1..13),
+        initial in 0..4usize,
+    ) {
+        let Ball { height, velocity } = Ball::coordinates();
+        let mut builder = Automaton::<Number, Number, Ball>::starting_in(Number(initial))
+            .initially(Ball { height: 1.0, velocity: 0.0 })
+            .flow(Number(1), [height.rate(&velocity), velocity.rate(-9.81)])
+            .transition(from(Number(initial)).on(Number(0)).to(Number(initial)).may(always()));
+        for ((source, event), target) in &targets {
+            if (*source, *event) == (initial, 0) {
+                continue;
+            }
+            let guard = height.at_most(*target as f64) & velocity.less_than(*event as f64);
+            let edge = from(Number(*source)).on(Number(*event)).to(Number(*target));
+            let edge = if *event == 1 { edge.at_once(guard) } else { edge.must(guard) };
+            builder = builder.transition(if *target == 2 {
+                edge.then([velocity.becomes(-0.8 * &velocity), height.becomes(0.0)])
+            } else {
+                edge
+            });
+        }
+        let automaton = builder.build().expect("the model is sound");
+        let picture = diagram::svg(&automaton);
+        assert_well_formed(&picture);
+        assert_legible(&picture);
+        let transitions = automaton.table().rows().len();
+        prop_assert!(picture.matches("url(#head)").count() > transitions);
     }
 }
 

@@ -123,11 +123,8 @@ impl Parts {
 /// The comparisons and functions that a predicate is made of, each once.
 fn conditions_of(predicate: &Predicate, found: &mut Vec<Predicate>) {
     match predicate {
-        Predicate::Comparison(_) | Predicate::Function(_) => {
-            if !found.contains(predicate) {
-                found.push(predicate.clone());
-            }
-        }
+        _ if found.contains(predicate) => {}
+        Predicate::Comparison(_) | Predicate::Function(_) => found.push(predicate.clone()),
         Predicate::Not(inner) => conditions_of(inner, found),
         Predicate::All(parts) | Predicate::Any(parts) => {
             parts.iter().for_each(|part| conditions_of(part, found));

@@ -160,12 +160,12 @@ fn draw_panel(
     draw_dots(sheet, &jumps);
 }
 
-/// Dots at both ends of jumps, but for those that lie too close together.
+/// Dots at both ends of jumps, but for jumps that lie too close together at both.
 fn draw_dots(sheet: &mut Sheet, jumps: &[[[f64; 2]; 2]]) {
     let distance = |one: usize, other: usize| match (jumps.get(one), jumps.get(other)) {
         (Some([from, to]), Some([other_from, other_to])) => {
             let apart = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-            apart(from, other_from).min(apart(to, other_to))
+            apart(from, other_from).max(apart(to, other_to))
         }
         _ => f64::INFINITY,
     };
