@@ -39,12 +39,14 @@ mod event;
 mod integrator;
 mod linear;
 mod root;
+mod step;
 mod tolerances;
 
 pub use constant::ConstantFlow;
 pub use event::{EventSearch, InvalidSearch, Onset, first_instant};
-pub use integrator::{IntegrationFailure, Integrator, Step};
+pub use integrator::{IntegrationFailure, Integrator};
 pub use linear::{InvalidFlow, LinearFlow};
+pub use step::Step;
 pub use tolerances::{InvalidTolerances, Tolerances};
 
 /// The right-hand side f of a differential equation ẋ = f(t, x).
