@@ -95,10 +95,9 @@ pub trait Curve {
     /// Before the start it is the state at the start, after the end the state at the end.
     fn state_at(&self, time: f64, state: &mut [f64]);
 
-    /// How long, in seconds from `time` on, until the curve has bent noticeably: a search that
+    /// How long, in seconds from an instant on, until the curve has bent noticeably: a search that
     /// looks several times in that span sees what it does. Infinite if it bends only once or so.
-    fn time_scale(&self, time: f64) -> f64 {
-        let _ = time;
+    fn time_scale(&self, _time: f64) -> f64 {
         self.end() - self.start()
     }
 }
