@@ -1,0 +1,268 @@
+//! Trajectories as the formulas see them: states at successive instants.
+
+use std::error::Error;
+use std::fmt;
+
+use pleach_automaton::time::HybridTime;
+use pleach_guards::{Comparison, EvaluationError, Predicate, Relation, Valuation};
+
+use super::signal::{Flow, Knot, Origin, Signal, Span, Time, Value};
+
+/// The states of a trajectory at successive instants of hybrid time.
+///
+/// Times are in seconds, finite, and do not decrease. Between two samples of different times the
+/// state flows; two samples of the same time are what is before and after a jump, and both count.
+///
+/// ```
+/// use pleach_verify::temporal::Samples;
+///
+/// // A ball falls until 1 s, where its velocity jumps.
+/// let fall = [(0.0, [("velocity", -1.0)]), (1.0, [("velocity", -9.0)]), (1.0, [("velocity", 6.0)])];
+/// let mut last = f64::NAN;
+/// fall.for_each(&mut |t, _state| last = t);
+/// assert_eq!(last, 1.0);
+/// ```
+pub trait Samples {
+    /// Calls `visit` with the time and the state of every sample, in order.
+    fn for_each(&self, visit: &mut dyn FnMut(f64, &dyn Valuation));
+}
+
+impl<V: Valuation> Samples for [(f64, V)] {
+    fn for_each(&self, visit: &mut dyn FnMut(f64, &dyn Valuation)) {
+        self.iter().for_each(|(t, state)| visit(*t, state));
+    }
+}
+
+impl<V: Valuation, const N: usize> Samples for [(f64, V); N] {
+    fn for_each(&self, visit: &mut dyn FnMut(f64, &dyn Valuation)) {
+        self.as_slice().for_each(visit);
+    }
+}
+
+impl<V: Valuation> Samples for Vec<(f64, V)> {
+    fn for_each(&self, visit: &mut dyn FnMut(f64, &dyn Valuation)) {
+        self.as_slice().for_each(visit);
+    }
+}
+
+/// Why a formula cannot be judged on a trajectory.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum TemporalError {
+    /// There is no sample.
+    NoSamples,
+    /// The time of a sample is not finite, or less than that of the sample before.
+    TimeOutOfOrder {
+        /// Which sample, from 0.
+        sample: usize,
+        /// Its time, in seconds.
+        time: f64,
+    },
+    /// A comparison has no margin in the state of a sample.
+    Evaluation {
+        /// The time of the sample, in seconds.
+        time: f64,
+        /// Why.
+        error: EvaluationError,
+    },
+    /// A margin goes from finite to infinite, or from one infinity to the other, without a jump:
+    /// nothing says what it is in between.
+    UnboundedFlow {
+        /// What is compared.
+        comparison: Comparison,
+        /// The time of the sample before, in seconds.
+        from: f64,
+        /// The time of the sample after, in seconds.
+        to: f64,
+    },
+}
+
+impl fmt::Display for TemporalError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSamples => {
+                write!(formatter, "the trajectory has no samples; it needs at least one")
+            }
+            Self::TimeOutOfOrder { sample, time } => {
+                write!(formatter, "sample {sample} is at {time} s: times must be finite and ")?;
+                write!(formatter, "not decrease")
+            }
+            Self::Evaluation { time, error } => write!(formatter, "at {time} s: {error}"),
+            Self::UnboundedFlow { comparison, from, to } => {
+                let predicate = Predicate::Comparison(comparison.clone());
+                write!(formatter, "the margin of `{predicate}` between {from} s and {to} s ")?;
+                write!(formatter, "cannot be interpolated: it is infinite at one end only")
+            }
+        }
+    }
+}
+
+impl Error for TemporalError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Evaluation { error, .. } => Some(error),
+            _ => None,
+        }
+    }
+}
+
+/// The verdicts of some comparisons at the samples of a trajectory.
+pub(super) struct Recording {
+    instants: Vec<HybridTime>,
+    literals: Vec<Literal>,
+}
+
+/// A comparison and its verdicts, one for each instant.
+struct Literal {
+    comparison: Comparison,
+    verdicts: Vec<pleach_guards::Verdict>,
+}
+
+/// What the values of a signal are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reading {
+    /// The margin of each comparison.
+    Margin,
+    /// 1 where the comparison holds, −1 where it does not.
+    Truth,
+}
+
+/// How long the last state is taken to stay, as a part of the duration: sums of bounds are
+/// rounded, and must not for that reason reach beyond the end.
+const ROUNDING_OF_BOUNDS: f64 = 1e-12;
+
+impl Recording {
+    /// Evaluates `comparisons` at every sample.
+    pub fn new(
+        comparisons: &[Comparison],
+        samples: &(impl Samples + ?Sized),
+    ) -> Result<Recording, TemporalError> {
+        let literal =
+            |comparison: &Comparison| Literal { comparison: comparison.clone(), verdicts: vec![] };
+        let literals = comparisons.iter().map(literal).collect();
+        let mut recording = Recording { instants: Vec::new(), literals };
+        let mut outcome = Ok(());
+        samples.for_each(&mut |t, state| {
+            if outcome.is_ok() {
+                outcome = recording.record(t, state);
+            }
+        });
+        outcome?;
+        if recording.instants.is_empty() { Err(TemporalError::NoSamples) } else { Ok(recording) }
+    }
+
+    fn record(&mut self, t: f64, state: &dyn Valuation) -> Result<(), TemporalError> {
+        let instant = match self.instants.last() {
+            _ if !t.is_finite() => None,
+            None => Some(HybridTime { t, j: 0 }),
+            Some(last) if t > last.t => Some(HybridTime { t, j: last.j }),
+            Some(last) if t == last.t => Some(last.after_jump()),
+            Some(_) => None,
+        };
+        let sample = self.instants.len();
+        let instant = instant.ok_or(TemporalError::TimeOutOfOrder { sample, time: t })?;
+        for literal in &mut self.literals {
+            let verdict = literal
+                .comparison
+                .evaluate(state)
+                .map_err(|error| TemporalError::Evaluation { time: t, error })?;
+            let before = self.instants.last().zip(literal.verdicts.last());
+            if let Some((from, before)) = before.filter(|(from, _)| from.t < t) {
+                let unbounded = before.margin.is_infinite() || verdict.margin.is_infinite();
+                if unbounded && before.margin != verdict.margin {
+                    let comparison = literal.comparison.clone();
+                    return Err(TemporalError::UnboundedFlow { comparison, from: from.t, to: t });
+                }
+            }
+            literal.verdicts.push(verdict);
+        }
+        self.instants.push(instant);
+        Ok(())
+    }
+
+    /// The seconds from the first sample to the last.
+    pub fn duration(&self) -> f64 {
+        self.end().t - self.instants[0].t
+    }
+
+    /// The comparison at place `literal`.
+    pub fn comparison(&self, literal: usize) -> &Comparison {
+        &self.literals[literal].comparison
+    }
+
+    /// The value `margin` at all times.
+    pub fn constant(&self, margin: f64) -> Signal {
+        let mut signal = Signal::new();
+        let value = Value::given(margin);
+        let flow = Some(Flow::constant(value));
+        signal.push(Knot { t: self.instants[0].t, value, flow });
+        signal
+    }
+
+    /// The comparison at place `literal` over time, which is `beyond` after the last sample.
+    pub fn signal(&self, literal: usize, reading: Reading, beyond: f64) -> Signal {
+        let comparison = &self.literals[literal].comparison;
+        let verdicts = &self.literals[literal].verdicts;
+        let mut signal = Signal::new();
+        for (position, (instant, verdict)) in self.instants.iter().zip(verdicts).enumerate() {
+            let origin = |time| Some(Origin { literal, jumps: instant.j, time });
+            let margin = match reading {
+                Reading::Margin => verdict.margin,
+                Reading::Truth => truth(verdict.holds),
+            };
+            let value = Value { margin, origin: origin(Time::Fixed(instant.t)) };
+            let Some((next, after)) =
+                self.instants.get(position + 1).zip(verdicts.get(position + 1))
+            else {
+                // The last state stays for as long as rounding may take, and then nobody knows.
+                let end = instant.t + ROUNDING_OF_BOUNDS * self.duration();
+                if end > instant.t {
+                    signal.push(Knot { t: instant.t, value, flow: Some(Flow::constant(value)) });
+                }
+                let flow = Some(Flow::constant(Value::given(beyond)));
+                signal.push(Knot { t: end, value, flow });
+                break;
+            };
+            if next.t == instant.t {
+                signal.push(Knot { t: instant.t, value, flow: None });
+                continue;
+            }
+            let origin = origin(Time::Moving(0.0));
+            let flow = Flow { start: verdict.margin, end: after.margin, origin };
+            match reading {
+                Reading::Margin => signal.push(Knot { t: instant.t, value, flow: Some(flow) }),
+                Reading::Truth => {
+                    push_truth(&mut signal, value, (instant.t, next.t), flow, comparison.relation);
+                }
+            }
+        }
+        signal
+    }
+
+    fn end(&self) -> HybridTime {
+        self.instants[self.instants.len() - 1]
+    }
+}
+
+fn truth(holds: bool) -> f64 {
+    if holds { 1.0 } else { -1.0 }
+}
+
+/// Adds an instant and the truth of a comparison whose margin is `flow` over `span` after it.
+fn push_truth(signal: &mut Signal, value: Value, span: Span, flow: Flow, relation: Relation) {
+    let on_the_boundary = matches!(relation, Relation::AtMost | Relation::AtLeast);
+    let course = |sum: f64| {
+        let holds = if sum == 0.0 { on_the_boundary } else { sum > 0.0 };
+        Some(Flow { start: truth(holds), end: truth(holds), origin: flow.origin })
+    };
+    let zero = Flow::constant(Value::given(0.0));
+    match super::signal::crossing(span, &flow, &zero) {
+        None => signal.push(Knot { t: span.0, value, flow: course(flow.start + flow.end) }),
+        Some(t) => {
+            signal.push(Knot { t: span.0, value, flow: course(flow.start) });
+            let origin = flow.at(span, t).origin;
+            let value = Value { margin: truth(on_the_boundary), origin };
+            signal.push(Knot { t, value, flow: course(flow.end) });
+        }
+    }
+}
