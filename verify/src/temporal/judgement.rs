@@ -93,7 +93,7 @@ impl Formula {
             (lower, upper)
         };
         let margins = bounds(Reading::Margin);
-        let robustness = Robustness { lower: margins.0.margin, upper: margins.1.margin };
+        let robustness = Robustness::between(margins.0.margin, margins.1.margin);
         // On the boundary the margins do not tell, but the truth of the comparisons does.
         let on_boundary = robustness.lower == 0.0 || robustness.upper == 0.0;
         let deciding = if on_boundary { bounds(Reading::Truth) } else { margins };
@@ -107,12 +107,20 @@ impl Formula {
     }
 }
 
+impl Robustness {
+    /// Adding 0 turns −0 into 0.
+    fn between(lower: f64, upper: f64) -> Robustness {
+        Robustness { lower: lower + 0.0, upper: upper + 0.0 }
+    }
+}
+
 impl Witness {
     fn of(value: Value, recording: &Recording) -> Option<Witness> {
         let origin = value.origin?;
         let (Time::Fixed(t) | Time::Moving(t)) = origin.time;
+        let at = HybridTime { t, j: origin.jumps };
         let comparison = recording.comparison(origin.literal).clone();
-        Some(Witness { at: HybridTime { t, j: origin.jumps }, comparison, margin: value.margin })
+        Some(Witness { at, comparison, margin: recording.margin(origin.literal, at) })
     }
 }
 

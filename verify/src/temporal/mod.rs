@@ -53,8 +53,8 @@
 //!
 //! # The end of the trajectory
 //!
-//! A trajectory is a beginning of something: beyond its last sample every comparison may have any
-//! margin from −∞ to ∞. Robustness is therefore an interval, with one end for the worst and one
+//! A trajectory is a beginning of something: after the time of its last sample every comparison
+//! may have any margin from −∞ to ∞. (At that time itself, no more jumps are expected.) Robustness is therefore an interval, with one end for the worst and one
 //! for the best that can follow (Deshmukh and others 2017,
 //! [doi:10.1007/s10703-017-0286-7](https://doi.org/10.1007/s10703-017-0286-7)). If all of it is
 //! on one side, the formula is settled; otherwise it is [`Status::Inconclusive`]. So □ without

@@ -127,10 +127,6 @@ pub(super) enum Reading {
     Truth,
 }
 
-/// How long the last state is taken to stay, as a part of the duration: sums of bounds are
-/// rounded, and must not for that reason reach beyond the end.
-const ROUNDING_OF_BOUNDS: f64 = 1e-12;
-
 impl Recording {
     /// Evaluates `comparisons` at every sample.
     pub fn new(
@@ -190,6 +186,17 @@ impl Recording {
         &self.literals[literal].comparison
     }
 
+    /// The margin of the comparison at place `literal` at the instant `at`.
+    pub fn margin(&self, literal: usize, at: HybridTime) -> f64 {
+        let verdicts = &self.literals[literal].verdicts;
+        let last = self.instants.partition_point(|instant| *instant <= at).saturating_sub(1);
+        let (from, to) =
+            (self.instants[last], self.instants.get(last + 1).map_or(at, |next| *next));
+        let start = verdicts[last].margin;
+        let end = verdicts.get(last + 1).map_or(start, |verdict| verdict.margin);
+        Flow { start, end, origin: None }.at((from.t, to.t), at.t).margin
+    }
+
     /// The value `margin` at all times.
     pub fn constant(&self, margin: f64) -> Signal {
         let mut signal = Signal::new();
@@ -214,13 +221,8 @@ impl Recording {
             let Some((next, after)) =
                 self.instants.get(position + 1).zip(verdicts.get(position + 1))
             else {
-                // The last state stays for as long as rounding may take, and then nobody knows.
-                let end = instant.t + ROUNDING_OF_BOUNDS * self.duration();
-                if end > instant.t {
-                    signal.push(Knot { t: instant.t, value, flow: Some(Flow::constant(value)) });
-                }
                 let flow = Some(Flow::constant(Value::given(beyond)));
-                signal.push(Knot { t: end, value, flow });
+                signal.push(Knot { t: instant.t, value, flow });
                 break;
             };
             if next.t == instant.t {

@@ -97,6 +97,11 @@ impl Flow {
         self.start == self.end
     }
 
+    /// Whether the origin is the same at all times.
+    fn stays(&self) -> bool {
+        !self.origin.is_some_and(|origin| matches!(origin.time, Time::Moving(_)))
+    }
+
     pub fn opposite(self) -> Flow {
         Flow { start: -self.start, end: -self.end, ..self }
     }
@@ -150,6 +155,19 @@ impl Flow {
     }
 }
 
+/// Sums and differences of a time and the bounds of windows agree to within so many parts of the
+/// larger of the two: some roundings of 2⁻⁵³ each.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+impl Knot {
+    /// How many seconds the knot lies after what is `ahead` seconds after `now`: 0 where only
+    /// rounding tells the two apart.
+    fn lead(&self, ahead: f64, now: f64) -> f64 {
+        let lead = (self.t - ahead) - now;
+        if lead.abs() <= ROUNDING * ahead.max(self.t.abs()) { 0.0 } else { lead }
+    }
+}
+
 impl Signal {
     pub fn new() -> Signal {
         Signal { knots: Vec::new() }
@@ -172,7 +190,7 @@ impl Signal {
 
     /// How many knots are less than `ahead` seconds after `now`.
     pub fn passed(&self, ahead: f64, now: f64) -> usize {
-        self.knots.partition_point(|knot| knot.t - ahead < now)
+        self.knots.partition_point(|knot| knot.lead(ahead, now) < 0.0)
     }
 
     /// When the knot `next` is `ahead` seconds ahead; never, if there is none.
@@ -185,7 +203,8 @@ impl Signal {
 
     /// The knots from `next` on that are `ahead` seconds ahead at `now`.
     pub fn met(&self, next: usize, ahead: f64, now: f64) -> Range<usize> {
-        let count = self.knots[next..].iter().take_while(|knot| knot.t - ahead == now).count();
+        let count =
+            self.knots[next..].iter().take_while(|knot| knot.lead(ahead, now) == 0.0).count();
         next..next + count
     }
 
@@ -220,13 +239,14 @@ impl Signal {
         }
     }
 
-    /// Adds a knot, unless a constant flow goes through it.
+    /// Adds a knot, unless a constant flow goes through it and may keep its origin.
     pub fn push(&mut self, knot: Knot) {
-        let level = |flow: Option<Flow>| {
-            flow.is_some_and(|flow| flow.is_constant() && flow.start == knot.value.margin)
-        };
         let before = self.knots.last().and_then(|last| last.flow);
-        if !(level(before) && level(knot.flow)) {
+        let goes_through = before.zip(knot.flow).is_some_and(|(before, after)| {
+            let level = |flow: Flow| flow.is_constant() && flow.start == knot.value.margin;
+            level(before) && level(after) && (before.stays() || before.origin == after.origin)
+        });
+        if !goes_through {
             self.knots.push(knot);
         }
     }
