@@ -19,10 +19,10 @@ use pleach_guards::Predicate;
 ///
 /// let alarm = Formula::holds(variable("temperature").more_than(90.0));
 /// let cooled = variable("temperature").at_most(60.0);
-/// let cools_in_time = always(within(0.0, 100.0)?, alarm.implies(eventually(within(0.0, 5.0)?, cooled)));
+/// let cools_in_time = alarm.implies(eventually(within(0.0, 5.0)?, cooled));
 ///
 /// assert_eq!(
-///     cools_in_time.to_string(),
+///     always(within(0.0, 100.0)?, cools_in_time).to_string(),
 ///     "□[0, 100] (temperature > 90 → ◇[0, 5] (temperature ≤ 60))",
 /// );
 /// # Ok::<(), pleach_verify::temporal::InvalidWindow>(())

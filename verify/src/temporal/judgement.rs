@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use pleach_automaton::time::HybridTime;
-use pleach_guards::{Comparison, Predicate};
+use pleach_automaton::HybridTime;
+use pleach_guards::Predicate;
 
 use super::formula::{Formula, Window};
 use super::samples::{Reading, Recording, Samples, TemporalError};
@@ -45,14 +45,14 @@ pub struct Robustness {
     pub upper: f64,
 }
 
-/// The instant at which a comparison has the margin that is the robustness of the formula.
+/// The instant at which a predicate has the margin that is the robustness of the formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Witness {
     /// When; the jumps are counted from the first sample.
     pub at: HybridTime,
-    /// What decides there.
-    pub comparison: Comparison,
-    /// The margin of the comparison at that instant, which under a negation is the opposite of
+    /// What decides there, a predicate without connectives.
+    pub predicate: Predicate,
+    /// The margin of the predicate at that instant, which under a negation is the opposite of
     /// the robustness.
     pub margin: f64,
 }
@@ -60,7 +60,8 @@ pub struct Witness {
 impl Formula {
     /// Judges a trajectory from its first instant.
     ///
-    /// The margin of each comparison is taken to be linear between samples. The judgement is then
+    /// The margin of each comparison is taken to be linear between samples, so they must be as
+    /// close as that is true. The judgement is then
     /// exact, but for rounding: it takes account of all instants and not only of the samples.
     ///
     /// ```
@@ -79,12 +80,12 @@ impl Formula {
     ///
     /// # Errors
     ///
-    /// [`TemporalError`] if there is no sample, if time goes back, if a comparison cannot be
+    /// [`TemporalError`] if there is no sample, if time goes back, if a predicate cannot be
     /// evaluated, or if its margin becomes infinite without a jump.
     pub fn judge(&self, samples: &(impl Samples + ?Sized)) -> Result<Judgement, TemporalError> {
-        let mut comparisons = Vec::new();
-        let plan = Plan::of(self, &mut comparisons);
-        let recording = Recording::new(&comparisons, samples)?;
+        let mut literals = Vec::new();
+        let plan = Plan::of(self, &mut literals);
+        let recording = Recording::new(&literals, samples)?;
         let bounds = |reading| {
             let lower = plan.value(&recording, reading, f64::NEG_INFINITY);
             let long_enough = self.horizon() <= recording.duration();
@@ -119,12 +120,13 @@ impl Witness {
         let origin = value.origin?;
         let (Time::Fixed(t) | Time::Moving(t)) = origin.time;
         let at = HybridTime { t, j: origin.jumps };
-        let comparison = recording.comparison(origin.literal).clone();
-        Some(Witness { at, comparison, margin: recording.margin(origin.literal, at) })
+        let predicate = recording.predicate(origin.literal).clone();
+        Some(Witness { at, predicate, margin: recording.margin(origin.literal, at) })
     }
 }
 
-/// A formula whose predicates are resolved into comparisons, each known by its place in a list.
+/// A formula whose predicates are resolved into those without connectives, the literals, each
+/// known by its place in a list.
 enum Plan {
     Literal(usize),
     Not(Box<Plan>),
@@ -133,15 +135,13 @@ enum Plan {
     Always(Window, Box<Plan>),
     Eventually(Window, Box<Plan>),
     Until(Window, Box<Plan>, Box<Plan>),
-    /// No state tells whether a predicate of a kind unknown here holds.
-    Unknown,
 }
 
 impl Plan {
-    fn of(formula: &Formula, comparisons: &mut Vec<Comparison>) -> Plan {
-        let mut plan = |formula: &Formula| Plan::of(formula, comparisons);
+    fn of(formula: &Formula, literals: &mut Vec<Predicate>) -> Plan {
+        let mut plan = |formula: &Formula| Plan::of(formula, literals);
         match formula {
-            Formula::Holds(predicate) => Plan::of_predicate(predicate, comparisons),
+            Formula::Holds(predicate) => Plan::of_predicate(predicate, literals),
             Formula::Not(inner) => Plan::Not(Box::new(plan(inner))),
             Formula::All(parts) => Plan::All(parts.iter().map(plan).collect()),
             Formula::Any(parts) => Plan::Any(parts.iter().map(plan).collect()),
@@ -156,20 +156,19 @@ impl Plan {
         }
     }
 
-    fn of_predicate(predicate: &Predicate, comparisons: &mut Vec<Comparison>) -> Plan {
-        let mut plan = |predicate: &Predicate| Plan::of_predicate(predicate, comparisons);
+    fn of_predicate(predicate: &Predicate, literals: &mut Vec<Predicate>) -> Plan {
+        let mut plan = |predicate: &Predicate| Plan::of_predicate(predicate, literals);
         match predicate {
             Predicate::Not(inner) => Plan::Not(Box::new(plan(inner))),
             Predicate::All(parts) => Plan::All(parts.iter().map(plan).collect()),
             Predicate::Any(parts) => Plan::Any(parts.iter().map(plan).collect()),
-            Predicate::Comparison(comparison) => {
-                let known = comparisons.iter().position(|other| other == comparison);
+            other => {
+                let known = literals.iter().position(|literal| literal == other);
                 Plan::Literal(known.unwrap_or_else(|| {
-                    comparisons.push(comparison.clone());
-                    comparisons.len() - 1
+                    literals.push(other.clone());
+                    literals.len() - 1
                 }))
             }
-            _ => Plan::Unknown,
         }
     }
 
@@ -198,7 +197,6 @@ impl Plan {
             }
             Plan::Eventually(window, inner) => supremum(signal(inner), *window),
             Plan::Until(window, first, second) => until(*window, &signal(first), &signal(second)),
-            Plan::Unknown => recording.constant(beyond),
         }
     }
 }
@@ -236,7 +234,7 @@ impl fmt::Display for Robustness {
 
 impl fmt::Display for Witness {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let predicate = Predicate::Comparison(self.comparison.clone());
-        write!(formatter, "at {} the margin of `{predicate}` is {}", self.at, self.margin)
+        let Witness { at, predicate, margin } = self;
+        write!(formatter, "at {at} the margin of `{predicate}` is {margin}")
     }
 }

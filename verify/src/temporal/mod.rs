@@ -38,10 +38,12 @@
 //! | ¬φ | −ρ(φ) |
 //! | φ ∧ ψ, φ ∨ ψ | the smaller, the larger of ρ(φ) and ρ(ψ) |
 //! | φ → ψ | that of ¬φ ∨ ψ |
-//! | □\[a, b\] φ | the infimum of ρ(φ) at the instants τ′ = (t′, j′) ≥ τ with t + a ≤ t′ ≤ t + b |
-//! | ◇\[a, b\] φ | the supremum of ρ(φ) at the same instants |
-//! | φ 𝒰\[a, b\] ψ | the supremum, at the same instants τ′, of the smaller of ρ(ψ) at τ′ and the infimum of ρ(φ) at the instants from τ until just before τ′ |
+//! | □\[a, b\] φ | the infimum of ρ(φ) over the window |
+//! | ◇\[a, b\] φ | the supremum of ρ(φ) over the window |
+//! | φ 𝒰\[a, b\] ψ | the supremum over the window of ρ(ψ) and before it ρ(φ) |
 //!
+//! where the window holds the instants τ′ = (t′, j′) ≥ τ with t + a ≤ t′ ≤ t + b, and *until* takes,
+//! for each of them, the smaller of ρ(ψ) there and the infimum of ρ(φ) from τ until just before it
 //! (Donzé and Maler 2010,
 //! [doi:10.1007/978-3-642-15297-9_9](https://doi.org/10.1007/978-3-642-15297-9_9)). What is before
 //! a jump and what is after it both count, and windows hold their ends: `always` sees the state
@@ -69,6 +71,7 @@
 
 pub mod formula;
 pub mod judgement;
+mod pointwise;
 mod print;
 pub mod samples;
 mod signal;

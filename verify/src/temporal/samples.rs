@@ -3,9 +3,10 @@
 use std::error::Error;
 use std::fmt;
 
-use pleach_automaton::time::HybridTime;
-use pleach_guards::{Comparison, EvaluationError, Predicate, Relation, Valuation};
+use pleach_automaton::{HybridTime, Trajectory};
+use pleach_guards::{Comparison, EvaluationError, Predicate, Relation, Valuation, Verdict};
 
+use super::pointwise::crossing;
 use super::signal::{Flow, Knot, Origin, Signal, Span, Time, Value};
 
 /// The states of a trajectory at successive instants of hybrid time.
@@ -17,7 +18,8 @@ use super::signal::{Flow, Knot, Origin, Signal, Span, Time, Value};
 /// use pleach_verify::temporal::Samples;
 ///
 /// // A ball falls until 1 s, where its velocity jumps.
-/// let fall = [(0.0, [("velocity", -1.0)]), (1.0, [("velocity", -9.0)]), (1.0, [("velocity", 6.0)])];
+/// let velocities = [(0.0, -1.0), (1.0, -9.0), (1.0, 6.0)];
+/// let fall = velocities.map(|(t, velocity)| (t, [("velocity", velocity)]));
 /// let mut last = f64::NAN;
 /// fall.for_each(&mut |t, _state| last = t);
 /// assert_eq!(last, 1.0);
@@ -45,6 +47,13 @@ impl<V: Valuation> Samples for Vec<(f64, V)> {
     }
 }
 
+/// The samples of every phase; the margins are linear between them, and not cubic as the states.
+impl Samples for Trajectory {
+    fn for_each(&self, visit: &mut dyn FnMut(f64, &dyn Valuation)) {
+        self.samples().for_each(|(at, sample)| visit(at.t, &self.state(sample)));
+    }
+}
+
 /// Why a formula cannot be judged on a trajectory.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -58,7 +67,7 @@ pub enum TemporalError {
         /// Its time, in seconds.
         time: f64,
     },
-    /// A comparison has no margin in the state of a sample.
+    /// A predicate has no margin in the state of a sample.
     Evaluation {
         /// The time of the sample, in seconds.
         time: f64,
@@ -68,8 +77,8 @@ pub enum TemporalError {
     /// A margin goes from finite to infinite, or from one infinity to the other, without a jump:
     /// nothing says what it is in between.
     UnboundedFlow {
-        /// What is compared.
-        comparison: Comparison,
+        /// What has the margin.
+        predicate: Predicate,
         /// The time of the sample before, in seconds.
         from: f64,
         /// The time of the sample after, in seconds.
@@ -88,8 +97,7 @@ impl fmt::Display for TemporalError {
                 write!(formatter, "not decrease")
             }
             Self::Evaluation { time, error } => write!(formatter, "at {time} s: {error}"),
-            Self::UnboundedFlow { comparison, from, to } => {
-                let predicate = Predicate::Comparison(comparison.clone());
+            Self::UnboundedFlow { predicate, from, to } => {
                 write!(formatter, "the margin of `{predicate}` between {from} s and {to} s ")?;
                 write!(formatter, "cannot be interpolated: it is infinite at one end only")
             }
@@ -106,36 +114,36 @@ impl Error for TemporalError {
     }
 }
 
-/// The verdicts of some comparisons at the samples of a trajectory.
+/// The verdicts of some predicates without connectives at the samples of a trajectory.
 pub(super) struct Recording {
     instants: Vec<HybridTime>,
     literals: Vec<Literal>,
 }
 
-/// A comparison and its verdicts, one for each instant.
+/// A predicate and its verdicts, one for each instant.
 struct Literal {
-    comparison: Comparison,
-    verdicts: Vec<pleach_guards::Verdict>,
+    predicate: Predicate,
+    verdicts: Vec<Verdict>,
 }
 
 /// What the values of a signal are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
-    /// The margin of each comparison.
+    /// The margin of each predicate.
     Margin,
-    /// 1 where the comparison holds, −1 where it does not.
+    /// 1 where the predicate holds, −1 where it does not.
     Truth,
 }
 
 impl Recording {
-    /// Evaluates `comparisons` at every sample.
+    /// Evaluates `predicates` at every sample.
     pub fn new(
-        comparisons: &[Comparison],
+        predicates: &[Predicate],
         samples: &(impl Samples + ?Sized),
     ) -> Result<Recording, TemporalError> {
         let literal =
-            |comparison: &Comparison| Literal { comparison: comparison.clone(), verdicts: vec![] };
-        let literals = comparisons.iter().map(literal).collect();
+            |predicate: &Predicate| Literal { predicate: predicate.clone(), verdicts: vec![] };
+        let literals = predicates.iter().map(literal).collect();
         let mut recording = Recording { instants: Vec::new(), literals };
         let mut outcome = Ok(());
         samples.for_each(&mut |t, state| {
@@ -159,15 +167,15 @@ impl Recording {
         let instant = instant.ok_or(TemporalError::TimeOutOfOrder { sample, time: t })?;
         for literal in &mut self.literals {
             let verdict = literal
-                .comparison
+                .predicate
                 .evaluate(state)
                 .map_err(|error| TemporalError::Evaluation { time: t, error })?;
             let before = self.instants.last().zip(literal.verdicts.last());
             if let Some((from, before)) = before.filter(|(from, _)| from.t < t) {
                 let unbounded = before.margin.is_infinite() || verdict.margin.is_infinite();
                 if unbounded && before.margin != verdict.margin {
-                    let comparison = literal.comparison.clone();
-                    return Err(TemporalError::UnboundedFlow { comparison, from: from.t, to: t });
+                    let predicate = literal.predicate.clone();
+                    return Err(TemporalError::UnboundedFlow { predicate, from: from.t, to: t });
                 }
             }
             literal.verdicts.push(verdict);
@@ -181,12 +189,12 @@ impl Recording {
         self.end().t - self.instants[0].t
     }
 
-    /// The comparison at place `literal`.
-    pub fn comparison(&self, literal: usize) -> &Comparison {
-        &self.literals[literal].comparison
+    /// The predicate at place `literal`.
+    pub fn predicate(&self, literal: usize) -> &Predicate {
+        &self.literals[literal].predicate
     }
 
-    /// The margin of the comparison at place `literal` at the instant `at`.
+    /// The margin of the predicate at place `literal` at the instant `at`.
     pub fn margin(&self, literal: usize, at: HybridTime) -> f64 {
         let verdicts = &self.literals[literal].verdicts;
         let last = self.instants.partition_point(|instant| *instant <= at).saturating_sub(1);
@@ -206,9 +214,9 @@ impl Recording {
         signal
     }
 
-    /// The comparison at place `literal` over time, which is `beyond` after the last sample.
+    /// The predicate at place `literal` over time, which is `beyond` after the last sample.
     pub fn signal(&self, literal: usize, reading: Reading, beyond: f64) -> Signal {
-        let comparison = &self.literals[literal].comparison;
+        let on_the_boundary = holds_on_the_boundary(&self.literals[literal].predicate);
         let verdicts = &self.literals[literal].verdicts;
         let mut signal = Signal::new();
         for (position, (instant, verdict)) in self.instants.iter().zip(verdicts).enumerate() {
@@ -234,7 +242,7 @@ impl Recording {
             match reading {
                 Reading::Margin => signal.push(Knot { t: instant.t, value, flow: Some(flow) }),
                 Reading::Truth => {
-                    push_truth(&mut signal, value, (instant.t, next.t), flow, comparison.relation);
+                    push_truth(&mut signal, value, (instant.t, next.t), flow, on_the_boundary);
                 }
             }
         }
@@ -250,15 +258,20 @@ fn truth(holds: bool) -> f64 {
     if holds { 1.0 } else { -1.0 }
 }
 
-/// Adds an instant and the truth of a comparison whose margin is `flow` over `span` after it.
-fn push_truth(signal: &mut Signal, value: Value, span: Span, flow: Flow, relation: Relation) {
-    let on_the_boundary = matches!(relation, Relation::AtMost | Relation::AtLeast);
+/// Whether the predicate holds where its margin is 0.
+fn holds_on_the_boundary(predicate: &Predicate) -> bool {
+    let strict = [Relation::LessThan, Relation::MoreThan];
+    !matches!(predicate, Predicate::Comparison(Comparison { relation, .. }) if strict.contains(relation))
+}
+
+/// Adds an instant and the truth of a predicate whose margin is `flow` over `span` after it.
+fn push_truth(signal: &mut Signal, value: Value, span: Span, flow: Flow, on_the_boundary: bool) {
     let course = |sum: f64| {
         let holds = if sum == 0.0 { on_the_boundary } else { sum > 0.0 };
         Some(Flow { start: truth(holds), end: truth(holds), origin: flow.origin })
     };
     let zero = Flow::constant(Value::given(0.0));
-    match super::signal::crossing(span, &flow, &zero) {
+    match crossing(span, &flow, &zero) {
         None => signal.push(Knot { t: span.0, value, flow: course(flow.start + flow.end) }),
         Some(t) => {
             signal.push(Knot { t: span.0, value, flow: course(flow.start) });

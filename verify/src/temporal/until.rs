@@ -5,13 +5,14 @@
 //! unbounded one (Donzé, Ferrère and Maler 2013,
 //! [doi:10.1007/978-3-642-39799-8_19](https://doi.org/10.1007/978-3-642-39799-8_19)):
 //!
-//! - φ 𝒰\[a, ∞) ψ is, for a > 0: φ up to just before a seconds from now, and there φ 𝒰 ψ;
+//! - φ 𝒰\[a, ∞) ψ, for a > 0, is: φ up to just before a seconds from now, and there φ 𝒰 ψ;
 //! - φ 𝒰\[a, b] ψ is φ 𝒰\[a, ∞) ψ and ◇\[a, b] ψ.
 //!
 //! The unbounded one is computed from the end to the start, one piece at a time.
 
 use super::formula::Window;
-use super::signal::{Flow, Knot, Pair, Signal, Span, Value, crossing, lowest, paired};
+use super::pointwise::{Pair, crossing, lowest, paired};
+use super::signal::{Flow, Knot, Signal, Span, Value};
 use super::sliding::{Reach, infimum};
 
 /// φ 𝒰 ψ over `window`.

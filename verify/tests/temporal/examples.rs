@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use pleach_automaton::time::HybridTime;
+use pleach_automaton::{Automaton, HybridTime, coordinates, from};
+use pleach_discrete::vocabulary;
 use pleach_guards::variable;
 use pleach_verify::temporal::{
     Formula, Robustness, Status, TemporalError, Window, always, eventually, within,
@@ -14,6 +15,42 @@ fn x_over_time(points: &[(f64, f64)]) -> Vec<(f64, [(&'static str, f64); 1])> {
 
 fn at_least(bound: f64) -> Formula {
     Formula::holds(variable("x").at_least(bound))
+}
+
+vocabulary! {
+    enum Motion: Location { Falling = "falling" }
+    enum Contact: Event { Bounce = "bounce" }
+}
+coordinates! { struct Ball { height, velocity } }
+
+/// Dropped from 5 m at g = 10 m/s², a ball hits the ground at 1 s with 10 m/s.
+#[test]
+fn runs_of_automata_are_judged() {
+    let Ball { height, velocity } = Ball::coordinates();
+    let ball = Automaton::starting_in(Motion::Falling)
+        .initially(Ball { height: 5.0, velocity: 0.0 })
+        .flow(Motion::Falling, [height.rate(&velocity), velocity.rate(-10.0)])
+        .transition(
+            from(Motion::Falling)
+                .on(Contact::Bounce)
+                .to(Motion::Falling)
+                .must(height.at_most(0.0) & velocity.less_than(0.0))
+                .then([velocity.becomes(-0.8 * &velocity)]),
+        )
+        .build()
+        .unwrap();
+    let run = ball.run(2.0).unwrap();
+
+    let hits = eventually(within(0.0, 2.0).unwrap(), velocity.at_most(-9.0));
+    let judgement = hits.judge(&run).unwrap();
+    assert!((judgement.robustness.lower - 1.0).abs() < 1e-6, "{judgement}");
+    let at = judgement.witness.unwrap().at;
+    assert!((at.t - 1.0).abs() < 1e-6 && at.j == 0, "{at}");
+
+    let rises = eventually(within(0.0, 2.0).unwrap(), velocity.at_least(7.0));
+    let judgement = rises.judge(&run).unwrap();
+    assert!((judgement.robustness.lower - 1.0).abs() < 1e-6, "{judgement}");
+    assert_eq!(judgement.witness.unwrap().at.j, 1);
 }
 
 #[test]
@@ -57,6 +94,20 @@ fn a_trajectory_that_is_too_short_leaves_an_interval() {
     assert_eq!(reached.robustness, Robustness { lower: 1.0, upper: f64::INFINITY });
 }
 
+/// Just after 1 s the first turns false and the second true: no instant has the first before it
+/// and the second at it.
+#[test]
+fn until_does_not_step_over_a_gap_without_length() {
+    let points = [(0.0, 1.0), (2.0, 1.0), (2.0, -1.0), (4.0, -1.0)];
+    let one_second_later = within(1.0, 1.0).unwrap();
+    let open = eventually(one_second_later, at_least(0.0));
+    let closed = always(one_second_later, variable("x").at_most(0.0));
+    let until = open.until(within(0.0, 3.0).unwrap(), closed);
+    let judgement = until.judge(&x_over_time(&points)).unwrap();
+    assert_eq!(judgement.status, Status::Violated);
+    assert_eq!(judgement.robustness, Robustness { lower: -1.0, upper: -1.0 });
+}
+
 /// 0.1 + 0.2 > 0.3 in binary.
 #[test]
 fn rounding_does_not_make_a_trajectory_too_short() {
@@ -81,7 +132,8 @@ fn bad_trajectories_are_refused() {
 }
 
 /// Ten times the samples take about ten times as long, whatever the window; brute force would
-/// take a hundred times as long. The bound leaves room for a busy machine.
+/// take a hundred times as long. The bound leaves room for a busy machine, and the better
+/// of two runs counts.
 #[test]
 fn time_is_linear_in_the_number_of_samples() {
     let wave = |count: usize| -> Vec<_> {
@@ -93,9 +145,12 @@ fn time_is_linear_in_the_number_of_samples() {
         let third = count as f64 / 3.0;
         let window = || within(1.0, third).unwrap();
         let settles = at_least(-0.5).until(window(), always(window(), at_least(-1.9)));
-        let begin = Instant::now();
-        settles.judge(&samples).unwrap();
-        begin.elapsed().as_secs_f64()
+        let once = |_| {
+            let begin = Instant::now();
+            settles.judge(&samples).unwrap();
+            begin.elapsed().as_secs_f64()
+        };
+        (0..2).map(once).fold(f64::INFINITY, f64::min)
     };
     let (small, large) = (seconds(10_000), seconds(100_000));
     println!("10,000 samples: {small:.3} s; 100,000 samples: {large:.3} s");

@@ -69,7 +69,7 @@ proptest! {
         let judgement = formula.judge(&trajectory.samples()).unwrap();
         if let Some(witness) = judgement.witness {
             let state = trajectory.state_at(witness.at);
-            let margin = witness.comparison.evaluate(&state).unwrap().margin;
+            let margin = witness.predicate.evaluate(&state).unwrap().margin;
             prop_assert!((margin - witness.margin).abs() < 1e-9, "{witness}");
             let robustness = match judgement.status {
                 Status::Satisfied => judgement.robustness.lower,
