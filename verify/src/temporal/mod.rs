@@ -40,24 +40,26 @@
 //! | φ → ψ | that of ¬φ ∨ ψ |
 //! | □\[a, b\] φ | the infimum of ρ(φ) over the window |
 //! | ◇\[a, b\] φ | the supremum of ρ(φ) over the window |
-//! | φ 𝒰\[a, b\] ψ | the supremum over the window of ρ(ψ) and before it ρ(φ) |
+//! | φ 𝒰\[a, b\] ψ | the supremum over the window of ρ(ψ), with ρ(φ) until then |
 //!
-//! where the window holds the instants τ′ = (t′, j′) ≥ τ with t + a ≤ t′ ≤ t + b, and *until* takes,
-//! for each of them, the smaller of ρ(ψ) there and the infimum of ρ(φ) from τ until just before it
-//! (Donzé and Maler 2010,
+//! where the window holds the instants τ′ = (t′, j′) ≥ τ with t + a ≤ t′ ≤ t + b, and *until*
+//! takes, for each of them, the smaller of ρ(ψ) there and the infimum of ρ(φ) from τ until just
+//! before it (Donzé and Maler 2010,
 //! [doi:10.1007/978-3-642-15297-9_9](https://doi.org/10.1007/978-3-642-15297-9_9)). What is before
 //! a jump and what is after it both count, and windows hold their ends: `always` sees the state
 //! before a jump at the very end of the window, and also the one after it.
 //!
 //! Positive robustness means satisfied and negative robustness violated. Robustness 0 alone does
 //! not tell; then the formula is evaluated once more on the truth of the comparisons, where
-//! strictness decides.
+//! strictness decides. Times that differ by no more than the rounding of sums of bounds count as
+//! the same time.
 //!
 //! # The end of the trajectory
 //!
 //! A trajectory is a beginning of something: after the time of its last sample every comparison
-//! may have any margin from −∞ to ∞. (At that time itself, no more jumps are expected.) Robustness is therefore an interval, with one end for the worst and one
-//! for the best that can follow (Deshmukh and others 2017,
+//! may have any margin from −∞ to ∞. (At that time itself, no more jumps are expected.)
+//! Robustness is therefore an interval, with one end for the worst and one for the best that can
+//! follow (Deshmukh and others 2017,
 //! [doi:10.1007/s10703-017-0286-7](https://doi.org/10.1007/s10703-017-0286-7)). If all of it is
 //! on one side, the formula is settled; otherwise it is [`Status::Inconclusive`]. So □ without
 //! bounds can be violated but never satisfied, and of a trajectory that is too short nothing is

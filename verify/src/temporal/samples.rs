@@ -260,8 +260,12 @@ fn truth(holds: bool) -> f64 {
 
 /// Whether the predicate holds where its margin is 0.
 fn holds_on_the_boundary(predicate: &Predicate) -> bool {
-    let strict = [Relation::LessThan, Relation::MoreThan];
-    !matches!(predicate, Predicate::Comparison(Comparison { relation, .. }) if strict.contains(relation))
+    match predicate {
+        Predicate::Comparison(Comparison { relation, .. }) => {
+            matches!(relation, Relation::AtMost | Relation::AtLeast)
+        }
+        _ => true,
+    }
 }
 
 /// Adds an instant and the truth of a predicate whose margin is `flow` over `span` after it.

@@ -65,7 +65,7 @@ impl Sweep<'_> {
         let at_right = self.signal.met(self.right, self.reach.end, now);
         let mut at_ends = NOTHING;
         let end = if self.reach.end == f64::INFINITY {
-            part_of_all(self.signal)
+            after_all(self.signal)
         } else if at_right.is_empty() {
             at_ends =
                 at_ends.lower(self.signal.seen(self.right, self.reach.end, (now, now)).first(now));
@@ -96,7 +96,7 @@ impl Sweep<'_> {
     /// What the infimum over `span` is the lowest of, until an end of the window meets a knot.
     fn flows(&mut self, span: Span) -> Vec<Flow> {
         let mut flows = vec![self.signal.seen(self.left, self.reach.start, span)];
-        let mut end = part_of_all(self.signal);
+        let mut end = after_all(self.signal);
         if self.reach.end < f64::INFINITY {
             flows.push(self.signal.seen(self.right, self.reach.end, span));
             end = after_flow_start(self.right);
@@ -126,15 +126,15 @@ fn after_flow_start(next: usize) -> usize {
 }
 
 /// After everything.
-fn part_of_all(signal: &Signal) -> usize {
+fn after_all(signal: &Signal) -> usize {
     3 * signal.knots().len()
 }
 
 /// The lowest of a range of parts, whose ends may only move forward.
 struct Queue<'a> {
     signal: &'a Signal,
-    /// Parts that are lower than all before them are lowest from some start on: of those, in
-    /// order, the place and the value, which increases.
+    /// The parts seen that no later part undercuts, in order: the place, and the value, which
+    /// does not decrease. The first that is still in the range is the lowest.
     candidates: VecDeque<(usize, Value)>,
     /// The first part not yet seen.
     next: usize,
