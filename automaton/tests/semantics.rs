@@ -171,7 +171,7 @@ fn what_has_no_value_ends_the_run_and_is_named() {
     let Reason::Finished(Failure::Formula { location, part, reason, .. }) =
         trajectory.ending().reason.clone()
     else {
-        panic!("the guard has no value beyond 1")
+        panic!("the guard has no value beyond 1: {:?}", trajectory.ending())
     };
     assert_eq!(location, "here");
     assert_eq!(part, "the guard `√(1 − τ) ≥ 2`");

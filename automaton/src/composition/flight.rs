@@ -79,7 +79,7 @@ impl Simulation<'_> {
         loop {
             let step = match integrator.step(limit) {
                 Ok(step) => Overlaid { curve: step, field },
-                Err(fault) => return cut_short(samples, self.failure(fault.to_string())),
+                Err(fault) => return self.cut_short(samples, self.failure(fault.to_string())),
             };
             let onset = match self.look(&step) {
                 Ok(onset) => onset,
@@ -114,7 +114,17 @@ impl Simulation<'_> {
             samples.retain(|sample| sample.t < defined);
             samples.push(field.sample(curve, defined));
         }
-        cut_short(samples, failure)
+        self.cut_short(samples, failure)
+    }
+
+    /// The flow up to the last sample, beyond which it fails; if that changes no clock, the failure.
+    fn cut_short(&self, samples: Vec<Sample>, failure: Failure) -> Result<Flight, Failure> {
+        match samples.last() {
+            Some(last) if self.now.t + last.t > self.now.t => {
+                Ok(Flight { duration: last.t, is_eventful: true, samples })
+            }
+            _ => Err(failure),
+        }
     }
 
     /// The first instant on the curve at which something has to happen.
@@ -157,16 +167,6 @@ impl Simulation<'_> {
     /// Holds where time has to stop: a transition is due or an invariant has ended.
     fn tension(&self, state: &[f64]) -> Result<Verdict, Failure> {
         Ok(self.forced(state)?.or(self.invariants(state)?.opposite()))
-    }
-}
-
-/// The flow up to the last sample, beyond which it fails; if that is the first, the failure.
-fn cut_short(samples: Vec<Sample>, failure: Failure) -> Result<Flight, Failure> {
-    match samples.last() {
-        Some(last) if last.t > 0.0 => {
-            Ok(Flight { duration: last.t, is_eventful: true, samples })
-        }
-        _ => Err(failure),
     }
 }
 
