@@ -65,11 +65,13 @@
 mod blueprint;
 mod builder;
 mod flight;
+mod replay;
 mod simulation;
 
 use std::sync::Arc;
 
 pub use builder::{CompositionBuilder, CompositionError};
+pub use replay::ReplayError;
 pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;
