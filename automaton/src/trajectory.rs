@@ -7,8 +7,8 @@ use pleach_guards::Valuation;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::composition::{Failure, Settings, Taken};
 use crate::composition::Move;
+use crate::composition::{Failure, Settings, Taken};
 use crate::executor::Ending;
 use crate::time::HybridTime;
 
@@ -180,13 +180,12 @@ impl Trajectory {
     /// The values at 0, `period`, 2 `period`, … up to the end; nothing unless `period` > 0.
     pub fn resample(&self, period: f64) -> impl Iterator<Item = (f64, Vec<f64>)> {
         let count = if period > 0.0 { self.ending.at.t / period } else { -1.0 };
-        (0..)
-            .map(f64::from)
-            .take_while(move |number| *number <= count)
-            .filter_map(move |number: f64| {
+        (0..).map(f64::from).take_while(move |number| *number <= count).filter_map(
+            move |number: f64| {
                 let t = number * period;
                 self.values_at(t).map(|values| (t, values))
-            })
+            },
+        )
     }
 
     /// Writes the trajectory as JSON.
@@ -242,7 +241,8 @@ impl Trajectory {
     }
 
     pub(crate) fn jumped(&mut self, at: HybridTime, taken: Taken) {
-        let mut locations = self.phases.last().map(|phase| phase.locations.clone()).unwrap_or_default();
+        let mut locations =
+            self.phases.last().map(|phase| phase.locations.clone()).unwrap_or_default();
         for one in &taken.moves {
             locations[one.component] = one.target;
         }

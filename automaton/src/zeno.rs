@@ -54,7 +54,8 @@ impl ZenoDetector {
         if self.durations.len() > Self::MEMORY {
             self.durations.remove(0);
         }
-        let (cycle, ratio) = (1..=LONGEST_CYCLE).find_map(|cycle| Some((cycle, self.ratio(cycle)?)))?;
+        let (cycle, ratio) =
+            (1..=LONGEST_CYCLE).find_map(|cycle| Some((cycle, self.ratio(cycle)?)))?;
         self.shrinking += 1;
         let cycle_time: f64 = self.durations.iter().rev().take(cycle).sum();
         let remainder = cycle_time * ratio / (1.0 - ratio);

@@ -338,7 +338,9 @@ impl Component {
     fn check_inputs(&self) -> Result<(), CompositionError> {
         for place in &self.blueprint.places {
             let moved: Vec<usize> = match &place.motion {
-                PlaceMotion::Rates(rates) => rates.iter().map(|(coordinate, ..)| *coordinate).collect(),
+                PlaceMotion::Rates(rates) => {
+                    rates.iter().map(|(coordinate, ..)| *coordinate).collect()
+                }
                 PlaceMotion::Field(_) | PlaceMotion::Exact(_) => Vec::new(),
             };
             let set = place.leaving.iter().flat_map(|leaving| match &leaving.change {

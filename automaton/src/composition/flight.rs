@@ -4,9 +4,7 @@
 use std::cell::RefCell;
 
 use nalgebra::{DMatrix, DVector};
-use pleach_continuous::flow::{
-    ConstantFlow, Curve, Integrator, LinearFlow, Onset, first_instant,
-};
+use pleach_continuous::flow::{ConstantFlow, Curve, Integrator, LinearFlow, Onset, first_instant};
 use pleach_guards::Verdict;
 
 use super::blueprint::{Place, PlaceMotion};
@@ -167,7 +165,9 @@ impl<'a> Field<'a> {
             Some((matrix, offset)) if matrix.iter().all(|entry| *entry == 0.0) => {
                 Kind::Constant(offset.iter().copied().collect())
             }
-            Some((matrix, offset)) if offset.len() <= LARGEST_LINEAR => Kind::Linear(matrix, offset),
+            Some((matrix, offset)) if offset.len() <= LARGEST_LINEAR => {
+                Kind::Linear(matrix, offset)
+            }
             _ => Kind::General,
         }
     }
@@ -183,7 +183,8 @@ impl<'a> Field<'a> {
                 let (form, row) = (form.as_ref()?, component.slots[*coordinate]);
                 offset[row] = *form.constant();
                 for (name, coefficient) in form.coefficients() {
-                    let named = component.blueprint.coordinates.iter().position(|one| *one == name)?;
+                    let named =
+                        component.blueprint.coordinates.iter().position(|one| *one == name)?;
                     let column = component.slots[named];
                     // What a component reads of one that solves its flow itself changes in a way
                     // that no matrix knows.
@@ -228,7 +229,8 @@ impl<'a> Field<'a> {
             match &place.motion {
                 PlaceMotion::Rates(formulas) => {
                     for (coordinate, rate, _) in formulas {
-                        rates[component.slots[*coordinate]] = rate.evaluate_at(state, &component.slots);
+                        rates[component.slots[*coordinate]] =
+                            rate.evaluate_at(state, &component.slots);
                     }
                 }
                 PlaceMotion::Field(field) => {

@@ -272,10 +272,10 @@ impl<'a> Simulation<'a> {
             let label = self.composition.components[component].labels[leaving.event];
             let joint = match label {
                 None if !self.is_wanted(leaving, readiness) => None,
-                None => self.allows(component, leaving, &self.values)?.holds.then(|| Joint {
-                    label: None,
-                    parts: vec![(component, transition)],
-                }),
+                None => self
+                    .allows(component, leaving, &self.values)?
+                    .holds
+                    .then(|| Joint { label: None, parts: vec![(component, transition)] }),
                 Some(label) => self.joint(label, readiness)?,
             };
             if joint.is_some() {
@@ -546,7 +546,8 @@ impl Component {
                 for (coordinate, value) in assignments {
                     let new = value.evaluate_at(before, &self.slots);
                     if new.is_nan() {
-                        let expression = format!("the new {}", self.blueprint.coordinates[*coordinate]);
+                        let expression =
+                            format!("the new {}", self.blueprint.coordinates[*coordinate]);
                         return Err(EvaluationError::NotANumber { expression });
                     }
                     after[self.slots[*coordinate]] = new;
