@@ -30,9 +30,12 @@ pub struct Flow<S> {
 
 pub(crate) enum Motion<S> {
     Rates(Arc<[Rate<S>]>),
-    Field(Arc<str>, Arc<dyn Fn(&S) -> S + Send + Sync>),
-    Exact(Arc<str>, Arc<dyn Fn(&mut S, f64) + Send + Sync>),
+    Field(Arc<str>, Arc<Field<S>>),
+    Exact(Arc<str>, Arc<Solution<S>>),
 }
+
+type Field<S> = dyn Fn(&S) -> S + Send + Sync;
+type Solution<S> = dyn Fn(&mut S, f64) + Send + Sync;
 
 /// The rate of one coordinate, as a formula; made by [`Coordinate::rate`](crate::Coordinate::rate).
 pub struct Rate<S> {

@@ -56,6 +56,14 @@
 //! [`Predicate::function`]. It is evaluated and combined like any other predicate, but what it
 //! reads is unknown; [`Predicate::functions`] tells which of them an analysis cannot see into.
 //!
+//! # Analysis
+//!
+//! Data can be asked more than its value in one state: where in a box of states a predicate can
+//! hold ([`Predicate::truth`]), which comparisons make it up ([`Predicate::disjunctive_form`]),
+//! whether an expression is affine ([`Expression::linear_form`]), how it changes
+//! ([`Expression::derivative`]), and what becomes of it when variables are replaced
+//! ([`Expression::substitute`]).
+//!
 //! # Where things are
 //!
 //! [`expression`] and [`predicate`] are the data, [`function`] is the way out of it, [`valuation`]

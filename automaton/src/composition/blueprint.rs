@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use petgraph::visit::EdgeRef;
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::{CompiledPredicate, EvaluationError, LinearForm, Program};
 
@@ -42,15 +41,22 @@ pub(crate) struct Leaving {
 pub(crate) enum PlaceMotion {
     /// Coordinate, and its rate as a program and, where it is one, as a linear form.
     Rates(Vec<(usize, Program, Option<LinearForm>)>),
-    Field(Arc<dyn Fn(&[f64], &mut [f64]) + Send + Sync>),
-    Exact(Arc<dyn Fn(&mut [f64], f64) + Send + Sync>),
+    Field(Arc<FieldFunction>),
+    Exact(Arc<Solution>),
 }
 
 /// A reset.
 pub(crate) enum Change {
     Assignments(Vec<(usize, Program)>),
-    Function(Arc<dyn Fn(&mut [f64]) -> Result<(), EvaluationError> + Send + Sync>),
+    Function(Arc<ResetFunction>),
 }
+
+/// From the coordinates to their rates.
+pub(crate) type FieldFunction = dyn Fn(&[f64], &mut [f64]) + Send + Sync;
+/// Carries the coordinates over a duration in seconds.
+pub(crate) type Solution = dyn Fn(&mut [f64], f64) + Send + Sync;
+/// Turns x⁻ into x⁺.
+pub(crate) type ResetFunction = dyn Fn(&mut [f64]) -> Result<(), EvaluationError> + Send + Sync;
 
 impl Blueprint {
     /// # Errors

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use pleach_continuous::flow::{ConstantFlow, Curve, Integrator, LinearFlow, Onset, first_instant};
 use pleach_guards::Verdict;
 
-use super::blueprint::{Place, PlaceMotion};
+use super::blueprint::{Place, PlaceMotion, Solution};
 use super::simulation::{Failure, Simulation};
 use super::{Component, Composition};
 use crate::trajectory::Sample;
@@ -34,7 +34,7 @@ impl Simulation<'_> {
     /// The flow from here on, up to an event and for at most `limit` seconds.
     pub(super) fn plan(&self, limit: f64) -> Result<Flight, Failure> {
         let field = Field::of(self.composition, &self.locations, &self.values);
-        if self.leaves_invariant(&self.values)? {
+        if !self.invariants(&self.values)?.holds {
             return Ok(field.no_time());
         }
         match field.kind() {
@@ -44,7 +44,7 @@ impl Simulation<'_> {
                 self.follow(&field, curve, limit)
             }
             Kind::Linear(matrix, offset) => {
-                let curve = LinearFlow::new(&matrix, &offset, &self.values, limit)
+                let curve = LinearFlow::new(&matrix, offset.as_slice(), &self.values, limit)
                     .map_err(|fault| self.failure(fault.to_string()))?;
                 self.follow(&field, curve, limit)
             }
@@ -57,7 +57,7 @@ impl Simulation<'_> {
         let curve = Overlaid { curve, field };
         let onset = self.look(&curve)?;
         let end = onset.map_or(limit, |onset| onset.time);
-        let most = (end / curve.time_scale() * SAMPLES_PER_SCALE).min(MOST_SAMPLES);
+        let most = (end / curve.time_scale(0.0) * SAMPLES_PER_SCALE).min(MOST_SAMPLES);
         let pieces = if most > 1.0 { most.ceil() } else { 1.0 };
         let mut number = 0.0;
         let mut samples = Vec::new();
@@ -140,7 +140,7 @@ enum Kind {
 struct Field<'a> {
     /// With their place, and whether they solve their flow themselves.
     moving: Vec<(&'a Component, &'a Place)>,
-    exact: Vec<(&'a Component, &'a (dyn Fn(&mut [f64], f64) + Send + Sync))>,
+    exact: Vec<(&'a Component, &'a Solution)>,
     start: &'a [f64],
     /// Room for the coordinates of a component and their rates.
     scratch: RefCell<(Vec<f64>, Vec<f64>)>,
@@ -299,8 +299,8 @@ impl<C: Curve> Curve for Overlaid<'_, C> {
         self.field.overlay(time, state);
     }
 
-    fn time_scale(&self) -> f64 {
-        let scale = self.curve.time_scale();
+    fn time_scale(&self, time: f64) -> f64 {
+        let scale = self.curve.time_scale(time);
         if self.field.exact.is_empty() {
             scale
         } else {

@@ -132,9 +132,16 @@ pub struct Simulation<'a> {
     pub(super) values: Vec<f64>,
     /// The flow to come, once no jump is left to be taken.
     flight: Option<Flight>,
+    /// How far, in the margin of a guard, the last flow has landed beyond the boundary: the state
+    /// may be outside an invariant by as much. It is a rounding error of the instant of the event.
+    allowance: f64,
     /// By component: whether it has jumped in this round.
     jumped: Vec<bool>,
 }
+
+/// The largest part of the state by which a landing may be outside an invariant. Margins of smooth
+/// guards stay far below it; those that are only signs are not believed.
+const LARGEST_ALLOWANCE: f64 = 1e-9;
 
 impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     /// Runs the automaton by itself, from its initial state, for `horizon` seconds.
@@ -211,6 +218,7 @@ impl<'a> Simulation<'a> {
             locations: initial.collect(),
             values: composition.initial.clone(),
             flight: None,
+            allowance: 0.0,
             jumped: vec![false; composition.components.len()],
         })
     }
@@ -356,7 +364,8 @@ impl<'a> Simulation<'a> {
         Ok(self.any_transition(state, Readiness::Possible)?.holds)
     }
 
-    /// Holds where all components are within their invariants.
+    /// Holds where all components are within their invariants, but for what the last landing may
+    /// have lost to rounding.
     pub(super) fn invariants(&self, state: &[f64]) -> Result<Verdict, Failure> {
         let mut verdict = Verdict::ALWAYS;
         for (index, component) in self.composition.components.iter().enumerate() {
@@ -369,11 +378,16 @@ impl<'a> Simulation<'a> {
                 verdict = verdict.and(own);
             }
         }
-        Ok(verdict)
+        let margin = verdict.margin + self.allowance;
+        let holds = verdict.holds || (self.allowance > 0.0 && margin >= 0.0);
+        Ok(Verdict { margin, holds })
     }
 
-    pub(super) fn leaves_invariant(&self, state: &[f64]) -> Result<bool, Failure> {
-        Ok(!self.invariants(state)?.holds)
+    /// How far beyond the boundary of its guard a flow has landed, as far as that is rounding.
+    fn allowance_at(&self, landing: &[f64]) -> Result<f64, Failure> {
+        let beyond = self.forced(landing)?.margin.max(0.0);
+        let largest = landing.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
+        Ok(if beyond.is_finite() { beyond.min(LARGEST_ALLOWANCE * largest) } else { 0.0 })
     }
 
     fn any_transition(&self, state: &[f64], readiness: Readiness) -> Result<Verdict, Failure> {
@@ -506,6 +520,7 @@ impl System for Simulation<'_> {
         if let Some(landing) = planned.samples.into_iter().next_back() {
             self.values = landing.values;
         }
+        self.allowance = self.allowance_at(&self.values)?;
         self.now = self.now.after_flow(duration);
         Ok(())
     }

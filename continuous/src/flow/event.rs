@@ -49,6 +49,11 @@ impl EventSearch {
         Ok(EventSearch { resolution, looks })
     }
 
+    /// How often a curve is looked at per [time scale](Curve::time_scale).
+    pub fn looks(&self) -> u32 {
+        self.looks
+    }
+
     /// The width, in seconds, at which a bracket between these instants is narrow enough.
     fn tolerance(&self, from: f64, to: f64) -> f64 {
         self.resolution.max(SPACINGS * f64::EPSILON * from.abs().max(to.abs()))
