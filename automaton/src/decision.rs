@@ -50,8 +50,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use pleach_guards::{
-    Comparison, CompiledPredicate, EvaluationError, Interval, NoDisjunctiveForm, Predicate, Truth,
-    always,
+    Comparison, CompiledPredicate, EvaluationError, Interval, Predicate, Truth, always,
 };
 
 use polyhedron::{Content, Polyhedron};
@@ -152,7 +151,7 @@ pub fn decide(
         .and_then(|cases| cases.disjunctive_form(effort.alternatives));
     let decision = match alternatives {
         Ok(alternatives) => question.any_of(&alternatives),
-        Err(NoDisjunctiveForm::TooLarge { .. } | _) => question.searched(&known),
+        Err(_) => question.searched(&known),
     };
     Ok(match decision {
         Decision::Undecided(_) if !predicate.is_data() => {
@@ -300,7 +299,7 @@ fn neighbours(point: &[f64]) -> impl Iterator<Item = Vec<f64>> {
     const AXES: u32 = 4;
 
     let count = u32::try_from(point.len()).ok().filter(|axes| *axes <= AXES);
-    (0..3usize.pow(count.unwrap_or(0))).map(|choice| {
+    (0..3usize.pow(count.unwrap_or(0))).map(move |choice| {
         let moved = |(axis, value): (u32, &f64)| match choice / 3usize.pow(axis.min(AXES)) % 3 {
             0 => *value,
             1 => value.next_up(),

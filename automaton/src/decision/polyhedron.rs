@@ -48,11 +48,6 @@ impl<'a> Polyhedron<'a> {
         Polyhedron { variables, ranges, inequalities }
     }
 
-    /// How many of the comparisons are linear.
-    pub fn inequalities(&self) -> usize {
-        self.inequalities.len()
-    }
-
     /// A point, or that there is none; `None` if neither could be established.
     ///
     /// The point sought first is the one farthest from all faces, up to a distance of 1 in each

@@ -1,8 +1,8 @@
 //! The simplex method in exact fractions.
 //!
 //! The systems of guards are small, and what is asked of them is often a touching case, x ≤ 1 and
-//! x ≥ 1, in which rounding decides. So this is the textbook method on dictionaries with Bland's
-//! rule, which ends on every input (Chvátal 1983, *Linear Programming*, chapters 2, 3 and 8), and
+//! x ≥ 1, in which rounding decides. So this is the textbook method on dictionaries, which with
+//! Bland's rule ends on every input (Chvátal 1983, *Linear Programming*, chapters 2, 3 and 8), and
 //! not a solver in floating point.
 
 use num_rational::BigRational as Fraction;
@@ -134,13 +134,9 @@ impl Dictionary {
     }
 
     /// Goes from vertex to vertex while the objective can grow; `false` if it can grow for ever.
-    /// Of all unknowns that could enter or leave, the first does (Bland), so that no vertex returns.
     fn maximise(&mut self) -> bool {
-        loop {
-            let entering = (0..self.others.len())
-                .filter(|column| self.objective.coefficients[*column].is_positive())
-                .min_by_key(|column| self.others[*column]);
-            let Some(column) = entering else { return true };
+        let mut stalled = false;
+        while let Some(column) = self.entering(stalled) {
             let leaving = (0..self.rows.len())
                 .filter_map(|row| {
                     let Affine { constant, coefficients } = &self.rows[row];
@@ -148,8 +144,22 @@ impl Dictionary {
                     shrinks.then(|| (-constant / &coefficients[column], self.basic[row], row))
                 })
                 .min();
-            let Some((_, _, row)) = leaving else { return false };
+            let Some((step, _, row)) = leaving else { return false };
+            stalled = step.is_zero();
             self.pivot(row, column);
+        }
+        true
+    }
+
+    /// The unknown with which the objective grows fastest; but while vertices stay where they are,
+    /// of all with which it grows the first (Bland), so that no dictionary comes back.
+    fn entering(&self, stalled: bool) -> Option<usize> {
+        let gain = |column: &usize| &self.objective.coefficients[*column];
+        let growing = (0..self.others.len()).filter(|column| gain(column).is_positive());
+        if stalled {
+            growing.min_by_key(|column| self.others[*column])
+        } else {
+            growing.max_by(|a, b| gain(a).cmp(gain(b)))
         }
     }
 
