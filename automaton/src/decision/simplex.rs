@@ -4,7 +4,13 @@
 //! x ≥ 1, in which rounding decides. So this is the textbook method on dictionaries, which with
 //! Bland's rule ends on every input (Chvátal 1983, *Linear Programming*, chapters 2, 3 and 8), and
 //! not a solver in floating point.
+//!
+//! The dictionaries hold whole numbers over one common denominator. A pivot multiplies crosswise and
+//! divides by the last denominator, which leaves no remainder, for all entries are determinants of
+//! parts of the input (Edmonds 1967, *Systems of distinct representatives and linear algebra*); so
+//! the numbers stay as short as they can be without looking for common factors.
 
+use num_bigint::BigInt;
 use num_rational::BigRational as Fraction;
 use num_traits::{One, Signed, Zero};
 
@@ -30,7 +36,7 @@ impl LinearProgram {
         if !dictionary.make_feasible() {
             return Outcome::Infeasible { multipliers: dictionary.multipliers() };
         }
-        dictionary.set_objective(&self.objective);
+        dictionary.set_objective(&whole(&self.objective).0);
         if !dictionary.maximise() {
             return Outcome::Unbounded;
         }
@@ -38,13 +44,25 @@ impl LinearProgram {
     }
 }
 
-/// Each basic unknown, and the objective, as an affine function of the other unknowns, which are 0.
+/// Fractions times a number that makes them whole, and that number.
+fn whole(fractions: &[Fraction]) -> (Vec<BigInt>, BigInt) {
+    let scale = fractions.iter().fold(BigInt::one(), |scale, fraction| {
+        let scaled = fraction * &scale;
+        scale * scaled.denom()
+    });
+    (fractions.iter().map(|fraction| (fraction * &scale).to_integer()).collect(), scale)
+}
+
+/// Each basic unknown, and the objective, as an affine function of the other unknowns, which are 0;
+/// all over one positive denominator.
 ///
 /// Unknowns are numbered: first those of the program, then the slack of each row, and at last the
 /// artificial one that makes infeasible programs feasible.
 struct Dictionary {
     unknowns: usize,
-    slacks: usize,
+    /// By how much each row was multiplied to make it whole.
+    scales: Vec<BigInt>,
+    denominator: BigInt,
     basic: Vec<usize>,
     others: Vec<usize>,
     rows: Vec<Affine>,
@@ -53,26 +71,27 @@ struct Dictionary {
 
 #[derive(Clone)]
 struct Affine {
-    constant: Fraction,
-    coefficients: Vec<Fraction>,
+    constant: BigInt,
+    coefficients: Vec<BigInt>,
 }
 
 impl Dictionary {
     fn new(rows: &[(Vec<Fraction>, Fraction)], unknowns: usize) -> Self {
-        let slack = |(row, bound): &(Vec<Fraction>, Fraction)| Affine {
-            constant: bound.clone(),
-            coefficients: row.iter().map(|coefficient| -coefficient).collect(),
+        let slack = |(row, bound): &(Vec<Fraction>, Fraction)| {
+            let (mut numbers, scale) = whole(&[&**row, &[-bound]].concat());
+            let constant = -numbers.pop().unwrap_or_default();
+            let coefficients = numbers.into_iter().map(|coefficient| -coefficient).collect();
+            (Affine { constant, coefficients }, scale)
         };
+        let (affine, scales): (Vec<_>, Vec<_>) = rows.iter().map(slack).unzip();
         Dictionary {
             unknowns,
-            slacks: rows.len(),
+            scales,
+            denominator: BigInt::one(),
             basic: (unknowns..unknowns + rows.len()).collect(),
             others: (0..unknowns).collect(),
-            rows: rows.iter().map(slack).collect(),
-            objective: Affine {
-                constant: Fraction::zero(),
-                coefficients: vec![Fraction::zero(); unknowns],
-            },
+            rows: affine,
+            objective: Affine::zero(unknowns),
         }
     }
 
@@ -82,12 +101,12 @@ impl Dictionary {
         let worst = (0..self.rows.len()).min_by(|a, b| constant(a).cmp(constant(b)));
         let Some(worst) = worst.filter(|row| constant(row).is_negative()) else { return true };
 
-        let artificial = self.unknowns + self.slacks;
+        let artificial = self.unknowns + self.scales.len();
         self.others.push(artificial);
         for row in &mut self.rows {
-            row.coefficients.push(Fraction::one());
+            row.coefficients.push(BigInt::one());
         }
-        self.objective.coefficients.push(-Fraction::one());
+        self.objective.coefficients.push(-BigInt::one());
         self.pivot(worst, self.others.len() - 1);
         self.maximise();
         if self.objective.constant.is_negative() {
@@ -118,16 +137,17 @@ impl Dictionary {
     }
 
     /// Writes an objective over the unknowns of the program in those that are not basic now.
-    fn set_objective(&mut self, objective: &[Fraction]) {
-        let mut sum = Affine {
-            constant: Fraction::zero(),
-            coefficients: vec![Fraction::zero(); self.others.len()],
-        };
+    fn set_objective(&mut self, objective: &[BigInt]) {
+        let mut sum = Affine::zero(self.others.len());
         for (unknown, factor) in objective.iter().enumerate() {
             if let Some(column) = self.others.iter().position(|other| *other == unknown) {
-                sum.coefficients[column] += factor;
+                sum.coefficients[column] += factor * &self.denominator;
             } else if let Some(row) = self.basic.iter().position(|basic| *basic == unknown) {
-                sum.add(factor, &self.rows[row]);
+                let row = &self.rows[row];
+                sum.constant += factor * &row.constant;
+                for (coefficient, addend) in sum.coefficients.iter_mut().zip(&row.coefficients) {
+                    *coefficient += factor * addend;
+                }
             }
         }
         self.objective = sum;
@@ -137,15 +157,8 @@ impl Dictionary {
     fn maximise(&mut self) -> bool {
         let mut stalled = false;
         while let Some(column) = self.entering(stalled) {
-            let leaving = (0..self.rows.len())
-                .filter_map(|row| {
-                    let Affine { constant, coefficients } = &self.rows[row];
-                    let shrinks = coefficients[column].is_negative();
-                    shrinks.then(|| (-constant / &coefficients[column], self.basic[row], row))
-                })
-                .min();
-            let Some((step, _, row)) = leaving else { return false };
-            stalled = step.is_zero();
+            let Some(row) = self.leaving(column) else { return false };
+            stalled = self.rows[row].constant.is_zero();
             self.pivot(row, column);
         }
         true
@@ -163,22 +176,40 @@ impl Dictionary {
         }
     }
 
+    /// The basic unknown that becomes 0 first when the one in `column` grows, and of several the
+    /// first.
+    fn leaving(&self, column: usize) -> Option<usize> {
+        let rate = |row: usize| &self.rows[row].coefficients[column];
+        let shrinking = (0..self.rows.len()).filter(|row| rate(*row).is_negative());
+        shrinking.min_by(|&a, &b| {
+            // constant ÷ −rate of both, multiplied crosswise
+            let left = &self.rows[b].constant * rate(a);
+            let right = &self.rows[a].constant * rate(b);
+            left.cmp(&right).then(self.basic[a].cmp(&self.basic[b]))
+        })
+    }
+
     /// Exchanges a basic unknown for another one.
     fn pivot(&mut self, row: usize, column: usize) {
         let mut solved = self.rows[row].clone();
-        let pivot = -solved.coefficients[column].clone();
-        solved.coefficients[column] = -Fraction::one();
-        solved.constant /= &pivot;
-        for coefficient in &mut solved.coefficients {
-            *coefficient /= &pivot;
+        let denominator = solved.coefficients[column].abs();
+        let positive = solved.coefficients[column].is_positive();
+        solved.coefficients[column] = -self.denominator.clone();
+        if positive {
+            solved.negate();
         }
         for (position, affine) in self.rows.iter_mut().chain([&mut self.objective]).enumerate() {
             if position != row {
-                let factor = std::mem::replace(&mut affine.coefficients[column], Fraction::zero());
-                affine.add(&factor, &solved);
+                let factor = std::mem::take(&mut affine.coefficients[column]);
+                let entries = affine.coefficients.iter_mut().chain([&mut affine.constant]);
+                let addends = solved.coefficients.iter().chain([&solved.constant]);
+                for (entry, addend) in entries.zip(addends) {
+                    *entry = (&*entry * &denominator + &factor * addend) / &self.denominator;
+                }
             }
         }
         self.rows[row] = solved;
+        self.denominator = denominator;
         std::mem::swap(&mut self.basic[row], &mut self.others[column]);
     }
 
@@ -186,19 +217,19 @@ impl Dictionary {
         let mut point = vec![Fraction::zero(); self.unknowns];
         for (basic, row) in self.basic.iter().zip(&self.rows) {
             if let Some(value) = point.get_mut(*basic) {
-                value.clone_from(&row.constant);
+                *value = Fraction::new(row.constant.clone(), self.denominator.clone());
             }
         }
         point
     }
 
-    /// What the objective loses per unit of each slack.
+    /// What the objective loses per unit of each slack, up to a factor that all have in common.
     fn multipliers(&self) -> Vec<Fraction> {
-        let mut multipliers = vec![Fraction::zero(); self.slacks];
+        let mut multipliers = vec![Fraction::zero(); self.scales.len()];
         for (other, coefficient) in self.others.iter().zip(&self.objective.coefficients) {
-            let slack = other.checked_sub(self.unknowns);
-            if let Some(multiplier) = slack.and_then(|slack| multipliers.get_mut(slack)) {
-                *multiplier = -coefficient;
+            let slack = other.checked_sub(self.unknowns).filter(|slack| *slack < multipliers.len());
+            if let Some(slack) = slack {
+                multipliers[slack] = Fraction::from_integer(-coefficient * &self.scales[slack]);
             }
         }
         multipliers
@@ -206,13 +237,73 @@ impl Dictionary {
 }
 
 impl Affine {
-    fn add(&mut self, factor: &Fraction, other: &Affine) {
-        if factor.is_zero() {
-            return;
+    fn zero(unknowns: usize) -> Self {
+        Affine { constant: BigInt::zero(), coefficients: vec![BigInt::zero(); unknowns] }
+    }
+
+    fn negate(&mut self) {
+        for entry in self.coefficients.iter_mut().chain([&mut self.constant]) {
+            *entry = -std::mem::take(entry);
         }
-        self.constant += factor * &other.constant;
-        for (coefficient, addend) in self.coefficients.iter_mut().zip(&other.coefficients) {
-            *coefficient += factor * addend;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fractions(numbers: &[f64]) -> Vec<Fraction> {
+        numbers.iter().filter_map(|number| Fraction::from_float(*number)).collect()
+    }
+
+    fn solved(objective: &[f64], rows: &[(&[f64], f64)]) -> Outcome {
+        let rows = rows.iter().map(|(row, bound)| (fractions(row), fractions(&[*bound]).remove(0)));
+        LinearProgram { objective: fractions(objective), rows: rows.collect() }.solve()
+    }
+
+    fn optimum(objective: &[f64], rows: &[(&[f64], f64)]) -> Option<Vec<Fraction>> {
+        match solved(objective, rows) {
+            Outcome::Optimal { point, .. } => Some(point),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn the_first_example_of_the_textbook() {
+        let rows: [(&[f64], f64); 3] =
+            [(&[2.0, 3.0, 1.0], 5.0), (&[4.0, 1.0, 2.0], 11.0), (&[3.0, 4.0, 2.0], 8.0)];
+        assert_eq!(optimum(&[5.0, 4.0, 3.0], &rows), Some(fractions(&[2.0, 0.0, 1.0])));
+    }
+
+    /// Beale's program, on which the greedy rule alone goes round for ever.
+    #[test]
+    fn vertices_that_stay_do_not_come_back() {
+        let rows: [(&[f64], f64); 3] = [
+            (&[0.25, -8.0, -1.0, 9.0], 0.0),
+            (&[0.5, -12.0, -0.5, 3.0], 0.0),
+            (&[0.0, 0.0, 1.0, 0.0], 1.0),
+        ];
+        let objective = [0.75, -20.0, 0.5, -6.0];
+        assert_eq!(optimum(&objective, &rows), Some(fractions(&[1.0, 0.0, 1.0, 0.0])));
+    }
+
+    #[test]
+    fn bounds_below_zero_need_a_first_phase() {
+        let rows: [(&[f64], f64); 3] =
+            [(&[-1.0, -1.0], -3.0), (&[1.0, 0.0], 2.0), (&[0.0, 1.0], 4.0)];
+        assert_eq!(optimum(&[-1.0, -2.0], &rows), Some(fractions(&[2.0, 1.0])));
+        assert!(matches!(solved(&[1.0, 1.0], &rows[..2]), Outcome::Unbounded));
+    }
+
+    #[test]
+    fn contradictions_come_with_their_multipliers() {
+        let rows: [(&[f64], f64); 2] = [(&[0.5, 1.0], 1.0), (&[-1.0, -2.0], -3.0)];
+        match solved(&[1.0, 0.0], &rows) {
+            Outcome::Infeasible { multipliers } => {
+                assert_eq!(&multipliers[0], &(&multipliers[1] * Fraction::from_integer(2.into())));
+                assert!(multipliers[1].is_positive());
+            }
+            _ => panic!("twice the first row and the second add up to 0 ≤ −1"),
         }
     }
 }
