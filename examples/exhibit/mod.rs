@@ -12,7 +12,7 @@ mod show;
 
 use std::error::Error;
 
-use pleach::automaton::{Automaton, Trajectory, diagram};
+use pleach::automaton::{Automaton, Reason, Trajectory, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::guards::Valuation;
 
@@ -87,22 +87,29 @@ impl Exhibit {
         self
     }
 
-    /// Holds the instants of the jumps of a run, in seconds, against the `answers`, one after the
-    /// other; there may be more of either.
+    /// Holds the instants of the first jumps of a run, in seconds, against the `answers`, which
+    /// are all jumps that there should be if the run lasts to its horizon.
     pub fn compare_jumps(
         mut self,
-        trajectory: &Trajectory,
+        run: &Trajectory,
         answers: impl IntoIterator<Item = f64>,
         tolerance: f64,
     ) -> Self {
-        for (number, (jump, answer)) in (1..).zip(trajectory.jumps().iter().zip(answers)) {
-            let quantity = format!("jump {number}, {}, in s", jump.label);
-            self = self.compare(quantity, jump.at.t, answer, tolerance);
+        let answers: Vec<f64> = answers.into_iter().collect();
+        for (number, answer) in answers.iter().enumerate() {
+            let jump = run.jumps().get(number);
+            let (label, found) = jump.map_or(("missing", f64::NAN), |one| (&one.label, one.at.t));
+            let quantity = format!("jump {}, {label}, in s", number + 1);
+            self = self.compare(quantity, found, *answer, tolerance);
+        }
+        if run.ending().reason == Reason::Horizon {
+            let (found, answer) = (run.jumps().len() as f64, answers.len() as f64);
+            self = self.compare("number of jumps", found, answer, 0.0);
         }
         self
     }
 
-    /// What differs by more than its tolerance, as sentences.
+    /// What differs by more than its tolerance or is not there, as sentences.
     pub fn disagreements(&self) -> Vec<String> {
         let wrong = |one: &&Comparison| one.error().is_nan() || one.error() > one.tolerance;
         self.comparisons.iter().filter(wrong).map(Comparison::to_sentence).collect()

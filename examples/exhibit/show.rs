@@ -58,7 +58,7 @@ pub(super) fn story(trajectory: &Trajectory) -> Vec<String> {
     let mut lines: Vec<String> =
         jumps.iter().take(MOST_JUMPS).map(|jump| told(trajectory, jump)).collect();
     if jumps.len() > MOST_JUMPS {
-        lines.push(format!("… and {} jumps more", jumps.len() - MOST_JUMPS));
+        lines.push("…".to_owned());
     }
     lines.push(ending(trajectory));
     lines
@@ -85,9 +85,8 @@ fn ending(trajectory: &Trajectory) -> String {
     match &trajectory.ending().reason {
         Reason::Horizon => format!("The horizon is reached at {t} s."),
         Reason::Zeno(zeno) => format!(
-            "The run is Zeno: every {} jumps take {} of the time of those before, and add up at \
-             {} s.",
-            zeno.cycle,
+            "The run is Zeno: {} {} of the time of the one before, and all of them end at {} s.",
+            if zeno.cycle == 1 { "each flow takes" } else { "each cycle of flows takes" },
             number(zeno.ratio),
             number(zeno.accumulation),
         ),

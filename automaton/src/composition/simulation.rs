@@ -154,6 +154,19 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
         Composition::builder().add("automaton", self).build()?.run(horizon)
     }
 
+    /// Runs the automaton by itself with settings of one's own.
+    ///
+    /// # Errors
+    ///
+    /// As for [`run`](Self::run), and if the settings make no sense.
+    pub fn run_with(
+        &self,
+        settings: Settings,
+        horizon: f64,
+    ) -> Result<Trajectory, SimulationError> {
+        Composition::builder().add("automaton", self).build()?.run_with(settings, horizon)
+    }
+
     /// Runs the automaton by itself, from `state`, for `horizon` seconds.
     ///
     /// # Errors
