@@ -22,17 +22,19 @@
 
 mod exhibit;
 
-use exhibit::{Exhibit, Shown};
+use exhibit::{Exhibit, Shown, instants};
 use pleach::prelude::*;
 use std::error::Error;
 
 // ---- The model ---------------------------------------------------------------------------------
 
 vocabulary! {
+    /// The gears, and the moment between two of them.
     pub enum Gear: Location {
         Selecting = "selecting", First = "1st", Second = "2nd", Third = "3rd", Fourth = "4th",
         Fifth = "5th",
     }
+    /// Out of a gear, and into one.
     pub enum Shift: Event {
         Limit = "limit", Into1 = "into 1st", Into2 = "into 2nd", Into3 = "into 3rd",
         Into4 = "into 4th", Into5 = "into 5th",
@@ -66,6 +68,7 @@ fn acceleration(speed: &Expression, ratio: f64) -> Expression {
     (ratio * torque - DRAG * speed.power(2.0)) / MASS - ROLLING
 }
 
+/// A car at full throttle.
 pub fn gear_shift() -> Result<Automaton<Gear, Shift, Car>, BuildError> {
     let Car { speed } = Car::coordinates();
     let mut car =
@@ -129,7 +132,7 @@ pub fn exhibit() -> Shown {
     let found = |run: &Trajectory, t| run.value("v", t).unwrap_or(f64::NAN);
     Ok(Exhibit::new("gear_shift", include_str!("gear_shift.rs"))
         .automaton("gears", &car)
-        .compare_jumps(&run, jumps, 1e-7)
+        .compare_all("jumps in s", instants(&run, usize::MAX), jumps, 1e-7)
         .compare("speed after 90 s in m/s", found(&run, 90.0), fast, 1e-7)
         .compare("3rd gear left, from 30 m/s, in s", rolling.jumps()[1].at.t, left, 1e-7)
         .run("From rest", run)

@@ -15,14 +15,16 @@
 
 mod exhibit;
 
-use exhibit::{Exhibit, Shown};
+use exhibit::{Exhibit, Shown, instants};
 use pleach::prelude::*;
 use std::error::Error;
 
 // ---- The model ---------------------------------------------------------------------------------
 
 vocabulary! {
+    /// What the heater does.
     pub enum Heater: Location { Off = "off", On = "on" }
+    /// What is done to it.
     pub enum Switch: Event { TurnOn = "turn on", TurnOff = "turn off" }
 }
 
@@ -31,6 +33,7 @@ coordinates! {
     pub struct Room { temperature = "x" }
 }
 
+/// A room with a heater that somebody switches.
 pub fn thermostat() -> Result<Automaton<Heater, Switch, Room>, BuildError> {
     use {Heater::*, Switch::*};
     let Room { temperature } = Room::coordinates();
@@ -69,8 +72,18 @@ pub fn exhibit() -> Shown {
     let (eager, patient) = (run(Policy::Early)?, run(Policy::Late)?);
     Ok(Exhibit::new("thermostat", include_str!("thermostat.rs"))
         .automaton("thermostat", &thermostat)
-        .compare_jumps(&eager, switchings(19.0, 21.0), 1e-12)
-        .compare_jumps(&patient, switchings(18.0, 22.0), 1e-12)
+        .compare_all(
+            "switching early, in s",
+            instants(&eager, usize::MAX),
+            switchings(19.0, 21.0),
+            1e-12,
+        )
+        .compare_all(
+            "switching late, in s",
+            instants(&patient, usize::MAX),
+            switchings(18.0, 22.0),
+            1e-12,
+        )
         .run("As soon as a transition may be taken", eager)
         .run("As late as the invariants allow", patient))
 }

@@ -17,7 +17,7 @@
 
 mod exhibit;
 
-use exhibit::{Exhibit, Shown};
+use exhibit::{Exhibit, Shown, instants};
 use pleach::prelude::*;
 use std::error::Error;
 
@@ -39,6 +39,7 @@ const INFLOW: f64 = 0.75;
 const OUTFLOW: f64 = 0.5;
 const GAIN: f64 = INFLOW - OUTFLOW;
 
+/// Two tanks and a hose that follows need.
 pub fn two_tanks() -> Result<Automaton<Hose, Empty, Tanks>, BuildError> {
     use {Empty::*, Hose::*};
     let Tanks { left, right } = Tanks::coordinates();
@@ -78,7 +79,7 @@ pub fn exhibit() -> Shown {
     };
     Ok(Exhibit::new("two_tanks", include_str!("two_tanks.rs"))
         .automaton("tanks", &tanks)
-        .compare_jumps(&trajectory, (1..=8).map(change_over), 1e-12)
+        .compare_all("change-overs in s", instants(&trajectory, 8), (1..=8).map(change_over), 1e-12)
         .compare("Zeno time in s", accumulation, zeno_time(), 1e-12)
         .run("From 0 and 1 litres", trajectory))
 }

@@ -48,10 +48,15 @@ fn an_event_on_the_boundary_of_two_flows_happens_once() {
     let Clock { time, count } = Clock::coordinates();
     // Time goes on in `here` after the jump at 1, and the guard stays true on its boundary.
     let once = after(1.0) & count.less_than(1.0);
-    let machine = built(clock().transition(from(Here).on(Go).to(Here).must(once).then([
-        count.becomes(&count + 1.0),
-        time.becomes(&time),
-    ])));
+    let machine = built(
+        clock().transition(
+            from(Here)
+                .on(Go)
+                .to(Here)
+                .must(once)
+                .then([count.becomes(&count + 1.0), time.becomes(&time)]),
+        ),
+    );
     let trajectory = run(&machine, 2.0);
     assert_eq!(labels(&trajectory), [(1.0, 0, "go")]);
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
@@ -77,6 +82,22 @@ fn jumps_at_the_horizon_are_taken_and_later_ones_are_not() {
 }
 
 #[test]
+fn flows_of_every_kind_reach_the_horizon() {
+    let Clock { time, count } = Clock::coordinates();
+    let rates = [count.rate(1.0), count.rate(1.0 - &count), count.rate(1.0 - count.power(2.0))];
+    let at_one = [1.0, 1.0 - (-1f64).exp(), 1f64.tanh()];
+    for (rate, value) in rates.into_iter().zip(at_one) {
+        let flow = [time.rate(1.0), rate];
+        let machine = built(Automaton::starting_in(Here).initially(START).flow(Here, flow));
+        let trajectory = run(&machine, 1.0);
+        assert_eq!(trajectory.ending().reason, Reason::Horizon);
+        let error = (trajectory.value("n", 1.0).expect("the run lasts") - value).abs();
+        assert!(error < 1e-8, "{error:e}");
+        assert_eq!(run(&machine, 0.0).ending().reason, Reason::Horizon);
+    }
+}
+
+#[test]
 fn guards_already_true_on_entry_are_seen_at_that_instant() {
     let machine = built(
         clock()
@@ -90,7 +111,8 @@ fn guards_already_true_on_entry_are_seen_at_that_instant() {
 fn every_assignment_reads_the_state_before_the_jump() {
     let Clock { time, count } = Clock::coordinates();
     let swap = [time.becomes(&count), count.becomes(&time)];
-    let machine = built(clock().transition(from(Here).on(Go).to(There).must(after(2.0)).then(swap)));
+    let machine =
+        built(clock().transition(from(Here).on(Go).to(There).must(after(2.0)).then(swap)));
     let trajectory = run(&machine, 3.0);
     let [first, second] = trajectory.phases() else { panic!("there is one jump") };
     assert_eq!(first.samples.last().map(|x| x.values.clone()), Some(vec![2.0, 0.0]), "x⁻");

@@ -8,7 +8,7 @@ use pleach::automaton::composition::Failure;
 use pleach::automaton::trajectory::{JumpRecord, Participant};
 use pleach::automaton::{Reason, Trajectory};
 
-use super::{Exhibit, number};
+use super::{Exhibit, number, numbers};
 
 /// The most jumps of a run that are told.
 const MOST_JUMPS: usize = 12;
@@ -28,11 +28,10 @@ impl Exhibit {
         }
         println!("Compared with the answer:");
         for one in &self.comparisons {
-            let (answer, error) = (number(one.answer), one.error());
-            println!(
-                "  {:40} {answer:>12}   error {error:.1e} ≤ {:e}",
-                one.quantity, one.tolerance
-            );
+            println!("  {}: {}", one.quantity, numbers(&one.answers));
+            if let Some(error) = one.error() {
+                println!("    largest error {error:.1e}, allowed {:e}", one.tolerance);
+            }
         }
         self.write_figures()?;
         match self.disagreements().join("\n") {

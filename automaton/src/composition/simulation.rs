@@ -509,10 +509,11 @@ impl System for Simulation<'_> {
         self.now = round.now();
         self.flight = None;
         let mut jumped = self.take_round(round, Readiness::Forced)?;
-        if !jumped {
-            let left = self.horizon - self.now.t;
-            let flight = self.plan(left.max(0.0))?;
-            if flight.duration <= 0.0 && left > 0.0 {
+        let left = self.horizon - self.now.t;
+        // At the horizon there is no flow to come.
+        if !jumped && left > 0.0 {
+            let flight = self.plan(left)?;
+            if flight.duration <= 0.0 {
                 jumped = self.take_round(round, Readiness::Possible)?;
             }
             self.flight = (!jumped).then_some(flight);
