@@ -41,6 +41,10 @@ macro_rules! classics {
 
 classics! {
     bouncing_ball from "../examples/bouncing_ball.rs"
+    thermostat from "../examples/thermostat.rs"
+    heater_and_controller from "../examples/heater_and_controller.rs"
+    two_tanks from "../examples/two_tanks.rs"
+    gear_shift from "../examples/gear_shift.rs"
 }
 
 /// Examples that are no classics: they are about the robots.

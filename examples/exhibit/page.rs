@@ -1,7 +1,7 @@
 //! The exhibit as a page of the book, in Markdown.
 
 use super::show::story;
-use super::{Comparison, Exhibit, number};
+use super::{Comparison, Exhibit, numbers};
 
 /// Between these lines of an example stands its model.
 const MODEL: [&str; 2] = ["// ---- The model ", "// ---- The answer "];
@@ -52,5 +52,5 @@ impl Exhibit {
 fn row(one: &Comparison) -> String {
     let tolerance =
         if one.tolerance == 0.0 { "exactly".into() } else { format!("{:e}", one.tolerance) };
-    format!("| {} | {} | {tolerance} |\n", one.quantity, number(one.answer))
+    format!("| {} | {} | {tolerance} |\n", one.quantity, numbers(&one.answers))
 }
