@@ -20,6 +20,7 @@ pub mod automaton;
 pub mod builder;
 pub mod composition;
 pub mod coordinates;
+pub mod coverage;
 pub mod decision;
 pub mod diagram;
 pub mod edge;
@@ -40,6 +41,7 @@ pub use composition::{
     Simulation, SimulationError,
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
+pub use coverage::{Coverage, CoverageError};
 pub use edge::{Edge, from};
 pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
 pub use flow::{Flow, Rate};
