@@ -40,7 +40,9 @@ pub fn assume(condition: bool) {
 /// States that some case satisfies a condition, so that a harness says something.
 #[macro_export]
 macro_rules! cover {
-    () => { $crate::cover!(true) };
+    () => {
+        $crate::cover!(true)
+    };
     ($condition:expr $(, $message:literal)? $(,)?) => {
         $crate::note_cover($condition, (file!(), line!(), column!()))
     };
