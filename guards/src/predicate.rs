@@ -7,6 +7,9 @@ use std::sync::Arc;
 use crate::expression::Expression;
 use crate::valuation::{EvaluationError, Valuation};
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// A statement about a state, as data: the one guard type of the project.
 ///
 /// Predicates begin as comparisons ([`Expression::at_most`] and its kin) and combine with
@@ -239,6 +242,12 @@ impl Relation {
 impl Verdict {
     const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
     const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
+
+    /// Whether margin and verdict tell the same: a positive margin says that the predicate holds,
+    /// a negative one that it does not, and NaN says nothing.
+    pub fn is_consistent(self) -> bool {
+        if self.holds { self.margin >= 0.0 } else { self.margin <= 0.0 }
+    }
 
     fn and(self, other: Verdict) -> Verdict {
         Verdict { margin: self.margin.min(other.margin), holds: self.holds && other.holds }

@@ -122,7 +122,7 @@ impl Arbitrary for f64 {
         ];
         let draw = |dice: &mut Dice| match dice.below(8) {
             0 => SPECIAL[dice.below(SPECIAL.len() as u64) as usize],
-            1..4 => (dice.below(33) as f64 - 16.0) / 4.0,
+            1..4 => (dice.below(65) as f64 - 32.0) / 4.0,
             4..6 => (dice.bits() >> 11) as f64 / (1_u64 << 53) as f64,
             _ => f64::from_bits(dice.bits()),
         };
