@@ -117,6 +117,7 @@
 
 pub mod figures;
 pub mod mission;
+pub mod prelude;
 pub mod scenario_file;
 pub mod story;
 pub mod summary;

@@ -1,12 +1,16 @@
 //! The hybrid automaton: a graph of locations with guards, resets, flows and invariants.
 
+use std::ops::RangeInclusive;
+
 use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
-use pleach_discrete::{Event, Location, TransitionTable, Urgency};
+use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency};
 use pleach_guards::{EvaluationError, Guard, Predicate, Valuation};
 use thiserror::Error;
 
 use crate::builder::Builder;
-use crate::reset::{Flow, Reset};
+use crate::coordinates::Coordinates;
+use crate::flow::Flow;
+use crate::reset::Reset;
 
 /// A hybrid automaton over locations `L`, events `E` and a state `S`.
 ///
@@ -20,21 +24,13 @@ use crate::reset::{Flow, Reset};
 ///
 /// ```
 /// use pleach_automaton::{Automaton, Reset};
-/// use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency};
+/// use pleach_discrete::{vocabulary, Row, TransitionTable, Urgency};
 /// use pleach_guards::{variable, Guard, Valuation};
 ///
-/// # #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-/// enum Tap { Open, Shut }
-/// # impl Location for Tap {
-/// #     const ALL: &'static [Self] = &[Tap::Open, Tap::Shut];
-/// #     fn name(self) -> &'static str { match self { Tap::Open => "open", Tap::Shut => "shut" } }
-/// # }
-/// # #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-/// enum Float { Full }
-/// # impl Event for Float {
-/// #     const ALL: &'static [Self] = &[Float::Full];
-/// #     fn name(self) -> &'static str { "full" }
-/// # }
+/// vocabulary! {
+///     enum Tap: Location { Open = "open", Shut = "shut" }
+///     enum Float: Event { Full = "full" }
+/// }
 /// struct Tank { level: f64, fillings: u32 }
 /// # impl Valuation for Tank {
 /// #     fn value(&self, variable: &str) -> Option<f64> { (variable == "level").then_some(self.level) }
@@ -57,9 +53,13 @@ use crate::reset::{Flow, Reset};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Automaton<L: 'static, E: 'static, S> {
-    pub(crate) table: TransitionTable<L, E>,
+pub struct Automaton<L, E, S> {
+    pub(crate) rows: Vec<Row<L, E>>,
     pub(crate) initial: L,
+    /// The state in which a run starts, where the model says it.
+    pub(crate) initial_state: Option<S>,
+    /// What the model says of the coordinates' ranges, by name.
+    pub(crate) ranges: Vec<(String, RangeInclusive<f64>)>,
     /// The nodes stand in the order of `L::ALL`.
     pub(crate) graph: DiGraph<L, Transition<E, S>>,
     /// By node.
@@ -111,34 +111,46 @@ pub struct Step<'a, L, E, S> {
     transition: &'a Transition<E, S>,
 }
 
-/// A guard could not be evaluated.
+/// A guard or a reset could not be evaluated.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("guard `{guard}` of event `{event}` in location `{location}`: {source}")]
-pub struct GuardError {
+#[error("{part} of event `{event}` in location `{location}`: {source}")]
+pub struct TransitionError {
     /// The location that the transition leaves.
     pub location: &'static str,
     /// The event of the transition.
     pub event: &'static str,
-    /// The name of the guard.
-    pub guard: String,
-    /// What is wrong with the state or the guard.
+    /// The guard with its name, or the reset.
+    pub part: String,
+    /// What is wrong with the state or the formula.
     pub source: EvaluationError,
 }
 
 impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// Begins the automaton of `table` that starts in `initial`.
-    pub fn builder(table: TransitionTable<L, E>, initial: L) -> Builder<L, E, S> {
+    pub fn builder(table: TransitionTable<'_, L, E>, initial: L) -> Builder<L, E, S> {
         Builder::new(table, initial)
     }
 
-    /// The table that the automaton was built from.
-    pub fn table(&self) -> TransitionTable<L, E> {
-        self.table
+    /// The table: a row for every transition.
+    pub fn table(&self) -> TransitionTable<'_, L, E> {
+        TransitionTable::new(&self.rows)
     }
 
     /// The location in which a run starts.
     pub fn initial(&self) -> L {
         self.initial
+    }
+
+    /// The state in which a run starts, if the model says it.
+    pub fn initial_state(&self) -> Option<&S> {
+        self.initial_state.as_ref()
+    }
+
+    /// The range that the model declares for the variable called `name`; without a declaration,
+    /// all numbers.
+    pub fn range(&self, name: &str) -> RangeInclusive<f64> {
+        let declared = self.ranges.iter().find(|(variable, _)| variable == name);
+        declared.map_or(f64::NEG_INFINITY..=f64::INFINITY, |(_, range)| range.clone())
     }
 
     /// The graph: a node for every location, in the order of `L::ALL`, and an edge for every row
@@ -157,8 +169,12 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     ///
     /// # Errors
     ///
-    /// [`GuardError`] for the first guard before it that cannot be evaluated.
-    pub fn enabled(&self, location: L, state: &S) -> Result<Option<Step<'_, L, E, S>>, GuardError> {
+    /// [`TransitionError`] for the first guard before it that cannot be evaluated.
+    pub fn enabled(
+        &self,
+        location: L,
+        state: &S,
+    ) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
         self.first(location, state, |transition| transition.urgency.is_forced())
     }
 
@@ -168,13 +184,13 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     ///
     /// # Errors
     ///
-    /// [`GuardError`] if the guard cannot be evaluated.
+    /// [`TransitionError`] if the guard cannot be evaluated.
     pub fn enabled_on(
         &self,
         event: E,
         location: L,
         state: &S,
-    ) -> Result<Option<Step<'_, L, E, S>>, GuardError> {
+    ) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
         self.first(location, state, |transition| transition.event == event)
     }
 
@@ -183,16 +199,12 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// # Errors
     ///
     /// As for [`enabled`](Self::enabled); location and state are then as before.
-    pub fn step(&self, location: &mut L, state: &mut S) -> Result<Option<Jump<L, E>>, GuardError> {
-        let step = self.enabled(*location, state)?;
-        Ok(step.map(|step| step.fire(location, state)))
-    }
-
-    /// Lets `duration` seconds pass in `location`.
-    pub fn flow(&self, location: L, state: &mut S, duration: f64) {
-        if let Some(flow) = self.mode(location).and_then(|mode| mode.flow.as_ref()) {
-            flow.advance(state, duration);
-        }
+    pub fn step(
+        &self,
+        location: &mut L,
+        state: &mut S,
+    ) -> Result<Option<Jump<L, E>>, TransitionError> {
+        self.enabled(*location, state)?.map(|step| step.fire(location, state)).transpose()
     }
 
     fn first(
@@ -200,12 +212,12 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         location: L,
         state: &S,
         eligible: impl Fn(&Transition<E, S>) -> bool,
-    ) -> Result<Option<Step<'_, L, E, S>>, GuardError> {
+    ) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
         let leaving = node(location).and_then(|node| self.leaving.get(node.index()));
         for &edge in leaving.into_iter().flatten() {
             let transition = &self.graph[edge];
             if eligible(transition) && transition.allows(location, state)? {
-                let target = self.table.rows()[edge.index()].target;
+                let target = self.rows[edge.index()].target;
                 return Ok(Some(Step { source: location, target, transition }));
             }
         }
@@ -213,14 +225,27 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     }
 }
 
+impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
+    /// Begins the automaton over states with coordinates that starts in `initial`; its transitions
+    /// and what is said of its locations follow.
+    pub fn starting_in(initial: L) -> Builder<L, E, S> {
+        Builder::over_coordinates(initial)
+    }
+}
+
 impl<E: Event, S: Valuation> Transition<E, S> {
-    fn allows<L: Location>(&self, location: L, state: &S) -> Result<bool, GuardError> {
-        self.guard.holds(state).map_err(|source| GuardError {
-            location: location.name(),
-            event: self.event.name(),
-            guard: self.guard.name().to_owned(),
-            source,
-        })
+    fn allows<L: Location>(&self, location: L, state: &S) -> Result<bool, TransitionError> {
+        let part = || format!("guard `{}`", self.guard.name());
+        self.guard.holds(state).map_err(|source| self.error(location, part(), source))
+    }
+
+    fn error<L: Location>(
+        &self,
+        location: L,
+        part: String,
+        source: EvaluationError,
+    ) -> TransitionError {
+        TransitionError { location: location.name(), event: self.event.name(), part, source }
     }
 }
 
@@ -236,10 +261,19 @@ impl<'a, L: Location, E: Event, S> Step<'a, L, E, S> {
     }
 
     /// Takes the transition: resets the state and enters the target.
-    pub fn fire(self, location: &mut L, state: &mut S) -> Jump<L, E> {
-        self.transition.reset.apply(state);
+    ///
+    /// # Errors
+    ///
+    /// [`TransitionError`] if the reset cannot be evaluated; location and state are then as before.
+    pub fn fire(self, location: &mut L, state: &mut S) -> Result<Jump<L, E>, TransitionError>
+    where
+        S: Valuation,
+    {
+        let Transition { reset, .. } = self.transition;
+        let failed = |source| self.transition.error(self.source, "reset".into(), source);
+        reset.apply(state).map_err(failed)?;
         *location = self.target;
-        self.jump()
+        Ok(self.jump())
     }
 }
 

@@ -1,27 +1,42 @@
 //! How an automaton is put together, and what can be wrong with it.
 
+use std::ops::RangeInclusive;
+
 use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
 use pleach_discrete::{Event, Location, Row, TransitionTable};
-use pleach_guards::{Guard, Predicate, Valuation};
+use pleach_guards::{Expression, Guard, Predicate, Valuation};
 use thiserror::Error;
 
 use crate::automaton::{Automaton, Mode, Transition, node};
-use crate::reset::{Flow, Reset};
+use crate::coordinates::{Coordinate, Coordinates};
+use crate::edge::Edge;
+use crate::flow::Flow;
+use crate::reset::Reset;
 
-/// An [`Automaton`] that is being put together: a table, then for each event a guard and a reset,
-/// and for the locations that need it a flow and an invariant.
+/// An [`Automaton`] that is being put together.
+///
+/// There are two ways to begin. [`Automaton::builder`] takes a table, and each of its events gets
+/// a guard and a reset [`on`](Builder::on) all rows at once; [`Automaton::starting_in`] takes one
+/// [`transition`](Builder::transition) after another. Both go on with flows and invariants.
 #[derive(Clone, Debug)]
 #[must_use = "an automaton is complete after `build`"]
-pub struct Builder<L: 'static, E: 'static, S> {
-    table: TransitionTable<L, E>,
+pub struct Builder<L, E, S> {
+    rows: Vec<Row<L, E>>,
     initial: L,
+    initial_state: Option<S>,
+    /// For all rows of an event.
     conditions: Vec<(E, Guard, Reset<S>)>,
+    /// For the rows with these numbers.
+    edges: Vec<(usize, Guard, Reset<S>)>,
     flows: Vec<(L, Flow<S>)>,
     invariants: Vec<(L, Predicate)>,
+    ranges: Vec<(String, RangeInclusive<f64>)>,
+    /// The names of all variables, where the type of the state tells.
+    known: Option<&'static [&'static str]>,
 }
 
 /// Why the parts do not make an automaton.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BuildError {
     /// `Location::ALL` lacks a location.
@@ -72,42 +87,90 @@ pub enum BuildError {
         /// What is given twice: guard, flow or invariant.
         part: &'static str,
     },
-    /// The state has no variable of a name that is asked for.
-    #[error("the {part} of `{place}` reads variable `{variable}`, which the state does not have")]
+    /// A formula names a variable that the state does not have.
+    #[error("the {part} of `{place}` names variable `{variable}`, which the state does not have")]
     UnknownVariable {
         /// The event or the location.
         place: &'static str,
-        /// What reads it: guard or invariant.
+        /// What names it: guard, reset, flow or invariant.
         part: &'static str,
         /// The name of the variable.
         variable: String,
     },
+    /// A flow or a reset says twice what one coordinate does.
+    #[error("the {part} of `{place}` gives `{coordinate}` two values: keep one")]
+    CoordinateTwice {
+        /// The event or the location.
+        place: &'static str,
+        /// Flow or reset.
+        part: &'static str,
+        /// The coordinate.
+        coordinate: &'static str,
+    },
+    /// A range is declared for a variable that the state does not have.
+    #[error("a range is declared for variable `{variable}`, which the state does not have")]
+    RangeOfUnknownVariable {
+        /// The name of the variable.
+        variable: String,
+    },
+    /// A range is empty, or one of its ends is NaN.
+    #[error(
+        "the range of `{variable}` runs from {lower} to {upper}: the first must be at most the \
+         second"
+    )]
+    EmptyRange {
+        /// The name of the variable.
+        variable: String,
+        /// The lower end given.
+        lower: f64,
+        /// The upper end given.
+        upper: f64,
+    },
+    /// A coordinate of the initial state is NaN or infinite.
+    #[error("`{variable}` is {value} in the initial state: it must be a finite number")]
+    InitialNotFinite {
+        /// The name of the coordinate.
+        variable: &'static str,
+        /// Its value.
+        value: f64,
+    },
 }
 
 impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
-    pub(crate) fn new(table: TransitionTable<L, E>, initial: L) -> Self {
+    pub(crate) fn new(table: TransitionTable<'_, L, E>, initial: L) -> Self {
         Builder {
-            table,
+            rows: table.rows().to_vec(),
             initial,
+            initial_state: None,
             conditions: Vec::new(),
+            edges: Vec::new(),
             flows: Vec::new(),
             invariants: Vec::new(),
+            ranges: Vec::new(),
+            known: None,
         }
     }
 
     /// The transitions on `event` may be taken where `guard` holds, and do `reset`.
-    pub fn on(mut self, event: E, guard: Guard, reset: Reset<S>) -> Self {
-        self.conditions.push((event, guard, reset));
+    pub fn on(mut self, event: E, guard: impl Into<Guard>, reset: impl Into<Reset<S>>) -> Self {
+        self.conditions.push((event, guard.into(), reset.into()));
         self
     }
 
-    /// In `location` the state changes by `flow`.
-    pub fn flow(mut self, location: L, flow: Flow<S>) -> Self {
-        self.flows.push((location, flow));
+    /// One more transition, with a guard and a reset of its own.
+    pub fn transition(mut self, edge: Edge<L, E, S>) -> Self {
+        self.edges.push((self.rows.len(), edge.guard, edge.reset));
+        self.rows.push(edge.row);
         self
     }
 
-    /// In `location` time may pass while `invariant` holds.
+    /// In `location` the state changes by `flow`; without one it rests.
+    pub fn flow(mut self, location: L, flow: impl Into<Flow<S>>) -> Self {
+        self.flows.push((location, flow.into()));
+        self
+    }
+
+    /// In `location` time may pass while `invariant` holds; without one it always may.
     pub fn invariant(mut self, location: L, invariant: Predicate) -> Self {
         self.invariants.push((location, invariant));
         self
@@ -123,48 +186,37 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         self.check_vocabulary()?;
         self.check_table()?;
         self.check_parts()?;
-        let mut graph = DiGraph::with_capacity(L::ALL.len(), self.table.rows().len());
+        if let Some(names) = self.known {
+            self.check_variables(|name| names.contains(&name))?;
+        }
+        let mut graph = DiGraph::with_capacity(L::ALL.len(), self.rows.len());
         for &location in L::ALL {
             graph.add_node(location);
         }
-        for row in self.table.rows() {
+        for (number, row) in self.rows.iter().enumerate() {
             let (source, target) = (listed(row.source)?, listed(row.target)?);
-            graph.add_edge(source, target, self.transition(row)?);
+            graph.add_edge(source, target, self.transition_of(number, row)?);
         }
         let leaving = L::ALL.iter().map(|&location| self.leaving(location)).collect();
         let modes = L::ALL.iter().map(|&location| self.mode(location)).collect();
-        Ok(Automaton { table: self.table, initial: self.initial, graph, modes, leaving })
+        let Builder { rows, initial, initial_state, ranges, .. } = self;
+        Ok(Automaton { rows, initial, initial_state, ranges, graph, modes, leaving })
     }
 
     /// The automaton, after a look at any one state of the model, whose values do not matter:
-    /// every variable that guards and invariants read must be there.
+    /// every variable that formulas name must be there.
     ///
     /// # Errors
     ///
     /// Those of [`build`](Self::build), and [`BuildError::UnknownVariable`].
     pub fn build_for(self, example: &S) -> Result<Automaton<L, E, S>, BuildError> {
-        let guards = self
-            .conditions
-            .iter()
-            .map(|(event, guard, _)| (event.name(), "guard", guard.predicate()));
-        let invariants = self
-            .invariants
-            .iter()
-            .map(|(location, invariant)| (location.name(), "invariant", invariant));
-        for (place, part, predicate) in guards.chain(invariants) {
-            for variable in predicate.variables() {
-                if example.value(variable).is_none() {
-                    let variable = variable.to_owned();
-                    return Err(BuildError::UnknownVariable { place, part, variable });
-                }
-            }
-        }
+        self.check_variables(|name| example.value(name).is_some())?;
         self.build()
     }
 
     fn check_vocabulary(&self) -> Result<(), BuildError> {
         listed(self.initial)?;
-        for row in self.table.rows() {
+        for row in &self.rows {
             listed(row.source)?;
             listed(row.target)?;
             if !E::ALL.contains(&row.event) {
@@ -177,11 +229,11 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     }
 
     fn check_table(&self) -> Result<(), BuildError> {
-        if let Some(row) = self.table.conflict() {
+        if let Some(row) = self.table().conflict() {
             let (location, event) = (row.source.name(), row.event.name());
             return Err(BuildError::Nondeterministic { location, event });
         }
-        let rows = self.table.rows();
+        let rows = &self.rows;
         let occurs = rows.iter().any(|row| [row.source, row.target].contains(&self.initial));
         if !rows.is_empty() && !occurs {
             return Err(BuildError::InitialNotInTable { location: self.initial.name() });
@@ -191,7 +243,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
 
     fn check_parts(&self) -> Result<(), BuildError> {
         for (event, guard, _) in &self.conditions {
-            if !self.table.rows().iter().any(|row| row.event == *event) {
+            if !self.rows.iter().any(|row| row.event == *event) {
                 let (guard, event) = (guard.name().to_owned(), event.name());
                 return Err(BuildError::GuardWithoutRow { guard, event });
             }
@@ -204,12 +256,74 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         once(restricted, "invariant", L::name)
     }
 
-    fn transition(&self, row: &Row<L, E>) -> Result<Transition<E, S>, BuildError> {
+    /// Whatever flows, invariants, guards, resets and ranges name is a variable, and no coordinate
+    /// is given two values at once.
+    fn check_variables(&self, is_known: impl Fn(&str) -> bool) -> Result<(), BuildError> {
+        for part in self.formulas() {
+            if let Some(unknown) = part.variables.iter().find(|name| !is_known(name)) {
+                let Part { place, part, .. } = part;
+                return Err(BuildError::UnknownVariable { place, part, variable: unknown.clone() });
+            }
+            let mut given = part.coordinates.iter().enumerate();
+            if let Some((_, coordinate)) =
+                given.find(|(position, name)| part.coordinates[..*position].contains(name))
+            {
+                let Part { place, part, .. } = part;
+                return Err(BuildError::CoordinateTwice { place, part, coordinate });
+            }
+        }
+        for (variable, range) in &self.ranges {
+            let (variable, lower, upper) = (variable.clone(), *range.start(), *range.end());
+            if !is_known(&variable) {
+                return Err(BuildError::RangeOfUnknownVariable { variable });
+            }
+            let in_order = lower <= upper;
+            if !in_order {
+                return Err(BuildError::EmptyRange { variable, lower, upper });
+            }
+        }
+        Ok(())
+    }
+
+    fn formulas(&self) -> Vec<Part> {
+        let mut parts = Vec::new();
+        let conditions = self.conditions.iter().map(|(event, guard, reset)| (*event, guard, reset));
+        let edges =
+            self.edges.iter().map(|(row, guard, reset)| (self.rows[*row].event, guard, reset));
+        for (event, guard, reset) in conditions.chain(edges) {
+            parts.push(Part::reading(event.name(), "guard", guard.predicate()));
+            let assignments = reset.assignments().into_iter().flatten();
+            let assigned = assignments.map(|one| (one.coordinate(), one.value()));
+            parts.push(Part::giving(event.name(), "reset", assigned));
+        }
+        for (location, flow) in &self.flows {
+            let rates = flow.rates().into_iter().flatten();
+            let given = rates.map(|one| (one.coordinate(), one.rate()));
+            parts.push(Part::giving(location.name(), "flow", given));
+        }
+        for (location, invariant) in &self.invariants {
+            parts.push(Part::reading(location.name(), "invariant", invariant));
+        }
+        parts
+    }
+
+    fn table(&self) -> TransitionTable<'_, L, E> {
+        TransitionTable::new(&self.rows)
+    }
+
+    fn transition_of(
+        &self,
+        number: usize,
+        row: &Row<L, E>,
+    ) -> Result<Transition<E, S>, BuildError> {
+        let edge = self.edges.iter().find(|(edge, ..)| *edge == number);
+        let own = edge.map(|(_, guard, reset)| (guard, reset));
         let condition = self.conditions.iter().find(|(event, ..)| *event == row.event);
-        let (event, guard, reset) =
-            condition.ok_or(BuildError::EventWithoutGuard { event: row.event.name() })?;
+        let common = condition.map(|(_, guard, reset)| (guard, reset));
+        let (guard, reset) =
+            own.or(common).ok_or(BuildError::EventWithoutGuard { event: row.event.name() })?;
         Ok(Transition {
-            event: *event,
+            event: row.event,
             guard: guard.clone(),
             reset: reset.clone(),
             urgency: row.urgency,
@@ -219,7 +333,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
 
     /// The edges have the numbers of their rows.
     fn leaving(&self, location: L) -> Vec<EdgeIndex> {
-        let rows = self.table.rows();
+        let rows = &self.rows;
         let mut numbers: Vec<usize> =
             (0..rows.len()).filter(|&number| rows[number].source == location).collect();
         numbers.sort_by_key(|&number| (rows[number].priority, number));
@@ -233,6 +347,55 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             flow: flow.map(|(_, flow)| flow.clone()),
             invariant: invariant.map(|(_, invariant)| invariant.clone()),
         }
+    }
+}
+
+impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
+    pub(crate) fn over_coordinates(initial: L) -> Self {
+        Builder { known: Some(S::NAMES), ..Builder::new(TransitionTable::new(&[]), initial) }
+    }
+
+    /// Runs start in `state`, unless they are given another one.
+    pub fn initially(mut self, state: S) -> Self {
+        self.initial_state = Some(state);
+        self
+    }
+
+    /// The model is meant for values of `coordinate` in `range`: checks look there, and nowhere
+    /// else, for what can go wrong.
+    pub fn range(mut self, coordinate: &Coordinate<S>, range: RangeInclusive<f64>) -> Self {
+        self.ranges.push((coordinate.name().to_owned(), range));
+        self
+    }
+}
+
+/// What one formula, or one list of formulas, names.
+struct Part {
+    place: &'static str,
+    part: &'static str,
+    variables: Vec<String>,
+    /// The coordinates that are given a rate or a value.
+    coordinates: Vec<&'static str>,
+}
+
+impl Part {
+    fn reading(place: &'static str, part: &'static str, predicate: &Predicate) -> Part {
+        let variables = predicate.variables().into_iter().map(str::to_owned).collect();
+        Part { place, part, variables, coordinates: Vec::new() }
+    }
+
+    fn giving<'a>(
+        place: &'static str,
+        part: &'static str,
+        formulas: impl Iterator<Item = (&'static str, &'a Expression)>,
+    ) -> Part {
+        let (mut variables, mut coordinates) = (Vec::new(), Vec::new());
+        for (coordinate, formula) in formulas {
+            variables.push(coordinate.to_owned());
+            variables.extend(formula.variables().into_iter().map(str::to_owned));
+            coordinates.push(coordinate);
+        }
+        Part { place, part, variables, coordinates }
     }
 }
 

@@ -20,6 +20,9 @@
 //! The run covers the closed interval from 0 to the horizon: jumps at the horizon itself are taken.
 //! Transitions that only *may* be taken are up to the system, in its rounds.
 //!
+//! A run whose jumps come ever faster, so that infinitely many of them would happen before an instant
+//! that time never reaches, is recognised and ended ([`zeno`](crate::zeno)).
+//!
 //! Every run ends with a [`Reason`]. Nothing in it depends on clocks, threads or chance.
 //!
 //! # Example
@@ -70,12 +73,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use std::convert::Infallible;
 use std::ops::ControlFlow;
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::time::HybridTime;
-use crate::trajectory::{Participants, TraceEntry};
+use crate::trace::{Participants, TraceEntry};
+use crate::zeno::{Zeno, ZenoDetector};
 
 /// What the executor runs: components with their states and whatever they share.
 pub trait System {
@@ -148,6 +154,11 @@ impl<J> Round<'_, J> {
         self.record(Participants::One(component), jump);
     }
 
+    /// These components, in ascending order, have jumped together: this is one jump.
+    pub fn jumped_some(&mut self, components: Box<[usize]>, jump: J) {
+        self.record(Participants::Some(components), jump);
+    }
+
     /// All components have jumped together: this is one jump.
     pub fn jumped_together(&mut self, jump: J) {
         self.record(Participants::All, jump);
@@ -167,7 +178,7 @@ pub struct Executor {
 }
 
 /// When and why a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ending<F> {
     /// The hybrid time reached.
     pub at: HybridTime,
@@ -176,7 +187,7 @@ pub struct Ending<F> {
 }
 
 /// Why a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Reason<F> {
     /// The system said so.
@@ -190,6 +201,21 @@ pub enum Reason<F> {
     Blocked,
     /// More rounds of jumps at one instant than allowed.
     JumpLimit,
+    /// Jumps come ever faster and add up at an instant before the horizon.
+    Zeno(Zeno),
+}
+
+impl Reason<Infallible> {
+    /// The same for a system that can end by itself in ways that this one does not have.
+    pub fn without_finish<F>(self) -> Reason<F> {
+        match self {
+            Reason::Finished(never) | Reason::Interrupted(never) => match never {},
+            Reason::Horizon => Reason::Horizon,
+            Reason::Blocked => Reason::Blocked,
+            Reason::JumpLimit => Reason::JumpLimit,
+            Reason::Zeno(zeno) => Reason::Zeno(zeno),
+        }
+    }
 }
 
 /// The limits of an [`Executor`] make no sense.
@@ -204,6 +230,11 @@ pub enum InvalidLimit {
 }
 
 impl Executor {
+    /// How long a run may take, in seconds.
+    pub fn horizon(&self) -> f64 {
+        self.horizon
+    }
+
     /// Runs up to `horizon` seconds, finite and ≥ 0, with at most `round_limit` ≥ 1 rounds of jumps
     /// at one instant. A component jumps at most once a round, so that the limit does not depend on
     /// how many components there are.
@@ -233,6 +264,7 @@ impl Executor {
     ) -> Result<Ending<S::Finish>, S::Error> {
         let mut now = HybridTime::START;
         let mut rounds = 0;
+        let mut zeno = ZenoDetector::new(self.horizon);
         let reason = loop {
             if let Some(finish) = system.finished() {
                 break Reason::Finished(finish);
@@ -262,6 +294,9 @@ impl Executor {
             system.flow(duration)?;
             now = if wait < left { now.after_flow(wait) } else { self.at_horizon(now) };
             rounds = 0;
+            if let Some(zeno) = zeno.after_flow(now.t, duration) {
+                break Reason::Zeno(zeno);
+            }
         };
         Ok(Ending { at: now, reason })
     }

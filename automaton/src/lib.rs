@@ -13,16 +13,36 @@
 
 pub mod automaton;
 pub mod builder;
+pub mod composition;
+pub mod coordinates;
 pub mod diagram;
+pub mod edge;
 pub mod executor;
+pub mod flow;
 pub mod network;
 pub mod reset;
 pub mod time;
+pub mod trace;
 pub mod trajectory;
+pub mod zeno;
 
-pub use automaton::{Automaton, GuardError, Jump, Mode, Step, Transition};
+pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
+pub use composition::{
+    Composition, CompositionBuilder, CompositionError, Failure, Policy, Settings, Simulation,
+    SimulationError,
+};
+pub use coordinates::{Coordinate, Coordinates, Vector};
+pub use edge::{Edge, from};
 pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
-pub use reset::{Flow, Reset};
+pub use flow::{Flow, Rate};
+pub use reset::{Assignment, Reset};
 pub use time::HybridTime;
-pub use trajectory::{Participants, Trace, TraceEntry};
+
+pub use trace::{Participants, Trace, TraceEntry};
+pub use trajectory::Trajectory;
+pub use zeno::Zeno;
+
+// For the macros.
+#[doc(hidden)]
+pub use {pleach_discrete as discrete, pleach_guards as guards};

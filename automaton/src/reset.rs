@@ -1,83 +1,197 @@
-//! What a jump and what time does to the state: resets and flows, each under a name.
+//! What a jump does to the state: x⁻ → x⁺, as assignments or as a function under a name.
 
+use std::borrow::Cow;
 use std::fmt;
+use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// The reset of a transition: x⁻ → x⁺, as a function with the name that diagrams show.
+use pleach_guards::{EvaluationError, Expression};
+
+use crate::coordinates::Coordinates;
+
+/// The reset of a transition.
+///
+/// It is data where it is a list of assignments, which all read x⁻ and leave every other
+/// coordinate as it is; or else a function with the name that diagrams show, which analyses report
+/// as unchecked.
+///
+/// ```
+/// use pleach_automaton::{coordinates, Reset};
+///
+/// coordinates! { struct Ball { height, velocity } }
+/// let Ball { velocity, .. } = Ball::coordinates();
+///
+/// let bounce: Reset<Ball> = velocity.becomes(-0.5 * &velocity).into();
+/// assert_eq!(bounce.to_string(), "velocity := −0.5 · velocity");
+///
+/// let halt = Reset::new("halt", |ball: &mut Ball| ball.velocity = 0.0);
+/// assert_eq!(halt.to_string(), "halt");
+/// ```
 pub struct Reset<S> {
-    name: Arc<str>,
-    apply: fn(&mut S),
+    form: Form<S>,
+    apply: Arc<Apply<S>>,
+}
+
+enum Form<S> {
+    Assignments(Arc<[Assignment<S>]>),
+    Function(Arc<str>),
+}
+
+type Apply<S> = dyn Fn(&mut S) -> Result<(), EvaluationError> + Send + Sync;
+
+/// One coordinate's new value, as a formula over x⁻; made by
+/// [`Coordinate::becomes`](crate::Coordinate::becomes).
+pub struct Assignment<S> {
+    coordinate: &'static str,
+    value: Expression,
+    state: PhantomData<fn() -> S>,
+}
+
+impl<S> Assignment<S> {
+    pub(crate) fn new(coordinate: &'static str, value: Expression) -> Self {
+        Assignment { coordinate, value, state: PhantomData }
+    }
+
+    /// The name of the coordinate that is assigned.
+    pub fn coordinate(&self) -> &'static str {
+        self.coordinate
+    }
+
+    /// What it becomes.
+    pub fn value(&self) -> &Expression {
+        &self.value
+    }
 }
 
 impl<S> Reset<S> {
     /// The reset that `apply` carries out; `name` says it in a few words or as a formula.
-    pub fn new(name: &str, apply: fn(&mut S)) -> Self {
-        Reset { name: name.into(), apply }
+    pub fn new(name: &str, apply: impl Fn(&mut S) + Send + Sync + 'static) -> Self {
+        let apply = move |state: &mut S| {
+            apply(state);
+            Ok(())
+        };
+        Reset { form: Form::Function(name.into()), apply: Arc::new(apply) }
     }
 
-    /// The reset that changes nothing, x⁺ = x⁻; its name is empty.
+    /// The reset that changes nothing, x⁺ = x⁻.
     pub fn identity() -> Self {
-        Reset::new("", |_| {})
+        Reset { form: Form::Assignments(Arc::new([])), apply: Arc::new(|_| Ok(())) }
     }
 
-    /// The name, empty for the identity.
-    pub fn name(&self) -> &str {
-        &self.name
+    /// Whether it changes nothing.
+    pub fn is_identity(&self) -> bool {
+        self.assignments().is_some_and(<[_]>::is_empty)
+    }
+
+    /// The assignments, unless the reset is a function.
+    pub fn assignments(&self) -> Option<&[Assignment<S>]> {
+        match &self.form {
+            Form::Assignments(assignments) => Some(assignments),
+            Form::Function(_) => None,
+        }
+    }
+
+    /// The name or the formula, as text; empty for the identity.
+    pub fn name(&self) -> Cow<'_, str> {
+        match &self.form {
+            Form::Assignments(assignments) => {
+                let texts: Vec<String> = assignments.iter().map(Assignment::to_string).collect();
+                Cow::Owned(texts.join(", "))
+            }
+            Form::Function(name) => Cow::Borrowed(name),
+        }
     }
 
     /// Turns x⁻ into x⁺.
-    pub fn apply(&self, state: &mut S) {
-        (self.apply)(state);
+    ///
+    /// # Errors
+    ///
+    /// The first formula that has no value in x⁻; the state is then as before.
+    pub fn apply(&self, state: &mut S) -> Result<(), EvaluationError> {
+        (self.apply)(state)
     }
 }
 
-/// The flow of a location: how the state changes while time passes there, as a function with the
-/// name that diagrams show.
-pub struct Flow<S> {
-    name: Arc<str>,
-    advance: fn(&mut S, f64),
+impl<S: Coordinates> From<Vec<Assignment<S>>> for Reset<S> {
+    fn from(assignments: Vec<Assignment<S>>) -> Self {
+        let assignments: Arc<[Assignment<S>]> = assignments.into();
+        let listed = assignments.clone();
+        let apply = Arc::new(move |state: &mut S| {
+            *state = assign(&listed, state)?;
+            Ok(())
+        });
+        Reset { form: Form::Assignments(assignments), apply }
+    }
 }
 
-impl<S> Flow<S> {
-    /// The flow whose exact solution `advance` computes: it carries a state over a duration ≥ 0
-    /// in seconds. `name` is a formula such as `τ̇ = 1`.
-    pub fn new(name: &str, advance: fn(&mut S, f64)) -> Self {
-        Flow { name: name.into(), advance }
+impl<S: Coordinates, const N: usize> From<[Assignment<S>; N]> for Reset<S> {
+    fn from(assignments: [Assignment<S>; N]) -> Self {
+        Vec::from(assignments).into()
     }
+}
 
-    /// The name.
-    pub fn name(&self) -> &str {
-        &self.name
+impl<S: Coordinates> From<Assignment<S>> for Reset<S> {
+    fn from(assignment: Assignment<S>) -> Self {
+        vec![assignment].into()
     }
+}
 
-    /// Carries `state` over `duration` seconds.
-    pub fn advance(&self, state: &mut S, duration: f64) {
-        (self.advance)(state, duration);
+/// x⁺, where every formula reads x⁻.
+fn assign<S: Coordinates>(assignments: &[Assignment<S>], before: &S) -> Result<S, EvaluationError> {
+    let mut after = before.to_values();
+    for assignment in assignments {
+        let value = assignment.value.evaluate(before)?;
+        let place = S::NAMES.iter().position(|name| *name == assignment.coordinate);
+        let unknown =
+            || EvaluationError::UnknownVariable { variable: assignment.coordinate.into() };
+        after[place.ok_or_else(unknown)?] = value;
     }
+    Ok(S::from_values(&after))
 }
 
 // Written by hand, because derives would ask the same of S.
 
-impl<S> Clone for Reset<S> {
+impl<S> Clone for Assignment<S> {
     fn clone(&self) -> Self {
-        Reset { name: self.name.clone(), apply: self.apply }
+        Assignment::new(self.coordinate, self.value.clone())
     }
 }
 
-impl<S> Clone for Flow<S> {
+impl<S> Clone for Reset<S> {
     fn clone(&self) -> Self {
-        Flow { name: self.name.clone(), advance: self.advance }
+        Reset { form: self.form.clone(), apply: self.apply.clone() }
+    }
+}
+
+impl<S> Clone for Form<S> {
+    fn clone(&self) -> Self {
+        match self {
+            Form::Assignments(assignments) => Form::Assignments(assignments.clone()),
+            Form::Function(name) => Form::Function(name.clone()),
+        }
+    }
+}
+
+impl<S> fmt::Display for Assignment<S> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} := {}", self.coordinate, self.value)
+    }
+}
+
+impl<S> fmt::Debug for Assignment<S> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "Assignment({self})")
+    }
+}
+
+impl<S> fmt::Display for Reset<S> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.name())
     }
 }
 
 impl<S> fmt::Debug for Reset<S> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.debug_tuple("Reset").field(&self.name).finish()
-    }
-}
-
-impl<S> fmt::Debug for Flow<S> {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.debug_tuple("Flow").field(&self.name).finish()
+        write!(formatter, "Reset({self})")
     }
 }

@@ -3,12 +3,14 @@
 use std::cmp::Ordering;
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 /// Hybrid time (t, j): t seconds have passed and j jumps have been taken.
 ///
 /// Hybrid times are ordered by t and then by j (Goebel, Sanfelice and Teel 2009,
 /// [doi:10.1109/MCS.2008.931718](https://doi.org/10.1109/MCS.2008.931718)): a jump does not take
 /// time, and what is before it and after it stand at the same t, at j and j + 1.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct HybridTime {
     /// Seconds since the start, finite and ≥ 0.
     pub t: f64,

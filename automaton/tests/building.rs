@@ -37,7 +37,7 @@ fn guards_need_a_row() {
 fn nothing_is_given_twice() {
     let text = "`cold` is given its guard twice: keep one";
     assert_eq!(message(sound().on(Sensed::Cold, cold(), Reset::identity())), text);
-    let still = || Flow::new("still", |_: &mut Room, _| {});
+    let still = || Flow::exact("still", |_: &mut Room, _| {});
     let builder = sound().flow(Heater::On, still()).flow(Heater::On, still());
     assert_eq!(message(builder), "`on` is given its flow twice: keep one");
 }
@@ -63,7 +63,7 @@ fn the_initial_location_is_in_the_table() {
 #[test]
 fn guards_and_invariants_read_variables_of_the_state() {
     let builder = sound().invariant(Heater::On, variable("humidity").at_most(1.0));
-    let text = "the invariant of `on` reads variable `humidity`, which the state does not have";
+    let text = "the invariant of `on` names variable `humidity`, which the state does not have";
     assert_eq!(message(builder), text);
 }
 

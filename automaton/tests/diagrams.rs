@@ -77,11 +77,11 @@ fn awkward() -> Automaton<Heater, Sensed, Room> {
 fn formats_are_escaped() {
     let mermaid = diagram::mermaid(&awkward());
     let label =
-        "cold [|a#34;b| #60; 1] / x #58;= #123;1#59; 2#125; #92; #35;3 & #60;4#62; (may, 3)";
+        "cold [|`a#34;b`| #60; 1] / x #58;= #123;1#59; 2#125; #92; #35;3 & #60;4#62; (may, 3)";
     assert!(mermaid.contains(label), "{mermaid}");
     let dot = diagram::dot(&awkward());
-    assert!(dot.contains(r#"[|a\"b| < 1]\n/ x := {1; 2} \\ #3 & <4>\n(may, 3)""#), "{dot}");
-    assert!(diagram::table(&awkward()).contains(r#"\|a"b\| < 1"#));
+    assert!(dot.contains(r#"[|`a\"b`| < 1]\n/ x := {1; 2} \\ #3 & <4>\n(may, 3)""#), "{dot}");
+    assert!(diagram::table(&awkward()).contains(r#"\|`a"b`\| < 1"#));
     let svg = diagram::svg(&awkward());
     assert!(svg.contains(r"/ x := {1; 2} \ #3 &amp; &lt;4&gt;"), "{svg}");
 }

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 
 use common::{Heater, Room, Sensed, Window, heater, window};
 use pleach_automaton::{
-    Automaton, Ending, Executor, GuardError, HybridTime, Jump, Observer, Participants, Reason,
-    Round, System, Trace,
+    Automaton, Ending, Executor, HybridTime, Jump, Observer, Participants, Reason, Round, System,
+    Trace, TransitionError,
 };
 
 /// A jump of the composition.
@@ -42,13 +42,13 @@ impl Building {
 impl System for Building {
     type Jump = Move;
     type Finish = &'static str;
-    type Error = GuardError;
+    type Error = TransitionError;
 
     fn finished(&self) -> Option<&'static str> {
         self.rooms.iter().any(|(_, _, room)| room.openings == 4).then_some("stuffy")
     }
 
-    fn jump(&mut self, round: &mut Round<'_, Move>) -> Result<(), GuardError> {
+    fn jump(&mut self, round: &mut Round<'_, Move>) -> Result<(), TransitionError> {
         if self.clock >= self.period {
             self.clock = 0.0;
             for (_, _, room) in &mut self.rooms {
@@ -68,15 +68,16 @@ impl System for Building {
         Ok(())
     }
 
-    fn time_to_jump(&self) -> Result<Option<f64>, GuardError> {
+    fn time_to_jump(&self) -> Result<Option<f64>, TransitionError> {
         Ok(Some(self.period - self.clock))
     }
 
-    fn flow(&mut self, duration: f64) -> Result<(), GuardError> {
+    fn flow(&mut self, duration: f64) -> Result<(), TransitionError> {
         let lands = duration == self.period - self.clock;
         self.clock = if lands { self.period } else { self.clock + duration };
         for (heater, _, room) in &mut self.rooms {
-            self.heater.flow(*heater, room, duration);
+            let flow = self.heater.mode(*heater).and_then(|mode| mode.flow.as_ref());
+            assert!(flow.is_some_and(|flow| flow.advance(room, duration)), "the flow is exact");
         }
         Ok(())
     }
@@ -129,9 +130,11 @@ fn jumps_are_numbered_and_ordered_by_component() {
     assert!(numbers.eq(0..trace.entries().len() as u32));
     assert!(trace.entries().is_sorted_by_key(|entry| entry.at));
 
-    let first = trace.entries().iter().filter(|entry| entry.at.t == 0.0).map(|entry| entry.by);
+    let first =
+        trace.entries().iter().filter(|entry| entry.at.t == 0.0).map(|entry| entry.by.clone());
     assert!(first.eq([Participants::One(3)]), "the second window opens on entry");
-    let second = trace.entries().iter().filter(|entry| entry.at.t == 1.0).map(|entry| entry.by);
+    let second =
+        trace.entries().iter().filter(|entry| entry.at.t == 1.0).map(|entry| entry.by.clone());
     let expected =
         [Participants::All, Participants::One(0), Participants::One(3), Participants::One(4)];
     assert!(second.eq(expected));

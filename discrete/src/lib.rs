@@ -9,26 +9,11 @@
 //! order is total; that keeps the layer within reach of exhaustive checks and proofs.
 //!
 //! ```
-//! use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency};
+//! use pleach_discrete::{vocabulary, Row, TransitionTable, Urgency};
 //!
-//! #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-//! enum Heater { Off, On }
-//!
-//! impl Location for Heater {
-//!     const ALL: &'static [Self] = &[Heater::Off, Heater::On];
-//!     fn name(self) -> &'static str {
-//!         match self { Heater::Off => "off", Heater::On => "on" }
-//!     }
-//! }
-//!
-//! #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-//! enum Sensed { TooCold, TooWarm }
-//!
-//! impl Event for Sensed {
-//!     const ALL: &'static [Self] = &[Sensed::TooCold, Sensed::TooWarm];
-//!     fn name(self) -> &'static str {
-//!         match self { Sensed::TooCold => "too cold", Sensed::TooWarm => "too warm" }
-//!     }
+//! vocabulary! {
+//!     enum Heater: Location { Off = "off", On = "on" }
+//!     enum Sensed: Event { TooCold = "too cold", TooWarm = "too warm" }
 //! }
 //!
 //! const THERMOSTAT: TransitionTable<Heater, Sensed> = TransitionTable::new(&[
@@ -45,6 +30,7 @@ pub mod location;
 pub mod network;
 pub mod table;
 pub mod urgency;
+pub mod vocabulary;
 
 pub use location::{Event, Location};
 pub use table::{InvalidTransition, Row, TransitionTable};

@@ -23,27 +23,27 @@ pub struct Row<L, E> {
 
 /// All transitions of one automaton, in the order of their declaration.
 ///
-/// A table can be a constant, because it only refers to its rows. Wherever several rows could be
+/// A table only refers to its rows, so that it can be a constant. Wherever several rows could be
 /// meant, the one of the smallest priority number comes first, and of those the one declared
 /// first: a total order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TransitionTable<L: 'static, E: 'static> {
-    rows: &'static [Row<L, E>],
+pub struct TransitionTable<'a, L, E> {
+    rows: &'a [Row<L, E>],
 }
 
-impl<L: 'static, E: 'static> TransitionTable<L, E> {
+impl<'a, L, E> TransitionTable<'a, L, E> {
     /// The table of these rows.
-    pub const fn new(rows: &'static [Row<L, E>]) -> Self {
+    pub const fn new(rows: &'a [Row<L, E>]) -> Self {
         TransitionTable { rows }
     }
 
     /// The rows in the order of their declaration.
-    pub const fn rows(&self) -> &'static [Row<L, E>] {
+    pub const fn rows(&self) -> &'a [Row<L, E>] {
         self.rows
     }
 }
 
-impl<L: Location, E: Event> TransitionTable<L, E> {
+impl<'a, L: Location, E: Event> TransitionTable<'a, L, E> {
     /// Where `event` leads from `location`.
     ///
     /// # Errors
@@ -60,7 +60,7 @@ impl<L: Location, E: Event> TransitionTable<L, E> {
     }
 
     /// The rows that leave `location`, in their total order. Nothing is allocated.
-    pub fn enabled(&self, location: L) -> impl Iterator<Item = &'static Row<L, E>> + use<L, E> {
+    pub fn enabled(&self, location: L) -> impl Iterator<Item = &'a Row<L, E>> + use<'a, L, E> {
         let rows = self.rows;
         let mut last = None;
         std::iter::from_fn(move || {
@@ -82,7 +82,7 @@ impl<L: Location, E: Event> TransitionTable<L, E> {
     }
 
     /// The first row that repeats the source and the event of an earlier one.
-    pub fn conflict(&self) -> Option<&'static Row<L, E>> {
+    pub fn conflict(&self) -> Option<&'a Row<L, E>> {
         let repeats = |position: usize, row: &Row<L, E>| {
             self.rows[..position]
                 .iter()

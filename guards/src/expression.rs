@@ -1,6 +1,7 @@
 //! Arithmetic over named variables.
 
 use std::collections::BTreeSet;
+use std::iter::{Product, Sum};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
@@ -16,11 +17,11 @@ use crate::valuation::{EvaluationError, Valuation};
 /// ```
 /// use pleach_guards::variable;
 ///
-/// let (x, y) = (variable("x"), variable("y"));
-/// let norm = (x.power(2.0) + y.power(2.0)).square_root();
+/// let (height, velocity) = (variable("height"), variable("velocity"));
+/// let energy = velocity.power(2.0) / 2.0 + 9.81 * height;
 ///
-/// assert_eq!(norm.to_string(), "√(x² + y²)");
-/// assert_eq!(norm.evaluate(&[("x", 3.0), ("y", 4.0)])?, 5.0);
+/// assert_eq!(energy.to_string(), "velocity² ÷ 2 + 9.81 · height");
+/// assert_eq!(energy.evaluate(&[("height", 1.0), ("velocity", 2.0)])?, 11.81);
 /// # Ok::<(), pleach_guards::EvaluationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +46,14 @@ pub enum UnaryOperator {
     Negation,
     /// |a|
     AbsoluteValue,
+    /// sin a, of an angle in radians
+    Sine,
+    /// cos a, of an angle in radians
+    Cosine,
+    /// eᵃ
+    Exponential,
+    /// ln a, to the base e
+    Logarithm,
 }
 
 /// An operator with two operands.
@@ -74,6 +83,21 @@ pub fn constant(value: f64) -> Expression {
     Expression::Constant(value)
 }
 
+/// The Euclidean norm √(a² + b² + …) of a vector with these components; of none, it is √0.
+///
+/// ```
+/// use pleach_guards::{norm, variable};
+///
+/// let distance = norm([variable("x") - 1.0, variable("y")]);
+/// assert_eq!(distance.to_string(), "√((x − 1)² + y²)");
+/// assert_eq!(distance.evaluate(&[("x", 4.0), ("y", 4.0)])?, 5.0);
+/// # Ok::<(), pleach_guards::EvaluationError>(())
+/// ```
+pub fn norm(components: impl IntoIterator<Item = Expression>) -> Expression {
+    let squares = components.into_iter().map(|component| component.power(2.0));
+    squares.sum::<Expression>().square_root()
+}
+
 impl Expression {
     /// |self|
     pub fn abs(&self) -> Expression {
@@ -100,7 +124,30 @@ impl Expression {
         self.power(0.5)
     }
 
+    /// sin(self), of an angle in radians.
+    pub fn sin(&self) -> Expression {
+        self.unary(UnaryOperator::Sine)
+    }
+
+    /// cos(self), of an angle in radians.
+    pub fn cos(&self) -> Expression {
+        self.unary(UnaryOperator::Cosine)
+    }
+
+    /// exp(self), the power of e.
+    pub fn exp(&self) -> Expression {
+        self.unary(UnaryOperator::Exponential)
+    }
+
+    /// ln(self), the logarithm to the base e: −∞ at 0, and not a number below.
+    pub fn ln(&self) -> Expression {
+        self.unary(UnaryOperator::Logarithm)
+    }
+
     /// The value in `state`, possibly infinite and never NaN.
+    ///
+    /// Arithmetic, squares and roots are rounded exactly, the same on every machine. For sine,
+    /// cosine, exponential, logarithm and other powers the last digits are up to the platform.
     ///
     /// # Errors
     ///
@@ -157,16 +204,20 @@ impl Expression {
 }
 
 impl UnaryOperator {
-    fn apply(self, operand: f64) -> f64 {
+    pub(crate) fn apply(self, operand: f64) -> f64 {
         match self {
             UnaryOperator::Negation => -operand,
             UnaryOperator::AbsoluteValue => operand.abs(),
+            UnaryOperator::Sine => operand.sin(),
+            UnaryOperator::Cosine => operand.cos(),
+            UnaryOperator::Exponential => operand.exp(),
+            UnaryOperator::Logarithm => operand.ln(),
         }
     }
 }
 
 impl BinaryOperator {
-    fn apply(self, left: f64, right: f64) -> f64 {
+    pub(crate) fn apply(self, left: f64, right: f64) -> f64 {
         match self {
             BinaryOperator::Sum => left + right,
             BinaryOperator::Difference => left - right,
@@ -180,7 +231,7 @@ impl BinaryOperator {
 
 /// Squares and roots go through operations that IEEE 754 rounds exactly, so that they are the same
 /// on every machine.
-fn raise(base: f64, exponent: f64) -> f64 {
+pub(crate) fn raise(base: f64, exponent: f64) -> f64 {
     if exponent == 2.0 {
         base * base
     } else if exponent == 0.5 {
@@ -262,6 +313,20 @@ impl Neg for &Expression {
     }
 }
 
+/// a + b + …, grouped to the left; of no terms, it is 0.
+impl Sum for Expression {
+    fn sum<I: Iterator<Item = Expression>>(terms: I) -> Expression {
+        terms.reduce(Expression::add).unwrap_or(constant(0.0))
+    }
+}
+
+/// a · b · …, grouped to the left; of no factors, it is 1.
+impl Product for Expression {
+    fn product<I: Iterator<Item = Expression>>(factors: I) -> Expression {
+        factors.reduce(Expression::mul).unwrap_or(constant(1.0))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -286,6 +351,15 @@ mod tests {
             (x.power(2.0), 9.0),
             (x.power(-1.0), 3f64.recip()),
             (y.abs().square_root(), 2.0),
+            (x.sin(), 3f64.sin()),
+            (y.cos(), 4f64.cos()),
+            (variable("zero").exp(), 1.0),
+            (variable("zero").ln(), f64::NEG_INFINITY),
+            (norm([x.clone(), y.clone()]), 5.0),
+            (norm([]), 0.0),
+            ([&x, &y, &x].into_iter().cloned().sum(), 2.0),
+            ([&x, &y, &x].into_iter().cloned().product(), -36.0),
+            ([].into_iter().product(), 1.0),
         ];
         for (expression, expected) in cases {
             assert_eq!(value(&expression), Ok(expected), "{expression}");
@@ -312,5 +386,6 @@ mod tests {
         let error = EvaluationError::NotANumber { expression: "nan".into() };
         assert_eq!(value(&variable("nan").max(1.0)), Err(error));
         assert!(value(&variable("y").square_root()).is_err());
+        assert!(value(&variable("y").ln()).is_err());
     }
 }

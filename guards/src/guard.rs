@@ -47,6 +47,13 @@ impl Guard {
     }
 }
 
+/// A predicate that goes by its formula.
+impl From<Predicate> for Guard {
+    fn from(predicate: Predicate) -> Self {
+        Guard::new(&predicate.to_string(), predicate)
+    }
+}
+
 impl fmt::Display for Guard {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}: {}", self.name, self.predicate)

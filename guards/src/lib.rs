@@ -32,22 +32,66 @@
 //! [doi:10.1007/978-3-642-15297-9_9](https://doi.org/10.1007/978-3-642-15297-9_9)); an executor
 //! finds the instant of an event as a zero of the margin.
 //!
+//! # Text
+//!
+//! What prints also reads, with the operators of mathematics or those of a keyboard, and nothing
+//! is lost on the way:
+//!
+//! ```
+//! use pleach_guards::{Predicate, norm, variable};
+//!
+//! let inside: Predicate = "sqrt((x - 1)^2 + y^2) <= 2".parse()?;
+//! assert_eq!(inside.to_string(), "√((x − 1)² + y²) ≤ 2");
+//! assert_eq!(inside, norm([variable("x") - 1.0, variable("y")]).at_most(2.0));
+//! assert_eq!(inside.to_latex(), r"\sqrt{\left(x - 1\right)^{2} + y^{2}} \le 2");
+//! # Ok::<(), pleach_guards::ParseError>(())
+//! ```
+//!
+//! With the feature `serde`, which is off by default, expressions, predicates and guards are
+//! stored in files as this text.
+//!
+//! # Where data ends
+//!
+//! What no expression can say, such as a look-up in a table, goes into a function under a name:
+//! [`Predicate::function`]. It is evaluated and combined like any other predicate, but what it
+//! reads is unknown; [`Predicate::functions`] tells which of them an analysis cannot see into.
+//!
 //! # Where things are
 //!
-//! [`expression`] and [`predicate`] are the data, [`valuation`] is what they are evaluated on,
-//! [`guard`] gives a predicate its name, [`crossing`] follows margins over time, and [`mod@print`]
-//! writes all of it as Unicode text and LaTeX.
+//! [`expression`] and [`predicate`] are the data, [`function`] is the way out of it, [`valuation`]
+//! is what they are evaluated on, [`guard`] gives a predicate its name, and [`crossing`] follows
+//! margins over time. [`mod@print`] writes all of it as Unicode text and LaTeX, [`parse`] reads
+//! the text, and `serialization` (feature `serde`) takes it into files.
 
 pub mod crossing;
+pub mod derivative;
 pub mod expression;
+pub mod function;
 pub mod guard;
+pub mod interval;
+pub mod linear;
+mod name;
 pub mod network;
+pub mod normal_form;
+pub mod parse;
 pub mod predicate;
 pub mod print;
+pub mod program;
+pub mod range;
+#[cfg(feature = "serde")]
+pub mod serialization;
+pub mod substitution;
 pub mod valuation;
 
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
-pub use expression::{Expression, constant, variable};
+pub use expression::{Expression, constant, norm, variable};
+pub use function::NamedFunction;
 pub use guard::Guard;
+pub use interval::Interval;
+pub use linear::LinearForm;
+pub use parse::ParseError;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
+pub use program::{CompiledPredicate, Program};
+pub use range::{Ranges, Truth};
+pub use substitution::Substitution;
 pub use valuation::{EvaluationError, Valuation};

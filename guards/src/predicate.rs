@@ -5,6 +5,7 @@ use std::ops;
 use std::sync::Arc;
 
 use crate::expression::Expression;
+use crate::function::NamedFunction;
 use crate::valuation::{EvaluationError, Valuation};
 
 #[cfg(any(kani, test))]
@@ -28,8 +29,7 @@ mod proofs;
 /// # Ok::<(), pleach_guards::EvaluationError>(())
 /// ```
 ///
-/// The enum is not exhaustive: there is room for named functions where an expression cannot say
-/// what a guard needs, which analyses would then report as unchecked.
+/// Where no expression can say what is needed, [`Predicate::function`] takes a closure.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Predicate {
@@ -41,6 +41,8 @@ pub enum Predicate {
     All(Arc<[Predicate]>),
     /// At least one of them holds; with none, this is [`never()`].
     Any(Arc<[Predicate]>),
+    /// The margin that a function computes is at least 0.
+    Function(NamedFunction),
 }
 
 /// Two expressions and how they are to compare.
@@ -128,6 +130,33 @@ impl Expression {
 }
 
 impl Predicate {
+    /// The predicate that holds where `margin` is at least 0: a way out where an expression cannot
+    /// say what is needed. It is printed as its name with an ellipsis.
+    ///
+    /// ```
+    /// use pleach_guards::{Predicate, Verdict, variable};
+    ///
+    /// // The table has one torque per finger.
+    /// let table = [0.5, 0.75, 1.0];
+    /// let grasped = Predicate::function("grasped", move |state| {
+    ///     let torque = variable("torque").evaluate(state)?;
+    ///     Ok(table.iter().map(|least| torque - least).fold(f64::INFINITY, f64::min))
+    /// });
+    ///
+    /// let held = grasped.and(variable("height").more_than(0.0));
+    /// assert_eq!(held.to_string(), "grasped(…) ∧ height > 0");
+    /// let verdict = held.evaluate(&[("torque", 1.25), ("height", 2.0)])?;
+    /// assert_eq!(verdict, Verdict { margin: 0.25, holds: true });
+    /// assert!(!held.is_data());
+    /// # Ok::<(), pleach_guards::EvaluationError>(())
+    /// ```
+    pub fn function(
+        name: &str,
+        margin: impl Fn(&dyn Valuation) -> Result<f64, EvaluationError> + Send + Sync + 'static,
+    ) -> Predicate {
+        Predicate::Function(NamedFunction::new(name, margin))
+    }
+
     /// Both hold. Conjunctions stay flat: `a.and(b).and(c)` is one conjunction of three.
     pub fn and(self, other: Predicate) -> Predicate {
         Predicate::all([self, other])
@@ -172,8 +201,9 @@ impl Predicate {
     ///
     /// # Errors
     ///
-    /// Those of [`Expression::evaluate`]. Every part is evaluated, also where the verdict is
-    /// settled before, so that an error does not depend on the order of the parts.
+    /// Those of [`Expression::evaluate`] and [`NamedFunction::margin`]. Every part is evaluated,
+    /// also where the verdict is settled before, so that an error does not depend on the order of
+    /// the parts.
     pub fn evaluate(&self, state: &(impl Valuation + ?Sized)) -> Result<Verdict, EvaluationError> {
         match self {
             Predicate::Comparison(comparison) => comparison.evaluate(state),
@@ -184,6 +214,10 @@ impl Predicate {
             Predicate::Any(parts) => parts
                 .iter()
                 .try_fold(Verdict::NEVER, |verdict, part| Ok(verdict.or(part.evaluate(state)?))),
+            Predicate::Function(function) => {
+                let margin = function.margin(state)?;
+                Ok(Verdict { margin, holds: margin >= 0.0 })
+            }
         }
     }
 
@@ -197,7 +231,8 @@ impl Predicate {
         self.evaluate(state).map(|verdict| verdict.margin)
     }
 
-    /// The names of the variables that occur, in alphabetical order.
+    /// The names of the variables that occur, in alphabetical order; those that a function reads
+    /// are not known.
     pub fn variables(&self) -> BTreeSet<&str> {
         let mut names = BTreeSet::new();
         self.collect_variables(&mut names);
@@ -214,6 +249,32 @@ impl Predicate {
             Predicate::All(parts) | Predicate::Any(parts) => {
                 parts.iter().for_each(|part| part.collect_variables(names));
             }
+            Predicate::Function(_) => {}
+        }
+    }
+
+    /// The names of the functions that occur, in alphabetical order: what no analysis can check.
+    pub fn functions(&self) -> BTreeSet<&str> {
+        let mut names = BTreeSet::new();
+        self.collect_functions(&mut names);
+        names
+    }
+
+    /// Whether no function occurs, so that the whole predicate is data.
+    pub fn is_data(&self) -> bool {
+        self.functions().is_empty()
+    }
+
+    fn collect_functions<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
+        match self {
+            Predicate::Comparison(_) => {}
+            Predicate::Not(inner) => inner.collect_functions(names),
+            Predicate::All(parts) | Predicate::Any(parts) => {
+                parts.iter().for_each(|part| part.collect_functions(names));
+            }
+            Predicate::Function(function) => {
+                names.insert(function.name());
+            }
         }
     }
 }
@@ -228,7 +289,7 @@ impl Comparison {
 
 impl Relation {
     /// Equal sides have margin 0 also at infinity, where a difference would not be a number.
-    fn judge(self, left: f64, right: f64) -> Verdict {
+    pub(crate) fn judge(self, left: f64, right: f64) -> Verdict {
         let slack = if left == right { 0.0 } else { right - left };
         match self {
             Relation::AtMost => Verdict { margin: slack, holds: left <= right },
@@ -240,8 +301,10 @@ impl Relation {
 }
 
 impl Verdict {
-    const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
-    const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
+    /// What [`always()`] says.
+    pub const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
+    /// What [`never()`] says.
+    pub const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
 
     /// Whether margin and verdict tell the same: a positive margin says that the predicate holds,
     /// a negative one that it does not, and NaN says nothing.
@@ -249,15 +312,21 @@ impl Verdict {
         if self.holds { self.margin >= 0.0 } else { self.margin <= 0.0 }
     }
 
-    fn and(self, other: Verdict) -> Verdict {
+    /// The verdict on a conjunction of which this and `other` are the parts.
+    #[must_use]
+    pub fn and(self, other: Verdict) -> Verdict {
         Verdict { margin: self.margin.min(other.margin), holds: self.holds && other.holds }
     }
 
-    fn or(self, other: Verdict) -> Verdict {
+    /// The verdict on a disjunction of which this and `other` are the parts.
+    #[must_use]
+    pub fn or(self, other: Verdict) -> Verdict {
         Verdict { margin: self.margin.max(other.margin), holds: self.holds || other.holds }
     }
 
-    fn opposite(self) -> Verdict {
+    /// The verdict on the opposite.
+    #[must_use]
+    pub fn opposite(self) -> Verdict {
         Verdict { margin: -self.margin, holds: !self.holds }
     }
 }
@@ -327,6 +396,34 @@ mod tests {
     fn every_part_is_evaluated() {
         let predicate = never().and(variable("y").at_most(0.0));
         assert!(predicate.evaluate(&[("x", 0.0)]).is_err());
+    }
+
+    #[test]
+    fn functions_are_named_and_compared_by_identity() {
+        let near = |limit: f64| {
+            Predicate::function("near", move |state| {
+                Ok(limit - variable("x").evaluate(state)?.abs())
+            })
+        };
+        let (one, other) = (near(1.0), near(1.0));
+        assert_eq!(verdict(&one, 1.0), (0.0, true));
+        assert_eq!(verdict(&not(one.clone()), 1.0), (0.0, false));
+        assert_eq!(one, one.clone());
+        assert_ne!(one, other);
+        let mixed = not(one).or(variable("x").at_most(0.0));
+        assert!(mixed.functions().into_iter().eq(["near"]));
+        assert!(!mixed.is_data());
+        assert!(variable("x").at_most(0.0).is_data());
+    }
+
+    #[test]
+    fn functions_that_fail_say_so() {
+        let unknown = Predicate::function("far", |state| variable("y").evaluate(state));
+        let error = EvaluationError::UnknownVariable { variable: "y".into() };
+        assert_eq!(unknown.evaluate(&[("x", 1.0)]), Err(error));
+        let undefined = Predicate::function("odd", |_| Ok(f64::NAN));
+        let error = EvaluationError::NotANumber { expression: "odd(…)".into() };
+        assert_eq!(undefined.evaluate(&[("x", 1.0)]), Err(error));
     }
 
     #[test]

@@ -75,6 +75,7 @@ impl Binding {
             Predicate::All(parts) | Predicate::Any(parts) if parts.is_empty() => Binding::Atom,
             Predicate::All(_) => Binding::Conjunction,
             Predicate::Any(_) => Binding::Disjunction,
+            Predicate::Function(_) => Binding::Atom,
         }
     }
 
@@ -83,7 +84,7 @@ impl Binding {
             Expression::Constant(value) if value.is_sign_negative() => Binding::Sum,
             Expression::Constant(_) | Expression::Variable(_) => Binding::Atom,
             Expression::Unary(UnaryOperator::Negation, _) => Binding::Sum,
-            Expression::Unary(UnaryOperator::AbsoluteValue, _) => Binding::Atom,
+            Expression::Unary(_, _) => Binding::Atom,
             Expression::Binary(operator, ..) => match operator {
                 BinaryOperator::Sum | BinaryOperator::Difference => Binding::Sum,
                 BinaryOperator::Product | BinaryOperator::Quotient => Binding::Product,
@@ -111,6 +112,12 @@ impl Printer<'_> {
             Predicate::Any(parts) if parts.is_empty() => self.out.write_str(self.notation.never),
             Predicate::All(parts) => self.joined(parts, self.notation.and, Binding::Comparison),
             Predicate::Any(parts) => self.joined(parts, self.notation.or, Binding::Conjunction),
+            Predicate::Function(function) => {
+                (self.notation.write_name)(self.out, function.name())?;
+                self.enclosed(self.notation.parentheses, |printer| {
+                    printer.out.write_str(printer.notation.ellipsis)
+                })
+            }
         }
     }
 
@@ -144,13 +151,7 @@ impl Printer<'_> {
         match expression {
             Expression::Constant(value) => self.notation.write_number(self.out, *value),
             Expression::Variable(name) => (self.notation.write_name)(self.out, name),
-            Expression::Unary(UnaryOperator::Negation, operand) => {
-                self.out.write_str(self.notation.minus)?;
-                self.operand(operand, Binding::Product)
-            }
-            Expression::Unary(UnaryOperator::AbsoluteValue, operand) => {
-                self.enclosed(self.notation.bars, |printer| printer.expression(operand))
-            }
+            Expression::Unary(operator, operand) => self.unary(*operator, operand),
             Expression::Binary(operator, left, right) => self.binary(*operator, left, right),
             Expression::Power(base, exponent) if *exponent == 0.5 => self.root(base),
             Expression::Power(base, exponent) => {
@@ -158,6 +159,25 @@ impl Printer<'_> {
                 (self.notation.write_exponent)(self.out, *exponent)
             }
         }
+    }
+
+    fn unary(&mut self, operator: UnaryOperator, operand: &Expression) -> fmt::Result {
+        let (name, brackets) = match operator {
+            UnaryOperator::Negation => {
+                self.out.write_str(self.notation.minus)?;
+                // A minus right before a number is a part of the number.
+                let is_number = matches!(operand, Expression::Constant(_));
+                let is_loose = is_number || Binding::of_expression(operand) < Binding::Product;
+                return self.parenthesised_if(is_loose, |printer| printer.expression(operand));
+            }
+            UnaryOperator::AbsoluteValue => ("", self.notation.bars),
+            UnaryOperator::Sine => (self.notation.sine, self.notation.parentheses),
+            UnaryOperator::Cosine => (self.notation.cosine, self.notation.parentheses),
+            UnaryOperator::Exponential => (self.notation.exponential, self.notation.parentheses),
+            UnaryOperator::Logarithm => (self.notation.logarithm, self.notation.parentheses),
+        };
+        self.out.write_str(name)?;
+        self.enclosed(brackets, |printer| printer.expression(operand))
     }
 
     fn binary(

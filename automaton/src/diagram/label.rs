@@ -24,7 +24,7 @@ pub(super) fn location_lines<L: Location, E: Event, S: Valuation>(
 ) -> Vec<String> {
     let mut lines = vec![location.name().to_owned()];
     if let Some(mode) = automaton.mode(location) {
-        lines.extend(mode.flow.iter().map(|flow| flow.name().to_owned()));
+        lines.extend(mode.flow.iter().map(|flow| flow.name().into_owned()));
         lines.extend(mode.invariant.iter().map(|invariant| format!("while {invariant}")));
     }
     lines

@@ -18,9 +18,12 @@ pub fn table<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>
                 format!("**{}**", event.name()),
                 guard.name().to_owned(),
                 guard.predicate().to_string(),
-                if reset.is_empty() { "—".to_owned() } else { reset.to_owned() },
+                if reset.is_empty() { "—".to_owned() } else { reset.into_owned() },
             ];
-            text.push_str(&format!("| {} |\n", cells.map(|cell| escaped(&cell)).join(" | ")));
+            text.push_str(&format!(
+                "| {} |\n",
+                cells.map(|cell: String| escaped(&cell)).join(" | ")
+            ));
         }
     }
     text

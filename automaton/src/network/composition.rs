@@ -70,7 +70,7 @@ pub enum NetworkError {
     Build(#[from] crate::BuildError),
     /// A guard speaks of something that robots do not measure.
     #[error(transparent)]
-    Guard(#[from] crate::GuardError),
+    Guard(#[from] crate::TransitionError),
 }
 
 /// Time spent in the parts of a control period.

@@ -109,10 +109,10 @@ pub fn heater() -> Automaton<Heater, Sensed, Room> {
     Automaton::builder(HEATER, Heater::Off)
         .on(Sensed::Cold, cold(), Reset::identity())
         .on(Sensed::Warm, warm(), Reset::identity())
-        .flow(Heater::Off, Flow::new("Ṫ = −1", |room: &mut Room, time| room.temperature -= time))
+        .flow(Heater::Off, Flow::exact("Ṫ = −1", |room: &mut Room, time| room.temperature -= time))
         .flow(
             Heater::On,
-            Flow::new("Ṫ = 2", |room: &mut Room, time| room.temperature += 2.0 * time),
+            Flow::exact("Ṫ = 2", |room: &mut Room, time| room.temperature += 2.0 * time),
         )
         .invariant(Heater::On, variable("temperature").at_most(25.0))
         .build()

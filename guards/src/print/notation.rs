@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Write};
 
+use crate::name::{self, RAISED_DIGITS, RAISED_MINUS};
+
 /// What differs between text and LaTeX.
 pub(super) struct Notation {
     pub always: &'static str,
@@ -20,6 +22,11 @@ pub(super) struct Notation {
     pub root: Option<&'static str>,
     pub minimum: &'static str,
     pub maximum: &'static str,
+    pub sine: &'static str,
+    pub cosine: &'static str,
+    pub exponential: &'static str,
+    pub logarithm: &'static str,
+    pub ellipsis: &'static str,
     pub infinity: &'static str,
     pub parentheses: (&'static str, &'static str),
     pub bars: (&'static str, &'static str),
@@ -42,10 +49,15 @@ pub(super) static TEXT: Notation = Notation {
     root: Some("√"),
     minimum: "min",
     maximum: "max",
+    sine: "sin",
+    cosine: "cos",
+    exponential: "exp",
+    logarithm: "ln",
+    ellipsis: "…",
     infinity: "∞",
     parentheses: ("(", ")"),
     bars: ("|", "|"),
-    write_name: |out, name| out.write_str(name),
+    write_name: name::write,
     write_exponent: write_raised,
 };
 
@@ -64,6 +76,11 @@ pub(super) static LATEX: Notation = Notation {
     root: None,
     minimum: r"\min",
     maximum: r"\max",
+    sine: r"\sin",
+    cosine: r"\cos",
+    exponential: r"\exp",
+    logarithm: r"\ln",
+    ellipsis: r"\ldots",
     infinity: r"\infty",
     parentheses: (r"\left(", r"\right)"),
     bars: (r"\left|", r"\right|"),
@@ -103,21 +120,10 @@ fn write_raised(out: &mut dyn Write, exponent: f64) -> fmt::Result {
     Ok(())
 }
 
+/// The digit or sign as it stands in an exponent.
 fn raised(character: char) -> char {
-    match character {
-        '-' => '⁻',
-        '0' => '⁰',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        '9' => '⁹',
-        other => other,
-    }
+    let digit = character.to_digit(10).and_then(|digit| RAISED_DIGITS.get(digit as usize));
+    *digit.unwrap_or(&RAISED_MINUS)
 }
 
 /// What follows the first underscore is a subscript.

@@ -36,7 +36,7 @@ pub use facts::{Facts, VARIABLES};
 pub use motion::{Objection, Proposal};
 pub use routing::{FlowReport, RouteLink};
 
-use crate::automaton::{GuardError, Jump};
+use crate::automaton::{Jump, TransitionError};
 
 use super::automata::{MissionAutomaton, RoleAutomaton};
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
@@ -315,12 +315,12 @@ impl Robot {
     pub fn step_mission(
         &mut self,
         automaton: &MissionAutomaton,
-    ) -> Result<Option<Jump<Phase, MissionStep>>, GuardError> {
+    ) -> Result<Option<Jump<Phase, MissionStep>>, TransitionError> {
         let mut phase = self.phase;
         let Some(step) = automaton.enabled(phase, self)? else { return Ok(None) };
         let jump = step.jump();
         self.phase = jump.target;
-        step.fire(&mut phase, self);
+        step.fire(&mut phase, self)?;
         self.is_quiet = false;
         self.stir();
         Ok(Some(jump))
@@ -333,7 +333,7 @@ impl Robot {
     pub fn step_role(
         &mut self,
         automaton: &RoleAutomaton,
-    ) -> Result<Option<Jump<Role, RoleEvent>>, GuardError> {
+    ) -> Result<Option<Jump<Role, RoleEvent>>, TransitionError> {
         let mut role = self.role;
         let jump = automaton.step(&mut role, self)?;
         self.role = role;

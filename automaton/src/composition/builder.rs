@@ -1,0 +1,362 @@
+//! How components are put side by side, and what can be wrong with it.
+
+use std::sync::Arc;
+
+use pleach_discrete::{Event, Location};
+use pleach_guards::EvaluationError;
+use thiserror::Error;
+
+use super::blueprint::{Blueprint, Change, PlaceMotion};
+use super::{Component, Composition, Label};
+use crate::automaton::Automaton;
+use crate::coordinates::Coordinates;
+
+/// A [`Composition`] that is being put together.
+#[derive(Default)]
+#[must_use = "a composition is complete after `build`"]
+pub struct CompositionBuilder {
+    parts: Vec<Part>,
+    labels: Vec<String>,
+    /// From an output to an input.
+    connections: Vec<(String, String)>,
+    /// The first thing that was wrong with a part.
+    fault: Option<CompositionError>,
+}
+
+struct Part {
+    name: String,
+    blueprint: Arc<Blueprint>,
+    initial: Vec<f64>,
+    renamed: Vec<(String, String)>,
+}
+
+/// Why the parts do not make a composition.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum CompositionError {
+    /// Two components have one name.
+    #[error("two components are called `{name}`: rename one")]
+    NameTwice {
+        /// The name.
+        name: String,
+    },
+    /// Nothing says in which state a component starts.
+    #[error(
+        "component `{component}` has no initial state: give its automaton one with `initially`, \
+         or add it with `add_in`"
+    )]
+    NoInitialState {
+        /// The component.
+        component: String,
+    },
+    /// A formula names a variable that the state does not have.
+    #[error("component `{component}`: {source}")]
+    Formula {
+        /// The component.
+        component: String,
+        /// What is wrong with the formula.
+        source: EvaluationError,
+    },
+    /// No component has an event of a name that is asked for.
+    #[error("label `{label}` is an event of no component")]
+    UnknownLabel {
+        /// The label.
+        label: String,
+    },
+    /// An event is renamed before any component is added, or the component has no such event.
+    #[error("event `{event}` cannot be renamed: the component added last has none of that name")]
+    UnknownEvent {
+        /// The name before.
+        event: String,
+    },
+    /// A connection begins or ends at a variable that does not exist.
+    #[error("no component has the variable `{variable}`: write `component.coordinate`")]
+    UnknownVariable {
+        /// The variable.
+        variable: String,
+    },
+    /// An input is connected twice, or reads something that is an input itself.
+    #[error("input `{input}` cannot be connected to `{output}`: {reason}")]
+    Connection {
+        /// What was to be read.
+        output: String,
+        /// The reader.
+        input: String,
+        /// What stands against it.
+        reason: &'static str,
+    },
+    /// A component changes what it only reads.
+    #[error(
+        "component `{component}` changes `{coordinate}` in location `{location}`, but reads it \
+         from another component"
+    )]
+    InputChanged {
+        /// The component.
+        component: String,
+        /// The coordinate.
+        coordinate: &'static str,
+        /// The location with the flow or the transition that does.
+        location: &'static str,
+    },
+    /// There is no component at all.
+    #[error("a composition needs at least one component")]
+    Empty,
+}
+
+impl CompositionBuilder {
+    /// Adds `automaton` as a component; it starts in the initial state of the automaton.
+    pub fn add<L: Location, E: Event, S: Coordinates>(
+        mut self,
+        name: &str,
+        automaton: &Automaton<L, E, S>,
+    ) -> Self {
+        match automaton.initial_state() {
+            Some(state) => {
+                let state = state.clone();
+                self.add_in(name, automaton, state)
+            }
+            None => {
+                self.fault(CompositionError::NoInitialState { component: name.to_owned() });
+                self
+            }
+        }
+    }
+
+    /// Adds `automaton` as a component that starts in `state`.
+    pub fn add_in<L: Location, E: Event, S: Coordinates>(
+        mut self,
+        name: &str,
+        automaton: &Automaton<L, E, S>,
+        state: S,
+    ) -> Self {
+        match Blueprint::of(automaton) {
+            Ok(blueprint) => self.parts.push(Part {
+                name: name.to_owned(),
+                blueprint: Arc::new(blueprint),
+                initial: state.to_values(),
+                renamed: Vec::new(),
+            }),
+            Err(source) => {
+                self.fault(CompositionError::Formula { component: name.to_owned(), source });
+            }
+        }
+        self
+    }
+
+    /// In the component added last, `event` is called `name`: so that it can share a label with
+    /// some components and not with others of its kind.
+    pub fn rename(mut self, event: &str, name: &str) -> Self {
+        match self.parts.last_mut().filter(|part| part.blueprint.events.contains(&event)) {
+            Some(part) => part.renamed.push((event.to_owned(), name.to_owned())),
+            None => self.fault(CompositionError::UnknownEvent { event: event.to_owned() }),
+        }
+        self
+    }
+
+    /// All components that have an event called `name` take it together.
+    pub fn label(mut self, name: &str) -> Self {
+        self.labels.push(name.to_owned());
+        self
+    }
+
+    /// The coordinate `input` of a component is the coordinate `output` of another; both are
+    /// written `component.coordinate`.
+    pub fn connect(mut self, output: &str, input: &str) -> Self {
+        self.connections.push((output.to_owned(), input.to_owned()));
+        self
+    }
+
+    /// The composition.
+    ///
+    /// # Errors
+    ///
+    /// The first [`CompositionError`] found: in the components, the connections, the labels.
+    pub fn build(mut self) -> Result<Composition, CompositionError> {
+        if let Some(fault) = self.fault.take() {
+            return Err(fault);
+        }
+        self.check_names()?;
+        let sources = self.sources()?;
+        let mut composition = Composition {
+            components: Vec::with_capacity(self.parts.len()),
+            labels: Vec::new(),
+            variables: Vec::new(),
+            initial: Vec::new(),
+        };
+        let slots = self.lay_out(&sources, &mut composition);
+        let labels = self.labels()?;
+        for (index, part) in self.parts.into_iter().enumerate() {
+            let first = slots.offsets[index];
+            let places = first..first + part.blueprint.coordinates.len();
+            let own_label = |event| {
+                labels.iter().position(|label| label.participants.contains(&(index, event)))
+            };
+            let component = Component {
+                events: part.event_names().map(str::to_owned).collect(),
+                name: part.name,
+                slots: slots.slots[places.clone()].to_vec(),
+                owned: sources[places].iter().map(Option::is_none).collect(),
+                labels: (0..part.blueprint.events.len()).map(own_label).collect(),
+                blueprint: part.blueprint,
+            };
+            component.check_inputs()?;
+            composition.components.push(component);
+        }
+        composition.labels = labels;
+        Ok(composition)
+    }
+
+    fn fault(&mut self, fault: CompositionError) {
+        self.fault.get_or_insert(fault);
+    }
+
+    fn check_names(&self) -> Result<(), CompositionError> {
+        if self.parts.is_empty() {
+            return Err(CompositionError::Empty);
+        }
+        let mut names: Vec<&String> = self.parts.iter().map(|part| &part.name).collect();
+        names.sort_unstable();
+        match names.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(CompositionError::NameTwice { name: pair[0].clone() }),
+            None => Ok(()),
+        }
+    }
+
+    /// For every coordinate of every component in turn: the coordinate that it reads, if it is an
+    /// input.
+    fn sources(&self) -> Result<Vec<Option<usize>>, CompositionError> {
+        let names = self.full_names();
+        let find = |variable: &String| {
+            let unknown = || CompositionError::UnknownVariable { variable: variable.clone() };
+            names.iter().position(|name| name == variable).ok_or_else(unknown)
+        };
+        let mut sources = vec![None; names.len()];
+        let mut read = vec![false; names.len()];
+        for (output, input) in &self.connections {
+            let (from, to) = (find(output)?, find(input)?);
+            let reason = if from == to {
+                Some("a coordinate cannot read itself")
+            } else if sources[to].is_some() {
+                Some("it is connected already")
+            } else if sources[from].is_some() || read[to] {
+                Some("an input cannot be read in turn: connect both to the coordinate itself")
+            } else {
+                None
+            };
+            if let Some(reason) = reason {
+                let (output, input) = (output.clone(), input.clone());
+                return Err(CompositionError::Connection { output, input, reason });
+            }
+            sources[to] = Some(from);
+            read[from] = true;
+        }
+        Ok(sources)
+    }
+
+    fn full_names(&self) -> Vec<String> {
+        let of_part = |part: &Part| {
+            let name = part.name.clone();
+            part.blueprint.coordinates.iter().map(move |coordinate| format!("{name}.{coordinate}"))
+        };
+        self.parts.iter().flat_map(of_part).collect()
+    }
+
+    /// Gives every coordinate that is no input a slot, and every input the slot of what it reads.
+    fn lay_out(&self, sources: &[Option<usize>], composition: &mut Composition) -> Layout {
+        let alone = self.parts.len() == 1;
+        let mut layout = Layout { offsets: Vec::new(), slots: vec![0; sources.len()] };
+        let mut number = 0;
+        for part in &self.parts {
+            layout.offsets.push(number);
+            for (coordinate, value) in part.blueprint.coordinates.iter().zip(&part.initial) {
+                if sources[number].is_none() {
+                    layout.slots[number] = composition.variables.len();
+                    let name = if alone {
+                        (*coordinate).to_owned()
+                    } else {
+                        format!("{}.{coordinate}", part.name)
+                    };
+                    composition.variables.push(name);
+                    composition.initial.push(*value);
+                }
+                number += 1;
+            }
+        }
+        for (number, source) in sources.iter().enumerate() {
+            if let Some(source) = source {
+                layout.slots[number] = layout.slots[*source];
+            }
+        }
+        layout
+    }
+
+    fn labels(&self) -> Result<Vec<Label>, CompositionError> {
+        let mut labels: Vec<Label> = Vec::new();
+        for name in &self.labels {
+            if labels.iter().any(|label| label.name == *name) {
+                continue;
+            }
+            let participants: Vec<_> = self
+                .parts
+                .iter()
+                .enumerate()
+                .filter_map(|(index, part)| Some((index, part.event(name)?)))
+                .collect();
+            if participants.is_empty() {
+                return Err(CompositionError::UnknownLabel { label: name.clone() });
+            }
+            labels.push(Label { name: name.clone(), participants });
+        }
+        Ok(labels)
+    }
+}
+
+struct Layout {
+    /// By component: the number of its first coordinate.
+    offsets: Vec<usize>,
+    /// By the number of a coordinate.
+    slots: Vec<usize>,
+}
+
+impl Part {
+    /// The number of the event that goes by `name` in this component.
+    fn event(&self, name: &str) -> Option<usize> {
+        self.event_names().position(|event| event == name)
+    }
+
+    /// What the events are called in this component.
+    fn event_names(&self) -> impl Iterator<Item = &str> {
+        self.blueprint.events.iter().map(|event| {
+            let renamed = self.renamed.iter().find(|(before, _)| before == event);
+            renamed.map_or(*event, |(_, after)| after)
+        })
+    }
+}
+
+impl Component {
+    /// Nothing that is given as data changes an input. What functions write to inputs is dropped.
+    fn check_inputs(&self) -> Result<(), CompositionError> {
+        for place in &self.blueprint.places {
+            let moved: Vec<usize> = match &place.motion {
+                PlaceMotion::Rates(rates) => {
+                    rates.iter().map(|(coordinate, ..)| *coordinate).collect()
+                }
+                PlaceMotion::Field(_) | PlaceMotion::Exact(_) => Vec::new(),
+            };
+            let set = place.leaving.iter().flat_map(|leaving| match &leaving.change {
+                Change::Assignments(assignments) => {
+                    assignments.iter().map(|(coordinate, _)| *coordinate).collect()
+                }
+                Change::Function(_) => Vec::new(),
+            });
+            if let Some(input) = moved.into_iter().chain(set).find(|&one| !self.owned[one]) {
+                return Err(CompositionError::InputChanged {
+                    component: self.name.clone(),
+                    coordinate: self.blueprint.coordinates[input],
+                    location: place.name,
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,154 @@
+//! Parallel composition: automata side by side, joined by labels and connections.
+//!
+//! Each component keeps its location and its coordinates. Two things join components:
+//!
+//! * a **label** is an event that every component which knows an event of that name takes
+//!   together with the others: one jump, and only where all their guards hold. It is forced as soon
+//!   as it is for one of them. Events of other names are each component's own;
+//! * a **connection** lets a component read a coordinate of another under a name of its own. What
+//!   is read belongs to the other component; a flow or a reset cannot change it.
+//!
+//! Coordinates of a composition are called `component.coordinate`; in a composition of a single
+//! component they keep their names.
+//!
+//! A heater and its controller, which sees the temperature and switches the heater:
+//!
+//! ```
+//! use pleach_automaton::{coordinates, from, Automaton, Composition};
+//! use pleach_discrete::vocabulary;
+//! use pleach_guards::always;
+//!
+//! vocabulary! {
+//!     enum Heater: Location { Off = "off", On = "on" }
+//!     enum Controller: Location { Watching = "watching" }
+//!     enum Switch: Event { TurnOn = "turn on", TurnOff = "turn off" }
+//! }
+//! coordinates! {
+//!     struct Room { temperature = "T" }
+//!     struct Reading { seen = "T" }
+//! }
+//! use Heater::{Off, On};
+//! use Switch::{TurnOff, TurnOn};
+//!
+//! let Room { temperature } = Room::coordinates();
+//! let heater = Automaton::starting_in(Off)
+//!     .initially(Room { temperature: 20.0 })
+//!     .flow(Off, temperature.rate(-0.1 * &temperature))
+//!     .flow(On, temperature.rate(5.0 - 0.1 * &temperature))
+//!     .transition(from(Off).on(TurnOn).to(On).may(always()))
+//!     .transition(from(On).on(TurnOff).to(Off).may(always()))
+//!     .build()?;
+//!
+//! let Reading { seen } = Reading::coordinates();
+//! let watching = Controller::Watching;
+//! let controller = Automaton::starting_in(watching)
+//!     .initially(Reading { seen: 20.0 })
+//!     .transition(from(watching).on(TurnOn).to(watching).must(seen.at_most(18.0)))
+//!     .transition(from(watching).on(TurnOff).to(watching).must(seen.at_least(22.0)))
+//!     .build()?;
+//!
+//! let house = Composition::builder()
+//!     .add("heater", &heater)
+//!     .add("controller", &controller)
+//!     .connect("heater.T", "controller.T")
+//!     .label("turn on")
+//!     .label("turn off")
+//!     .build()?;
+//!
+//! let trajectory = house.run(10.0)?;
+//! let first = &trajectory.jumps()[0];
+//! assert_eq!(first.label, "turn on");
+//! assert!((first.at.t - 10.0 * (20f64 / 18.0).ln()).abs() < 1e-9); // T = 20 e^(−t/10)
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod blueprint;
+mod builder;
+mod flight;
+mod simulation;
+
+use std::sync::Arc;
+
+pub use builder::{CompositionBuilder, CompositionError};
+pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
+
+use blueprint::Blueprint;
+
+/// Automata side by side; see the [module](self).
+#[derive(Clone)]
+pub struct Composition {
+    components: Vec<Component>,
+    labels: Vec<Label>,
+    /// By slot.
+    variables: Vec<String>,
+    /// By slot: the values at the start.
+    initial: Vec<f64>,
+}
+
+#[derive(Clone)]
+struct Component {
+    name: String,
+    blueprint: Arc<Blueprint>,
+    /// By event: what it is called here.
+    events: Vec<String>,
+    /// By coordinate: where its value is.
+    slots: Vec<usize>,
+    /// By coordinate: whether it belongs to the component, and is not just read by it.
+    owned: Vec<bool>,
+    /// By event: the label, if the event is one.
+    labels: Vec<Option<usize>>,
+}
+
+#[derive(Clone)]
+struct Label {
+    name: String,
+    /// The components that know the event, ascending, each with its number of the event.
+    participants: Vec<(usize, usize)>,
+}
+
+impl Composition {
+    /// Begins a composition.
+    pub fn builder() -> CompositionBuilder {
+        CompositionBuilder::default()
+    }
+
+    /// The names of the components in their order.
+    pub fn components(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.components.iter().map(|component| &*component.name)
+    }
+
+    /// The names of the variables, in the order of the values in states.
+    pub fn variables(&self) -> &[String] {
+        &self.variables
+    }
+
+    /// The names of the locations of a component, in the order of their type; none for a component
+    /// that does not exist.
+    pub fn locations(&self, component: usize) -> impl Iterator<Item = &'static str> {
+        let component = self.components.get(component);
+        component.into_iter().flat_map(|one| one.blueprint.places.iter().map(|place| place.name))
+    }
+
+    /// The labels, each with the components that take it together.
+    pub fn labels(&self) -> impl ExactSizeIterator<Item = (&str, Vec<usize>)> {
+        self.labels.iter().map(|label| {
+            let participants = label.participants.iter().map(|(component, _)| *component);
+            (&*label.name, participants.collect())
+        })
+    }
+}
+
+impl Composition {
+    /// What the event of a move is called.
+    fn event_of(&self, one: &Move) -> String {
+        let component = &self.components[one.component];
+        let leaving = &component.place(one.source).leaving[one.transition];
+        component.events[leaving.event].clone()
+    }
+}
+
+impl Component {
+    fn place(&self, location: usize) -> &blueprint::Place {
+        &self.blueprint.places[location]
+    }
+}

@@ -1,0 +1,621 @@
+//! Running a composition.
+
+use pleach_continuous::flow::{EventSearch, Tolerances};
+use pleach_discrete::{Event, Location};
+use pleach_guards::{EvaluationError, Verdict};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::blueprint::{Change, Leaving};
+use super::flight::Flight;
+use super::{Component, Composition, CompositionError};
+use crate::automaton::Automaton;
+use crate::coordinates::Coordinates;
+use crate::executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
+use crate::time::HybridTime;
+use crate::trace::TraceEntry;
+use crate::trajectory::{Participant, Phase, Sample, Trajectory};
+
+/// How a composition is run. The default is fit for most models.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// When transitions are taken that only may be.
+    pub policy: Policy,
+    /// The error of an integration step, relative to the state; 1e-9 by default.
+    pub relative_tolerance: f64,
+    /// The error of an integration step, in the unit of the state; 1e-9 by default.
+    pub absolute_tolerance: f64,
+    /// The longest integration step, in seconds; infinite by default, which JSON writes as null.
+    #[serde(with = "unbounded")]
+    pub largest_step: f64,
+    /// How exactly events are located, in seconds; 0, the default, is as exactly as numbers allow.
+    pub resolution: f64,
+    /// The most rounds of jumps at one instant, at least 1; 1,000 by default.
+    pub round_limit: u32,
+}
+
+/// When a transition is taken that only may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Policy {
+    /// As late as possible: where no time can pass, because an invariant ends.
+    Late,
+    /// As soon as its guard holds.
+    Early,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            policy: Policy::Late,
+            relative_tolerance: 1e-9,
+            absolute_tolerance: 1e-9,
+            largest_step: f64::INFINITY,
+            resolution: 0.0,
+            round_limit: 1000,
+        }
+    }
+}
+
+/// Why a simulation cannot begin.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// The automaton makes no component.
+    #[error(transparent)]
+    Composition(#[from] CompositionError),
+    /// The horizon or the limit of rounds makes no sense.
+    #[error(transparent)]
+    Limit(#[from] InvalidLimit),
+    /// A tolerance or the resolution makes no sense.
+    #[error("the settings cannot be used: {0}")]
+    Settings(String),
+}
+
+/// What keeps a run from going on.
+#[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Failure {
+    /// A guard, an invariant or a reset has no value.
+    #[error("component `{component}` in location `{location}`, {part}: {reason}")]
+    Formula {
+        /// The component.
+        component: String,
+        /// Its location.
+        location: String,
+        /// What has no value.
+        part: String,
+        /// Why.
+        reason: String,
+    },
+    /// The flow cannot be followed any farther.
+    #[error("the flow in {locations} fails: {reason}")]
+    Flow {
+        /// The locations of the components.
+        locations: String,
+        /// Where and why.
+        reason: String,
+    },
+}
+
+/// A jump as a simulation reports it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Taken {
+    /// The event or the label.
+    pub label: String,
+    /// Who goes where, by ascending component.
+    pub moves: Vec<Move>,
+    /// The values of all variables afterwards, x⁺.
+    pub values: Vec<f64>,
+}
+
+/// What a component does in a jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Move {
+    /// The component.
+    pub component: usize,
+    /// The location that it leaves.
+    pub source: usize,
+    /// The location that it enters.
+    pub target: usize,
+    /// Which of the transitions that leave the source it takes, in their total order.
+    pub transition: usize,
+}
+
+/// A composition with locations and a state: a [`System`] for the executor.
+pub struct Simulation<'a> {
+    pub(super) composition: &'a Composition,
+    pub(super) settings: Settings,
+    horizon: f64,
+    now: HybridTime,
+    pub(super) locations: Vec<usize>,
+    pub(super) values: Vec<f64>,
+    /// The flow to come, once no jump is left to be taken.
+    flight: Option<Flight>,
+    /// How far, in the margin of a guard, the last flow has landed beyond the boundary: the state
+    /// may be outside an invariant by as much. It is a rounding error of the instant of the event.
+    allowance: f64,
+    /// By component: whether it has jumped in this round.
+    jumped: Vec<bool>,
+}
+
+/// The largest part of the state by which a landing may be outside an invariant. Margins of smooth
+/// guards stay far below it; those that are only signs are not believed.
+const LARGEST_ALLOWANCE: f64 = 1e-9;
+
+impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
+    /// Runs the automaton by itself, from its initial state, for `horizon` seconds.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulationError`] if it has no initial state, or the horizon is negative or not finite.
+    /// What happens on the way is told by the [ending](Trajectory::ending) of the trajectory.
+    pub fn run(&self, horizon: f64) -> Result<Trajectory, SimulationError> {
+        Composition::builder().add("automaton", self).build()?.run(horizon)
+    }
+
+    /// Runs the automaton by itself, from `state`, for `horizon` seconds.
+    ///
+    /// # Errors
+    ///
+    /// As for [`run`](Self::run).
+    pub fn run_from(&self, state: S, horizon: f64) -> Result<Trajectory, SimulationError> {
+        Composition::builder().add_in("automaton", self, state).build()?.run(horizon)
+    }
+}
+
+impl Composition {
+    /// Runs the composition from its initial state for `horizon` seconds.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulationError`] if the horizon is negative or not finite.
+    pub fn run(&self, horizon: f64) -> Result<Trajectory, SimulationError> {
+        self.run_with(Settings::default(), horizon)
+    }
+
+    /// Runs the composition with settings of one's own.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulationError`] if the horizon or the settings make no sense.
+    pub fn run_with(
+        &self,
+        settings: Settings,
+        horizon: f64,
+    ) -> Result<Trajectory, SimulationError> {
+        let executor = Executor::new(horizon, settings.round_limit)?;
+        let mut simulation = Simulation::new(self, settings, horizon)?;
+        let mut recorder = Recorder(simulation.beginning());
+        let ending = executor.run(&mut simulation, &mut recorder);
+        let Recorder(mut trajectory) = recorder;
+        trajectory.ending = match ending {
+            Ok(Ending { at, reason }) => Ending { at, reason: reason.without_finish() },
+            Err(failure) => Ending { at: simulation.now, reason: Reason::Finished(failure) },
+        };
+        Ok(trajectory)
+    }
+}
+
+impl<'a> Simulation<'a> {
+    /// The composition in its initial state; flows are looked at up to `horizon` seconds ahead.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulationError::Settings`] if the settings make no sense.
+    pub fn new(
+        composition: &'a Composition,
+        settings: Settings,
+        horizon: f64,
+    ) -> Result<Self, SimulationError> {
+        settings.check()?;
+        let initial = composition.components.iter().map(|component| component.blueprint.initial);
+        Ok(Simulation {
+            composition,
+            settings,
+            horizon,
+            now: HybridTime::START,
+            locations: initial.collect(),
+            values: composition.initial.clone(),
+            flight: None,
+            allowance: 0.0,
+            jumped: vec![false; composition.components.len()],
+        })
+    }
+
+    /// The locations of the components, as numbers.
+    pub fn locations(&self) -> &[usize] {
+        &self.locations
+    }
+
+    /// The values of the variables.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    fn beginning(&self) -> Trajectory {
+        let participant = |(index, component): (usize, &Component)| Participant {
+            name: component.name.clone(),
+            locations: self.composition.locations(index).map(str::to_owned).collect(),
+        };
+        let rates = vec![0.0; self.values.len()];
+        let first = Sample { t: 0.0, values: self.values.clone(), rates };
+        Trajectory {
+            variables: self.composition.variables.clone(),
+            components: self.composition.components.iter().enumerate().map(participant).collect(),
+            settings: self.settings,
+            horizon: self.horizon,
+            phases: vec![Phase { locations: self.locations.clone(), samples: vec![first] }],
+            jumps: Vec::new(),
+            ending: Ending { at: HybridTime::START, reason: Reason::Horizon },
+        }
+    }
+
+    // ---- Jumps -----------------------------------------------------------------------------
+
+    /// Takes one round of jumps; says whether there was one.
+    fn take_round(
+        &mut self,
+        round: &mut Round<'_, Taken>,
+        readiness: Readiness,
+    ) -> Result<bool, Failure> {
+        self.jumped.fill(false);
+        let mut any = false;
+        for component in 0..self.locations.len() {
+            if self.jumped[component] {
+                continue;
+            }
+            if let Some(jump) = self.next_of(component, readiness)? {
+                self.take(jump, round)?;
+                any = true;
+            }
+        }
+        Ok(any)
+    }
+
+    /// The first jump in total order that `component` can take part in.
+    fn next_of(&self, component: usize, readiness: Readiness) -> Result<Option<Joint>, Failure> {
+        let place = self.composition.components[component].place(self.locations[component]);
+        for (transition, leaving) in place.leaving.iter().enumerate() {
+            let label = self.composition.components[component].labels[leaving.event];
+            let joint = match label {
+                None if !self.is_wanted(leaving, readiness) => None,
+                None => self
+                    .allows(component, leaving, &self.values)?
+                    .holds
+                    .then(|| Joint { label: None, parts: vec![(component, transition)] }),
+                Some(label) => self.joint(label, readiness)?,
+            };
+            if joint.is_some() {
+                return Ok(joint);
+            }
+        }
+        Ok(None)
+    }
+
+    /// The jump that all participants of a label take together, if they can and one of them wants.
+    fn joint(&self, label: usize, readiness: Readiness) -> Result<Option<Joint>, Failure> {
+        let mut parts = Vec::new();
+        let mut is_wanted = false;
+        for &(component, event) in &self.composition.labels[label].participants {
+            if self.jumped[component] {
+                return Ok(None);
+            }
+            let place = self.composition.components[component].place(self.locations[component]);
+            let mut on_event =
+                place.leaving.iter().enumerate().filter(|(_, leaving)| leaving.event == event);
+            let found = loop {
+                let Some((transition, leaving)) = on_event.next() else { return Ok(None) };
+                if self.allows(component, leaving, &self.values)?.holds {
+                    break (transition, leaving);
+                }
+            };
+            is_wanted |= self.is_wanted(found.1, readiness);
+            parts.push((component, found.0));
+        }
+        Ok(is_wanted.then_some(Joint { label: Some(label), parts }))
+    }
+
+    fn is_wanted(&self, leaving: &Leaving, readiness: Readiness) -> bool {
+        leaving.urgency.is_forced()
+            || readiness == Readiness::Possible
+            || self.settings.policy == Policy::Early
+    }
+
+    /// All parts find x⁻ and change only what belongs to them, so that their order is no matter.
+    fn take(&mut self, jump: Joint, round: &mut Round<'_, Taken>) -> Result<(), Failure> {
+        let before = self.values.clone();
+        let mut moves = Vec::with_capacity(jump.parts.len());
+        for &(component, transition) in &jump.parts {
+            let source = self.locations[component];
+            let leaving = &self.composition.components[component].place(source).leaving[transition];
+            self.composition.components[component]
+                .change(&leaving.change, &before, &mut self.values)
+                .map_err(|fault| self.formula(component, source, "the reset".into(), &fault))?;
+            moves.push(Move { component, source, target: leaving.target, transition });
+        }
+        for one in &moves {
+            self.locations[one.component] = one.target;
+            self.jumped[one.component] = true;
+        }
+        let label = match jump.label {
+            Some(label) => self.composition.labels[label].name.clone(),
+            None => self.composition.event_of(&moves[0]),
+        };
+        let participants: Box<[usize]> = moves.iter().map(|one| one.component).collect();
+        let taken = Taken { label, moves, values: self.values.clone() };
+        match &*participants {
+            [alone] => round.jumped(*alone, taken),
+            all if all.len() == self.locations.len() => round.jumped_together(taken),
+            _ => round.jumped_some(participants, taken),
+        }
+        Ok(())
+    }
+
+    // ---- Verdicts --------------------------------------------------------------------------
+
+    /// Holds where a transition has to be taken.
+    pub(super) fn forced(&self, state: &[f64]) -> Result<Verdict, Failure> {
+        self.any_transition(state, Readiness::Forced)
+    }
+
+    /// Whether any transition can be taken, forced or not.
+    pub(super) fn can_jump(&self, state: &[f64]) -> Result<bool, Failure> {
+        Ok(self.any_transition(state, Readiness::Possible)?.holds)
+    }
+
+    /// Holds where all components are within their invariants, but for what the last landing may
+    /// have lost to rounding.
+    pub(super) fn invariants(&self, state: &[f64]) -> Result<Verdict, Failure> {
+        let mut verdict = Verdict::ALWAYS;
+        for (index, component) in self.composition.components.iter().enumerate() {
+            let location = self.locations[index];
+            if let Some(invariant) = &component.place(location).invariant {
+                let part = || format!("the invariant `{invariant}`");
+                let own = invariant
+                    .evaluate_at(state, &component.slots)
+                    .map_err(|fault| self.formula(index, location, part(), &fault))?;
+                verdict = verdict.and(own);
+            }
+        }
+        let margin = verdict.margin + self.allowance;
+        let holds = verdict.holds || (self.allowance > 0.0 && margin >= 0.0);
+        Ok(Verdict { margin, holds })
+    }
+
+    /// How far beyond the boundary of its guard a flow has landed, as far as that is rounding.
+    fn allowance_at(&self, landing: &[f64]) -> Result<f64, Failure> {
+        let beyond = self.forced(landing)?.margin.max(0.0);
+        let largest = landing.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
+        Ok(if beyond.is_finite() { beyond.min(LARGEST_ALLOWANCE * largest) } else { 0.0 })
+    }
+
+    fn any_transition(&self, state: &[f64], readiness: Readiness) -> Result<Verdict, Failure> {
+        let mut verdict = Verdict::NEVER;
+        for (index, component) in self.composition.components.iter().enumerate() {
+            for leaving in &component.place(self.locations[index]).leaving {
+                let is_own = component.labels[leaving.event].is_none();
+                if is_own && self.is_wanted(leaving, readiness) {
+                    verdict = verdict.or(self.allows(index, leaving, state)?);
+                }
+            }
+        }
+        for label in 0..self.composition.labels.len() {
+            verdict = verdict.or(self.label_verdict(label, state, readiness)?);
+        }
+        Ok(verdict)
+    }
+
+    /// Holds where the label can be taken, if any participant wants it.
+    fn label_verdict(
+        &self,
+        label: usize,
+        state: &[f64],
+        readiness: Readiness,
+    ) -> Result<Verdict, Failure> {
+        let mut all = Verdict::ALWAYS;
+        // Which part of the participants makes the label forced, depends on the state, too.
+        let mut wanted = Verdict::NEVER;
+        for &(index, event) in &self.composition.labels[label].participants {
+            let component = &self.composition.components[index];
+            let mut any = Verdict::NEVER;
+            let leaving = &component.place(self.locations[index]).leaving;
+            for leaving in leaving.iter().filter(|leaving| leaving.event == event) {
+                let allowed = self.allows(index, leaving, state)?;
+                any = any.or(allowed);
+                if self.is_wanted(leaving, readiness) {
+                    wanted = wanted.or(allowed);
+                }
+            }
+            all = all.and(any);
+        }
+        Ok(all.and(wanted))
+    }
+
+    fn allows(&self, index: usize, leaving: &Leaving, state: &[f64]) -> Result<Verdict, Failure> {
+        let part = || format!("the guard `{}`", leaving.guard);
+        let slots = &self.composition.components[index].slots;
+        leaving
+            .guard
+            .evaluate_at(state, slots)
+            .map_err(|fault| self.formula(index, self.locations[index], part(), &fault))
+    }
+
+    // ---- Failures --------------------------------------------------------------------------
+
+    fn formula(
+        &self,
+        index: usize,
+        location: usize,
+        part: String,
+        fault: &EvaluationError,
+    ) -> Failure {
+        let component = &self.composition.components[index];
+        Failure::Formula {
+            component: component.name.clone(),
+            location: component.place(location).name.to_owned(),
+            part,
+            reason: fault.to_string(),
+        }
+    }
+
+    pub(super) fn failure(&self, reason: String) -> Failure {
+        let components = self.composition.components.iter().zip(&self.locations);
+        let places = components.map(|(component, &location)| {
+            format!("`{}` of `{}`", component.place(location).name, component.name)
+        });
+        Failure::Flow { locations: places.collect::<Vec<_>>().join(", "), reason }
+    }
+}
+
+/// Which transitions are looked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Readiness {
+    /// Those that have to be taken.
+    Forced,
+    /// All.
+    Possible,
+}
+
+/// A jump that can be taken: components, each with one of its transitions.
+struct Joint {
+    label: Option<usize>,
+    parts: Vec<(usize, usize)>,
+}
+
+impl System for Simulation<'_> {
+    type Jump = Taken;
+    type Finish = std::convert::Infallible;
+    type Error = Failure;
+
+    fn finished(&self) -> Option<Self::Finish> {
+        None
+    }
+
+    fn jump(&mut self, round: &mut Round<'_, Taken>) -> Result<(), Failure> {
+        self.now = round.now();
+        self.flight = None;
+        let mut jumped = self.take_round(round, Readiness::Forced)?;
+        if !jumped {
+            let left = self.horizon - self.now.t;
+            let flight = self.plan(left.max(0.0))?;
+            if flight.duration <= 0.0 && left > 0.0 {
+                jumped = self.take_round(round, Readiness::Possible)?;
+            }
+            self.flight = (!jumped).then_some(flight);
+        }
+        self.now = round.now();
+        Ok(())
+    }
+
+    fn time_to_jump(&self) -> Result<Option<f64>, Failure> {
+        Ok(self.flight.as_ref().filter(|flight| flight.is_eventful).map(|flight| flight.duration))
+    }
+
+    fn flow(&mut self, duration: f64) -> Result<(), Failure> {
+        let planned = match self.flight.take() {
+            Some(flight) if flight.duration == duration => flight,
+            _ => self.plan(duration)?,
+        };
+        if let Some(landing) = planned.samples.into_iter().next_back() {
+            self.values = landing.values;
+        }
+        self.allowance = self.allowance_at(&self.values)?;
+        self.now = self.now.after_flow(duration);
+        Ok(())
+    }
+}
+
+/// Writes the trajectory while the simulation runs.
+struct Recorder(Trajectory);
+
+impl Observer<Simulation<'_>> for Recorder {
+    fn jumped(&mut self, entry: TraceEntry<Taken>) {
+        self.0.jumped(entry.at, entry.jump);
+    }
+
+    fn flows(
+        &mut self,
+        simulation: &Simulation<'_>,
+        now: HybridTime,
+        _duration: f64,
+    ) -> std::ops::ControlFlow<std::convert::Infallible> {
+        if let (Some(flight), Some(phase)) = (&simulation.flight, self.0.phases.last_mut()) {
+            phase.samples.clear();
+            let shifted = |sample: &Sample| Sample { t: now.t + sample.t, ..sample.clone() };
+            phase.samples.extend(flight.samples.iter().map(shifted));
+        }
+        std::ops::ControlFlow::Continue(())
+    }
+}
+
+impl Component {
+    fn change(
+        &self,
+        change: &Change,
+        before: &[f64],
+        after: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        match change {
+            Change::Assignments(assignments) => {
+                for (coordinate, value) in assignments {
+                    let new = value.evaluate_at(before, &self.slots);
+                    if new.is_nan() {
+                        let expression =
+                            format!("the new {}", self.blueprint.coordinates[*coordinate]);
+                        return Err(EvaluationError::NotANumber { expression });
+                    }
+                    after[self.slots[*coordinate]] = new;
+                }
+            }
+            Change::Function(function) => {
+                let mut own = Vec::with_capacity(self.slots.len());
+                self.gather(before, &mut own);
+                function(&mut own)?;
+                self.scatter(&own, after);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Settings {
+    pub(super) fn tolerances(&self) -> Tolerances {
+        self.try_tolerances().unwrap_or_default()
+    }
+
+    pub(super) fn search(&self) -> EventSearch {
+        let default = EventSearch::default();
+        EventSearch::new(self.resolution, default.looks()).unwrap_or(default)
+    }
+
+    fn try_tolerances(&self) -> Result<Tolerances, String> {
+        let tolerances = Tolerances::new(self.relative_tolerance, self.absolute_tolerance)
+            .map_err(|fault| fault.to_string())?;
+        if self.largest_step == f64::INFINITY {
+            return Ok(tolerances);
+        }
+        tolerances.with_largest_step(self.largest_step).map_err(|fault| fault.to_string())
+    }
+
+    fn check(&self) -> Result<(), SimulationError> {
+        self.try_tolerances().map_err(SimulationError::Settings)?;
+        let looks = EventSearch::default().looks();
+        EventSearch::new(self.resolution, looks)
+            .map_err(|fault| SimulationError::Settings(fault.to_string()))?;
+        Ok(())
+    }
+}
+
+/// JSON has no infinity.
+mod unbounded {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        value.is_finite().then_some(*value).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
+    }
+}

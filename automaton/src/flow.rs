@@ -1,0 +1,211 @@
+//! How the state changes while time passes in a location.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use pleach_guards::Expression;
+
+/// The flow of a location.
+///
+/// | made by | is | solved by |
+/// | --- | --- | --- |
+/// | a list of [rates](crate::Coordinate::rate) | data: ẋ as formulas, 0 for coordinates that are not listed | its closed form where it is constant or linear, else an integrator |
+/// | [`Flow::field`] | a function x ↦ ẋ under a name | an integrator |
+/// | [`Flow::exact`] | a function that carries x over a duration, under a name | itself |
+///
+/// ```
+/// use pleach_automaton::{coordinates, Flow};
+///
+/// coordinates! { struct Ball { height = "h", velocity = "v" } }
+/// let Ball { height, velocity } = Ball::coordinates();
+///
+/// let fall: Flow<Ball> = [height.rate(&velocity), velocity.rate(-9.81)].into();
+/// assert_eq!(fall.to_string(), "ḣ = v, v̇ = −9.81");
+/// ```
+pub struct Flow<S> {
+    motion: Motion<S>,
+}
+
+pub(crate) enum Motion<S> {
+    Rates(Arc<[Rate<S>]>),
+    Field(Arc<str>, Arc<Field<S>>),
+    Exact(Arc<str>, Arc<Solution<S>>),
+}
+
+type Field<S> = dyn Fn(&S) -> S + Send + Sync;
+type Solution<S> = dyn Fn(&mut S, f64) + Send + Sync;
+
+/// The rate of one coordinate, as a formula; made by [`Coordinate::rate`](crate::Coordinate::rate).
+pub struct Rate<S> {
+    coordinate: &'static str,
+    rate: Expression,
+    state: PhantomData<fn() -> S>,
+}
+
+impl<S> Rate<S> {
+    pub(crate) fn new(coordinate: &'static str, rate: Expression) -> Self {
+        Rate { coordinate, rate, state: PhantomData }
+    }
+
+    /// The name of the coordinate.
+    pub fn coordinate(&self) -> &'static str {
+        self.coordinate
+    }
+
+    /// How fast it changes, per second.
+    pub fn rate(&self) -> &Expression {
+        &self.rate
+    }
+}
+
+impl<S> Flow<S> {
+    /// The flow whose exact solution `advance` computes: it carries a state over a duration ≥ 0
+    /// in seconds. `name` is a formula such as `τ̇ = 1`.
+    pub fn exact(name: &str, advance: impl Fn(&mut S, f64) + Send + Sync + 'static) -> Self {
+        Flow { motion: Motion::Exact(name.into(), Arc::new(advance)) }
+    }
+
+    /// The flow ẋ = f(x): `field` gives, as a state, the rates of all coordinates per second.
+    pub fn field(name: &str, field: impl Fn(&S) -> S + Send + Sync + 'static) -> Self {
+        Flow { motion: Motion::Field(name.into(), Arc::new(field)) }
+    }
+
+    /// The rates, unless the flow is a function.
+    pub fn rates(&self) -> Option<&[Rate<S>]> {
+        match &self.motion {
+            Motion::Rates(rates) => Some(rates),
+            Motion::Field(..) | Motion::Exact(..) => None,
+        }
+    }
+
+    /// The name or the formulas, as text.
+    pub fn name(&self) -> Cow<'_, str> {
+        match &self.motion {
+            Motion::Rates(rates) => {
+                let texts: Vec<String> = rates.iter().map(Rate::to_string).collect();
+                Cow::Owned(texts.join(", "))
+            }
+            Motion::Field(name, _) | Motion::Exact(name, _) => Cow::Borrowed(name),
+        }
+    }
+
+    /// Carries `state` over `duration` seconds, at least 0, and says whether it did: only an
+    /// [exact](Flow::exact) flow can by itself.
+    #[must_use]
+    pub fn advance(&self, state: &mut S, duration: f64) -> bool {
+        match &self.motion {
+            Motion::Exact(_, advance) => {
+                advance(state, duration);
+                true
+            }
+            Motion::Rates(_) | Motion::Field(..) => false,
+        }
+    }
+
+    pub(crate) fn motion(&self) -> &Motion<S> {
+        &self.motion
+    }
+}
+
+impl<S, const N: usize> From<[Rate<S>; N]> for Flow<S> {
+    fn from(rates: [Rate<S>; N]) -> Self {
+        Flow { motion: Motion::Rates(Arc::new(rates)) }
+    }
+}
+
+impl<S> From<Vec<Rate<S>>> for Flow<S> {
+    fn from(rates: Vec<Rate<S>>) -> Self {
+        Flow { motion: Motion::Rates(rates.into()) }
+    }
+}
+
+impl<S> From<Rate<S>> for Flow<S> {
+    fn from(rate: Rate<S>) -> Self {
+        [rate].into()
+    }
+}
+
+// Written by hand, because derives would ask the same of S.
+
+impl<S> Clone for Rate<S> {
+    fn clone(&self) -> Self {
+        Rate::new(self.coordinate, self.rate.clone())
+    }
+}
+
+impl<S> Clone for Flow<S> {
+    fn clone(&self) -> Self {
+        Flow { motion: self.motion.clone() }
+    }
+}
+
+impl<S> Clone for Motion<S> {
+    fn clone(&self) -> Self {
+        match self {
+            Motion::Rates(rates) => Motion::Rates(rates.clone()),
+            Motion::Field(name, field) => Motion::Field(name.clone(), field.clone()),
+            Motion::Exact(name, advance) => Motion::Exact(name.clone(), advance.clone()),
+        }
+    }
+}
+
+impl<S> fmt::Display for Rate<S> {
+    /// The dot stands over the first letter of the name, as one writes it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const DOT_ABOVE: char = '\u{307}';
+        let mut letters = self.coordinate.chars();
+        if let Some(first) = letters.next() {
+            write!(formatter, "{}{}", dotted(first, DOT_ABOVE), letters.as_str())?;
+        }
+        write!(formatter, " = {}", self.rate)
+    }
+}
+
+/// A letter with a dot above, as one character where there is one: not every font combines them.
+fn dotted(letter: char, dot: char) -> String {
+    let composed = match letter {
+        'a' => 'ȧ',
+        'b' => 'ḃ',
+        'c' => 'ċ',
+        'd' => 'ḋ',
+        'e' => 'ė',
+        'f' => 'ḟ',
+        'g' => 'ġ',
+        'h' => 'ḣ',
+        'm' => 'ṁ',
+        'n' => 'ṅ',
+        'o' => 'ȯ',
+        'p' => 'ṗ',
+        'r' => 'ṙ',
+        's' => 'ṡ',
+        't' => 'ṫ',
+        'w' => 'ẇ',
+        'x' => 'ẋ',
+        'y' => 'ẏ',
+        'z' => 'ż',
+        'T' => 'Ṫ',
+        'X' => 'Ẋ',
+        _ => return format!("{letter}{dot}"),
+    };
+    composed.to_string()
+}
+
+impl<S> fmt::Debug for Rate<S> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "Rate({self})")
+    }
+}
+
+impl<S> fmt::Display for Flow<S> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.name())
+    }
+}
+
+impl<S> fmt::Debug for Flow<S> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "Flow({self})")
+    }
+}

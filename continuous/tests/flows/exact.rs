@@ -1,0 +1,142 @@
+//! Constant and linear flows against closed forms and nalgebra's exponential.
+
+use nalgebra::{DMatrix, DVector, dmatrix};
+use pleach_continuous::flow::{ConstantFlow, Curve, InvalidFlow, LinearFlow};
+use proptest::prelude::*;
+
+use crate::support::{distance, state};
+
+#[test]
+fn bodies_in_free_flight_follow_their_parabola_exactly() {
+    let matrix = dmatrix![0.0, 1.0; 0.0, 0.0];
+    let flight = LinearFlow::new(&matrix, &[0.0, -8.0], &[3.0, 5.0], 100.0).unwrap();
+    for time in [0.0, 0.25, 1.0, 17.5, 100.0] {
+        assert_eq!(state(&flight, time), [3.0 + time * (5.0 - 4.0 * time), 5.0 - 8.0 * time]);
+    }
+    assert_eq!(flight.time_scale(0.0), f64::INFINITY);
+}
+
+#[test]
+fn tiny_entries_do_not_pass_for_zero() {
+    // The square of the entry vanishes in rounding, but the growth is there in the long run.
+    let flow = LinearFlow::new(&dmatrix![1e-200], &[0.0], &[1.0], 1e200).unwrap();
+    assert!((state(&flow, 1e200)[0] - 1f64.exp()).abs() < 1e-14);
+}
+
+#[test]
+fn oscillations_keep_their_phase() {
+    let matrix = dmatrix![0.0, 20.0; -20.0, 0.0];
+    let flow = LinearFlow::new(&matrix, &[0.0, 0.0], &[0.0, 1.0], 1e3).unwrap();
+    for time in [0.001, 0.3, 1.0, 10.0, 999.9] {
+        let angle: f64 = 20.0 * time;
+        let error = distance(&state(&flow, time), &[angle.sin(), angle.cos()]);
+        assert!(error < 1e-15 * (10.0 + angle), "{error:e} at {time} s");
+    }
+}
+
+#[test]
+fn a_large_offset_costs_no_accuracy() {
+    // ẋ = −x + 10⁹ from 0 is 10⁹ (1 − e⁻ᵗ).
+    let flow = LinearFlow::new(&dmatrix![-1.0], &[1e9], &[0.0], 10.0).unwrap();
+    for time in [1e-3, 0.1, 1.0, 10.0_f64] {
+        let exact = -1e9 * (-time).exp_m1();
+        assert!((state(&flow, time)[0] / exact - 1.0).abs() < 1e-14, "at {time} s");
+    }
+}
+
+#[test]
+fn fast_modes_set_the_time_scale_until_they_have_faded() {
+    let matrix = dmatrix![-1000.0, 0.0, 0.0; 0.0, 0.0, 1.0; 0.0, -1.0, 0.0];
+    let flow = LinearFlow::new(&matrix, &[0.0; 3], &[1.0; 3], 10.0).unwrap();
+    assert!(flow.time_scale(0.0) < 0.004);
+    assert!((flow.time_scale(1.0) - std::f64::consts::PI).abs() < 1e-12);
+}
+
+#[test]
+fn outside_their_duration_flows_stand_still() {
+    let constant = ConstantFlow::new(&[2.0], &[1.0], 3.0).unwrap();
+    let linear = LinearFlow::new(&dmatrix![0.0], &[2.0], &[1.0], 3.0).unwrap();
+    let curves: [&dyn Curve; 2] = [&constant, &linear];
+    for curve in curves {
+        assert_eq!((curve.start(), curve.end(), curve.dimension()), (0.0, 3.0, 1));
+        for (time, expected) in [(-1.0, 1.0), (0.0, 1.0), (1.5, 4.0), (3.0, 7.0), (4.0, 7.0)] {
+            assert_eq!(state(curve, time), [expected]);
+        }
+    }
+}
+
+#[test]
+fn flows_of_no_dimension_exist() {
+    let flow = LinearFlow::new(&DMatrix::zeros(0, 0), &[], &[], 1.0).unwrap();
+    assert!(state(&flow, 0.5).is_empty());
+}
+
+#[test]
+fn mistakes_are_named() {
+    let mistake = |matrix, offset: &[f64], start: &[f64], duration| {
+        LinearFlow::new(&matrix, offset, start, duration).unwrap_err().to_string()
+    };
+    let square = || DMatrix::zeros(2, 2);
+    assert_eq!(
+        [
+            mistake(DMatrix::zeros(2, 3), &[0.0; 2], &[0.0; 2], 1.0),
+            mistake(square(), &[0.0], &[0.0; 2], 1.0),
+            mistake(square(), &[0.0, f64::NAN], &[0.0; 2], 1.0),
+            mistake(square(), &[0.0; 2], &[0.0; 2], -1.0),
+        ],
+        [
+            "columns of the matrix: length 3, but the state has dimension 2",
+            "offset: length 1, but the state has dimension 2",
+            "entry 1 of the offset is NaN: it must be finite",
+            "a flow cannot last -1 s",
+        ],
+    );
+    assert!(matches!(
+        ConstantFlow::new(&[1.0], &[0.0], f64::NAN),
+        Err(InvalidFlow::Duration { .. })
+    ));
+}
+
+/// The solution by one exponential of the extended matrix.
+fn by_one_exponential(matrix: &DMatrix<f64>, offset: &[f64], start: &[f64], t: f64) -> Vec<f64> {
+    let dimension = start.len();
+    let mut extended = matrix.clone().resize(dimension + 1, dimension + 1, 0.0);
+    extended.view_mut((0, dimension), (dimension, 1)).copy_from_slice(offset);
+    let moved = (extended * t).exp() * DVector::from_column_slice(start).push(1.0);
+    moved.as_slice()[..dimension].to_vec()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+
+    #[test]
+    fn linear_flows_agree_with_the_exponential(
+        dimension in 1..7_usize,
+        entries in proptest::collection::vec(-2.0..2.0, 49),
+        present in proptest::collection::vec(any::<bool>(), 36),
+        time in 0.0..4.0,
+    ) {
+        let matrix = DMatrix::from_fn(dimension, dimension, |row, column| {
+            if present[row * 6 + column] { entries[row * 7 + column] } else { 0.0 }
+        });
+        let (offset, start) = (&entries[30..30 + dimension], &entries[42..42 + dimension]);
+        let flow = LinearFlow::new(&matrix, offset, start, 4.0).unwrap();
+        let expected = by_one_exponential(&matrix, offset, start, time);
+        // Errors grow with the exponential of the norm, in both computations.
+        let size = (&matrix * time).exp().norm() * (1.0 + matrix.norm() * time);
+        let error = distance(&state(&flow, time), &expected);
+        prop_assert!(error < 1e-14 * 10.0 * size, "error {error:e}, size {size:e}");
+    }
+
+    #[test]
+    fn linear_flows_compose(angle in -3.0..3.0_f64, decay in -1.0..0.5_f64, first in 0.0..5.0,
+                            second in 0.0..5.0) {
+        let matrix = dmatrix![decay, angle; -angle, decay];
+        let offset = [0.3, -0.2];
+        let flow = |from: &[f64]| LinearFlow::new(&matrix, &offset, from, 10.0).unwrap();
+        let whole = state(&flow(&[1.0, 2.0]), first + second);
+        let parts = state(&flow(&state(&flow(&[1.0, 2.0]), first)), second);
+        let size = 1.0 + whole[0].hypot(whole[1]);
+        prop_assert!(distance(&whole, &parts) < 1e-13 * size * 10.0);
+    }
+}

@@ -1,0 +1,150 @@
+//! Derivatives of expressions, as expressions.
+
+use crate::expression::{BinaryOperator, Expression, UnaryOperator, constant};
+
+impl Expression {
+    /// The partial derivative with respect to `variable`.
+    ///
+    /// Where an absolute value, minimum or maximum has a kink, the derivative divides 0 by 0 and
+    /// so is not a number; elsewhere it is that of the side the state is on. Terms that are 0 and
+    /// factors that are 1 are left out, nothing else is simplified.
+    ///
+    /// ```
+    /// use pleach_guards::variable;
+    ///
+    /// let (x, y) = (variable("x"), variable("y"));
+    /// assert_eq!((x.power(3.0) - &x * &y).derivative("x").to_string(), "3 · x² − y");
+    ///
+    /// let slope = x.abs().derivative("x");
+    /// assert_eq!(slope.to_string(), "x ÷ |x|");
+    /// assert_eq!(slope.evaluate(&[("x", -2.5)])?, -1.0);
+    /// assert!(slope.evaluate(&[("x", 0.0)]).is_err());
+    /// # Ok::<(), pleach_guards::EvaluationError>(())
+    /// ```
+    pub fn derivative(&self, variable: &str) -> Expression {
+        match self {
+            Expression::Constant(_) => constant(0.0),
+            Expression::Variable(name) if **name == *variable => constant(1.0),
+            Expression::Variable(_) => constant(0.0),
+            Expression::Unary(operator, operand) => {
+                let inner = operand.derivative(variable);
+                match operator {
+                    UnaryOperator::Negation => opposite(inner),
+                    _ if is(&inner, 0.0) => inner,
+                    _ => product(operator.slope(operand), inner),
+                }
+            }
+            Expression::Binary(operator, left, right) => {
+                let (inner_left, inner_right) =
+                    (left.derivative(variable), right.derivative(variable));
+                operator.derivative((left, inner_left), (right, inner_right))
+            }
+            Expression::Power(base, exponent) => {
+                let inner = base.derivative(variable);
+                if is(&inner, 0.0) || *exponent == 0.0 {
+                    return constant(0.0);
+                }
+                let lowered = match exponent - 1.0 {
+                    0.0 => constant(1.0),
+                    1.0 => (**base).clone(),
+                    lowered => base.power(lowered),
+                };
+                product(product(constant(*exponent), lowered), inner)
+            }
+        }
+    }
+}
+
+impl UnaryOperator {
+    /// The derivative of the operator at `operand`.
+    fn slope(self, operand: &Expression) -> Expression {
+        match self {
+            UnaryOperator::Negation => constant(-1.0),
+            UnaryOperator::AbsoluteValue => operand / operand.abs(),
+            UnaryOperator::Sine => operand.cos(),
+            UnaryOperator::Cosine => -operand.sin(),
+            UnaryOperator::Exponential => operand.exp(),
+            UnaryOperator::Logarithm => 1.0 / operand,
+        }
+    }
+}
+
+impl BinaryOperator {
+    /// The derivative of the operator on two operands, each given with its own derivative.
+    fn derivative(
+        self,
+        (left, inner_left): (&Expression, Expression),
+        (right, inner_right): (&Expression, Expression),
+    ) -> Expression {
+        match self {
+            BinaryOperator::Sum => sum(inner_left, inner_right),
+            BinaryOperator::Difference => difference(inner_left, inner_right),
+            BinaryOperator::Product => {
+                sum(product(inner_left, right.clone()), product(left.clone(), inner_right))
+            }
+            BinaryOperator::Quotient if is(&inner_right, 0.0) => {
+                quotient(inner_left, right.clone())
+            }
+            BinaryOperator::Quotient => quotient(
+                difference(product(inner_left, right.clone()), product(left.clone(), inner_right)),
+                right.power(2.0),
+            ),
+            // Halfway between the operands, less or more half their distance.
+            BinaryOperator::Minimum | BinaryOperator::Maximum if inner_left == inner_right => {
+                inner_left
+            }
+            BinaryOperator::Minimum | BinaryOperator::Maximum => {
+                let side = (left - right) / (left - right).abs();
+                let apart = product(side, difference(inner_left.clone(), inner_right.clone()));
+                let twice = sum(inner_left, inner_right);
+                let turned = match self {
+                    BinaryOperator::Minimum => difference(twice, apart),
+                    _ => sum(twice, apart),
+                };
+                quotient(turned, constant(2.0))
+            }
+        }
+    }
+}
+
+fn is(expression: &Expression, number: f64) -> bool {
+    matches!(expression, Expression::Constant(value) if *value == number)
+}
+
+fn opposite(operand: Expression) -> Expression {
+    if is(&operand, 0.0) { operand } else { -operand }
+}
+
+fn sum(left: Expression, right: Expression) -> Expression {
+    if is(&left, 0.0) {
+        right
+    } else if is(&right, 0.0) {
+        left
+    } else {
+        left + right
+    }
+}
+
+fn difference(left: Expression, right: Expression) -> Expression {
+    if is(&right, 0.0) {
+        left
+    } else if is(&left, 0.0) {
+        -right
+    } else {
+        left - right
+    }
+}
+
+fn product(left: Expression, right: Expression) -> Expression {
+    if is(&left, 0.0) || is(&right, 1.0) {
+        left
+    } else if is(&right, 0.0) || is(&left, 1.0) {
+        right
+    } else {
+        left * right
+    }
+}
+
+fn quotient(left: Expression, right: Expression) -> Expression {
+    if is(&left, 0.0) || is(&right, 1.0) { left } else { left / right }
+}

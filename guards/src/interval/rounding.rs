@@ -1,0 +1,93 @@
+//! Operations on two numbers as the narrowest interval that is sure to enclose the exact result and
+//! the rounded one. Where the rounding error is seen to be zero, that is a point.
+
+use super::Interval;
+
+/// By how many units in the last place the functions of the standard library may be off. Those of
+/// the usual platforms stay below one; the margin covers others.
+const LIBRARY_ERROR: usize = 4;
+
+/// Below this magnitude the error of a product may itself be too small to be a number, so that a
+/// product can no longer be seen to be exact: the smallest normal number times 2⁵³.
+const FAINT: f64 = f64::MIN_POSITIVE * 9_007_199_254_740_992.0;
+
+/// a + b; the whole line where infinities cancel.
+pub(super) fn sum(left: f64, right: f64) -> Interval {
+    let sum = left + right;
+    if sum.is_nan() {
+        return Interval::WHOLE;
+    }
+    // The error of a sum is again a number (Knuth), or NaN after an overflow.
+    let part = sum - left;
+    enclose(sum, (left - (sum - part)) + (right - part))
+}
+
+/// a · b. Where this is 0 · ∞ it is no value of an operation on intervals, but values beside it come
+/// near 0.
+pub(super) fn product(left: f64, right: f64) -> Interval {
+    let product = left * right;
+    if left == 0.0 || right == 0.0 {
+        Interval::point(0.0)
+    } else if product.abs() < FAINT {
+        enclose(product, f64::NAN)
+    } else {
+        enclose(product, left.mul_add(right, -product))
+    }
+}
+
+/// a ÷ b for b ≠ 0. Where this is ∞ ÷ ∞ it is no value of an operation on intervals, but values
+/// beside it come near 0.
+pub(super) fn quotient(left: f64, right: f64) -> Interval {
+    let quotient = left / right;
+    if left == 0.0 || quotient.is_nan() {
+        Interval::point(0.0)
+    } else if quotient.abs() < FAINT || left.abs() < FAINT {
+        enclose(quotient, f64::NAN)
+    } else {
+        enclose(quotient, (-quotient).mul_add(right, left) * right.signum())
+    }
+}
+
+/// √a for a ≥ 0.
+pub(super) fn around_root(square: f64) -> Interval {
+    let root = square.sqrt();
+    if square != 0.0 && square < FAINT {
+        enclose(root, f64::NAN)
+    } else {
+        enclose(root, (-root).mul_add(root, square))
+    }
+}
+
+/// The hull of a monotone operation on the ends.
+pub(super) fn corners(
+    left: Interval,
+    right: Interval,
+    operation: fn(f64, f64) -> Interval,
+) -> Interval {
+    operation(left.lower, right.lower)
+        .hull(operation(left.lower, right.upper))
+        .hull(operation(left.upper, right.lower))
+        .hull(operation(left.upper, right.upper))
+}
+
+/// A number that is known up to half a unit in its last place.
+pub(super) fn nearly(value: f64) -> Interval {
+    if value == 0.0 { Interval::point(0.0) } else { enclose(value, f64::NAN) }
+}
+
+/// From `lower` to `upper`, as a function of the standard library gave them.
+pub(super) fn loose(lower: f64, upper: f64) -> Interval {
+    Interval {
+        lower: (0..LIBRARY_ERROR).fold(lower, |end, _| end.next_down()),
+        upper: (0..LIBRARY_ERROR).fold(upper, |end, _| end.next_up()),
+    }
+}
+
+/// Around a result that was rounded to nearest, given the sign of what has to be added to make it
+/// exact; NaN stands for an unknown sign.
+fn enclose(rounded: f64, error: f64) -> Interval {
+    Interval {
+        lower: if error >= 0.0 { rounded } else { rounded.next_down() },
+        upper: if error <= 0.0 { rounded } else { rounded.next_up() },
+    }
+}

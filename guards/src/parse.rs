@@ -1,0 +1,244 @@
+//! Text read as expressions and predicates: what [`mod@crate::print`] writes, and spellings in
+//! ASCII.
+//!
+//! Reading undoes printing: of every expression and predicate that is data, the text reads back
+//! as that same structure and those same numbers. Nothing is simplified on the way, and
+//! parentheses are structure: `(a ≤ 1 ∧ b ≤ 1) ∧ c ≤ 1` is a conjunction inside another.
+//!
+//! ```
+//! use pleach_guards::{Predicate, variable};
+//!
+//! let guard: Predicate = "distance <= δ && not (still < 8)".parse()?;
+//! assert_eq!(guard.to_string(), "distance ≤ δ ∧ ¬(still < 8)");
+//!
+//! let near = variable("distance").at_most(variable("δ"));
+//! assert_eq!(guard, near.and(!variable("still").less_than(8.0)));
+//! # Ok::<(), pleach_guards::ParseError>(())
+//! ```
+//!
+//! # The grammar
+//!
+//! ```text
+//! disjunction = conjunction { or conjunction }
+//! conjunction = clause { and clause }
+//! clause      = sum relation sum | statement
+//! statement   = not statement | "always" | "never" | "(" disjunction ")"
+//! sum         = term { ( "+" | minus ) term }
+//! term        = minus term | factor { ( times | over ) factor }
+//! factor      = minus factor | power
+//! power       = atom [ raised digits | "^" exponent ] | "√" atom
+//! exponent    = [ minus ] number | "(" [ minus ] number ")"
+//! atom        = number | name | "(" sum ")" | "|" sum "|" | function "(" sum { "," sum } ")"
+//! relation    = "≤" | "<=" | "<" | "≥" | ">=" | ">"
+//! ```
+//!
+//! *or* is `∨`, `||` or `or`; *and* is `∧`, `&&` or `and`; *not* is `¬`, `!` or `not`; *minus* is
+//! `−` or `-`; *times* is `·`, `×` or `*`; *over* is `÷` or `/`. The functions of one operand are
+//! `abs`, `sqrt`, `sin`, `cos`, `exp` and `ln`, those of two are `min` and `max`. A number is
+//! decimal, as `0.5` or `1e-3`, or `∞` (`infinity`) or `NaN`. A minus before a number that stands
+//! alone belongs to the number.
+//!
+//! A name begins with a letter or an underscore; letters, digits, subscripts, underscores, dots,
+//! primes and accents follow. Any other name, and one that is a word of the language such as
+//! `not`, stands between backticks, and a backtick in it stands twice.
+
+mod arithmetic;
+mod error;
+mod tokens;
+
+use std::str::FromStr;
+
+use crate::expression::Expression;
+use crate::predicate::{Comparison, Predicate, Relation, always, never, not};
+pub use error::ParseError;
+use tokens::{Located, Token, tokens};
+
+/// How many parentheses, bars, roots and signs may stand inside one another, so that no text
+/// exhausts the stack of the reader.
+const NESTING_LIMIT: usize = 100;
+
+const RELATION: &str = "`≤`, `<`, `≥` or `>` (for equality, compare |a − b| with a tolerance)";
+const STATEMENT: &str = "`(`, `¬`, `always` or `never`";
+const TRAILER: &str = "an operator or the end";
+
+impl FromStr for Expression {
+    type Err = ParseError;
+
+    /// Reads the expression that `text` holds, in the [grammar](crate::parse) of a sum.
+    fn from_str(text: &str) -> Result<Self, ParseError> {
+        let mut reader = Reader::new(text)?;
+        let sum = reader.sum()?;
+        reader.expect(Token::End, TRAILER)?;
+        Ok(sum.expression)
+    }
+}
+
+impl FromStr for Predicate {
+    type Err = ParseError;
+
+    /// Reads the predicate that `text` holds, in the [grammar](crate::parse) of a disjunction.
+    ///
+    /// A [function](Predicate::function) cannot be read: its text holds no more than its name.
+    fn from_str(text: &str) -> Result<Self, ParseError> {
+        let mut reader = Reader::new(text)?;
+        let disjunction = reader.disjunction()?;
+        reader.expect(Token::End, TRAILER)?;
+        Ok(disjunction)
+    }
+}
+
+/// A reader by recursive descent, one method for each rule of the grammar.
+struct Reader<'a> {
+    tokens: Vec<Located<'a>>,
+    position: usize,
+    nesting: usize,
+}
+
+/// The rules of predicates.
+impl Reader<'_> {
+    fn disjunction(&mut self) -> Result<Predicate, ParseError> {
+        let mut parts = vec![self.conjunction()?];
+        while self.take_or() {
+            parts.push(self.conjunction()?);
+        }
+        Ok(only(parts).unwrap_or_else(|parts| Predicate::Any(parts.into())))
+    }
+
+    fn conjunction(&mut self) -> Result<Predicate, ParseError> {
+        let mut parts = vec![self.clause()?];
+        while self.take(Token::And) {
+            parts.push(self.clause()?);
+        }
+        Ok(only(parts).unwrap_or_else(|parts| Predicate::All(parts.into())))
+    }
+
+    fn clause(&mut self) -> Result<Predicate, ParseError> {
+        self.refuse_function()?;
+        let begins_statement = match self.token() {
+            Token::Not | Token::Always | Token::Never => true,
+            Token::Open => self.encloses_predicate(),
+            _ => false,
+        };
+        if begins_statement { self.statement() } else { self.comparison() }
+    }
+
+    fn statement(&mut self) -> Result<Predicate, ParseError> {
+        if self.take(Token::Always) {
+            Ok(always())
+        } else if self.take(Token::Never) {
+            Ok(never())
+        } else if self.take(Token::Not) {
+            self.nested(Self::statement).map(not)
+        } else {
+            self.expect(Token::Open, STATEMENT)?;
+            let inner = self.nested(Self::disjunction)?;
+            self.expect(Token::Close, "an operator or `)`")?;
+            Ok(inner)
+        }
+    }
+
+    fn comparison(&mut self) -> Result<Predicate, ParseError> {
+        let left = self.sum()?.expression;
+        let relation = match self.token() {
+            Token::AtMost => Relation::AtMost,
+            Token::LessThan => Relation::LessThan,
+            Token::AtLeast => Relation::AtLeast,
+            Token::MoreThan => Relation::MoreThan,
+            _ => return Err(self.expected(RELATION)),
+        };
+        self.position += 1;
+        let right = self.sum()?.expression;
+        Ok(Predicate::Comparison(Comparison { left, relation, right }))
+    }
+
+    /// Takes an *or*. In its ASCII spelling it is two bars, but only here, after an operand, where
+    /// no bar can open or close an absolute value.
+    fn take_or(&mut self) -> bool {
+        let is_bars = self.follow(0, &[Token::Bar, Token::Bar])
+            && self.tokens[self.position].column + 1 == self.tokens[self.position + 1].column;
+        if is_bars {
+            self.position += 2;
+        }
+        is_bars || self.take(Token::Or)
+    }
+
+    /// Whether anything up to the matching parenthesis belongs to a predicate.
+    fn encloses_predicate(&self) -> bool {
+        let mut open = 0;
+        for Located { token, .. } in &self.tokens[self.position..] {
+            match token {
+                Token::Open => open += 1,
+                Token::Close => open -= 1,
+                Token::AtMost | Token::LessThan | Token::AtLeast | Token::MoreThan => return true,
+                Token::Equality | Token::Ellipsis => return true,
+                Token::Not | Token::And | Token::Or | Token::Always | Token::Never => return true,
+                _ => {}
+            }
+            if open == 0 {
+                return false;
+            }
+        }
+        false
+    }
+
+    fn refuse_function(&self) -> Result<(), ParseError> {
+        let is_name = matches!(self.token(), Token::Word(_) | Token::Quoted(_));
+        if is_name && self.follow(1, &[Token::Open, Token::Ellipsis]) {
+            return Err(self.expected("a comparison (a function can be given by code only)"));
+        }
+        Ok(())
+    }
+}
+
+/// How tokens are read.
+impl<'a> Reader<'a> {
+    fn new(text: &'a str) -> Result<Self, ParseError> {
+        Ok(Reader { tokens: tokens(text)?, position: 0, nesting: 0 })
+    }
+
+    /// The next token; no rule reads past the end.
+    fn token(&self) -> &Token {
+        &self.tokens[self.position].token
+    }
+
+    /// Whether the `wanted` tokens follow after the next `skipped`.
+    fn follow(&self, skipped: usize, wanted: &[Token]) -> bool {
+        let following = self.tokens[self.position..].iter().skip(skipped);
+        following.map(|located| &located.token).take(wanted.len()).eq(wanted)
+    }
+
+    fn take(&mut self, wanted: Token) -> bool {
+        let found = *self.token() == wanted;
+        if found {
+            self.position += 1;
+        }
+        found
+    }
+
+    fn expect(&mut self, wanted: Token, expected: &'static str) -> Result<(), ParseError> {
+        if self.take(wanted) { Ok(()) } else { Err(self.expected(expected)) }
+    }
+
+    fn expected(&self, expected: &'static str) -> ParseError {
+        let Located { column, text, .. } = self.tokens[self.position];
+        ParseError::new(column, expected, text)
+    }
+
+    fn nested<T>(
+        &mut self,
+        rule: impl FnOnce(&mut Self) -> Result<T, ParseError>,
+    ) -> Result<T, ParseError> {
+        if self.nesting == NESTING_LIMIT {
+            return Err(self.expected("at most 100 levels of nesting"));
+        }
+        self.nesting += 1;
+        let inner = rule(self)?;
+        self.nesting -= 1;
+        Ok(inner)
+    }
+}
+
+/// The one predicate of which `parts` consists, or else the parts themselves.
+fn only(parts: Vec<Predicate>) -> Result<Predicate, Vec<Predicate>> {
+    <[Predicate; 1]>::try_from(parts).map(|[only]| only)
+}

@@ -1,0 +1,200 @@
+//! The rules of expressions.
+
+use std::sync::Arc;
+
+use super::Reader;
+use super::error::ParseError;
+use super::tokens::Token;
+use crate::expression::{BinaryOperator, Expression, UnaryOperator, constant};
+
+/// How many operations may build on one another in an expression, such as the additions of a long
+/// sum, so that no text makes an expression too deep to be evaluated, printed or dropped.
+const HEIGHT_LIMIT: usize = 1000;
+
+const OPERAND: &str = "a number, a name, `(`, `|`, `√` or `−`";
+const CLOSING: &str = "an operator or `)`";
+
+/// An expression and how many operations in it build on one another.
+pub(super) struct Tree {
+    pub expression: Expression,
+    height: usize,
+}
+
+impl Tree {
+    fn leaf(expression: Expression) -> Self {
+        Tree { expression, height: 0 }
+    }
+}
+
+/// The rules of the grammar.
+impl Reader<'_> {
+    pub(super) fn sum(&mut self) -> Result<Tree, ParseError> {
+        let mut sum = self.term()?;
+        loop {
+            let operator = match self.token() {
+                Token::Plus => BinaryOperator::Sum,
+                Token::Minus => BinaryOperator::Difference,
+                _ => return Ok(sum),
+            };
+            self.position += 1;
+            let term = self.term()?;
+            sum = self.binary(operator, sum, term)?;
+        }
+    }
+
+    fn term(&mut self) -> Result<Tree, ParseError> {
+        if self.take(Token::Minus) {
+            return self.negation(Self::term);
+        }
+        let mut product = self.factor()?;
+        loop {
+            let operator = match self.token() {
+                Token::Times => BinaryOperator::Product,
+                Token::Divide => BinaryOperator::Quotient,
+                _ => return Ok(product),
+            };
+            self.position += 1;
+            let factor = self.factor()?;
+            product = self.binary(operator, product, factor)?;
+        }
+    }
+
+    fn factor(&mut self) -> Result<Tree, ParseError> {
+        if self.take(Token::Minus) { self.negation(Self::factor) } else { self.power() }
+    }
+
+    /// The negation of what `rule` reads; of a number that stands alone, the negative number.
+    fn negation(
+        &mut self,
+        rule: fn(&mut Self) -> Result<Tree, ParseError>,
+    ) -> Result<Tree, ParseError> {
+        let start = self.position;
+        let operand = self.nested(rule)?;
+        match operand.expression {
+            Expression::Constant(value) if self.position == start + 1 => {
+                Ok(Tree::leaf(constant(-value)))
+            }
+            _ => self.unary(UnaryOperator::Negation, operand),
+        }
+    }
+
+    fn power(&mut self) -> Result<Tree, ParseError> {
+        if self.take(Token::Root) {
+            let base = self.nested(Self::atom)?;
+            if matches!(self.token(), Token::Raised(_) | Token::Caret) {
+                return Err(self.expected("parentheses that say which is first, root or power"));
+            }
+            return self.raise(base, 0.5);
+        }
+        let base = self.atom()?;
+        if let Token::Raised(exponent) = *self.token() {
+            self.position += 1;
+            self.raise(base, exponent)
+        } else if self.take(Token::Caret) {
+            let exponent = self.exponent()?;
+            self.raise(base, exponent)
+        } else {
+            Ok(base)
+        }
+    }
+
+    fn exponent(&mut self) -> Result<f64, ParseError> {
+        let is_enclosed = self.take(Token::Open);
+        let is_negative = self.take(Token::Minus);
+        let Token::Number(value) = *self.token() else {
+            return Err(self.expected("a number as the exponent"));
+        };
+        self.position += 1;
+        if is_enclosed {
+            self.expect(Token::Close, "`)` after the exponent")?;
+        }
+        Ok(if is_negative { -value } else { value })
+    }
+
+    fn atom(&mut self) -> Result<Tree, ParseError> {
+        let atom = match self.token() {
+            Token::Number(value) => constant(*value),
+            Token::Word(_) if self.follow(1, &[Token::Open]) => return self.function(),
+            Token::Word(name) | Token::Quoted(name) => Expression::Variable(name.as_str().into()),
+            Token::Open => return self.enclosed(Token::Close, CLOSING),
+            Token::Bar => {
+                let operand = self.enclosed(Token::Bar, "an operator or `|`")?;
+                return self.unary(UnaryOperator::AbsoluteValue, operand);
+            }
+            _ => return Err(self.expected(OPERAND)),
+        };
+        self.position += 1;
+        Ok(Tree::leaf(atom))
+    }
+
+    fn function(&mut self) -> Result<Tree, ParseError> {
+        match self.tokens[self.position].text {
+            "abs" => self.function_of_one(UnaryOperator::AbsoluteValue),
+            "sin" => self.function_of_one(UnaryOperator::Sine),
+            "cos" => self.function_of_one(UnaryOperator::Cosine),
+            "exp" => self.function_of_one(UnaryOperator::Exponential),
+            "ln" => self.function_of_one(UnaryOperator::Logarithm),
+            "sqrt" => {
+                self.position += 1;
+                let base = self.enclosed(Token::Close, CLOSING)?;
+                self.raise(base, 0.5)
+            }
+            "min" => self.function_of_two(BinaryOperator::Minimum),
+            "max" => self.function_of_two(BinaryOperator::Maximum),
+            _ => Err(self.expected("a function: abs, sqrt, sin, cos, exp, ln, min or max")),
+        }
+    }
+
+    fn function_of_one(&mut self, operator: UnaryOperator) -> Result<Tree, ParseError> {
+        self.position += 1;
+        let operand = self.enclosed(Token::Close, CLOSING)?;
+        self.unary(operator, operand)
+    }
+
+    fn function_of_two(&mut self, operator: BinaryOperator) -> Result<Tree, ParseError> {
+        self.position += 2;
+        let left = self.nested(Self::sum)?;
+        self.expect(Token::Comma, "an operator or `,`")?;
+        let right = self.nested(Self::sum)?;
+        self.expect(Token::Close, CLOSING)?;
+        self.binary(operator, left, right)
+    }
+
+    /// The sum between the token that opens here and the one that closes.
+    fn enclosed(&mut self, close: Token, expected: &'static str) -> Result<Tree, ParseError> {
+        self.position += 1;
+        let inner = self.nested(Self::sum)?;
+        self.expect(close, expected)?;
+        Ok(inner)
+    }
+}
+
+/// How trees grow.
+impl Reader<'_> {
+    fn unary(&self, operator: UnaryOperator, operand: Tree) -> Result<Tree, ParseError> {
+        let expression = Expression::Unary(operator, Arc::new(operand.expression));
+        self.grown(expression, operand.height)
+    }
+
+    fn binary(
+        &self,
+        operator: BinaryOperator,
+        left: Tree,
+        right: Tree,
+    ) -> Result<Tree, ParseError> {
+        let (left_operand, right_operand) = (Arc::new(left.expression), Arc::new(right.expression));
+        let expression = Expression::Binary(operator, left_operand, right_operand);
+        self.grown(expression, left.height.max(right.height))
+    }
+
+    fn raise(&self, base: Tree, exponent: f64) -> Result<Tree, ParseError> {
+        self.grown(Expression::Power(Arc::new(base.expression), exponent), base.height)
+    }
+
+    fn grown(&self, expression: Expression, below: usize) -> Result<Tree, ParseError> {
+        if below == HEIGHT_LIMIT {
+            return Err(self.expected("at most 1000 operations that build on one another"));
+        }
+        Ok(Tree { expression, height: below + 1 })
+    }
+}

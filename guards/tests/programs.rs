@@ -1,0 +1,115 @@
+//! Compiled expressions and predicates against the trees they come from.
+
+mod common;
+
+use common::{expressions, predicates};
+use pleach_guards::{EvaluationError, Predicate, Verdict, constant, variable};
+use proptest::prelude::*;
+
+const NAMES: [&str; 3] = ["δ", "x", "y"];
+
+proptest! {
+    #[test]
+    fn programs_compute_bit_for_bit(expression in expressions(), values in values()) {
+        let program = expression.compile(&NAMES).expect("these are all names that occur");
+        let expected = expression.evaluate(&state(values)).unwrap_or(f64::NAN);
+        prop_assert!(same(program.evaluate(&values), expected), "{expression} at {values:?}");
+        let [delta, x, y] = values;
+        let found = program.evaluate_at(&[y, 99.0, delta, x], &[2, 3, 0]);
+        prop_assert!(same(found, expected), "{expression} at {values:?}");
+    }
+
+    #[test]
+    fn compiled_predicates_give_the_same_verdicts_and_errors(
+        predicate in predicates(),
+        values in values(),
+    ) {
+        let compiled = predicate.compile(&NAMES).expect("these are all names that occur");
+        let expected = predicate.evaluate(&state(values));
+        let [delta, x, y] = values;
+        let compact = compiled.evaluate(&values);
+        let scattered = compiled.evaluate_at(&[y, 99.0, delta, x], &[2, 3, 0]);
+        for found in [compact, scattered] {
+            prop_assert_eq!(&found, &expected);
+            let bits = |verdict: &Verdict| verdict.margin.to_bits();
+            prop_assert_eq!(found.as_ref().map(bits), expected.as_ref().map(bits));
+        }
+    }
+}
+
+#[test]
+fn deep_expressions_allocate_their_stack() {
+    let deep = (0..100).fold(variable("x"), |inner, step| {
+        (variable("x") - variable("y")) - (variable("y") - inner) * f64::from(step)
+    });
+    let values = [0.0, 0.25, 0.125];
+    let expected = deep.evaluate(&state(values)).expect("these are numbers");
+    let program = deep.compile(&NAMES).expect("these are the names");
+    assert!(same(program.evaluate(&values), expected));
+}
+
+#[test]
+fn no_minimum_and_no_power_hides_what_is_not_a_number() {
+    let undefined = variable("x") / variable("x");
+    for hidden in [undefined.min(1.0), undefined.max(1.0), undefined.power(0.0)] {
+        let program = hidden.compile(&["x"]).expect("x is the only variable");
+        assert!(program.evaluate(&[0.0]).is_nan(), "{hidden}");
+    }
+    let folded = (constant(0.0) / 0.0).max(2.0) + variable("x");
+    assert!(folded.compile(&["x"]).expect("x is the only variable").evaluate(&[1.0]).is_nan());
+}
+
+#[test]
+fn variables_that_are_missing_are_named() {
+    let unknown = |variable: &str| EvaluationError::UnknownVariable { variable: variable.into() };
+    let guard = (variable("x") + variable("w")).at_most(1.0);
+    assert_eq!(guard.compile(&["x", "y"]), Err(unknown("w")));
+    let guard = guard.compile(&["x", "w"]).expect("both are listed");
+    assert_eq!(guard.evaluate(&[1.0]), Err(unknown("w")));
+    assert_eq!(guard.evaluate_at(&[1.0], &[0, 7]), Err(unknown("w")));
+}
+
+#[test]
+fn of_a_name_that_is_listed_twice_the_first_place_counts() {
+    let program = variable("x").compile(&["x", "x"]).expect("x is listed");
+    assert_eq!(program.evaluate(&[1.0, 2.0]), 1.0);
+    let guard: Predicate = (variable("x") / variable("x")).at_most(1.0);
+    let guard = guard.compile(&["x", "x"]).expect("x is listed");
+    assert!(guard.evaluate(&[0.0, 2.0]).is_err());
+}
+
+#[test]
+fn functions_see_the_slice_under_the_listed_names() {
+    let near = Predicate::function("near", |state| {
+        Ok(2.0 - (variable("x") - variable("y")).evaluate(state)?)
+    });
+    let guard = near.and(variable("x").at_least(0.0)).compile(&["y", "x"]).expect("x is listed");
+    let verdict = |margin, holds| Ok(Verdict { margin, holds });
+    assert_eq!(guard.evaluate(&[1.0, 2.5]), verdict(0.5, true));
+    assert_eq!(guard.evaluate_at(&[1.0, 2.0, 4.0], &[0, 2]), verdict(-1.0, false));
+    let error = EvaluationError::UnknownVariable { variable: "y".into() };
+    let blind = guard.predicate().compile(&["x"]).expect("what a function reads is not known");
+    assert_eq!(blind.evaluate(&[1.0]), Err(error));
+}
+
+/// Equal with the signs of zeros, or both not a number.
+fn same(left: f64, right: f64) -> bool {
+    left.to_bits() == right.to_bits() || (left.is_nan() && right.is_nan())
+}
+
+/// Values on a coarse grid, so that boundaries and undefined parts are hit, and off it.
+fn values() -> impl Strategy<Value = [f64; 3]> {
+    let numbers = || {
+        prop_oneof![
+            4 => (-8i8..=8).prop_map(|quarters| f64::from(quarters) / 4.0),
+            4 => -10.0..10.0,
+            1 => prop::sample::select(vec![-0.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN]),
+        ]
+    };
+    [numbers(), numbers(), numbers()]
+}
+
+fn state(values: [f64; 3]) -> [(&'static str, f64); 3] {
+    let [delta, x, y] = values;
+    [("δ", delta), ("x", x), ("y", y)]
+}
