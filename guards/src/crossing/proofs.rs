@@ -33,14 +33,17 @@ fn crossings_alternate() {
 fn a_switch_keeps_its_state_within_the_band_only() {
     let (release, engage, margin): (f64, f64, f64) = (kani::any(), kani::any(), kani::any());
     let was_on = kani::any();
-    match Hysteresis::new(release, engage) {
-        Err(_) => assert!(!(release <= engage)),
-        Ok(band) => {
-            let is_on = band.update(was_on, margin);
-            kani::cover!(is_on && margin < engage);
-            assert!(is_on || !(margin >= engage));
-            assert!(!is_on || margin >= release);
-            assert!(!(release <= margin && margin < engage) || is_on == was_on);
+    let band = Hysteresis::new(release, engage);
+    assert!(band.is_ok() == (release <= engage));
+    if let Ok(band) = band {
+        let is_on = band.update(was_on, margin);
+        kani::cover!(is_on && margin < engage);
+        if margin >= engage {
+            assert!(is_on);
+        } else if margin >= release {
+            assert!(is_on == was_on);
+        } else {
+            assert!(!is_on);
         }
     }
 }

@@ -33,8 +33,8 @@ fn the_recruit_the_last_and_both_sides_of_a_crossing_break() {
 fn every_place_before_the_last_break_point_is_in_one_subgroup() {
     let chosen: [bool; PLACES] = kani::any();
     let (mut points, mut count) = ([0; PLACES], 1);
-    for place in 1..PLACES {
-        if chosen[place] {
+    for (place, is_chosen) in chosen.into_iter().enumerate().skip(1) {
+        if is_chosen {
             points[count] = place;
             count += 1;
         }

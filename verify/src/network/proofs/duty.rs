@@ -60,9 +60,9 @@ fn a_shift_along_the_path_keeps_break_points_held() {
     for subgroup in subgroups(points) {
         // Another robot has come to the place of the first: it may set out.
         assert!(subgroup.first == 0 || holders[subgroup.first] == 2);
-        for place in 0..PLACES {
+        for (place, holders) in holders.iter_mut().enumerate() {
             if subgroup.places().contains(&place) {
-                holders[place] -= 1;
+                *holders -= 1;
             }
         }
         for point in points {

@@ -101,10 +101,7 @@ fn an_exchange_of_duties_keeps_the_tree() {
     };
     let mut changed = [None; ROBOTS];
     for (robot, parent) in parents.into_iter().enumerate() {
-        changed[exchanged(robot)] = match parent {
-            Some(parent) => Some(exchanged(parent)),
-            None => None,
-        };
+        changed[exchanged(robot)] = parent.map(exchanged);
     }
     kani::cover!(parents[one] == Some(other) && parents[other].is_some());
     kani::cover!(parents[one].is_none() && parents[other].is_some());

@@ -11,7 +11,7 @@ fn a_positive_part_is_never_negative() {
     kani::cover!(number.is_nan());
     kani::cover!(number == f64::INFINITY);
     assert!(part >= 0.0);
-    assert!(part == number || !(number > 0.0));
+    assert!(part == if number > 0.0 { number } else { 0.0 });
 }
 
 /// How dear the robot and its neighbours are.
