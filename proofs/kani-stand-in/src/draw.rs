@@ -19,6 +19,9 @@ pub fn any_where<T: Arbitrary, F: Fn(&T) -> bool>(admits: F) -> T {
     T::any_where(admits)
 }
 
+/// From how many values half of the random draws come.
+const FEW: u64 = 4;
+
 /// A value of a type that has few: the one with the ordinal that is drawn.
 fn among<T: Copy + Into<Drawn>>(
     choices: u32,
@@ -32,7 +35,9 @@ fn among<T: Copy + Into<Drawn>>(
         Source::Chance(dice) => {
             let admitted = || (0..choices).filter(|&ordinal| admits(&value_at(ordinal)));
             let count = admitted().count() as u64;
-            if count == 0 { None } else { admitted().nth(dice.below(count) as usize) }
+            // Equal numbers matter, and are rare among many: half of the draws come from a few.
+            let few = if dice.below(2) == 0 { count.min(FEW) } else { count };
+            if count == 0 { None } else { admitted().nth(dice.below(few) as usize) }
         }
     });
     let Some(ordinal) = ordinal else { case::reject() };
