@@ -13,7 +13,7 @@
 //! assert_eq!(x - y, Interval::new(-2.0, 3.0)?);
 //! assert_eq!(x * y, Interval::new(-2.0, 6.0)?);
 //! assert_eq!(x / y, Interval::WHOLE);
-//! # Ok::<(), pleach_guards::interval::EmptyInterval>(())
+//! # Ok::<(), pleach_guards::EmptyInterval>(())
 //! ```
 
 mod rounding;

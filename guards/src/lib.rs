@@ -56,12 +56,26 @@
 //! [`Predicate::function`]. It is evaluated and combined like any other predicate, but what it
 //! reads is unknown; [`Predicate::functions`] tells which of them an analysis cannot see into.
 //!
+//! # Analysis
+//!
+//! Data can be asked more than its value in one state: where in a box of states a predicate can
+//! hold ([`Predicate::truth`]), which comparisons make it up ([`Predicate::disjunctive_form`]),
+//! whether an expression is affine ([`Expression::linear_form`]), how it changes
+//! ([`Expression::derivative`]), and what becomes of it when variables are replaced
+//! ([`Expression::substitute`]).
+//!
 //! # Where things are
 //!
 //! [`expression`] and [`predicate`] are the data, [`function`] is the way out of it, [`valuation`]
 //! is what they are evaluated on, [`guard`] gives a predicate its name, and [`crossing`] follows
 //! margins over time. [`mod@print`] writes all of it as Unicode text and LaTeX, [`parse`] reads
 //! the text, and `serialization` (feature `serde`) takes it into files.
+//!
+//! Because guards are data, they can be analysed. [`range`] bounds expressions and decides
+//! predicates over whole boxes of states by [`interval`] arithmetic; [`linear`] reads off the
+//! coefficients of affine expressions, [`derivative`] differentiates, [`substitution`] renames
+//! variables and applies resets, and [`normal_form`] resolves negations and lists alternatives.
+//! [`program`] compiles all of it for hot loops.
 
 pub mod crossing;
 pub mod derivative;
@@ -87,8 +101,9 @@ pub use crossing::{Crossing, Hysteresis, InvertedBand};
 pub use expression::{Expression, constant, norm, variable};
 pub use function::NamedFunction;
 pub use guard::Guard;
-pub use interval::Interval;
+pub use interval::{EmptyInterval, Interval};
 pub use linear::LinearForm;
+pub use normal_form::NoDisjunctiveForm;
 pub use parse::ParseError;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
 pub use program::{CompiledPredicate, Program};

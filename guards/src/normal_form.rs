@@ -58,7 +58,7 @@ impl Predicate {
     /// let corners = (x.at_most(0.0) | x.at_least(1.0)) & (y.at_most(0.0) | y.at_least(1.0));
     /// assert_eq!(corners.disjunctive_form(4)?.len(), 4);
     /// assert!(corners.disjunctive_form(3).is_err());
-    /// # Ok::<(), pleach_guards::normal_form::NoDisjunctiveForm>(())
+    /// # Ok::<(), pleach_guards::NoDisjunctiveForm>(())
     /// ```
     pub fn disjunctive_form(
         &self,
@@ -70,7 +70,9 @@ impl Predicate {
     /// The predicate without absolute values, minima and maxima: each comparison with such parts
     /// becomes a disjunction of cases in which it is one of its operands.
     ///
-    /// The predicate holds in the same states, but its margin says how far the case is, too.
+    /// It holds in the same states, save where a part of a case that does not apply is not a number,
+    /// such as √−x in √|x|, or where a piece that is divided by is a zero of the other sign. Its
+    /// margin says how far the case is, too.
     ///
     /// # Errors
     ///
@@ -80,9 +82,9 @@ impl Predicate {
     /// use pleach_guards::variable;
     ///
     /// let close = variable("x").equals_within(1.0, 0.5);
-    /// let text = "x − 1 ≥ 0 ∧ x − 1 ≤ 0.5 ∨ x − 1 ≤ 0 ∧ −(x − 1) ≤ 0.5";
+    /// let text = "x − 1 ≥ 0 ∧ x − 1 ≤ 0.5 ∨ x − 1 < 0 ∧ −(x − 1) ≤ 0.5";
     /// assert_eq!(close.by_cases(2)?.to_string(), text);
-    /// # Ok::<(), pleach_guards::normal_form::NoDisjunctiveForm>(())
+    /// # Ok::<(), pleach_guards::NoDisjunctiveForm>(())
     /// ```
     pub fn by_cases(&self, limit: usize) -> Result<Predicate, NoDisjunctiveForm> {
         let parts = |parts: &[Predicate]| -> Result<Arc<[Predicate]>, NoDisjunctiveForm> {
@@ -184,15 +186,15 @@ impl Expression {
         match self {
             Expression::Unary(UnaryOperator::AbsoluteValue, operand) => Some([
                 (operand.at_least(0.0), (**operand).clone()),
-                (operand.at_most(0.0), -&**operand),
+                (operand.less_than(0.0), -&**operand),
             ]),
             Expression::Binary(BinaryOperator::Minimum, left, right) => Some([
                 (left.at_most(&**right), (**left).clone()),
-                (left.at_least(&**right), (**right).clone()),
+                (left.more_than(&**right), (**right).clone()),
             ]),
             Expression::Binary(BinaryOperator::Maximum, left, right) => Some([
                 (left.at_least(&**right), (**left).clone()),
-                (left.at_most(&**right), (**right).clone()),
+                (left.less_than(&**right), (**right).clone()),
             ]),
             _ => None,
         }

@@ -38,6 +38,9 @@
 //! decimal, as `0.5` or `1e-3`, or `∞` (`infinity`) or `NaN`. A minus before a number that stands
 //! alone belongs to the number.
 //!
+//! Text that nests more than 100 levels, or in which more than 1000 operations build on one another,
+//! is refused, so that no text exhausts the stack; a longer sum is to be grouped by parentheses.
+//!
 //! A name begins with a letter or an underscore; letters, digits, subscripts, underscores, dots,
 //! primes and accents follow. Any other name, and one that is a word of the language such as
 //! `not`, stands between backticks, and a backtick in it stands twice.
@@ -46,6 +49,7 @@ mod arithmetic;
 mod error;
 mod tokens;
 
+use std::borrow::Cow;
 use std::str::FromStr;
 
 use crate::expression::Expression;
@@ -201,6 +205,13 @@ impl<'a> Reader<'a> {
         &self.tokens[self.position].token
     }
 
+    /// The next tokens.
+    fn ahead<const N: usize>(&self) -> [Option<&Token>; N] {
+        std::array::from_fn(|skipped| {
+            self.tokens.get(self.position + skipped).map(|located| &located.token)
+        })
+    }
+
     /// Whether the `wanted` tokens follow after the next `skipped`.
     fn follow(&self, skipped: usize, wanted: &[Token]) -> bool {
         let following = self.tokens[self.position..].iter().skip(skipped);
@@ -219,7 +230,7 @@ impl<'a> Reader<'a> {
         if self.take(wanted) { Ok(()) } else { Err(self.expected(expected)) }
     }
 
-    fn expected(&self, expected: &'static str) -> ParseError {
+    fn expected(&self, expected: impl Into<Cow<'static, str>>) -> ParseError {
         let Located { column, text, .. } = self.tokens[self.position];
         ParseError::new(column, expected, text)
     }
@@ -229,7 +240,7 @@ impl<'a> Reader<'a> {
         rule: impl FnOnce(&mut Self) -> Result<T, ParseError>,
     ) -> Result<T, ParseError> {
         if self.nesting == NESTING_LIMIT {
-            return Err(self.expected("at most 100 levels of nesting"));
+            return Err(self.expected(format!("at most {NESTING_LIMIT} levels of nesting")));
         }
         self.nesting += 1;
         let inner = rule(self)?;

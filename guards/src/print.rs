@@ -85,6 +85,7 @@ impl Binding {
             Expression::Constant(_) | Expression::Variable(_) => Binding::Atom,
             Expression::Unary(UnaryOperator::Negation, _) => Binding::Sum,
             Expression::Unary(_, _) => Binding::Atom,
+            Expression::Binary(..) if begins_negative(expression) => Binding::Sum,
             Expression::Binary(operator, ..) => match operator {
                 BinaryOperator::Sum | BinaryOperator::Difference => Binding::Sum,
                 BinaryOperator::Product | BinaryOperator::Quotient => Binding::Product,
@@ -93,6 +94,21 @@ impl Binding {
             Expression::Power(..) => Binding::Power,
         }
     }
+}
+
+/// The factor that a product or quotient begins with; of anything else, itself.
+fn first_factor(expression: &Expression) -> &Expression {
+    match expression {
+        Expression::Binary(BinaryOperator::Product | BinaryOperator::Quotient, left, _) => {
+            first_factor(left)
+        }
+        other => other,
+    }
+}
+
+/// Whether a number, product or quotient begins with a minus that belongs to a number.
+fn begins_negative(expression: &Expression) -> bool {
+    matches!(first_factor(expression), Expression::Constant(value) if value.is_sign_negative())
 }
 
 struct Printer<'a> {
@@ -166,7 +182,7 @@ impl Printer<'_> {
             UnaryOperator::Negation => {
                 self.out.write_str(self.notation.minus)?;
                 // A minus right before a number is a part of the number.
-                let is_number = matches!(operand, Expression::Constant(_));
+                let is_number = matches!(first_factor(operand), Expression::Constant(_));
                 let is_loose = is_number || Binding::of_expression(operand) < Binding::Product;
                 return self.parenthesised_if(is_loose, |printer| printer.expression(operand));
             }
@@ -196,15 +212,21 @@ impl Printer<'_> {
             BinaryOperator::Minimum => return self.function(self.notation.minimum, left, right),
             BinaryOperator::Maximum => return self.function(self.notation.maximum, left, right),
         };
-        self.operand(left, least_left)?;
+        self.left_operand(left, least_left)?;
         self.out.write_str(symbol)?;
         self.operand(right, least_right)
+    }
+
+    /// What stands on the left may begin with a negative number.
+    fn left_operand(&mut self, operand: &Expression, least: Binding) -> fmt::Result {
+        let is_loose = Binding::of_expression(operand) < least && !begins_negative(operand);
+        self.parenthesised_if(is_loose, |printer| printer.expression(operand))
     }
 
     fn quotient(&mut self, left: &Expression, right: &Expression) -> fmt::Result {
         match self.notation.quotient {
             Some(symbol) => {
-                self.operand(left, Binding::Product)?;
+                self.left_operand(left, Binding::Product)?;
                 self.out.write_str(symbol)?;
                 self.operand(right, Binding::Power)
             }

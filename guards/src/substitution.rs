@@ -21,7 +21,7 @@ use crate::valuation::{EvaluationError, Valuation};
 ///     ("velocity", -0.5 * variable("velocity")),
 /// ]);
 /// let rising = variable("velocity").more_than(0.0);
-/// assert_eq!(rising.substitute(&bounce).to_string(), "(−0.5) · velocity > 0");
+/// assert_eq!(rising.substitute(&bounce).to_string(), "−0.5 · velocity > 0");
 ///
 /// let turn = Substitution::new([("x", variable("y")), ("y", -variable("x"))]);
 /// assert_eq!((variable("x") + variable("y")).substitute(&turn).to_string(), "y + (−x)");

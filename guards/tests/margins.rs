@@ -26,6 +26,18 @@ proptest! {
     }
 
     #[test]
+    fn negation_turns_verdict_and_margin(predicate in predicates(), state in states()) {
+        let opposite = not(predicate.clone());
+        match (predicate.evaluate(&state), opposite.evaluate(&state)) {
+            (Ok(verdict), Ok(turned)) => {
+                prop_assert_eq!(turned.margin, -verdict.margin, "{}", predicate);
+                prop_assert_eq!(turned.holds, !verdict.holds, "{}", predicate);
+            }
+            (verdict, turned) => prop_assert_eq!(verdict, turned),
+        }
+    }
+
+    #[test]
     fn double_negation(predicate in predicates(), state in states()) {
         let twice = not(not(predicate.clone()));
         prop_assert_eq!(twice.evaluate(&state), predicate.evaluate(&state));

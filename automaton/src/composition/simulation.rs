@@ -127,7 +127,7 @@ pub struct Simulation<'a> {
     pub(super) composition: &'a Composition,
     pub(super) settings: Settings,
     horizon: f64,
-    now: HybridTime,
+    pub(super) now: HybridTime,
     pub(super) locations: Vec<usize>,
     pub(super) values: Vec<f64>,
     /// The flow to come, once no jump is left to be taken.

@@ -36,10 +36,10 @@ pub(super) fn product(left: f64, right: f64) -> Interval {
 }
 
 /// a ÷ b for b ≠ 0. Where this is ∞ ÷ ∞ it is no value of an operation on intervals, but values
-/// beside it come near 0.
+/// beside it come near 0, as they do for any a ÷ ∞.
 pub(super) fn quotient(left: f64, right: f64) -> Interval {
     let quotient = left / right;
-    if left == 0.0 || quotient.is_nan() {
+    if left == 0.0 || right.is_infinite() {
         Interval::point(0.0)
     } else if quotient.abs() < FAINT || left.abs() < FAINT {
         enclose(quotient, f64::NAN)

@@ -42,11 +42,13 @@ impl Reader<'_> {
         }
     }
 
+    /// A minus before a product belongs to all of it, but before a number to the number.
     fn term(&mut self) -> Result<Tree, ParseError> {
-        if self.take(Token::Minus) {
-            return self.negation(Self::term);
-        }
-        let mut product = self.factor()?;
+        let mut product = match self.negative_number() {
+            Some(number) => number,
+            None if self.take(Token::Minus) => return self.negation(Self::term),
+            None => self.factor()?,
+        };
         loop {
             let operator = match self.token() {
                 Token::Times => BinaryOperator::Product,
@@ -56,6 +58,21 @@ impl Reader<'_> {
             self.position += 1;
             let factor = self.factor()?;
             product = self.binary(operator, product, factor)?;
+        }
+    }
+
+    /// Takes a minus and a number, unless the number is raised to a power.
+    fn negative_number(&mut self) -> Option<Tree> {
+        let [minus, number, next] = self.ahead();
+        match (minus, number, next) {
+            (Some(Token::Minus), Some(Token::Number(_)), Some(Token::Raised(_) | Token::Caret)) => {
+                None
+            }
+            (Some(Token::Minus), Some(&Token::Number(value)), _) => {
+                self.position += 2;
+                Some(Tree::leaf(constant(-value)))
+            }
+            _ => None,
         }
     }
 
@@ -193,7 +210,8 @@ impl Reader<'_> {
 
     fn grown(&self, expression: Expression, below: usize) -> Result<Tree, ParseError> {
         if below == HEIGHT_LIMIT {
-            return Err(self.expected("at most 1000 operations that build on one another"));
+            let limit = format!("at most {HEIGHT_LIMIT} operations that build on one another");
+            return Err(self.expected(limit));
         }
         Ok(Tree { expression, height: below + 1 })
     }

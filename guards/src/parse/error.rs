@@ -1,5 +1,6 @@
 //! What is wrong with a text, and where.
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::fmt;
 
@@ -17,13 +18,13 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParseError {
     column: usize,
-    expected: &'static str,
+    expected: Cow<'static, str>,
     found: String,
 }
 
 impl ParseError {
-    pub(super) fn new(column: usize, expected: &'static str, found: &str) -> Self {
-        ParseError { column, expected, found: found.to_owned() }
+    pub(super) fn new(column: usize, expected: impl Into<Cow<'static, str>>, found: &str) -> Self {
+        ParseError { column, expected: expected.into(), found: found.to_owned() }
     }
 
     /// The number of the character at which the text goes wrong, from 1; at the end of the text it
@@ -34,7 +35,7 @@ impl ParseError {
 
     /// What could stand there, in words.
     pub fn expected(&self) -> &str {
-        self.expected
+        &self.expected
     }
 
     /// The part of the text that stands there instead; nothing at the end of the text.
