@@ -24,7 +24,7 @@ use pleach::summary::Summary;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 7] = [
+const WRITTEN: [&str; 8] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
