@@ -1,8 +1,8 @@
 //! Everything that a model of one's own usually needs: `use pleach::prelude::*;`.
 
 pub use pleach_automaton::{
-    Automaton, Composition, Coordinates, Flow, Reason, Reset, Settings, Trajectory, coordinates,
-    diagram, from,
+    Automaton, BuildError, Composition, CompositionError, Coordinates, Flow, Policy, Reason, Reset,
+    Settings, Trajectory, coordinates, diagram, from,
 };
 pub use pleach_discrete::{Event, Location, Urgency, vocabulary};
 pub use pleach_guards::{

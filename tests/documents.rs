@@ -5,10 +5,13 @@
 
 #![allow(clippy::unwrap_used)] // a test that panics has failed
 
+mod generated;
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use std::{fs, io};
 
+use generated::{is_update, read, root};
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::{Control, Scenario};
 use pleach::automaton::network::{Site, mission_automaton, role_automaton};
@@ -20,36 +23,20 @@ use pleach::mission::{self, Watcher};
 use pleach::summary::Summary;
 use pleach::{scenario_file, story};
 
-const UPDATE: &str = "PLEACH_UPDATE_DOCS";
-
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 4] =
-    ["README.md", "docs/architecture.md", "docs/model.md", "docs/automata.md"];
+const WRITTEN: [&str; 8] = [
+    "README.md",
+    "docs/SUMMARY.md",
+    "docs/classics/README.md",
+    "docs/architecture.md",
+    "docs/model.md",
+    "docs/semantics.md",
+    "docs/automata.md",
+    "docs/proofs.md",
+];
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn read(path: &str) -> String {
-    fs::read_to_string(root().join(path)).unwrap()
-}
-
-fn is_update() -> bool {
-    std::env::var_os(UPDATE).is_some()
-}
-
-/// Compares a generated document with the file, or writes the file.
 fn keep_up_to_date(path: &str, document: &str) {
-    let file = root().join(path);
-    if is_update() {
-        fs::create_dir_all(file.parent().unwrap()).unwrap();
-        fs::write(&file, document).unwrap();
-    }
-    let kept = fs::read_to_string(&file).unwrap_or_default();
-    assert!(
-        kept == document,
-        "{path} is out of date; refresh it with `{UPDATE}=1 cargo test --test documents`"
-    );
+    generated::keep_up_to_date(path, document, "documents");
 }
 
 // ---- The automata ------------------------------------------------------------------------------

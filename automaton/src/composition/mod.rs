@@ -66,11 +66,13 @@ pub(crate) mod blueprint;
 mod builder;
 mod flight;
 mod picture;
+mod replay;
 mod simulation;
 
 use std::sync::Arc;
 
 pub use builder::{CompositionBuilder, CompositionError};
+pub use replay::ReplayError;
 pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;

@@ -1,0 +1,101 @@
+//! The exhibit at the command line: the story, the comparison, and drawings in a folder.
+
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+
+use pleach::automaton::composition::Failure;
+use pleach::automaton::trajectory::{JumpRecord, Participant};
+use pleach::automaton::{Reason, Trajectory};
+
+use super::{Exhibit, number, numbers};
+
+/// The most jumps of a run that are told.
+const MOST_JUMPS: usize = 12;
+
+impl Exhibit {
+    /// Prints the exhibit and writes its drawings to `figures/NAME/`.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be written, or the run does not give the answer.
+    pub fn show(&self) -> Result<(), Box<dyn Error>> {
+        for run in &self.runs {
+            println!("{}:", run.title);
+            for line in story(&run.trajectory) {
+                println!("  {line}");
+            }
+        }
+        println!("Compared with the answer:");
+        for one in &self.comparisons {
+            println!("  {}: {}", one.quantity, numbers(&one.answers));
+            if let Some(error) = one.error() {
+                println!("    largest error {error:.1e}, allowed {:e}", one.tolerance);
+            }
+        }
+        self.write_figures()?;
+        match self.disagreements().join("\n") {
+            none if none.is_empty() => Ok(()),
+            some => Err(some.into()),
+        }
+    }
+
+    fn write_figures(&self) -> Result<(), Box<dyn Error>> {
+        let folder = Path::new("figures").join(self.name);
+        fs::create_dir_all(&folder)?;
+        for (name, svg) in self.pictures() {
+            fs::write(folder.join(name), svg)?;
+        }
+        println!("Drawings: {}", folder.display());
+        Ok(())
+    }
+}
+
+/// The first jumps of a run and its ending, a line for each.
+pub(super) fn story(trajectory: &Trajectory) -> Vec<String> {
+    let jumps = trajectory.jumps();
+    let mut lines: Vec<String> =
+        jumps.iter().take(MOST_JUMPS).map(|jump| told(trajectory, jump)).collect();
+    if jumps.len() > MOST_JUMPS {
+        lines.push("…".to_owned());
+    }
+    lines.push(ending(trajectory));
+    lines
+}
+
+fn told(trajectory: &Trajectory, jump: &JumpRecord) -> String {
+    let moves = jump.moves.iter().map(|one| {
+        let Participant { name, locations } = &trajectory.components()[one.component];
+        let (source, target) = (&locations[one.source], &locations[one.target]);
+        let who = if trajectory.components().len() > 1 { format!("{name}: ") } else { "".into() };
+        let way = if source == target {
+            format!("in {source}")
+        } else {
+            format!("{source} → {target}")
+        };
+        who + &way
+    });
+    let moves: Vec<String> = moves.collect();
+    format!("({} s, {}) {} — {}", number(jump.at.t), jump.at.j, jump.label, moves.join(", "))
+}
+
+fn ending(trajectory: &Trajectory) -> String {
+    let t = number(trajectory.ending().at.t);
+    match &trajectory.ending().reason {
+        Reason::Horizon => format!("The horizon is reached at {t} s."),
+        Reason::Zeno(zeno) => format!(
+            "The run is Zeno: {} {} of the time of the one before, and all of them end at {} s.",
+            if zeno.cycle == 1 { "each flow takes" } else { "each cycle of flows takes" },
+            number(zeno.ratio),
+            number(zeno.accumulation),
+        ),
+        Reason::Blocked => format!("Blocked at {t} s: no time can pass and nothing can be taken."),
+        Reason::JumpLimit => format!("Jumps without end at {t} s."),
+        Reason::Finished(failure) | Reason::Interrupted(failure) => failed(&t, failure),
+        other => format!("{other:?} at {t} s"),
+    }
+}
+
+fn failed(t: &str, failure: &Failure) -> String {
+    format!("The run fails at {t} s: {failure}.")
+}

@@ -1,0 +1,67 @@
+//! The book has a page for every classic, written from the classic itself.
+//!
+//! `PLEACH_UPDATE_DOCS=1 cargo test --test book` writes the pages anew.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+mod generated;
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use generated::{keep_up_to_date, read, root};
+
+/// For every example: the example as a module, and the test of its page.
+macro_rules! classics {
+    ($($name:ident from $file:literal)+) => {
+        $(
+            #[allow(dead_code)] // its program
+            #[path = $file]
+            mod $name;
+        )+
+
+        const CLASSICS: &[&str] = &[$(stringify!($name)),+];
+
+        mod pages {
+            $(
+                #[test]
+                fn $name() {
+                    let exhibit = super::$name::exhibit().unwrap();
+                    let page = concat!("docs/classics/", stringify!($name), ".md");
+                    super::keep_up_to_date(page, &exhibit.page(), "book");
+                    for (name, svg) in exhibit.pictures() {
+                        let picture = format!("docs/classics/pictures/{name}");
+                        super::keep_up_to_date(&picture, svg, "book");
+                    }
+                }
+            )+
+        }
+    };
+}
+
+classics! {
+    bouncing_ball from "../examples/bouncing_ball.rs"
+    thermostat from "../examples/thermostat.rs"
+    heater_and_controller from "../examples/heater_and_controller.rs"
+    two_tanks from "../examples/two_tanks.rs"
+    gear_shift from "../examples/gear_shift.rs"
+}
+
+/// Examples that are no classics: they are about the robots.
+const OTHERS: [&str; 1] = ["stress"];
+
+#[test]
+fn every_example_has_a_page_and_every_page_a_line_in_the_contents() {
+    let files = fs::read_dir(root().join("examples")).unwrap();
+    let stem = |name: String| name.strip_suffix(".rs").map(str::to_owned);
+    let names: BTreeSet<String> = files
+        .filter_map(|entry| stem(entry.unwrap().file_name().into_string().unwrap()))
+        .filter(|name| !OTHERS.contains(&&**name))
+        .collect();
+    assert_eq!(names, CLASSICS.iter().map(|&name| name.to_owned()).collect());
+    let (contents, overview) = (read("docs/SUMMARY.md"), read("docs/classics/README.md"));
+    for name in names {
+        assert!(contents.contains(&format!("(classics/{name}.md)")), "{name} is not in SUMMARY.md");
+        assert!(overview.contains(&format!("({name}.md)")), "{name} is not in the overview");
+    }
+}
