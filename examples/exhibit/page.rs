@@ -19,14 +19,15 @@ impl Exhibit {
             self.model(),
         );
         for drawing in &self.drawings {
-            let (title, picture) = (drawing.title, self.picture_of(drawing));
-            page +=
-                &format!("\n![The automaton: {title}](pictures/{picture})\n\n{}", drawing.table);
+            let (title, picture) = (drawing.title, self.diagram_of(drawing));
+            page += &format!("\n![Diagram: {title}](pictures/{picture})\n\n{}", drawing.legend);
         }
         page += "\n## What happens\n";
         for run in &self.runs {
+            let (title, picture) = (run.title, self.plot_of(run));
             let lines = story(&run.trajectory).join("\n");
-            page += &format!("\n{}:\n\n```text\n{lines}\n```\n", run.title);
+            page += &format!("\n### {title}\n\n![Plot: {title}](pictures/{picture})\n\n");
+            page += &format!("```text\n{lines}\n```\n");
         }
         page += "\n## The answer\n\n| quantity | answer | agrees within |\n| --- | --: | --: |\n";
         self.comparisons.iter().for_each(|one| page += &row(one));

@@ -43,7 +43,10 @@ impl Exhibit {
     fn write_figures(&self) -> Result<(), Box<dyn Error>> {
         let folder = Path::new("figures").join(self.name);
         fs::create_dir_all(&folder)?;
-        for (name, svg) in self.pictures() {
+        for (name, svg) in self.diagrams() {
+            fs::write(folder.join(name), svg)?;
+        }
+        for (name, svg) in self.plots() {
             fs::write(folder.join(name), svg)?;
         }
         println!("Drawings: {}", folder.display());
