@@ -226,7 +226,7 @@ impl Robot {
         let Some(parent) = self.bearer(anchor) else { return };
         let own = self.duty.post().map(|post| post.id);
         let gain = REATTACHMENT_GAIN * self.site.build_length;
-        let mut nearest = self.site.free_space.distance(parent.position(), goal) - gain;
+        let mut nearest = self.site.distance(parent.position(), goal) - gain;
         let mut better = None;
         for neighbour in self.neighbours.iter().filter(|n| Self::accepts_redundant(n)) {
             let candidate = self.anchor_of(neighbour);
@@ -242,7 +242,7 @@ impl Robot {
             {
                 continue;
             }
-            let distance = self.site.free_space.distance(neighbour.position(), goal);
+            let distance = self.site.distance(neighbour.position(), goal);
             if distance < nearest {
                 (nearest, better) = (distance, Some((candidate, neighbour.id())));
             }

@@ -22,7 +22,7 @@ const GAIN: f64 = 0.05;
 const PATIENCE: u32 = 2;
 /// Control periods without progress after which it takes a partner that is not nearer: one that
 /// leaves no room to pass, at a corner say.
-const LAST_RESORT: u32 = 10;
+pub(super) const LAST_RESORT: u32 = 10;
 /// How much farther from the goal, in ρ, such a partner may be.
 const CONCESSION: f64 = 4.0;
 
@@ -38,12 +38,12 @@ impl Robot {
         }
         let Some(goal) = self.goal() else { return };
         let gain = if self.still_periods < LAST_RESORT { GAIN } else { -CONCESSION };
-        let own_way = self.site.free_space.distance(self.position, goal);
+        let own_way = self.site.distance(self.position, goal);
         let mut nearest = own_way - gain * self.clearance();
         let mut partner = None;
         for neighbour in &self.neighbours {
             if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
-                let way = self.site.free_space.distance(neighbour.position(), goal);
+                let way = self.site.distance(neighbour.position(), goal);
                 let is_return = way >= own_way && self.last_partner == Some(neighbour.id());
                 if way < nearest && !is_return && self.could_be_replaced_by(neighbour) {
                     (nearest, partner) = (way, Some(neighbour.id()));

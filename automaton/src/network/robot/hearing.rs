@@ -14,7 +14,7 @@ use super::super::site::Site;
 use super::Robot;
 
 /// A node that the robot hears, R_ij > 0.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Neighbour {
     pub beacon: Arc<Beacon>,
     pub distance: f64,

@@ -90,7 +90,7 @@ impl Robot {
     pub(super) fn remaining(&self) -> f64 {
         self.tasks
             .last()
-            .map_or(0.0, |task| self.site.free_space.distance(self.position, task.target))
+            .map_or(0.0, |task| self.site.distance(self.position, task.target))
     }
 
     /// Whether the robot has room to move: its link is neither at its limit nor is it bunched.
