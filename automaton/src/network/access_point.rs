@@ -64,6 +64,11 @@ impl AccessPoint {
         }
     }
 
+    /// Its number among the access points.
+    pub const fn number(&self) -> usize {
+        self.number
+    }
+
     fn id(&self) -> NodeId {
         self.site.robots + self.number
     }
@@ -78,6 +83,11 @@ impl AccessPoint {
     pub fn speak(&mut self) -> Arc<Beacon> {
         let (beacon, _) = self.voice.say(self.public_state());
         beacon
+    }
+
+    /// What the access point would tell its neighbours now.
+    pub fn beacon(&self) -> Beacon {
+        self.public_state()
     }
 
     fn public_state(&self) -> Beacon {

@@ -72,6 +72,7 @@
 //! ```
 
 pub mod duty;
+pub mod exploration;
 pub mod instant;
 pub mod link;
 pub mod motion;

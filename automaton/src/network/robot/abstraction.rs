@@ -8,8 +8,9 @@
 use std::fmt::Write;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::Phase;
+use pleach_discrete::network::{NodeId, Phase, Subgroup};
 
+use super::super::beacon::Beacon;
 use super::Robot;
 use super::facts::STATIONARY_WINDOW;
 
@@ -27,6 +28,23 @@ impl Robot {
         self.reflect();
         self.stir();
         self.is_quiet = false;
+    }
+
+    /// What the robot would tell its neighbours now.
+    pub fn beacon(&self) -> Beacon {
+        self.public_state()
+    }
+
+    /// The subgroups that it has computed from the break points.
+    pub fn subgroups(&self) -> &[Subgroup] {
+        &self.subgroups
+    }
+
+    /// The number and the winner of the election that it knows to be over.
+    pub fn concluded_election(&self) -> Option<(u32, Option<NodeId>)> {
+        let election = self.election.as_ref()?;
+        let over = election.is_complete(&self.roster);
+        over.then(|| (election.number(), election.best().map(|(_, winner)| winner)))
     }
 
     /// For how many control periods the robot has not got on.
