@@ -8,12 +8,14 @@
 //! [`Robot`]: pleach_automaton::network::Robot
 //! [`AccessPoint`]: pleach_automaton::network::access_point::AccessPoint
 
+mod graphs;
 mod node;
 mod places;
 mod properties;
 mod protocol;
 mod story;
 
+pub use graphs::{Graph, graphs, numbered_graphs};
 pub use node::{BeaconId, Local, LocalId, Node, NodeError, Nodes, Stimulus};
 pub use places::{Place, Places, PlacesError};
 pub use properties::{ALWAYS, has_ended};

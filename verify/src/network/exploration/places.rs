@@ -86,6 +86,29 @@ impl Places {
         Ok(places)
     }
 
+    /// Robots and an access point on a graph of their places, with a branch of places for each
+    /// task: from the place named, so many steps to the task.
+    ///
+    /// # Errors
+    /// When a number is out of range or the graph is not connected.
+    pub fn with_branches(
+        robots: usize,
+        graph: &[(Place, Place)],
+        branches: &[(Place, usize)],
+    ) -> Result<Self, PlacesError> {
+        let (mut edges, mut tasks, mut places) = (graph.to_vec(), Vec::new(), robots + 1);
+        for &(from, steps) in branches {
+            let mut last = from;
+            for place in places..places + steps {
+                edges.push((last, place));
+                last = place;
+            }
+            places += steps;
+            tasks.push(last);
+        }
+        Places::new(robots, 1, places, &edges, &tasks)
+    }
+
     /// The number of robots.
     pub const fn robots(&self) -> usize {
         self.robots

@@ -20,11 +20,17 @@ pub enum Medium {
         /// How many messages may be lost on the way, one in a round. Who does not hear a
         /// neighbour in a round takes it to be out of range.
         losses: u32,
+        /// How many messages may be late, one in a round: what the receiver heard last of the
+        /// sender reaches it once more instead.
+        delays: u32,
     },
+    /// One node at a time, in any order: it hears what everybody in range says now. Others may
+    /// speak and think any number of times meanwhile.
+    NodesInAnyOrder,
     /// One message at a time, in any order. What is on its way from one node to another is
     /// overtaken by what the sender says next, and stays with the receiver until then: messages
     /// are late for any time, lost if a newer one comes, and heard again and again.
-    AnyOrder,
+    MessagesInAnyOrder,
 }
 
 /// What is explored: who stands where, how messages go, and how often a robot is in another's way.
@@ -50,6 +56,15 @@ pub enum Action {
         /// The receiver.
         to: NodeId,
     },
+    /// The same, but `to` hears of `from` what it heard last.
+    Delay {
+        /// The sender.
+        from: NodeId,
+        /// The receiver.
+        to: NodeId,
+    },
+    /// A node hears everybody in range.
+    Listen(NodeId),
     /// `to` hears what `from` says now or, if it is out of range, nothing of it any more.
     Hear {
         /// The sender.
@@ -74,6 +89,10 @@ impl fmt::Display for Action {
         match self {
             Action::Round => write!(f, "everybody hears everybody in range"),
             Action::Lose { from, to } => write!(f, "in a round {to} does not hear {from}"),
+            Action::Delay { from, to } => {
+                write!(f, "in a round {to} hears of {from} what it heard before")
+            }
+            Action::Listen(node) => write!(f, "{node} hears everybody in range"),
             Action::Hear { from, to } => write!(f, "{to} hears {from}"),
             Action::Think(node) => write!(f, "{node} thinks"),
             Action::Move(robot) => write!(f, "{robot} moves on"),
@@ -94,6 +113,8 @@ pub struct State {
     contacts: u32,
     /// Losses left.
     losses: u32,
+    /// Delays left.
+    delays: u32,
 }
 
 /// Why a configuration cannot be explored.
@@ -136,11 +157,11 @@ impl Protocol {
         });
         let locals =
             robots.chain(access_points).map(|node| nodes.take_up(node, Vec::new())).collect();
-        let losses = match configuration.medium {
-            Medium::Rounds { losses } => losses,
-            Medium::AnyOrder => 0,
+        let (losses, delays) = match configuration.medium {
+            Medium::Rounds { losses, delays } => (losses, delays),
+            Medium::NodesInAnyOrder | Medium::MessagesInAnyOrder => (0, 0),
         };
-        let initial = State { locals, contacts: configuration.contacts, losses };
+        let initial = State { locals, contacts: configuration.contacts, losses, delays };
         let mut protocol = Protocol { configuration, nodes, initial };
         protocol.settle()?;
         Ok(protocol)
@@ -309,11 +330,15 @@ impl Protocol {
                 let mut next = state.clone();
                 next.locals = self.each(state, |node| Stimulus::Round(heard[node].clone()))?;
                 found.push((Action::Round, next));
-                if state.losses > 0 {
-                    self.losses(state, &heard, &mut found)?;
+            }
+            Medium::NodesInAnyOrder => {
+                for node in 0..nodes {
+                    let heard = self.all_heard_by(state, node);
+                    let next = self.one(state, node, Stimulus::Hear(heard))?;
+                    found.push((Action::Listen(node), next));
                 }
             }
-            Medium::AnyOrder => {
+            Medium::MessagesInAnyOrder => {
                 for to in 0..nodes {
                     for from in (0..nodes).filter(|&from| from != to) {
                         if let Some(heard) = self.heard_from(state, from, to) {
@@ -331,28 +356,52 @@ impl Protocol {
         Ok(found)
     }
 
-    fn losses(
-        &mut self,
-        state: &State,
-        heard: &[Vec<BeaconId>],
-        found: &mut Vec<(Action, State)>,
-    ) -> Result<(), NodeError> {
+    /// Rounds in which one message is lost or late.
+    fn faulty_rounds(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
+        let mut found = Vec::new();
+        if state.losses + state.delays == 0 {
+            return Ok(found);
+        }
+        let heard = self.all_heard(state);
         for to in 0..heard.len() {
             for at in 0..heard[to].len() {
                 let from = self.nodes.beacon(heard[to][at]).sender;
-                let mut next = state.clone();
-                next.losses -= 1;
-                next.locals = self.each(state, |node| {
-                    let mut beacons = heard[node].clone();
-                    if node == to {
-                        beacons.remove(at);
-                    }
-                    Stimulus::Round(beacons)
-                })?;
-                found.push((Action::Lose { from, to }, next));
+                let known = &self.nodes.local(state.locals[to]).heard;
+                let known = known.iter().find(|&&id| self.nodes.beacon(id).sender == from).copied();
+                if state.losses > 0 {
+                    let mut without = heard[to].clone();
+                    without.remove(at);
+                    let mut next = self.round_with(state, &heard, to, without)?;
+                    next.losses -= 1;
+                    found.push((Action::Lose { from, to }, next));
+                }
+                if state.delays > 0
+                    && let Some(known) = known.filter(|&known| known != heard[to][at])
+                {
+                    let mut late = heard[to].clone();
+                    late[at] = known;
+                    let mut next = self.round_with(state, &heard, to, late)?;
+                    next.delays -= 1;
+                    found.push((Action::Delay { from, to }, next));
+                }
             }
         }
-        Ok(())
+        Ok(found)
+    }
+
+    /// A round in which `to` hears something else than everybody in range.
+    fn round_with(
+        &mut self,
+        state: &State,
+        heard: &[Vec<BeaconId>],
+        to: NodeId,
+        instead: Vec<BeaconId>,
+    ) -> Result<State, NodeError> {
+        let mut next = state.clone();
+        next.locals = self.each(state, |node| {
+            Stimulus::Round(if node == to { instead.clone() } else { heard[node].clone() })
+        })?;
+        Ok(next)
     }
 
     fn bodies(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
@@ -413,6 +462,7 @@ impl Model for Protocol {
         let mut found = self.messages(state)?;
         let everything_is_known = found.is_empty();
         found.extend(self.bodies(state)?);
+        found.extend(self.faulty_rounds(state)?);
         if let Some(next) = self.announcement(state)?.filter(|next| next != state) {
             found.push((Action::Announce, next));
         }
