@@ -11,6 +11,7 @@ use pleach_continuous::Point;
 use pleach_discrete::network::{NodeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
+use super::super::duty::{Duty, Path};
 use super::Robot;
 use super::facts::STATIONARY_WINDOW;
 
@@ -33,6 +34,16 @@ impl Robot {
     /// What the robot would tell its neighbours now.
     pub fn beacon(&self) -> Beacon {
         self.public_state()
+    }
+
+    /// The duty that it takes over once the mover that offered it has taken its own.
+    pub const fn taking(&self) -> Option<&Duty> {
+        self.taking.as_ref()
+    }
+
+    /// The path Σ that it was told of last.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
     }
 
     /// The subgroups that it has computed from the break points.

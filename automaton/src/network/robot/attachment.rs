@@ -24,6 +24,11 @@ const PATIENCE_WITH_BARREN_POSTS: u32 = 2;
 impl Robot {
     /// Renews the robot's place in the tree from what it has heard.
     pub fn keep_place(&mut self) {
+        if self.is_engaged() {
+            // The place goes with the duty that is being handed over.
+            self.trace_lineage();
+            return self.collect_below();
+        }
         if self.duty.is_redundant() && (!self.tree_is_frozen() || self.anchor().is_none()) {
             self.choose_parent();
         }
@@ -39,6 +44,7 @@ impl Robot {
         let barren = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
             && !self.bears_branch()
             && !self.tree_is_frozen()
+            && !self.is_engaged()
             && !self.awaits_release;
         self.barren_periods = if barren { self.barren_periods + 1 } else { 0 };
         if self.barren_periods >= PATIENCE_WITH_BARREN_POSTS

@@ -11,7 +11,7 @@
 mod graphs;
 mod node;
 mod places;
-mod properties;
+pub mod properties;
 mod protocol;
 mod story;
 
