@@ -24,6 +24,13 @@ impl Robot {
         self.stir();
     }
 
+    /// Measures anew how far its neighbours are.
+    pub fn look_round(&mut self) {
+        for known in &mut self.neighbours {
+            *known = known.seen_from(self.position, &self.site);
+        }
+    }
+
     /// In place of a round of messages: thinks over what it knows, without counting a round.
     pub fn think(&mut self) {
         self.reflect();
@@ -89,6 +96,7 @@ impl Robot {
                 (self.can_detach, self.barren_periods, &self.bulletin, &self.tasks, &self.roster),
                 (&self.eligible, &self.election, waited, &self.route, self.awaits_release),
                 (&self.path, &self.agreement, &self.subgroups, self.subgroup, self.team),
+                self.audible().map(|(_, silent)| silent).collect::<Vec<_>>(),
             )
         );
         account

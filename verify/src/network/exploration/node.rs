@@ -204,20 +204,18 @@ impl Nodes {
     ) -> Result<(Node, Vec<BeaconId>), NodeError> {
         match stimulus {
             Stimulus::Hear(beacons) => {
-                heard.clone_from(beacons);
-                self.listen(&mut robot, &heard);
+                heard = self.listen(&mut robot, &heard, beacons);
                 robot.think();
             }
             Stimulus::Round(beacons) => {
-                heard.clone_from(beacons);
-                self.listen(&mut robot, &heard);
+                heard = self.listen(&mut robot, &heard, beacons);
                 let (position, still) = (robot.position(), robot.still_periods());
                 robot.stand_at(position, still);
                 robot.deliberate();
             }
             Stimulus::Move(place) => {
                 robot.stand_at(self.positions[*place], 0);
-                self.listen(&mut robot, &heard);
+                robot.look_round();
             }
             Stimulus::Period(still) => {
                 let position = robot.position();
@@ -232,8 +230,19 @@ impl Nodes {
         Ok((Node::Robot(robot), heard))
     }
 
-    fn listen(&self, robot: &mut Robot, heard: &[BeaconId]) {
+    /// The robot hears these beacons; what it then knows of its neighbours.
+    fn listen(
+        &self,
+        robot: &mut Robot,
+        known: &[BeaconId],
+        heard: &[BeaconId],
+    ) -> Vec<BeaconId> {
         robot.hear(heard.iter().map(|&beacon| &self.beacons[beacon as usize]));
+        let last = |node| {
+            let from = |&&id: &&BeaconId| self.beacon(id).sender == node;
+            heard.iter().find(from).or_else(|| known.iter().find(from)).copied()
+        };
+        robot.audible().filter_map(|(node, _)| last(node)).collect()
     }
 
     /// The robot's own transitions, which are taken at once.
