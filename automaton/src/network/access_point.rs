@@ -183,8 +183,7 @@ impl AccessPoint {
     }
 
     fn is_within_changeover(&self, other: Point) -> bool {
-        self.site.distance(self.position, other)
-            <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
+        self.site.distance(self.position, other) <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
     }
 
     /// Which robots hang on the access points.
@@ -295,8 +294,7 @@ impl AccessPoint {
             _ => 0,
         };
         let patience = PATIENCE_WITH_ELECTIONS * self.longest_wait() + 1;
-        let electing =
-            matches!(self.bulletin.notice(), Notice::Task { .. } | Notice::Call { .. });
+        let electing = matches!(self.bulletin.notice(), Notice::Task { .. } | Notice::Call { .. });
         let rounds = if electing { self.election_rounds.min(patience) } else { 0 };
         format!(
             "{:?}",

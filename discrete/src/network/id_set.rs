@@ -1,7 +1,7 @@
 //! Sets of small numbers: tokens of an election, votes along a path.
 
 /// A set of numbers below a few thousand, as bits.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct IdSet {
     words: Vec<u64>,
 }

@@ -8,6 +8,8 @@
 //! [`Robot`]: pleach_automaton::network::Robot
 //! [`AccessPoint`]: pleach_automaton::network::access_point::AccessPoint
 
+mod campaign;
+pub mod election;
 mod graphs;
 mod node;
 mod places;
@@ -15,6 +17,7 @@ pub mod properties;
 mod protocol;
 mod story;
 
+pub use campaign::{Campaign, CampaignError, ENDS, Failure, Findings, Graphs, QUICK, THOROUGH};
 pub use graphs::{Graph, graphs, numbered_graphs};
 pub use node::{BeaconId, Local, LocalId, Node, NodeError, Nodes, Stimulus};
 pub use places::{Place, Places, PlacesError};

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use pleach_automaton::BuildError;
 use pleach_automaton::GuardError;
 use pleach_automaton::network::access_point::AccessPoint;
 use pleach_automaton::network::automata::{MissionAutomaton, RoleAutomaton};
 use pleach_automaton::network::beacon::{Beacon, Notice};
 use pleach_automaton::network::{Robot, mission_automaton, role_automaton};
-use pleach_automaton::BuildError;
 use pleach_continuous::Point;
 
 /// The number of a beacon among all those ever said.
@@ -231,12 +231,7 @@ impl Nodes {
     }
 
     /// The robot hears these beacons; what it then knows of its neighbours.
-    fn listen(
-        &self,
-        robot: &mut Robot,
-        known: &[BeaconId],
-        heard: &[BeaconId],
-    ) -> Vec<BeaconId> {
+    fn listen(&self, robot: &mut Robot, known: &[BeaconId], heard: &[BeaconId]) -> Vec<BeaconId> {
         robot.hear(heard.iter().map(|&beacon| &self.beacons[beacon as usize]));
         let last = |node| {
             let from = |&&id: &&BeaconId| self.beacon(id).sender == node;

@@ -153,9 +153,7 @@ impl Places {
     /// The place nearest to a position.
     pub fn place_at(&self, position: Point) -> Place {
         let distance = |&place: &Place| (self.position(place) - position).norm();
-        (0..self.steps.len())
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-            .unwrap_or_default()
+        (0..self.steps.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or_default()
     }
 
     /// Where the tasks are.

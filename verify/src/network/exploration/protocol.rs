@@ -152,9 +152,8 @@ impl Protocol {
             let robot = Robot::new(id, start.position.into(), start.rate, Arc::clone(&site));
             Node::Robot(Box::new(robot))
         });
-        let access_points = (0..scenario.access_point.len()).map(|number| {
-            Node::AccessPoint(Box::new(AccessPoint::new(number, Arc::clone(&site))))
-        });
+        let access_points = (0..scenario.access_point.len())
+            .map(|number| Node::AccessPoint(Box::new(AccessPoint::new(number, Arc::clone(&site)))));
         let locals =
             robots.chain(access_points).map(|node| nodes.take_up(node, Vec::new())).collect();
         let (losses, delays) = match configuration.medium {
@@ -213,8 +212,7 @@ impl Protocol {
     fn is_in_range(&self, state: &State, one: NodeId, other: NodeId) -> bool {
         let (places, robots) = (&self.configuration.places, self.configuration.places.robots());
         let is_wire = one >= robots && other >= robots;
-        let linked =
-            || places.are_linked(self.place_of(state, one), self.place_of(state, other));
+        let linked = || places.are_linked(self.place_of(state, one), self.place_of(state, other));
         one != other && (is_wire || linked())
     }
 
@@ -262,12 +260,7 @@ impl Protocol {
             .collect()
     }
 
-    fn one(
-        &mut self,
-        state: &State,
-        node: NodeId,
-        stimulus: Stimulus,
-    ) -> Result<State, NodeError> {
+    fn one(&mut self, state: &State, node: NodeId, stimulus: Stimulus) -> Result<State, NodeError> {
         let mut next = state.clone();
         let local = self.nodes.after(state.locals[node], stimulus)?;
         if local != state.locals[node] {
@@ -425,8 +418,7 @@ impl Protocol {
     /// A control period: long enough for all news to be heard.
     fn period(&mut self, state: &State) -> Result<State, NodeError> {
         let robots = self.configuration.places.robots();
-        let still: Vec<u32> =
-            (0..robots).map(|robot| self.stillness(state, robot)).collect();
+        let still: Vec<u32> = (0..robots).map(|robot| self.stillness(state, robot)).collect();
         let mut next = state.clone();
         next.locals = self.each(state, |node| match still.get(node) {
             Some(&still) => Stimulus::Period(still),

@@ -70,7 +70,9 @@ fn duty(robot: &Robot) -> String {
 fn duty_text(duty: &Duty) -> String {
     let (verb, post) = match duty {
         Duty::Shift { place } => return format!("has left place {place} of Σ"),
-        Duty::Wait { station, place } => (format!("waits at place {place} of Σ with"), station.post),
+        Duty::Wait { station, place } => {
+            (format!("waits at place {place} of Σ with"), station.post)
+        }
         Duty::Hold(station) => ("holds".into(), station.post),
     };
     let kind = match post.kind {
