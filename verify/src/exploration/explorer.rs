@@ -25,16 +25,22 @@ pub trait Model {
     ///
     /// # Errors
     /// When the model cannot say.
-    fn successors(
-        &mut self,
-        state: &Self::State,
-    ) -> Result<Vec<(Self::Action, Self::State)>, Self::Error>;
+    fn successors(&mut self, state: &Self::State) -> Result<Successors<Self>, Self::Error>;
 
     /// The state that stands for all those that are the same as `state` but for a symmetry.
     fn representative(&self, state: Self::State) -> Self::State {
         state
     }
 }
+
+/// What may happen in a state of a model, and the states that follow.
+pub type Successors<M> = Vec<(<M as Model>::Action, <M as Model>::State)>;
+
+/// An exploration of a model, or why it came to no end.
+pub type Explored<M> = Result<
+    Exploration<<M as Model>::State, <M as Model>::Action>,
+    ExplorationError<<M as Model>::Error>,
+>;
 
 /// What is to hold in every state.
 #[derive(Debug)]
@@ -88,11 +94,7 @@ pub struct Exploration<S, A> {
 ///
 /// # Errors
 /// When there are more states than `limit`, or the model cannot say what happens.
-pub fn explore<M: Model>(
-    model: &mut M,
-    properties: &[Property<M>],
-    limit: usize,
-) -> Result<Exploration<M::State, M::Action>, ExplorationError<M::Error>> {
+pub fn explore<M: Model>(model: &mut M, properties: &[Property<M>], limit: usize) -> Explored<M> {
     let mut visit = Visit { known: BTreeMap::new(), states: Vec::new(), origins: Vec::new() };
     for state in model.initial().map_err(ExplorationError::Model)? {
         visit.meet(model.representative(state), None);

@@ -42,5 +42,8 @@
 mod explorer;
 mod liveness;
 
-pub use explorer::{Exploration, ExplorationError, Model, Property, StateId, Violation, explore};
+pub use explorer::{
+    Exploration, ExplorationError, Explored, Model, Property, StateId, Successors, Violation,
+    explore,
+};
 pub use liveness::Fairness;
