@@ -312,8 +312,8 @@ pub const THOROUGH: &[Campaign] = &[
         medium: ROUNDS,
         contacts: 1,
         configurations: 580,
-        states: 836_694,
-        transitions: 1_140_012,
+        states: 1_103_445,
+        transitions: 1_456_491,
     },
     Campaign {
         name: "four robots, two tasks",
