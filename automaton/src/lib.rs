@@ -4,11 +4,12 @@
 //! [`TransitionTable`](pleach_discrete::TransitionTable), and its guards are
 //! [predicates as data](pleach_guards). It can be
 //!
-//! * **run**: an automaton over [coordinates], or a [`composition`] of several, runs as it is and
-//!   leaves a [`Trajectory`]; anything else that is a [`System`] runs on the same [`Executor`]. What a
-//!   run is, the [executor's page](executor) and `docs/semantics.md` say;
-//! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG and tables from the automaton itself, so that
-//!   pictures cannot drift from the code;
+//! * **run**: an automaton over [coordinates](mod@coordinates), or a [`composition`] of several,
+//!   runs as it is and leaves a [`Trajectory`]; anything else that is a [`System`] runs on the same
+//!   [`Executor`]. What a run is, the [executor's page](executor) and `docs/semantics.md` say;
+//! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG, LaTeX and tables from the automaton itself,
+//!   so that pictures cannot drift from the code, and plots what it went through;
+//! * **covered**: [`coverage`] counts what a set of runs has been through, and what it left out;
 //! * **checked**: [`decision`] finds a state in which guards and invariants hold together, or proves
 //!   that there is none.
 //!
