@@ -29,8 +29,8 @@ pub mod zeno;
 pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
 pub use composition::{
-    Composition, CompositionBuilder, CompositionError, Failure, Policy, Settings, Simulation,
-    SimulationError,
+    Composition, CompositionBuilder, CompositionError, Exploration, ExplorationError, Failure,
+    Policy, Settings, Simulation, SimulationError,
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use edge::{Edge, from};

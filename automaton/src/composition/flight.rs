@@ -137,7 +137,7 @@ enum Kind {
 }
 
 /// The flow of all components in their locations.
-struct Field<'a> {
+pub(super) struct Field<'a> {
     /// With their place, and whether they solve their flow themselves.
     moving: Vec<(&'a Component, &'a Place)>,
     exact: Vec<(&'a Component, &'a Solution)>,
@@ -147,7 +147,11 @@ struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    fn of(composition: &'a Composition, locations: &[usize], start: &'a [f64]) -> Self {
+    pub(super) fn of(
+        composition: &'a Composition,
+        locations: &[usize],
+        start: &'a [f64],
+    ) -> Self {
         let (mut moving, mut exact) = (Vec::new(), Vec::new());
         for (component, &location) in composition.components.iter().zip(locations) {
             let place = component.place(location);
@@ -243,6 +247,16 @@ impl<'a> Field<'a> {
                 PlaceMotion::Exact(_) => {}
             }
         }
+    }
+
+    /// What changes while time passes, if anything does: a variable with a rate, or else a
+    /// component that solves its flow itself.
+    pub(super) fn mover<'b>(&'b self, composition: &'b Composition) -> Option<&'b str> {
+        let mut rates = vec![0.0; self.start.len()];
+        self.rates(0.0, self.start, &mut rates);
+        let moving = rates.iter().position(|rate| *rate != 0.0);
+        let variable = moving.map(|slot| &*composition.variables[slot]);
+        variable.or_else(|| self.exact.first().map(|(component, _)| &*component.name))
     }
 
     /// Puts what is solved by itself where it is at `time`.

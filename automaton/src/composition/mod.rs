@@ -64,12 +64,15 @@
 
 mod blueprint;
 mod builder;
+mod exploration;
 mod flight;
+mod jumps;
 mod simulation;
 
 use std::sync::Arc;
 
 pub use builder::{CompositionBuilder, CompositionError};
+pub use exploration::{Exploration, ExplorationError, Reached};
 pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;
