@@ -16,7 +16,7 @@
 mod exhibit;
 mod oracle;
 
-use exhibit::{Exhibit, Shown};
+use exhibit::{Exhibit, Shown, instants};
 use oracle::Affine;
 use pleach::prelude::*;
 use std::error::Error;
@@ -132,7 +132,9 @@ pub fn exhibit() -> Shown {
     for (title, start) in STARTS {
         let trajectory = navigation(MAP, start)?.run(HORIZON)?;
         let crossings = route(MAP, start).into_iter().map(|(time, _)| time);
-        exhibit = exhibit.compare_jumps(&trajectory, crossings, 1e-12).run(title, trajectory);
+        exhibit = exhibit
+            .compare_all("crossings, in s", instants(&trajectory, usize::MAX), crossings, 1e-12)
+            .run(title, trajectory);
     }
     Ok(exhibit)
 }

@@ -19,7 +19,7 @@
 mod exhibit;
 mod oracle;
 
-use exhibit::{Exhibit, Shown};
+use exhibit::{Exhibit, Shown, instants};
 use oracle::Affine;
 use pleach::automaton::{Rate, Vector};
 use pleach::prelude::*;
@@ -125,7 +125,6 @@ fn platoon(leader: f64) -> Result<Composition, Box<dyn Error>> {
 /// The published horizon, in seconds, and what the leader does, in m/s².
 const HORIZON: f64 = 20.0;
 const BRAKING: f64 = -9.0;
-const ACCELERATING: f64 = 1.0;
 
 fn flow(gains: &'static Gains, leader: f64) -> Affine {
     Affine::new(9, move |x| {
@@ -157,47 +156,21 @@ fn states(leader: f64) -> Vec<Vec<f64>> {
         .into()
 }
 
-/// How far each gap can fall within the horizon at most, whatever the leader does, in metres.
-///
-/// The excess at T is ∫ h(T, t) a(t) dt with h(T, t) the response at T to an impulse of the leader
-/// at t: it is least for a leader that brakes where h is positive and else accelerates.
-fn worst_falls() -> [f64; 3] {
-    const STEP: f64 = 0.1;
-    let flows = [flow(&TOGETHER, 0.0), flow(&ALONE, 0.0)];
-    let steps = (HORIZON / STEP).round() as usize;
-    let steps_per_span = (SPAN / STEP).round() as usize;
-    let mut lowest = vec![[0.0; 3]; steps + 1];
-    for begin in 0..steps {
-        // The impulse in the middle of the step, and its response at every step thereafter.
-        let mut response = vec![0.0; 9];
-        response[1] = 1.0;
-        for end in begin..steps {
-            let flow = &flows[end / steps_per_span % 2];
-            response = flow.after(&response, if end == begin { STEP / 2.0 } else { STEP });
-            for (fall, excess) in lowest[end + 1].iter_mut().zip(response.iter().step_by(3)) {
-                *fall += STEP * (BRAKING * excess).min(ACCELERATING * excess);
-            }
-        }
-    }
-    [0, 1, 2].map(|vehicle| lowest.iter().map(|falls| -falls[vehicle]).fold(0.0, f64::max))
-}
-
 /// The platoon behind a leader that brakes hard.
 pub fn exhibit() -> Shown {
     let trajectory = platoon(BRAKING)?.run(HORIZON)?;
-    let mut exhibit = Exhibit::new("platoon", include_str!("platoon.rs"))
+    let switches = [5.0, 10.0, 15.0, 20.0];
+    let gaps = switches.map(|time| {
+        let excess = |name| trajectory.value(name, time).unwrap_or(f64::NAN);
+        ["vehicles.x₁", "vehicles.x₄", "vehicles.x₇"].map(excess)
+    });
+    let answers = states(BRAKING).into_iter().map(|x| [x[0], x[3], x[6]]);
+    Ok(Exhibit::new("platoon", include_str!("platoon.rs"))
         .automaton("radio", &radio()?)
         .automaton("vehicles", &vehicles(BRAKING)?)
-        .compare_jumps(&trajectory, [5.0, 10.0, 15.0, 20.0], 1e-12);
-    for (time, state) in [5.0, 10.0, 15.0, 20.0].into_iter().zip(states(BRAKING)) {
-        for (vehicle, name) in ["vehicles.x₁", "vehicles.x₄", "vehicles.x₇"].iter().enumerate()
-        {
-            let found = trajectory.value(name, time).unwrap_or(f64::NAN);
-            let quantity = format!("gap {} at {time} s, in m", vehicle + 1);
-            exhibit = exhibit.compare(quantity, found, state[3 * vehicle], 1e-9);
-        }
-    }
-    Ok(exhibit.run("A leader that brakes with 9 m/s²", trajectory))
+        .compare_all("switches, in s", instants(&trajectory, usize::MAX), switches, 1e-12)
+        .compare_all("gaps at the switches, in m", gaps.concat(), answers.flatten(), 1e-9)
+        .run("A leader that brakes with 9 m/s²", trajectory))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -207,6 +180,33 @@ fn main() -> Result<(), Box<dyn Error>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const ACCELERATING: f64 = 1.0;
+
+    /// How far each gap can fall within the horizon at most, whatever the leader does, in metres.
+    ///
+    /// The excess at T is ∫ h(T, t) a(t) dt with h(T, t) the response at T to an impulse of the leader
+    /// at t: it is least for a leader that brakes where h is positive and else accelerates.
+    fn worst_falls() -> [f64; 3] {
+        const STEP: f64 = 0.1;
+        let flows = [flow(&TOGETHER, 0.0), flow(&ALONE, 0.0)];
+        let steps = (HORIZON / STEP).round() as usize;
+        let steps_per_span = (SPAN / STEP).round() as usize;
+        let mut lowest = vec![[0.0; 3]; steps + 1];
+        for begin in 0..steps {
+            // The impulse in the middle of the step, and its response at every step thereafter.
+            let mut response = vec![0.0; 9];
+            response[1] = 1.0;
+            for end in begin..steps {
+                let flow = &flows[end / steps_per_span % 2];
+                response = flow.after(&response, if end == begin { STEP / 2.0 } else { STEP });
+                for (fall, excess) in lowest[end + 1].iter_mut().zip(response.iter().step_by(3)) {
+                    *fall += STEP * (BRAKING * excess).min(ACCELERATING * excess);
+                }
+            }
+        }
+        [0, 1, 2].map(|vehicle| lowest.iter().map(|falls| -falls[vehicle]).fold(0.0, f64::max))
+    }
 
     #[test]
     fn gaps_are_those_of_the_matrix_exponential() {

@@ -41,6 +41,15 @@ macro_rules! classics {
 
 classics! {
     bouncing_ball from "../examples/bouncing_ball.rs"
+    thermostat from "../examples/thermostat.rs"
+    heater_and_controller from "../examples/heater_and_controller.rs"
+    two_tanks from "../examples/two_tanks.rs"
+    gear_shift from "../examples/gear_shift.rs"
+    navigation from "../examples/navigation.rs"
+    clock_synchronisation from "../examples/clock_synchronisation.rs"
+    filtered_oscillator from "../examples/filtered_oscillator.rs"
+    platoon from "../examples/platoon.rs"
+    two_phase_commit from "../examples/two_phase_commit.rs"
 }
 
 /// Examples that are no classics: they are about the robots.

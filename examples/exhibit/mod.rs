@@ -16,7 +16,7 @@ use pleach::automaton::{Automaton, Trajectory, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::guards::Valuation;
 
-pub use number::number;
+pub use number::{number, numbers};
 
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
@@ -40,14 +40,14 @@ struct Drawing {
 
 struct Run {
     title: &'static str,
-    trajectory: Trajectory,
+    story: Vec<String>,
 }
 
-/// A number that a run gives beside the one that it should give.
+/// Numbers that a run gives beside those that it should give.
 struct Comparison {
-    quantity: String,
-    found: f64,
-    answer: f64,
+    quantity: &'static str,
+    found: Vec<f64>,
+    answers: Vec<f64>,
     tolerance: f64,
 }
 
@@ -69,42 +69,41 @@ impl Exhibit {
     }
 
     /// Shows a run: its jumps and its ending.
-    pub fn run(mut self, title: &'static str, trajectory: Trajectory) -> Self {
-        self.runs.push(Run { title, trajectory });
+    pub fn run(self, title: &'static str, trajectory: Trajectory) -> Self {
+        self.story(title, show::story(&trajectory))
+    }
+
+    /// Shows what happens where no time passes: a line for each jump.
+    pub fn story(mut self, title: &'static str, story: Vec<String>) -> Self {
+        self.runs.push(Run { title, story });
         self
     }
 
     /// Holds a number that was `found` against the `answer`, from which it may differ by
     /// `tolerance`, in its unit.
-    pub fn compare(
-        mut self,
-        quantity: impl Into<String>,
-        found: f64,
-        answer: f64,
-        tolerance: f64,
-    ) -> Self {
-        self.comparisons.push(Comparison { quantity: quantity.into(), found, answer, tolerance });
-        self
+    pub fn compare(self, quantity: &'static str, found: f64, answer: f64, tolerance: f64) -> Self {
+        self.compare_all(quantity, [found], [answer], tolerance)
     }
 
-    /// Holds the instants of the jumps of a run, in seconds, against the `answers`, one after the
-    /// other; there may be more of either.
-    pub fn compare_jumps(
+    /// Holds numbers against as many answers, one after the other.
+    pub fn compare_all(
         mut self,
-        trajectory: &Trajectory,
+        quantity: &'static str,
+        found: impl IntoIterator<Item = f64>,
         answers: impl IntoIterator<Item = f64>,
         tolerance: f64,
     ) -> Self {
-        for (number, (jump, answer)) in (1..).zip(trajectory.jumps().iter().zip(answers)) {
-            let quantity = format!("jump {number}, {}, in s", jump.label);
-            self = self.compare(quantity, jump.at.t, answer, tolerance);
-        }
+        let (found, answers) = (found.into_iter().collect(), answers.into_iter().collect());
+        self.comparisons.push(Comparison { quantity, found, answers, tolerance });
         self
     }
 
     /// What differs by more than its tolerance, as sentences.
     pub fn disagreements(&self) -> Vec<String> {
-        let wrong = |one: &&Comparison| one.error().is_nan() || one.error() > one.tolerance;
+        let wrong = |one: &&Comparison| {
+            let agrees = one.error().is_some_and(|error| error <= one.tolerance);
+            !agrees
+        };
         self.comparisons.iter().filter(wrong).map(Comparison::to_sentence).collect()
     }
 
@@ -119,12 +118,23 @@ impl Exhibit {
 }
 
 impl Comparison {
-    fn error(&self) -> f64 {
-        (self.found - self.answer).abs()
+    /// The largest difference; `None` if there are not as many numbers as answers, or one of them
+    /// is no number.
+    fn error(&self) -> Option<f64> {
+        let pairs = self.found.iter().zip(&self.answers);
+        let mut errors = pairs.map(|(found, answer)| (found - answer).abs());
+        let largest = errors
+            .try_fold(0.0, |largest: f64, error| (!error.is_nan()).then(|| largest.max(error)));
+        largest.filter(|_| self.found.len() == self.answers.len())
     }
 
     fn to_sentence(&self) -> String {
-        let Comparison { quantity, found, answer, tolerance } = self;
-        format!("{quantity}: {found} differs from {answer} by more than {tolerance:e}")
+        let Comparison { quantity, found, answers, tolerance } = self;
+        format!("{quantity}: {found:?} are not within {tolerance:e} of {answers:?}")
     }
+}
+
+/// The instants of the first `count` jumps of a run, in seconds.
+pub fn instants(run: &Trajectory, count: usize) -> impl Iterator<Item = f64> {
+    run.jumps().iter().take(count).map(|jump| jump.at.t)
 }

@@ -1,7 +1,6 @@
 //! The exhibit as a page of the book, in Markdown.
 
-use super::show::story;
-use super::{Comparison, Exhibit, number};
+use super::{Comparison, Exhibit, numbers};
 
 /// Between these lines of an example stands its model.
 const MODEL: [&str; 2] = ["// ---- The model ", "// ---- The answer "];
@@ -25,7 +24,7 @@ impl Exhibit {
         }
         page += "\n## What happens\n";
         for run in &self.runs {
-            let lines = story(&run.trajectory).join("\n");
+            let lines = run.story.join("\n");
             page += &format!("\n{}:\n\n```text\n{lines}\n```\n", run.title);
         }
         page += "\n## The answer\n\n| quantity | answer | agrees within |\n| --- | --: | --: |\n";
@@ -52,5 +51,5 @@ impl Exhibit {
 fn row(one: &Comparison) -> String {
     let tolerance =
         if one.tolerance == 0.0 { "exactly".into() } else { format!("{:e}", one.tolerance) };
-    format!("| {} | {} | {tolerance} |\n", one.quantity, number(one.answer))
+    format!("| {} | {} | {tolerance} |\n", one.quantity, numbers(&one.answers))
 }

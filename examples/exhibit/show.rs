@@ -8,7 +8,7 @@ use pleach::automaton::composition::Failure;
 use pleach::automaton::trajectory::{JumpRecord, Participant};
 use pleach::automaton::{Reason, Trajectory};
 
-use super::{Exhibit, number};
+use super::{Exhibit, number, numbers};
 
 /// The most jumps of a run that are told.
 const MOST_JUMPS: usize = 12;
@@ -22,17 +22,16 @@ impl Exhibit {
     pub fn show(&self) -> Result<(), Box<dyn Error>> {
         for run in &self.runs {
             println!("{}:", run.title);
-            for line in story(&run.trajectory) {
+            for line in &run.story {
                 println!("  {line}");
             }
         }
         println!("Compared with the answer:");
         for one in &self.comparisons {
-            let (answer, error) = (number(one.answer), one.error());
-            println!(
-                "  {:40} {answer:>12}   error {error:.1e} ≤ {:e}",
-                one.quantity, one.tolerance
-            );
+            println!("  {}: {}", one.quantity, numbers(&one.answers));
+            if let Some(error) = one.error() {
+                println!("    largest error {error:.1e}, allowed {:e}", one.tolerance);
+            }
         }
         self.write_figures()?;
         match self.disagreements().join("\n") {
@@ -58,7 +57,7 @@ pub(super) fn story(trajectory: &Trajectory) -> Vec<String> {
     let mut lines: Vec<String> =
         jumps.iter().take(MOST_JUMPS).map(|jump| told(trajectory, jump)).collect();
     if jumps.len() > MOST_JUMPS {
-        lines.push(format!("… and {} jumps more", jumps.len() - MOST_JUMPS));
+        lines.push("…".to_owned());
     }
     lines.push(ending(trajectory));
     lines
@@ -85,9 +84,8 @@ fn ending(trajectory: &Trajectory) -> String {
     match &trajectory.ending().reason {
         Reason::Horizon => format!("The horizon is reached at {t} s."),
         Reason::Zeno(zeno) => format!(
-            "The run is Zeno: every {} jumps take {} of the time of those before, and add up at \
-             {} s.",
-            zeno.cycle,
+            "The run is Zeno: {} {} of the time of the one before, and all of them end at {} s.",
+            if zeno.cycle == 1 { "each flow takes" } else { "each cycle of flows takes" },
             number(zeno.ratio),
             number(zeno.accumulation),
         ),

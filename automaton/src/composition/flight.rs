@@ -55,7 +55,10 @@ impl Simulation<'_> {
     /// A flow that is known as a whole.
     fn follow(&self, field: &Field<'_>, curve: impl Curve, limit: f64) -> Result<Flight, Failure> {
         let curve = Overlaid { curve, field };
-        let onset = self.look(&curve)?;
+        let onset = match self.look(&curve) {
+            Ok(onset) => onset,
+            Err(failure) => return self.fail_on(field, &curve, vec![field.at_start()], failure),
+        };
         let end = onset.map_or(limit, |onset| onset.time);
         let most = (end / curve.time_scale(0.0) * SAMPLES_PER_SCALE).min(MOST_SAMPLES);
         let pieces = if most > 1.0 { most.ceil() } else { 1.0 };
@@ -72,15 +75,55 @@ impl Simulation<'_> {
     fn integrate(&self, field: &Field<'_>, limit: f64) -> Result<Flight, Failure> {
         let rates = |time: f64, state: &[f64], rates: &mut [f64]| field.rates(time, state, rates);
         let mut integrator = Integrator::new(&rates, 0.0, &self.values, self.settings.tolerances());
-        let mut samples = Vec::new();
+        let mut samples = vec![field.at_start()];
         loop {
-            let step = integrator.step(limit).map_err(|fault| self.failure(fault.to_string()))?;
-            let step = Overlaid { curve: step, field };
-            samples.push(field.sample(&step, step.start()));
-            let onset = self.look(&step)?;
+            let step = match integrator.step(limit) {
+                Ok(step) => Overlaid { curve: step, field },
+                Err(fault) => return self.cut_short(samples, self.failure(fault.to_string())),
+            };
+            let onset = match self.look(&step) {
+                Ok(onset) => onset,
+                Err(failure) => return self.fail_on(field, &step, samples, failure),
+            };
             if onset.is_some() || step.end() >= limit {
                 return self.land(field, &step, samples, onset, limit);
             }
+            samples.push(field.sample(&step, step.end()));
+        }
+    }
+
+    /// Goes as far on the curve as every formula has a value; the run fails there and not before.
+    fn fail_on(
+        &self,
+        field: &Field<'_>,
+        curve: &impl Curve,
+        mut samples: Vec<Sample>,
+        failure: Failure,
+    ) -> Result<Flight, Failure> {
+        let (mut defined, mut undefined) = (curve.start(), curve.end());
+        let mut state = vec![0.0; curve.dimension()];
+        loop {
+            let middle = defined + (undefined - defined) / 2.0;
+            if middle <= defined || middle >= undefined {
+                break;
+            }
+            curve.state_at(middle, &mut state);
+            if self.tension(&state).is_ok() { defined = middle } else { undefined = middle }
+        }
+        if defined > curve.start() {
+            samples.retain(|sample| sample.t < defined);
+            samples.push(field.sample(curve, defined));
+        }
+        self.cut_short(samples, failure)
+    }
+
+    /// The flow up to the last sample, beyond which it fails; if that changes no clock, the failure.
+    fn cut_short(&self, samples: Vec<Sample>, failure: Failure) -> Result<Flight, Failure> {
+        match samples.last() {
+            Some(last) if self.now.t + last.t > self.now.t => {
+                Ok(Flight { duration: last.t, is_eventful: true, samples })
+            }
+            _ => Err(failure),
         }
     }
 
@@ -138,6 +181,7 @@ enum Kind {
 
 /// The flow of all components in their locations.
 pub(super) struct Field<'a> {
+    composition: &'a Composition,
     /// With their place, and whether they solve their flow themselves.
     moving: Vec<(&'a Component, &'a Place)>,
     exact: Vec<(&'a Component, &'a Solution)>,
@@ -147,11 +191,7 @@ pub(super) struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    pub(super) fn of(
-        composition: &'a Composition,
-        locations: &[usize],
-        start: &'a [f64],
-    ) -> Self {
+    pub(super) fn of(composition: &'a Composition, locations: &[usize], start: &'a [f64]) -> Self {
         let (mut moving, mut exact) = (Vec::new(), Vec::new());
         for (component, &location) in composition.components.iter().zip(locations) {
             let place = component.place(location);
@@ -161,7 +201,7 @@ impl<'a> Field<'a> {
                 PlaceMotion::Rates(_) | PlaceMotion::Field(_) => moving.push((component, place)),
             }
         }
-        Field { moving, exact, start, scratch: RefCell::default() }
+        Field { composition, moving, exact, start, scratch: RefCell::default() }
     }
 
     fn kind(&self) -> Kind {
@@ -249,14 +289,14 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// What changes while time passes, if anything does: a variable with a rate, or else a
-    /// component that solves its flow itself.
-    pub(super) fn mover<'b>(&'b self, composition: &'b Composition) -> Option<&'b str> {
+    /// The name of what changes while time passes, if anything does: a variable that has a rate,
+    /// or a component that solves its flow itself.
+    pub(super) fn mover(&self) -> Option<String> {
         let mut rates = vec![0.0; self.start.len()];
         self.rates(0.0, self.start, &mut rates);
         let moving = rates.iter().position(|rate| *rate != 0.0);
-        let variable = moving.map(|slot| &*composition.variables[slot]);
-        variable.or_else(|| self.exact.first().map(|(component, _)| &*component.name))
+        let variable = moving.map(|slot| self.composition.variables[slot].clone());
+        variable.or_else(|| self.exact.first().map(|(component, _)| component.name.clone()))
     }
 
     /// Puts what is solved by itself where it is at `time`.
@@ -277,12 +317,15 @@ impl<'a> Field<'a> {
         Sample { t: time, values, rates }
     }
 
-    /// The flow that does not flow.
-    fn no_time(&self) -> Flight {
+    fn at_start(&self) -> Sample {
         let mut rates = vec![0.0; self.start.len()];
         self.rates(0.0, self.start, &mut rates);
-        let sample = Sample { t: 0.0, values: self.start.to_vec(), rates };
-        Flight { duration: 0.0, is_eventful: true, samples: vec![sample] }
+        Sample { t: 0.0, values: self.start.to_vec(), rates }
+    }
+
+    /// The flow that does not flow.
+    fn no_time(&self) -> Flight {
+        Flight { duration: 0.0, is_eventful: true, samples: vec![self.at_start()] }
     }
 }
 

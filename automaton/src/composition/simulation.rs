@@ -128,7 +128,7 @@ pub struct Simulation<'a> {
     pub(super) composition: &'a Composition,
     pub(super) settings: Settings,
     horizon: f64,
-    now: HybridTime,
+    pub(super) now: HybridTime,
     pub(super) locations: Vec<usize>,
     pub(super) values: Vec<f64>,
     /// The flow to come, once no jump is left to be taken.
@@ -153,6 +153,19 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     /// What happens on the way is told by the [ending](Trajectory::ending) of the trajectory.
     pub fn run(&self, horizon: f64) -> Result<Trajectory, SimulationError> {
         Composition::builder().add("automaton", self).build()?.run(horizon)
+    }
+
+    /// Runs the automaton by itself with settings of one's own.
+    ///
+    /// # Errors
+    ///
+    /// As for [`run`](Self::run), and if the settings make no sense.
+    pub fn run_with(
+        &self,
+        settings: Settings,
+        horizon: f64,
+    ) -> Result<Trajectory, SimulationError> {
+        Composition::builder().add("automaton", self).build()?.run_with(settings, horizon)
     }
 
     /// Runs the automaton by itself, from `state`, for `horizon` seconds.
@@ -435,10 +448,11 @@ impl System for Simulation<'_> {
         self.now = round.now();
         self.flight = None;
         let mut jumped = self.take_round(round, Readiness::Forced)?;
-        if !jumped {
-            let left = self.horizon - self.now.t;
-            let flight = self.plan(left.max(0.0))?;
-            if flight.duration <= 0.0 && left > 0.0 {
+        let left = self.horizon - self.now.t;
+        // At the horizon there is no flow to come.
+        if !jumped && left > 0.0 {
+            let flight = self.plan(left)?;
+            if flight.duration <= 0.0 {
                 jumped = self.take_round(round, Readiness::Possible)?;
             }
             self.flight = (!jumped).then_some(flight);

@@ -1,4 +1,4 @@
-//! The coefficients of Dormand and Prince's pair of orders 5 and 4, as plain data.
+//! The coefficients of Dormand and Prince's pair of orders 5 and 4.
 //!
 //! J. R. Dormand and P. J. Prince, "A family of embedded Runge–Kutta formulae",
 //! *Journal of Computational and Applied Mathematics* 6 (1980), doi:10.1016/0771-050X(80)90013-3.
@@ -36,11 +36,11 @@ pub(super) const ERROR: [f64; 6] = [
     -1.0 / 40.0,
 ];
 
-/// The weights of stages 1, 3, 4, 5, 6 and 7 in the quartic term of the dense output, by
+/// The weights of stages 1, 3, 4, 5, 6 and 7 in the quartic term of the free interpolant, by
 /// L. F. Shampine, "Some practical Runge–Kutta formulas", *Mathematics of Computation* 46 (1986),
 /// doi:10.1090/S0025-5718-1986-0815836-3; in the form of Hairer, Nørsett and Wanner, *Solving
 /// Ordinary Differential Equations I*, 2nd ed., section II.6, doi:10.1007/978-3-540-78862-1.
-pub(super) const DENSE: [f64; 6] = [
+pub(super) const QUARTIC: [f64; 6] = [
     -12715105075.0 / 11282082432.0,
     87487479700.0 / 32700410799.0,
     -10690763975.0 / 1880347072.0,
@@ -48,6 +48,28 @@ pub(super) const DENSE: [f64; 6] = [
     -1453857185.0 / 822651844.0,
     69997945.0 / 29380423.0,
 ];
+
+/// target = base + step · Σ weight · stage.
+pub(super) fn combine<const N: usize>(
+    target: &mut [f64],
+    base: &[f64],
+    step: f64,
+    weights: [f64; N],
+    stages: [&[f64]; N],
+) {
+    // Slices of one known length spare the loop its bounds checks.
+    let dimension = target.len();
+    let base = &base[..dimension];
+    let stages = stages.map(|stage| &stage[..dimension]);
+    let weights = weights.map(|weight| step * weight);
+    for i in 0..dimension {
+        let mut sum = 0.0;
+        for stage in 0..N {
+            sum += weights[stage] * stages[stage][i];
+        }
+        target[i] = base[i] + sum;
+    }
+}
 
 #[cfg(test)]
 mod tests {
@@ -65,6 +87,6 @@ mod tests {
             assert_sum(weights, *node);
         }
         assert_sum(&ERROR, 0.0);
-        assert_sum(&DENSE, 0.0);
+        assert_sum(&QUARTIC, 0.0);
     }
 }

@@ -17,7 +17,7 @@ pub struct EventSearch {
 /// Looks per time scale. A step of an [`Integrator`](super::Integrator) at ordinary tolerances is
 /// a fraction of a radian of the flow's fastest motion, and half a turn of a linear flow has one
 /// peak: eight looks show both well, also through guards that are products or powers of the state.
-/// Each costs an evaluation of the curve and of the guard, less than one stage of a step.
+/// Each costs an evaluation of the curve, less than one stage of a step, and one of the guard.
 const LOOKS: u32 = 8;
 
 impl Default for EventSearch {
@@ -60,7 +60,8 @@ impl EventSearch {
     }
 }
 
-/// The narrowest bracket, in spacings of the floating-point numbers at the look that ended it: two, so that there is always a number in between to look at.
+/// The narrowest bracket, in spacings of the floating-point numbers at the look that ended it: two,
+/// so that there is always a number in between to look at.
 const SPACINGS: f64 = 2.0;
 
 /// How often to halve the surroundings of a peak: to 10⁻⁸ of the distance of two looks, where a

@@ -1,22 +1,22 @@
 //! The integrator: steps of Dormand and Prince's method, each as long as accuracy allows.
 
+use std::cell::RefCell;
 use std::mem;
 
 use thiserror::Error;
 
 use super::controller::Controller;
 use super::dormand_prince::{
-    DENSE, ERROR, FIFTH, FOURTH, NODES, SECOND, SIXTH, SOLUTION, STAGES, THIRD,
+    ERROR, FIFTH, FOURTH, NODES, SECOND, SIXTH, SOLUTION, STAGES, THIRD, combine,
 };
-use super::{Curve, Tolerances, VectorField};
+use super::step::{Inside, Step};
+use super::{Tolerances, VectorField};
 
 /// A solution of ẋ = f(t, x) in the making.
 ///
 /// The method is Dormand and Prince's Runge–Kutta pair of orders 5 and 4
-/// (doi:10.1016/0771-050X(80)90013-3), which advances with order 5. Between the ends of a step the
-/// solution is Shampine's quartic of order 4 (doi:10.1090/S0025-5718-1986-0815836-3), which needs
-/// no further evaluation of the field, and joins its neighbours with continuous first derivative.
-/// Made for flows that are smooth and not stiff: at a kink of the field the steps become short, and
+/// (doi:10.1016/0771-050X(80)90013-3), which advances with order 5; inside, a [`Step`] has order 5
+/// as well. The length of the steps keeps the error within the tolerances. Made for flows that are smooth and not stiff: at a kink of the field the steps become short, and
 /// in a stiff flow they stay short.
 ///
 /// ```
@@ -52,6 +52,7 @@ pub struct Integrator<'f, F: ?Sized> {
     /// The state at which a stage is evaluated, in the end the one that may be accepted.
     trial: Vec<f64>,
     stages: [Vec<f64>; STAGES],
+    inside: RefCell<Inside>,
 }
 
 /// Which stage holds the rates at the present state.
@@ -87,6 +88,7 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
             origin: state.to_vec(),
             trial: state.to_vec(),
             stages: std::array::from_fn(|_| vec![0.0; state.len()]),
+            inside: RefCell::new(Inside::new(state.len())),
         }
     }
 
@@ -108,7 +110,7 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
     /// # Errors
     ///
     /// [`IntegrationFailure`]; time and state then remain as they were.
-    pub fn step(&mut self, limit: f64) -> Result<Step<'_>, IntegrationFailure> {
+    pub fn step(&mut self, limit: f64) -> Result<Step<'_, F>, IntegrationFailure> {
         let remaining = limit - self.time;
         if remaining.is_nan() || remaining <= 0.0 {
             return Err(IntegrationFailure::LimitNotAhead { time: self.time, limit });
@@ -206,16 +208,19 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
         mem::swap(&mut self.origin, &mut self.state);
         mem::swap(&mut self.state, &mut self.trial);
         self.slope = Slope::Last;
+        self.inside.get_mut().forget();
     }
 
-    fn last_step(&self) -> Step<'_> {
+    fn last_step(&self) -> Step<'_, F> {
         let [k1, _, k3, k4, k5, k6, k7] = &self.stages;
         Step {
+            field: self.field,
             start: self.origin_time,
             end: self.time,
             first: &self.origin,
             last: &self.state,
             stages: [k1, k3, k4, k5, k6, k7],
+            inside: &self.inside,
         }
     }
 
@@ -233,28 +238,6 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
 
     fn undefined(&self) -> IntegrationFailure {
         IntegrationFailure::Undefined { time: self.time, state: self.state.clone() }
-    }
-}
-
-/// target = base + step · Σ weight · stage.
-fn combine<const N: usize>(
-    target: &mut [f64],
-    base: &[f64],
-    step: f64,
-    weights: [f64; N],
-    stages: [&[f64]; N],
-) {
-    // Slices of one known length spare the loop its bounds checks.
-    let dimension = target.len();
-    let base = &base[..dimension];
-    let stages = stages.map(|stage| &stage[..dimension]);
-    let weights = weights.map(|weight| step * weight);
-    for i in 0..dimension {
-        let mut sum = 0.0;
-        for stage in 0..N {
-            sum += weights[stage] * stages[stage][i];
-        }
-        target[i] = base[i] + sum;
     }
 }
 
@@ -290,65 +273,6 @@ fn weighted_norm(tolerances: &Tolerances, state: &[f64], component: impl Fn(usiz
     let fractions =
         state.iter().enumerate().map(|(i, x)| component(i).abs() / tolerances.allowed(x.abs()));
     fractions.fold(0.0, f64::max)
-}
-
-/// One step of an [`Integrator`], to be evaluated anywhere in it.
-#[derive(Clone, Copy, Debug)]
-pub struct Step<'a> {
-    start: f64,
-    end: f64,
-    first: &'a [f64],
-    last: &'a [f64],
-    /// Stages 1, 3, 4, 5, 6 and 7.
-    stages: [&'a [f64]; 6],
-}
-
-impl Curve for Step<'_> {
-    fn start(&self) -> f64 {
-        self.start
-    }
-
-    fn end(&self) -> f64 {
-        self.end
-    }
-
-    fn dimension(&self) -> usize {
-        self.first.len()
-    }
-
-    fn state_at(&self, time: f64, state: &mut [f64]) {
-        if time <= self.start {
-            state.copy_from_slice(self.first);
-        } else if time >= self.end {
-            state.copy_from_slice(self.last);
-        } else {
-            self.interpolate(time, state);
-        }
-    }
-}
-
-impl Step<'_> {
-    /// The quartic that has the states and rates of both ends; with θ from 0 to 1 in the step,
-    /// θ + φ = 1, Δ the change of state and Q the quartic term,
-    ///
-    /// x₀ + θ Δ + θφ (h k₁ − Δ) + θ²φ (2Δ − h k₁ − h k₇) + θ²φ² Q.
-    fn interpolate(&self, time: f64, state: &mut [f64]) {
-        let step = self.end - self.start;
-        let theta = (time - self.start) / step;
-        let rest = 1.0 - theta;
-        let (second, third) = (theta * rest, theta * theta * rest);
-        let fourth = third * rest;
-
-        let change = theta - second + 2.0 * third;
-        let mut weights = DENSE.map(|weight| fourth * weight);
-        weights[0] += second - third;
-        weights[5] -= third;
-
-        combine(state, self.first, step, weights, self.stages);
-        for ((x, first), last) in state.iter_mut().zip(self.first).zip(self.last) {
-            *x += change * (last - first);
-        }
-    }
 }
 
 /// Why an integration cannot go on.

@@ -39,12 +39,14 @@ mod event;
 mod integrator;
 mod linear;
 mod root;
+mod step;
 mod tolerances;
 
 pub use constant::ConstantFlow;
 pub use event::{EventSearch, InvalidSearch, Onset, first_instant};
-pub use integrator::{IntegrationFailure, Integrator, Step};
+pub use integrator::{IntegrationFailure, Integrator};
 pub use linear::{InvalidFlow, LinearFlow};
+pub use step::Step;
 pub use tolerances::{InvalidTolerances, Tolerances};
 
 /// The right-hand side f of a differential equation ẋ = f(t, x).
@@ -93,10 +95,9 @@ pub trait Curve {
     /// Before the start it is the state at the start, after the end the state at the end.
     fn state_at(&self, time: f64, state: &mut [f64]);
 
-    /// How long, in seconds from `time` on, until the curve has bent noticeably: a search that
+    /// How long, in seconds from an instant on, until the curve has bent noticeably: a search that
     /// looks several times in that span sees what it does. Infinite if it bends only once or so.
-    fn time_scale(&self, time: f64) -> f64 {
-        let _ = time;
+    fn time_scale(&self, _time: f64) -> f64 {
         self.end() - self.start()
     }
 }

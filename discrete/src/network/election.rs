@@ -7,6 +7,9 @@
 
 use super::{IdSet, NodeId};
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// What a robot offers; the greater, the better. Compared by `rank` first, then by `merit`, then
 /// by `economy`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

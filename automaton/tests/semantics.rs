@@ -1,0 +1,216 @@
+//! The semantics of runs, as `docs/semantics.md` states them, clause by clause.
+
+use pleach_automaton::{
+    Automaton, Composition, Failure, HybridTime, Policy, Reason, Settings, Trajectory, coordinates,
+    from,
+};
+use pleach_discrete::vocabulary;
+use pleach_guards::{Predicate, always};
+
+vocabulary! {
+    enum Place: Location { Here = "here", There = "there", Beyond = "beyond" }
+    enum Cue: Event { Go = "go", Stay = "stay", Return = "return" }
+}
+use Cue::{Go, Return, Stay};
+use Place::{Beyond, Here, There};
+
+coordinates! {
+    struct Clock { time = "τ", count = "n" }
+}
+
+type Machine = Automaton<Place, Cue, Clock>;
+
+const START: Clock = Clock { time: 0.0, count: 0.0 };
+
+fn clock() -> pleach_automaton::Builder<Place, Cue, Clock> {
+    let Clock { time, .. } = Clock::coordinates();
+    Automaton::starting_in(Here).initially(START).flow(Here, time.rate(1.0))
+}
+
+fn after(seconds: f64) -> Predicate {
+    Clock::coordinates().time.at_least(seconds)
+}
+
+fn run(machine: &Machine, horizon: f64) -> Trajectory {
+    machine.run(horizon).expect("the machine can be run")
+}
+
+fn labels(trajectory: &Trajectory) -> Vec<(f64, u32, &str)> {
+    trajectory.jumps().iter().map(|jump| (jump.at.t, jump.at.j, &*jump.label)).collect()
+}
+
+fn built(builder: pleach_automaton::Builder<Place, Cue, Clock>) -> Machine {
+    builder.build().expect("the machine is sound")
+}
+
+#[test]
+fn an_event_on_the_boundary_of_two_flows_happens_once() {
+    let Clock { time, count } = Clock::coordinates();
+    // Time goes on in `here` after the jump at 1, and the guard stays true on its boundary.
+    let once = after(1.0) & count.less_than(1.0);
+    let machine = built(
+        clock().transition(
+            from(Here)
+                .on(Go)
+                .to(Here)
+                .must(once)
+                .then([count.becomes(&count + 1.0), time.becomes(&time)]),
+        ),
+    );
+    let trajectory = run(&machine, 2.0);
+    assert_eq!(labels(&trajectory), [(1.0, 0, "go")]);
+    assert_eq!(trajectory.ending().reason, Reason::Horizon);
+    assert_eq!(trajectory.ending().at, HybridTime { t: 2.0, j: 1 });
+}
+
+#[test]
+fn the_flow_lands_on_the_crossed_side() {
+    let Clock { time, .. } = Clock::coordinates();
+    let third = 1.0 / 3.0;
+    let closed = built(clock().transition(from(Here).on(Go).to(There).must(time.at_least(third))));
+    let open = built(clock().transition(from(Here).on(Go).to(There).must(time.more_than(third))));
+    let at = |machine| run(machine, 1.0).jumps()[0].at.t;
+    assert!(at(&closed) >= third && at(&closed) - third < 1e-15);
+    assert!(at(&open) > third && at(&open) - third < 1e-15);
+}
+
+#[test]
+fn jumps_at_the_horizon_are_taken_and_later_ones_are_not() {
+    let machine = built(clock().transition(from(Here).on(Go).to(There).must(after(1.0))));
+    assert_eq!(labels(&run(&machine, 1.0)), [(1.0, 0, "go")]);
+    assert_eq!(labels(&run(&machine, 0.999_999)), []);
+}
+
+#[test]
+fn flows_of_every_kind_reach_the_horizon() {
+    let Clock { time, count } = Clock::coordinates();
+    let rates = [count.rate(1.0), count.rate(1.0 - &count), count.rate(1.0 - count.power(2.0))];
+    let at_one = [1.0, 1.0 - (-1f64).exp(), 1f64.tanh()];
+    for (rate, value) in rates.into_iter().zip(at_one) {
+        let flow = [time.rate(1.0), rate];
+        let machine = built(Automaton::starting_in(Here).initially(START).flow(Here, flow));
+        let trajectory = run(&machine, 1.0);
+        assert_eq!(trajectory.ending().reason, Reason::Horizon);
+        let error = (trajectory.value("n", 1.0).expect("the run lasts") - value).abs();
+        assert!(error < 1e-8, "{error:e}");
+        assert_eq!(run(&machine, 0.0).ending().reason, Reason::Horizon);
+    }
+}
+
+#[test]
+fn guards_already_true_on_entry_are_seen_at_that_instant() {
+    let machine = built(
+        clock()
+            .transition(from(Here).on(Go).to(There).must(after(1.0)))
+            .transition(from(There).on(Stay).to(Beyond).at_once(after(0.5))),
+    );
+    assert_eq!(labels(&run(&machine, 2.0)), [(1.0, 0, "go"), (1.0, 1, "stay")]);
+}
+
+#[test]
+fn every_assignment_reads_the_state_before_the_jump() {
+    let Clock { time, count } = Clock::coordinates();
+    let swap = [time.becomes(&count), count.becomes(&time)];
+    let machine =
+        built(clock().transition(from(Here).on(Go).to(There).must(after(2.0)).then(swap)));
+    let trajectory = run(&machine, 3.0);
+    let [first, second] = trajectory.phases() else { panic!("there is one jump") };
+    assert_eq!(first.samples.last().map(|x| x.values.clone()), Some(vec![2.0, 0.0]), "x⁻");
+    assert_eq!(second.samples[0].values, [0.0, 2.0], "x⁺");
+}
+
+#[test]
+fn simultaneous_transitions_go_by_priority_and_then_by_declaration() {
+    let order = |first: u8, second: u8| {
+        let machine = built(
+            clock()
+                .transition(from(Here).on(Go).to(There).must(after(1.0)).priority(first))
+                .transition(from(Here).on(Stay).to(Beyond).must(after(1.0)).priority(second)),
+        );
+        run(&machine, 2.0).jumps()[0].label.clone()
+    };
+    assert_eq!([order(0, 1), order(1, 0), order(0, 0)], ["go", "stay", "go"]);
+}
+
+#[test]
+fn what_may_happen_happens_as_late_or_as_early_as_it_can() {
+    let machine = built(
+        clock()
+            .invariant(Here, Clock::coordinates().time.at_most(3.0))
+            .transition(from(Here).on(Go).to(There).may(after(1.0))),
+    );
+    let composition = Composition::builder().add("machine", &machine).build().expect("sound");
+    let at = |policy| {
+        let settings = Settings { policy, ..Settings::default() };
+        composition.run_with(settings, 5.0).expect("it can be run").jumps()[0].at.t
+    };
+    assert_eq!(at(Policy::Early), 1.0);
+    assert!((at(Policy::Late) - 3.0).abs() < 1e-14);
+}
+
+#[test]
+fn a_state_that_neither_time_nor_a_jump_can_leave_is_blocked() {
+    let machine = built(clock().invariant(Here, Clock::coordinates().time.at_most(1.5)));
+    let trajectory = run(&machine, 5.0);
+    assert_eq!(trajectory.ending().reason, Reason::Blocked);
+    assert!((trajectory.ending().at.t - 1.5).abs() < 1e-14);
+    let last = trajectory.phases()[0].samples.last().map(|sample| sample.values[0]);
+    assert!(last <= Some(1.5), "time stops while the invariant holds");
+}
+
+#[test]
+fn a_reset_into_a_broken_invariant_blocks() {
+    let Clock { time, .. } = Clock::coordinates();
+    let machine = built(
+        clock()
+            .invariant(There, time.at_most(0.5))
+            .transition(from(Here).on(Go).to(There).must(after(1.0))),
+    );
+    let trajectory = run(&machine, 5.0);
+    assert_eq!(trajectory.ending().reason, Reason::Blocked);
+    assert_eq!(trajectory.ending().at, HybridTime { t: 1.0, j: 1 });
+}
+
+#[test]
+fn jumps_without_end_at_one_instant_reach_the_limit() {
+    let machine = built(
+        clock()
+            .transition(from(Here).on(Go).to(There).must(after(1.0)))
+            .transition(from(There).on(Return).to(Here).at_once(always())),
+    );
+    let trajectory = run(&machine, 5.0);
+    assert_eq!(trajectory.ending().reason, Reason::JumpLimit);
+    assert_eq!(trajectory.ending().at.t, 1.0);
+}
+
+#[test]
+fn what_has_no_value_ends_the_run_and_is_named() {
+    let Clock { time, count } = Clock::coordinates();
+    let undefined = (1.0 - &time).square_root().at_least(2.0);
+    let machine = built(clock().transition(from(Here).on(Go).to(There).must(undefined)));
+    let trajectory = run(&machine, 5.0);
+    assert!((trajectory.ending().at.t - 1.0).abs() < 1e-12, "it runs as far as it can");
+    let Reason::Finished(Failure::Formula { location, part, reason, .. }) =
+        trajectory.ending().reason.clone()
+    else {
+        panic!("the guard has no value beyond 1: {:?}", trajectory.ending())
+    };
+    assert_eq!(location, "here");
+    assert_eq!(part, "the guard `√(1 − τ) ≥ 2`");
+    assert_eq!(reason, "`√(1 − τ)` is not a number in this state");
+
+    let explodes = built(
+        Automaton::starting_in(Here)
+            .initially(Clock { time: 1.0, count: 0.0 })
+            .flow(Here, [time.rate(time.power(2.0)), count.rate(1.0)]),
+    );
+    let trajectory = run(&explodes, 5.0);
+    assert!(matches!(trajectory.ending().reason, Reason::Finished(Failure::Flow { .. })));
+    assert!((trajectory.ending().at.t - 1.0).abs() < 1e-6, "ẋ = x² explodes at 1");
+}
+
+#[test]
+fn a_run_is_repeated_to_the_bit() {
+    let machine = built(clock().transition(from(Here).on(Go).to(There).must(after(1.0 / 3.0))));
+    assert_eq!(run(&machine, 2.0), run(&machine, 2.0));
+}
