@@ -43,6 +43,11 @@ classics! {
     heater_and_controller from "../examples/heater_and_controller.rs"
     two_tanks from "../examples/two_tanks.rs"
     gear_shift from "../examples/gear_shift.rs"
+    navigation from "../examples/navigation.rs"
+    clock_synchronisation from "../examples/clock_synchronisation.rs"
+    filtered_oscillator from "../examples/filtered_oscillator.rs"
+    platoon from "../examples/platoon.rs"
+    two_phase_commit from "../examples/two_phase_commit.rs"
 }
 
 fn keep_page(name: &str, page: &str) {

@@ -38,8 +38,8 @@ pub mod zeno;
 pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
 pub use composition::{
-    Composition, CompositionBuilder, CompositionError, Failure, Policy, ReplayError, Settings,
-    Simulation, SimulationError,
+    Composition, CompositionBuilder, CompositionError, Exploration, ExplorationError, Failure,
+    Policy, ReplayError, Settings, Simulation, SimulationError,
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};

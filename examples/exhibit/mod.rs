@@ -41,7 +41,8 @@ struct Drawing {
 
 struct Run {
     title: &'static str,
-    trajectory: Trajectory,
+    story: Vec<String>,
+    plot: Option<String>,
 }
 
 /// Numbers that a run gives beside those that it should give.
@@ -79,7 +80,14 @@ impl Exhibit {
 
     /// Shows a run: its plot, its jumps and its ending.
     pub fn run(mut self, title: &'static str, trajectory: Trajectory) -> Self {
-        self.runs.push(Run { title, trajectory });
+        let (story, plot) = (show::story(&trajectory), Some(diagram::plot(&trajectory)));
+        self.runs.push(Run { title, story, plot });
+        self
+    }
+
+    /// Shows what happens where no time passes: a line for each jump.
+    pub fn story(mut self, title: &'static str, story: Vec<String>) -> Self {
+        self.runs.push(Run { title, story, plot: None });
         self
     }
 
@@ -140,8 +148,8 @@ impl Exhibit {
     }
 
     /// The plots of the runs: the name of a file, and an SVG document.
-    pub fn plots(&self) -> impl Iterator<Item = (String, String)> {
-        self.runs.iter().map(|run| (self.plot_of(run), diagram::plot(&run.trajectory)))
+    pub fn plots(&self) -> impl Iterator<Item = (String, &str)> {
+        self.runs.iter().filter_map(|run| Some((self.plot_of(run), run.plot.as_deref()?)))
     }
 
     fn diagram_of(&self, drawing: &Drawing) -> String {
