@@ -75,7 +75,7 @@ fn keep_plots(plots: impl Iterator<Item = (String, String)>) {
 const PICTURES: &str = "docs/classics/pictures";
 
 /// Examples that are no classics: they are about the robots.
-const OTHERS: [&str; 1] = ["stress"];
+const OTHERS: [&str; 2] = ["explore", "stress"];
 
 #[test]
 fn every_example_has_a_page_and_every_page_a_line_in_the_contents() {

@@ -17,6 +17,9 @@ use pleach::discrete::{Event, Location};
 
 pub use number::{number, numbers};
 
+/// What is folded up below the tables of an automaton.
+const DEFINITION: &str = "The formal definition";
+
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
 
@@ -66,7 +69,10 @@ impl Exhibit {
         automaton: &Automaton<L, E, S>,
     ) -> Self {
         let (table, definition) = (diagram::table(automaton), diagram::latex(automaton));
-        let legend = format!("{table}\n```math\n{}\n```\n", definition.trim());
+        let definition = format!("```math\n{}\n```", definition.trim());
+        let folded =
+            format!("<details><summary>{DEFINITION}</summary>\n\n{definition}\n\n</details>");
+        let legend = format!("{table}\n{folded}\n");
         self.drawings.push(Drawing { title, diagram: diagram::svg(automaton), legend });
         self
     }
