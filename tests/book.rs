@@ -74,6 +74,16 @@ fn keep_plots(plots: impl Iterator<Item = (String, String)>) {
 
 const PICTURES: &str = "docs/classics/pictures";
 
+#[test]
+fn every_document_has_a_line_in_the_contents() {
+    let contents = read("docs/SUMMARY.md");
+    for entry in fs::read_dir(root().join("docs")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let is_listed = name == "SUMMARY.md" || contents.contains(&format!("({name})"));
+        assert!(is_listed || !name.ends_with(".md"), "{name} is not in SUMMARY.md");
+    }
+}
+
 /// Examples that are no classics: they are about the robots.
 const OTHERS: [&str; 2] = ["explore", "stress"];
 
