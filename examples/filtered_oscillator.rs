@@ -158,7 +158,7 @@ pub fn exhibit() -> Shown {
     Ok(Exhibit::new("filtered_oscillator", include_str!("filtered_oscillator.rs"))
         .automaton("oscillator", &oscillator)
         .automaton("filter", &filter()?)
-        .compare_all("switches, in s", instants(&trajectory, 4), switches().take(4), 1e-12)
+        .compare_all("switches, in s", instants(&trajectory).take(4), switches().take(4), 1e-12)
         .compare("output at 4 s", filtered, output(ORDER, HORIZON), 1e-9)
         .compare("period in the end, in s", last.at.t - before.at.t, period(), 1e-9)
         .run("The oscillator with four filters", trajectory))

@@ -133,7 +133,7 @@ pub fn exhibit() -> Shown {
         let trajectory = navigation(MAP, start)?.run(HORIZON)?;
         let crossings = route(MAP, start).into_iter().map(|(time, _)| time);
         exhibit = exhibit
-            .compare_all("crossings, in s", instants(&trajectory, usize::MAX), crossings, 1e-12)
+            .compare_all("crossings, in s", instants(&trajectory), crossings, 1e-12)
             .run(title, trajectory);
     }
     Ok(exhibit)

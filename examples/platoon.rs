@@ -168,7 +168,7 @@ pub fn exhibit() -> Shown {
     Ok(Exhibit::new("platoon", include_str!("platoon.rs"))
         .automaton("radio", &radio()?)
         .automaton("vehicles", &vehicles(BRAKING)?)
-        .compare_all("switches, in s", instants(&trajectory, usize::MAX), switches, 1e-12)
+        .compare_all("switches, in s", instants(&trajectory), switches, 1e-12)
         .compare_all("gaps at the switches, in m", gaps.concat(), answers.flatten(), 1e-9)
         .run("A leader that brakes with 9 m/s²", trajectory))
 }

@@ -62,7 +62,7 @@ fn keep_diagrams<'a>(diagrams: impl Iterator<Item = (String, &'a str)>) {
 
 /// Plots are drawn anew with everything else, and not compared: the last digits of a run are not
 /// the same on every machine.
-fn keep_plots(plots: impl Iterator<Item = (String, String)>) {
+fn keep_plots<'a>(plots: impl Iterator<Item = (String, &'a str)>) {
     for (name, svg) in plots {
         let file = root().join(PICTURES).join(name);
         if is_update() {
