@@ -15,6 +15,7 @@ pub mod automaton;
 pub mod builder;
 pub mod composition;
 pub mod coordinates;
+pub mod decision;
 pub mod diagram;
 pub mod edge;
 pub mod executor;

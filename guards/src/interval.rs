@@ -293,3 +293,75 @@ impl fmt::Display for EmptyInterval {
 }
 
 impl Error for EmptyInterval {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whole numbers that fill the significand, so that neighbours are two apart.
+    const LARGE: f64 = 9_007_199_254_740_992.0;
+
+    #[test]
+    fn ends_are_rounded_away_from_what_is_not_a_number_exactly() {
+        let point = Interval::point;
+        let above = |value: f64| Interval { lower: value, upper: value.next_up() };
+        let below = |value: f64| Interval { lower: value.next_down(), upper: value };
+        let odd = 1f64.next_up();
+        let cases = [
+            (point(1.0) / point(4.0), point(0.25)),
+            (point(2.0) / point(3.0), above(2.0 / 3.0)),
+            (point(-2.0) / point(3.0), below(-2.0 / 3.0)),
+            (point(2.0) / point(-3.0), below(-2.0 / 3.0)),
+            (point(1.0) / point(10.0), below(0.1)),
+            (point(LARGE) + point(2.0), point(LARGE + 2.0)),
+            (point(LARGE) + point(1.0), above(LARGE)),
+            (point(LARGE) + point(3.0), below(LARGE + 4.0)),
+            (point(odd) * point(odd), above(odd * odd)),
+            (point(3.0) * point(-7.0), point(-21.0)),
+            (point(1e-200) * point(1e-200), Interval { lower: -5e-324, upper: 5e-324 }),
+            (point(1e200) * point(1e200), Interval { lower: f64::MAX, upper: f64::INFINITY }),
+        ];
+        for (position, (found, expected)) in cases.into_iter().enumerate() {
+            assert_eq!(found, expected, "case {position}");
+        }
+        assert_eq!(point(9.0).power(0.5), Some(point(3.0)));
+        assert_eq!(point(2.0).power(0.5), Some(below(2f64.sqrt())));
+        assert_eq!(point(3.0).power(0.5), Some(above(3f64.sqrt())));
+    }
+
+    #[test]
+    fn powers_know_parity_and_domain() {
+        let over = |lower, upper| Interval { lower, upper };
+        let near = |found: Option<Interval>, lower: f64, upper: f64| {
+            let found = found.expect("there are such powers");
+            let close = |end: f64, exact: f64| end == exact || (end - exact).abs() < 1e-12;
+            assert!(close(found.lower, lower) && close(found.upper, upper), "{found}");
+        };
+        near(over(-2.0, 1.0).power(4.0), 0.0, 16.0);
+        near(over(-2.0, 1.0).power(3.0), -8.0, 1.0);
+        near(over(2.0, 4.0).power(-1.0), 0.25, 0.5);
+        near(over(-4.0, -2.0).power(-1.0), -0.5, -0.25);
+        near(over(-4.0, 2.0).power(-2.0), 0.0625, f64::INFINITY);
+        near(over(-4.0, 4.0).power(1.5), 0.0, 8.0);
+        near(over(0.0, 4.0).power(-0.5), 0.5, f64::INFINITY);
+        assert_eq!(over(-4.0, 4.0).power(-1.0), Some(Interval::WHOLE));
+        assert_eq!(over(-4.0, -1.0).power(1.5), None);
+        assert_eq!(over(-4.0, -1.0).ln(), None);
+    }
+
+    #[test]
+    fn halves_cover_unbounded_intervals() {
+        for whole in [Interval::WHOLE, Interval { lower: 1e308, upper: f64::INFINITY }] {
+            let [left, right] = whole.halves();
+            assert!(left.upper.is_finite());
+            assert_eq!((left.lower, right.upper), (whole.lower, whole.upper));
+            assert_eq!(left.upper, right.lower);
+        }
+    }
+
+    #[test]
+    fn ends_in_the_wrong_order_are_refused() {
+        assert!(Interval::new(1.0, 0.0).is_err());
+        assert!(Interval::new(f64::NAN, 0.0).is_err());
+    }
+}
