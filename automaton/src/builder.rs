@@ -199,8 +199,8 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         }
         let leaving = L::ALL.iter().map(|&location| self.leaving(location)).collect();
         let modes = L::ALL.iter().map(|&location| self.mode(location)).collect();
-        let Builder { rows, initial, initial_state, ranges, .. } = self;
-        Ok(Automaton { rows, initial, initial_state, ranges, graph, modes, leaving })
+        let Builder { rows, initial, initial_state, ranges, known, .. } = self;
+        Ok(Automaton { rows, initial, initial_state, ranges, known, graph, modes, leaving })
     }
 
     /// The automaton, after a look at any one state of the model, whose values do not matter:

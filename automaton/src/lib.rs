@@ -13,6 +13,7 @@
 
 pub mod automaton;
 pub mod builder;
+pub mod check;
 pub mod composition;
 pub mod coordinates;
 pub mod decision;
@@ -29,6 +30,7 @@ pub mod zeno;
 
 pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
+pub use check::{Finding, Report};
 pub use composition::{
     Composition, CompositionBuilder, CompositionError, Failure, Policy, Settings, Simulation,
     SimulationError,

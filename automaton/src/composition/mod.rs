@@ -65,6 +65,7 @@
 mod blueprint;
 mod builder;
 mod flight;
+mod models;
 mod simulation;
 
 use std::sync::Arc;
@@ -73,6 +74,8 @@ pub use builder::{CompositionBuilder, CompositionError};
 pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;
+
+use crate::check::model::Model;
 
 /// Automata side by side; see the [module](self).
 #[derive(Clone)]
@@ -89,6 +92,8 @@ pub struct Composition {
 struct Component {
     name: String,
     blueprint: Arc<Blueprint>,
+    /// What checks read.
+    model: Arc<Model>,
     /// By event: what it is called here.
     events: Vec<String>,
     /// By coordinate: where its value is.
