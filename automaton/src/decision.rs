@@ -29,8 +29,8 @@
 //! results is written as alternatives, each a conjunction of comparisons.
 //!
 //! * The linear comparisons of an alternative are a system of inequalities, which the simplex
-//!   method in exact fractions either solves or refutes. A refutation is verified: the inequalities,
-//!   multiplied and added, contradict themselves.
+//!   method in exact fractions either solves or refutes. A refutation is verified: multiplied and
+//!   added, the inequalities contradict themselves.
 //! * An alternative that is not linear is searched by branch and prune: boxes are halved until a
 //!   sample is a witness or interval arithmetic excludes all of them (Moore, Kearfott and Cloud
 //!   2009, [doi:10.1137/1.9780898717716](https://doi.org/10.1137/1.9780898717716)).

@@ -7,7 +7,9 @@
 //! * **run**: several automata, their states and what they share make a [`System`], which the one
 //!   [`Executor`] takes through hybrid time; its [module](executor) states the semantics;
 //! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG and tables from the automaton itself, so that
-//!   pictures cannot drift from the code.
+//!   pictures cannot drift from the code;
+//! * **checked**: [`decision`] finds a state in which guards and invariants hold together, or proves
+//!   that there is none.
 //!
 //! The robot network is one such model, in [`network`]; nothing else here knows of robots.
 

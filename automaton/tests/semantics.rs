@@ -48,10 +48,15 @@ fn an_event_on_the_boundary_of_two_flows_happens_once() {
     let Clock { time, count } = Clock::coordinates();
     // Time goes on in `here` after the jump at 1, and the guard stays true on its boundary.
     let once = after(1.0) & count.less_than(1.0);
-    let machine = built(clock().transition(from(Here).on(Go).to(Here).must(once).then([
-        count.becomes(&count + 1.0),
-        time.becomes(&time),
-    ])));
+    let machine = built(
+        clock().transition(
+            from(Here)
+                .on(Go)
+                .to(Here)
+                .must(once)
+                .then([count.becomes(&count + 1.0), time.becomes(&time)]),
+        ),
+    );
     let trajectory = run(&machine, 2.0);
     assert_eq!(labels(&trajectory), [(1.0, 0, "go")]);
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
@@ -90,7 +95,8 @@ fn guards_already_true_on_entry_are_seen_at_that_instant() {
 fn every_assignment_reads_the_state_before_the_jump() {
     let Clock { time, count } = Clock::coordinates();
     let swap = [time.becomes(&count), count.becomes(&time)];
-    let machine = built(clock().transition(from(Here).on(Go).to(There).must(after(2.0)).then(swap)));
+    let machine =
+        built(clock().transition(from(Here).on(Go).to(There).must(after(2.0)).then(swap)));
     let trajectory = run(&machine, 3.0);
     let [first, second] = trajectory.phases() else { panic!("there is one jump") };
     assert_eq!(first.samples.last().map(|x| x.values.clone()), Some(vec![2.0, 0.0]), "x⁻");

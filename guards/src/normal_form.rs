@@ -70,8 +70,8 @@ impl Predicate {
     /// The predicate without absolute values, minima and maxima: each comparison with such parts
     /// becomes a disjunction of cases in which it is one of its operands.
     ///
-    /// It holds in the same states, save where a part of a case that does not apply is not a number,
-    /// such as √−x in √|x|, or where a piece that is divided by is a zero of the other sign. Its
+    /// It holds in the same states, save where a part of a case that does not apply is not a
+    /// number, such as √−x in √|x|, or where a piece that is divided by is a zero of the other sign. Its
     /// margin says how far the case is, too.
     ///
     /// # Errors

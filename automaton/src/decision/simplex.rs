@@ -5,8 +5,8 @@
 //! Bland's rule ends on every input (Chvátal 1983, *Linear Programming*, chapters 2, 3 and 8), and
 //! not a solver in floating point.
 //!
-//! The dictionaries hold whole numbers over one common denominator. A pivot multiplies crosswise and
-//! divides by the last denominator, which leaves no remainder, for all entries are determinants of
+//! The dictionaries hold whole numbers over one common denominator. A pivot multiplies crosswise
+//! and divides by the last denominator, which leaves no remainder, for all entries are determinants of
 //! parts of the input (Edmonds 1967, *Systems of distinct representatives and linear algebra*); so
 //! the numbers stay as short as they can be without looking for common factors.
 

@@ -22,8 +22,8 @@ pub(super) fn sum(left: f64, right: f64) -> Interval {
     enclose(sum, (left - (sum - part)) + (right - part))
 }
 
-/// a · b. Where this is 0 · ∞ it is no value of an operation on intervals, but values beside it come
-/// near 0.
+/// a · b. Where this is 0 · ∞ it is no value of an operation on intervals, but values beside it
+/// come near 0.
 pub(super) fn product(left: f64, right: f64) -> Interval {
     let product = left * right;
     if left == 0.0 || right == 0.0 {
