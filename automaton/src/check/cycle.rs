@@ -130,8 +130,8 @@ impl Inquiry<'_> {
     ) {
         let model = self.model;
         let here = path.last().map_or(start, |&last| model.transitions[last].target);
-        let forced = reach.leaving(self, here).filter(|&number| model.is_forced(number));
-        for number in forced.collect::<Vec<_>>() {
+        let leaving = model.modes[here].leaving.iter().copied();
+        for number in leaving.filter(|&one| reach.is_live[one] && model.is_forced(one)) {
             let target = model.transitions[number].target;
             let visited = path.iter().any(|&before| model.transitions[before].source == target);
             if cycles.len() >= MOST_CYCLES || !members.contains(&target) {

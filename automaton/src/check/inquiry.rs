@@ -105,14 +105,15 @@ impl<'a> Inquiry<'a> {
     }
 
     /// The states from which a transition is taken: for one that must be taken, those in which its
-    /// guard becomes true. That some guard may be true already on entry is left out.
+    /// guard becomes true, on the boundary of the guard also where that does not belong to it. That
+    /// some guard may be true already on entry is left out.
     pub(super) fn departing(&self, transition: usize) -> Predicate {
         let one = &self.model.transitions[transition];
-        let guard = one.guard.predicate().clone();
+        let guard = one.guard.predicate();
         match one.urgency {
-            Urgency::AtOnce => self.standing(one.source) & guard,
-            Urgency::Must => self.dwelling(one.source) & closed(&one.refused()) & guard,
-            Urgency::May => self.dwelling(one.source) & guard,
+            Urgency::AtOnce => self.standing(one.source) & guard.clone(),
+            Urgency::Must => self.dwelling(one.source) & closed(&one.refused()) & closed(guard),
+            Urgency::May => self.dwelling(one.source) & guard.clone(),
         }
     }
 

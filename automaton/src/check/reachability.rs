@@ -1,12 +1,16 @@
 //! Which transitions can ever be taken, and which locations be entered.
 //!
-//! A run may begin in the initial location in any state within its invariant and the declared
-//! ranges. From there on, a transition is *live* if its guard can hold in a location that is
-//! reached: after time has passed there, while no forced transition was due; or right on entry, in
+//! A run begins in the initial state, or, where the model has none, in any state of the initial
+//! location. From there on, a transition is *live* if its guard can hold in a location that is
+//! reached, or on the boundary of the guard, since a flow lands just beyond it: after time has passed there, while no forced transition was due; or right on entry, in
 //! a state that a live transition lands in. What is not live is so by proof; a reset that is a
 //! function can land anywhere.
 
-use super::inquiry::Inquiry;
+use std::collections::BTreeSet;
+
+use pleach_guards::always;
+
+use super::inquiry::{Inquiry, closed};
 use super::report::Kind;
 
 /// What can happen, by the numbers of locations and transitions.
@@ -16,83 +20,112 @@ pub(super) struct Reach {
     pub(super) is_live: Vec<bool>,
 }
 
-impl Reach {
-    /// The transitions that can be taken from `location`, in their total order.
-    pub(super) fn leaving<'a>(
-        &'a self,
-        inquiry: &'a Inquiry<'_>,
-        location: usize,
-    ) -> impl Iterator<Item = usize> + 'a {
-        let leaving = inquiry.model.modes[location].leaving.iter().copied();
-        leaving.filter(|&transition| self.is_live[transition])
-    }
+/// The moments at which a transition can be taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Moment {
+    /// After time has passed in its source.
+    Later,
+    /// In the instant in which its source is entered.
+    OnEntry,
+}
+
+/// What is known so far, growing.
+struct Search {
+    is_reached: Vec<bool>,
+    fires: BTreeSet<(usize, Moment)>,
+    /// Questions that were answered with no: the transition after another at a moment of that one.
+    excluded: BTreeSet<(usize, Option<(usize, Moment)>)>,
 }
 
 impl Inquiry<'_> {
     /// Goes on until nothing new is reached.
     pub(super) fn reach(&self) -> Reach {
         let (modes, transitions) = (self.model.modes.len(), self.model.transitions.len());
-        let mut reach = Reach { is_reached: vec![false; modes], is_live: vec![false; transitions] };
-        reach.is_reached[self.model.initial] = true;
-        let mut after_time = vec![None; transitions];
-        let mut tried = vec![vec![false; transitions]; transitions];
-        loop {
-            let mut grows = false;
+        let mut search = Search {
+            is_reached: vec![false; modes],
+            fires: BTreeSet::new(),
+            excluded: BTreeSet::new(),
+        };
+        search.is_reached[self.model.initial] = true;
+        let is_satisfiable: Vec<bool> = self
+            .model
+            .transitions
+            .iter()
+            .map(|transition| self.is_possible(transition.guard.predicate()))
+            .collect();
+        let mut known = usize::MAX;
+        while known != search.fires.len() {
+            known = search.fires.len();
             for number in 0..transitions {
                 let transition = &self.model.transitions[number];
-                if reach.is_live[number] || !reach.is_reached[transition.source] {
-                    continue;
+                if is_satisfiable[number] && search.is_reached[transition.source] {
+                    self.look_at(number, &mut search);
                 }
-                let holds_after_time =
-                    *after_time[number].get_or_insert_with(|| self.can_hold_after_time(number));
-                let mut on_entry = || {
-                    (0..transitions).any(|entry| {
-                        let arrives = reach.is_live[entry]
-                            && self.model.transitions[entry].target == transition.source;
-                        arrives
-                            && !std::mem::replace(&mut tried[number][entry], true)
-                            && self.can_hold_on_entry(number, entry)
-                    })
-                };
-                if holds_after_time || on_entry() {
-                    reach.is_live[number] = true;
-                    reach.is_reached[transition.target] = true;
-                    grows = true;
-                }
+                search.is_reached[transition.target] |= search.is_live(number);
             }
-            if !grows {
-                return reach;
+        }
+        let is_live = (0..transitions).map(|number| search.is_live(number)).collect();
+        Reach { is_reached: search.is_reached, is_live }
+    }
+
+    fn look_at(&self, number: usize, search: &mut Search) {
+        let source = self.model.transitions[number].source;
+        if search.asks(number, Moment::Later, None) && self.fires_later(number) {
+            search.fires.insert((number, Moment::Later));
+        }
+        if source == self.model.initial && self.fires_at_the_start(number) {
+            search.fires.insert((number, Moment::OnEntry));
+        }
+        for (entry, moment) in search.fires.clone() {
+            let arrives = self.model.transitions[entry].target == source;
+            if arrives
+                && search.asks(number, Moment::OnEntry, Some((entry, moment)))
+                && self.fires_after(number, entry, moment)
+            {
+                search.fires.insert((number, Moment::OnEntry));
             }
         }
     }
 
-    fn can_hold_after_time(&self, number: usize) -> bool {
+    fn fires_later(&self, number: usize) -> bool {
         let transition = &self.model.transitions[number];
-        let guard = transition.guard.predicate().clone();
-        let begins_here = transition.source == self.model.initial;
-        let states = if begins_here {
-            self.standing(transition.source)
-        } else {
-            self.dwelling(transition.source)
-        };
-        self.is_possible(&(states & guard))
+        let guard = closed(transition.guard.predicate());
+        self.is_possible(&(self.dwelling(transition.source) & guard))
     }
 
-    /// Whether the guard of `number` can hold right after `entry` has been taken. Its source may
-    /// itself have been entered outside its invariant.
-    fn can_hold_on_entry(&self, number: usize, entry: usize) -> bool {
-        let [transition, entry] = [number, entry].map(|one| &self.model.transitions[one]);
-        let guard = transition.guard.predicate();
-        match entry.substitution() {
-            Some(reset) => {
-                self.is_possible(&(entry.guard.predicate().clone() & guard.substitute(&reset)))
-            }
-            None => self.is_possible(guard),
+    fn fires_at_the_start(&self, number: usize) -> bool {
+        let guard = self.model.transitions[number].guard.predicate();
+        match &self.model.initial_state {
+            // Where a guard has no value, it is not excluded that it fires.
+            Some(state) => guard.holds(state) != Ok(false),
+            None => self.is_possible(&(self.standing(self.model.initial) & guard.clone())),
         }
+    }
+
+    /// Whether the guard of `number` can hold right after `entry` has been taken. If that was in
+    /// the instant in which its own source was entered, then that may be outside its invariant.
+    fn fires_after(&self, number: usize, entry: usize, moment: Moment) -> bool {
+        let [transition, entry] = [number, entry].map(|one| &self.model.transitions[one]);
+        let guard = closed(transition.guard.predicate());
+        let Some(reset) = entry.substitution() else { return self.is_possible(&guard) };
+        let before = match moment {
+            Moment::Later => self.dwelling(entry.source),
+            Moment::OnEntry => always(),
+        };
+        let fires = before & closed(entry.guard.predicate()) & guard.substitute(&reset);
+        self.is_possible(&fires)
     }
 
     /// Reports locations that are not reached, and transitions of the others that never fire.
     pub(super) fn report_unreached(&mut self, reach: &Reach, shadowed: &[usize]) {
+        for number in 0..self.model.transitions.len() {
+            let transition = &self.model.transitions[number];
+            let is_due = reach.is_reached[transition.source] && !reach.is_live[number];
+            if is_due && !shadowed.contains(&number) {
+                let message = self.why_never(number);
+                self.warning(Kind::NeverFires, self.model.place_of(&[number]), message);
+            }
+        }
         let in_graph = self.reached_in_graph();
         for location in (0..self.model.modes.len()).filter(|&one| !reach.is_reached[one]) {
             let message = if in_graph[location] {
@@ -101,14 +134,6 @@ impl Inquiry<'_> {
                 "no way leads here from the initial location: add a transition, or leave it out"
             };
             self.warning(Kind::Unreachable, self.model.mode_at(location), message.to_owned());
-        }
-        for number in 0..self.model.transitions.len() {
-            let transition = &self.model.transitions[number];
-            let is_due = reach.is_reached[transition.source] && !reach.is_live[number];
-            if is_due && !shadowed.contains(&number) {
-                let message = self.why_never(number);
-                self.warning(Kind::NeverFires, self.model.place_of(&[number]), message);
-            }
         }
     }
 
@@ -139,5 +164,18 @@ impl Inquiry<'_> {
             }
         }
         reached
+    }
+}
+
+impl Search {
+    fn is_live(&self, number: usize) -> bool {
+        [Moment::Later, Moment::OnEntry]
+            .iter()
+            .any(|&moment| self.fires.contains(&(number, moment)))
+    }
+
+    /// Whether it is worth asking: neither the answer to this question nor a better one is known.
+    fn asks(&mut self, number: usize, moment: Moment, after: Option<(usize, Moment)>) -> bool {
+        !self.fires.contains(&(number, moment)) && self.excluded.insert((number, after))
     }
 }

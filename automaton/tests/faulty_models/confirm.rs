@@ -2,7 +2,7 @@
 
 use pleach_automaton::check::{Finding, Kind};
 use pleach_automaton::{Coordinates, Transition};
-use pleach_discrete::Location;
+use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::Predicate;
 
 use crate::{Cue, Machine, Point, Room};
@@ -86,13 +86,14 @@ fn transition<'a>(
 }
 
 fn cue(name: &str) -> Cue {
-    use pleach_discrete::Event;
     let cue = Cue::ALL.iter().copied().find(|one| one.name() == name);
     cue.unwrap_or_else(|| panic!("no event `{name}`"))
 }
 
+/// A flow makes a guard true on its boundary, and lands just beyond.
 fn holds(transition: &Transition<Cue, Point>, point: Point) -> bool {
-    transition.guard.holds(&point).expect("the guard has a value")
+    let verdict = transition.guard.evaluate(&point).expect("the guard has a value");
+    verdict.holds || verdict.margin == 0.0 && transition.urgency == Urgency::Must
 }
 
 fn after(transition: &Transition<Cue, Point>, mut point: Point) -> Point {
@@ -110,7 +111,6 @@ fn is_stuck(machine: &Machine, location: Room, point: Point) -> bool {
         let step = machine.enabled_on(*event, location, &point);
         step.expect("the guards have values").is_none()
     };
-    use pleach_discrete::Event;
     Cue::ALL.iter().all(is_none)
 }
 

@@ -56,12 +56,12 @@ fn a_report_reads_as_a_list() {
 error: blocked: location `a`: the flow leaves the invariant through `x ≤ 1`, and no guard holds \
 there: add a transition, or widen a guard
     for example at x = 1, y = 0
+warning: never fires: location `a`, on `go`: its guard `x ≥ 200` holds nowhere in the declared \
+ranges: correct one of them
 warning: unreachable: location `b`: no way leads here from the initial location: add a transition, \
 or leave it out
 warning: unreachable: location `c`: no way leads here from the initial location: add a transition, \
 or leave it out
-warning: never fires: location `a`, on `go`: its guard `x ≥ 200` holds nowhere in the declared \
-ranges: correct one of them
 1 error, 3 warnings, 0 notes; 0 faults excluded by proof";
     assert_eq!(machine.check().to_string(), text);
 }

@@ -55,6 +55,7 @@ fn guards_that_touch_in_one_point() {
 #[test]
 fn guards_that_exclude_each_other_do_not_overlap() {
     let Point { x, .. } = Point::coordinates();
+    check(tour().transition(from(A).on(Turn).to(C).may(x.less_than(1.0))), &[]);
     check(tour().transition(from(A).on(Turn).to(C).must(x.less_than(-1.0))), &[]);
 }
 
@@ -64,7 +65,7 @@ fn curved_guards_that_hold_together() {
     let far = norm([x.clone().into(), y.clone().into()]).at_least(10.0);
     let low = (&y * &y).at_least(99.0) & x.at_most(0.5);
     let parts = tour()
-        .transition(from(B).on(Turn).to(A).must(far & x.less_than(2.0)))
+        .transition(from(B).on(Turn).to(A).must(far & x.less_than(2.0)).then(x.becomes(0.0)))
         .transition(from(B).on(Back).to(C).must(low));
     check(parts, &["warning: overlap: location `b`, on `turn` and `back`"]);
 }
@@ -122,6 +123,17 @@ fn guards_behind_another_that_must_be_taken() {
 }
 
 #[test]
+fn strict_guards_fire_beyond_their_boundary() {
+    let Point { x, .. } = Point::coordinates();
+    let parts = machine()
+        .flow(A, x.rate(1.0))
+        .flow(B, x.rate(1.0))
+        .transition(from(A).on(Go).to(B).must(x.more_than(1.0)))
+        .transition(from(B).on(Go).to(C).must(x.more_than(2.0)));
+    check(parts, &[]);
+}
+
+#[test]
 fn locations_without_a_way_in() {
     let Point { x, .. } = Point::coordinates();
     let parts = machine()
@@ -139,7 +151,7 @@ fn locations_behind_what_never_happens() {
         .transition(from(A).on(Go).to(B).must(x.at_least(1.0)))
         .transition(from(A).on(Turn).to(C).may((&x * &x).less_than(-1.0)));
     let expected =
-        ["warning: unreachable: location `c`", "warning: never fires: location `a`, on `turn`"];
+        ["warning: never fires: location `a`, on `turn`", "warning: unreachable: location `c`"];
     check(parts, &expected);
 }
 
@@ -228,7 +240,11 @@ fn invariants_that_hold_nowhere() {
     let parts = tour().invariant(C, x.at_least(&y + 1.0) & x.less_than(&y));
     check(
         parts,
-        &["error: lands outside: location `b`, on `go`", "warning: empty invariant: location `c`"],
+        &[
+            "error: lands outside: location `b`, on `go`",
+            "warning: empty invariant: location `c`",
+            "warning: never fires: location `c`, on `go`",
+        ],
     );
 }
 
@@ -237,10 +253,12 @@ fn invariants_that_hold_nowhere() {
 #[test]
 fn resets_that_land_outside() {
     let Point { x, y } = Point::coordinates();
-    let turn = from(B).on(Turn).to(A).may(y.at_least(0.0));
-    let parts = tour()
-        .invariant(A, y.at_most(10.0))
-        .transition(turn.then([x.becomes(0.0), y.becomes(&y + 8.0)]));
+    let turn = from(B).on(Turn).to(C).may(y.at_most(5.0)).then(y.becomes(&y + 8.0));
+    let parts = machine()
+        .flow(A, x.rate(1.0))
+        .invariant(C, y.at_most(10.0))
+        .transition(from(A).on(Go).to(B).must(x.at_least(1.0)))
+        .transition(turn);
     check(parts, &["error: lands outside: location `b`, on `turn`"]);
 }
 
