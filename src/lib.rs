@@ -1,17 +1,56 @@
 //! Hybrid automata as typed Rust values, and a distributed robot network written with them.
 //!
 //! A hybrid automaton jumps between locations and flows within them. Here its parts are values:
-//! locations and events are enums, the jumps are rows of a
-//! [`TransitionTable`](discrete::TransitionTable), guards are [predicates](guards::Predicate) that
-//! can be evaluated, printed and searched, resets and flows are named functions. An
-//! [`Automaton`](automaton::Automaton) puts them together and refuses parts that do not fit; one
-//! [`Executor`](automaton::Executor) runs compositions of them through hybrid time;
-//! [`diagram`](automaton::diagram) draws them.
+//! locations and events are enums, guards and invariants are [predicates](guards::Predicate) that
+//! can be evaluated, printed and analysed, flows and resets are formulas too, or functions under a
+//! name. An [`Automaton`](automaton::Automaton) puts them together and refuses parts that do not
+//! fit; a [`Composition`](automaton::composition) joins automata by labels; one
+//! [`Executor`](automaton::Executor) runs them through hybrid time; [`diagram`](automaton::diagram)
+//! draws them, and [temporal formulas](verify::temporal) judge their trajectories.
 //!
-//! The model that comes with the framework is the robot network of *Global Planning for Multi-Robot
-//! Communication Networks in Complex Environments*: robots that grow trees of relays from access
-//! points to tasks, each of them an automaton that decides from its own state and from what it
-//! hears. This page runs a mission of it.
+//! # A model
+//!
+//! A thermostat that keeps a room between 18 and 22 degrees:
+//!
+//! ```
+//! use pleach::prelude::*;
+//!
+//! vocabulary! {
+//!     enum Heater: Location { Off = "off", On = "on" }
+//!     enum Sensed: Event { Cold = "cold", Warm = "warm" }
+//! }
+//! coordinates! { struct Room { temperature = "T" } }
+//! use {Heater::{Off, On}, Sensed::{Cold, Warm}};
+//!
+//! let Room { temperature } = Room::coordinates();
+//! let thermostat = Automaton::starting_in(Off)
+//!     .initially(Room { temperature: 20.0 })
+//!     .flow(Off, temperature.rate(-0.1 * &temperature))
+//!     .flow(On, temperature.rate(5.0 - 0.1 * &temperature))
+//!     .transition(from(Off).on(Cold).to(On).must(temperature.at_most(18.0)))
+//!     .transition(from(On).on(Warm).to(Off).must(temperature.at_least(22.0)))
+//!     .build()?;
+//!
+//! let trajectory = thermostat.run(60.0)?;
+//! let first = &trajectory.jumps()[0];
+//! assert_eq!(first.label, "cold");
+//! assert!((first.at.t - 10.0 * (20.0f64 / 18.0).ln()).abs() < 1e-12);
+//! assert_eq!(trajectory.location(0, first.at.t), Some("on"));
+//!
+//! // Whatever happens, the room is within its band from the first 2 s to the 58th.
+//! use pleach::verify::temporal::{Status, always, within};
+//! let band = temperature.at_least(17.9) & temperature.at_most(22.1);
+//! let judgement = always(within(2.0, 58.0)?, band).judge(&trajectory)?;
+//! assert_eq!(judgement.status, Status::Satisfied);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The examples of the repository are the classics of the field: bouncing ball, thermostat, two
+//! tanks, a clock network, a platoon and others, each tested against a closed form or a published
+//! answer. The rest of this page runs the model that comes with the framework: the robot network
+//! of *Global Planning for Multi-Robot Communication Networks in Complex Environments*, robots that
+//! grow trees of relays from access points to tasks, each of them an automaton that decides from
+//! its own state and from what it hears.
 //!
 //! # A mission
 //!
@@ -98,18 +137,15 @@
 //! # Ok::<(), pleach::automaton::BuildError>(())
 //! ```
 //!
-//! How to build one is shown with [`Automaton`](automaton::Automaton), how to run one with the
-//! [executor](automaton::executor).
-//!
 //! # Where to read on
 //!
 //! | layer | holds |
 //! | --- | --- |
 //! | [`guards`] | predicates over states with a signed margin |
 //! | [`discrete`] | locations, events, tables; [of the network](discrete::network): roles, elections, posts, agreements |
-//! | [`continuous`] | [geometry](continuous::geometry); [of the network](continuous::network): links, routing, motion, certified acceptance |
-//! | [`automaton`] | automaton, executor, diagrams; [the network](automaton::network): robots, medium, composition |
-//! | [`verify`] | [the properties of the network](verify::network), each stated once, and their monitor |
+//! | [`continuous`] | [flows](continuous::flow), [geometry](continuous::geometry); [of the network](continuous::network): links, routing, motion, certified acceptance |
+//! | [`automaton`] | automaton, composition, executor, trajectories, checks, diagrams; [the network](automaton::network): robots, medium, composition |
+//! | [`verify`] | [temporal logic](verify::temporal) over trajectories; [the properties of the network](verify::network), each stated once, and their monitor |
 //! | this crate | [scenario files](scenario_file), [missions](mission), [traces](trace), [summaries](summary), [stories](story), [figures] |
 //!
 //! `docs/model.md` of the repository leads from each equation and algorithm of the paper to the item

@@ -4,25 +4,31 @@
 //! [`TransitionTable`](pleach_discrete::TransitionTable), and its guards are
 //! [predicates as data](pleach_guards). It can be
 //!
-//! * **run**: several automata, their states and what they share make a [`System`], which the one
-//!   [`Executor`] takes through hybrid time; its [module](executor) states the semantics;
-//! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG and tables from the automaton itself, so that
-//!   pictures cannot drift from the code;
+//! * **run**: an automaton over [coordinates](mod@coordinates), or a [`composition`] of several,
+//!   runs as it is and leaves a [`Trajectory`]; anything else that is a [`System`] runs on the same
+//!   [`Executor`]. What a run is, the [executor's page](executor) and `docs/semantics.md` say;
+//! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG, LaTeX and tables from the automaton itself,
+//!   so that pictures cannot drift from the code, and plots what it went through;
+//! * **covered**: [`coverage`] counts what a set of runs has been through, and what it left out;
 //! * **checked**: [`decision`] finds a state in which guards and invariants hold together, or proves
 //!   that there is none.
 //!
-//! The robot network is one such model, in [`network`]; nothing else here knows of robots.
+//! The robot network is one such model, in [`network`]; nothing else here knows of robots. It is
+//! behind the feature `network`, which is on by default; without it the framework needs neither
+//! geometry nor a solver.
 
 pub mod automaton;
 pub mod builder;
 pub mod check;
 pub mod composition;
 pub mod coordinates;
+pub mod coverage;
 pub mod decision;
 pub mod diagram;
 pub mod edge;
 pub mod executor;
 pub mod flow;
+#[cfg(feature = "network")]
 pub mod network;
 pub mod reset;
 pub mod time;
@@ -34,10 +40,11 @@ pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
 pub use check::{Finding, Report};
 pub use composition::{
-    Composition, CompositionBuilder, CompositionError, Failure, Policy, Settings, Simulation,
-    SimulationError,
+    Composition, CompositionBuilder, CompositionError, Failure, Policy, ReplayError, Settings,
+    Simulation, SimulationError,
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
+pub use coverage::{Coverage, CoverageError};
 pub use edge::{Edge, from};
 pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
 pub use flow::{Flow, Rate};

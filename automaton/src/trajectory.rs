@@ -254,7 +254,7 @@ impl Trajectory {
 }
 
 /// The cubic Hermite interpolation, exact for flows of third degree.
-fn between(before: &Sample, after: &Sample, t: f64) -> Vec<f64> {
+pub(crate) fn between(before: &Sample, after: &Sample, t: f64) -> Vec<f64> {
     let width = after.t - before.t;
     let s = (t - before.t) / width;
     let (rest, square) = (1.0 - s, s * s);

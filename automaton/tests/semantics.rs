@@ -82,6 +82,22 @@ fn jumps_at_the_horizon_are_taken_and_later_ones_are_not() {
 }
 
 #[test]
+fn flows_of_every_kind_reach_the_horizon() {
+    let Clock { time, count } = Clock::coordinates();
+    let rates = [count.rate(1.0), count.rate(1.0 - &count), count.rate(1.0 - count.power(2.0))];
+    let at_one = [1.0, 1.0 - (-1f64).exp(), 1f64.tanh()];
+    for (rate, value) in rates.into_iter().zip(at_one) {
+        let flow = [time.rate(1.0), rate];
+        let machine = built(Automaton::starting_in(Here).initially(START).flow(Here, flow));
+        let trajectory = run(&machine, 1.0);
+        assert_eq!(trajectory.ending().reason, Reason::Horizon);
+        let error = (trajectory.value("n", 1.0).expect("the run lasts") - value).abs();
+        assert!(error < 1e-8, "{error:e}");
+        assert_eq!(run(&machine, 0.0).ending().reason, Reason::Horizon);
+    }
+}
+
+#[test]
 fn guards_already_true_on_entry_are_seen_at_that_instant() {
     let machine = built(
         clock()

@@ -1,11 +1,15 @@
-//! The continuous layer: geometry of the workspace, communication and motion.
+//! The continuous layer: flows, geometry of the workspace, communication and motion.
 //!
-//! Lengths are in the scenario's own unit, times in seconds.
+//! [`flow`] is for all models: exact and integrated solutions, and the events on them. The rest is
+//! for the robot network and behind the feature `network`, which is on by default; there lengths
+//! are in the scenario's own unit, times in seconds.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may panic"))]
 
 pub mod flow;
+#[cfg(feature = "network")]
 pub mod geometry;
+#[cfg(feature = "network")]
 pub mod network;
 
 /// A place in the plane.

@@ -50,10 +50,13 @@ impl<'a, L: Location, E: Event> TransitionTable<'a, L, E> {
     ///
     /// [`InvalidTransition`] if no row says so.
     pub fn next(&self, location: L, event: E) -> Result<L, InvalidTransition<L, E>> {
-        match self.enabled(location).find(|row| row.event == event) {
-            Some(row) => Ok(row.target),
-            None => Err(InvalidTransition { location, event }),
-        }
+        // Of several equal keys the first counts, which is the row declared first.
+        self.rows
+            .iter()
+            .filter(|row| row.source == location && row.event == event)
+            .min_by_key(|row| row.priority)
+            .map(|row| row.target)
+            .ok_or(InvalidTransition { location, event })
     }
 
     /// The rows that leave `location`, in their total order. Nothing is allocated.
@@ -95,17 +98,37 @@ impl<'a, L: Location, E: Event> TransitionTable<'a, L, E> {
     /// The locations that no sequence of events reaches from `initial`, in the order of
     /// [`Location::ALL`].
     pub fn unreachable_from(&self, initial: L) -> Vec<L> {
-        let mut reached = vec![initial];
-        let mut next = 0;
-        while let Some(&location) = reached.get(next) {
-            for row in self.rows.iter().filter(|row| row.source == location) {
-                if !reached.contains(&row.target) {
-                    reached.push(row.target);
+        let mut reached = vec![false; L::ALL.len()];
+        self.mark_reachable(initial, &mut reached);
+        let marked = L::ALL.iter().zip(reached);
+        marked.filter(|(_, is_reached)| !is_reached).map(|(&location, _)| location).collect()
+    }
+
+    /// Marks the locations that some sequence of events reaches from `initial`: `reached` has one
+    /// place for each of [`Location::ALL`], in that order. Nothing is allocated.
+    ///
+    /// The rows are swept until nothing changes: at most once for each location.
+    pub fn mark_reachable(&self, initial: L, reached: &mut [bool]) {
+        for (mark, &location) in reached.iter_mut().zip(L::ALL) {
+            *mark = location == initial;
+        }
+        let place = |location| L::ALL.iter().position(|&other| other == location);
+        for _ in L::ALL {
+            let mut changed = false;
+            for row in self.rows {
+                let is_left = place(row.source).is_some_and(|at| reached.get(at) == Some(&true));
+                if let Some(mark) = place(row.target).and_then(|at| reached.get_mut(at))
+                    && is_left
+                    && !*mark
+                {
+                    *mark = true;
+                    changed = true;
                 }
             }
-            next += 1;
+            if !changed {
+                return;
+            }
         }
-        L::ALL.iter().copied().filter(|location| !reached.contains(location)).collect()
     }
 
     /// The full location × event table in Markdown: a cell names the location entered, or shows a

@@ -39,7 +39,8 @@ macro_rules! vocabulary {
         $(#[$attribute])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         $visibility enum $name {
-            $($(#[$note])* $variant),+
+            // A name says what a variant stands for.
+            $($(#[$note])* #[allow(missing_docs)] $variant),+
         }
 
         impl $crate::$kind for $name {

@@ -12,11 +12,10 @@ mod show;
 
 use std::error::Error;
 
-use pleach::automaton::{Automaton, Trajectory, diagram};
+use pleach::automaton::{Automaton, Composition, Coordinates, Reason, Trajectory, diagram};
 use pleach::discrete::{Event, Location};
-use pleach::guards::Valuation;
 
-pub use number::number;
+pub use number::{number, numbers};
 
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
@@ -32,10 +31,12 @@ pub struct Exhibit {
     comparisons: Vec<Comparison>,
 }
 
+/// An automaton or a composition.
 struct Drawing {
     title: &'static str,
     diagram: String,
-    table: String,
+    /// What stands below the diagram, in Markdown.
+    legend: String,
 }
 
 struct Run {
@@ -43,11 +44,11 @@ struct Run {
     trajectory: Trajectory,
 }
 
-/// A number that a run gives beside the one that it should give.
+/// Numbers that a run gives beside those that it should give.
 struct Comparison {
     quantity: String,
-    found: f64,
-    answer: f64,
+    found: Vec<f64>,
+    answers: Vec<f64>,
     tolerance: f64,
 }
 
@@ -57,18 +58,26 @@ impl Exhibit {
         Exhibit { name, source, drawings: Vec::new(), runs: Vec::new(), comparisons: Vec::new() }
     }
 
-    /// Shows an automaton, as a diagram and as tables.
-    pub fn automaton<L: Location, E: Event, S: Valuation>(
+    /// Shows an automaton: as a diagram, as tables, and by its formal definition.
+    pub fn automaton<L: Location, E: Event, S: Coordinates>(
         mut self,
         title: &'static str,
         automaton: &Automaton<L, E, S>,
     ) -> Self {
-        let (diagram, table) = (diagram::svg(automaton), diagram::table(automaton));
-        self.drawings.push(Drawing { title, diagram, table });
+        let (table, definition) = (diagram::table(automaton), diagram::latex(automaton));
+        let legend = format!("{table}\n```math\n{}\n```\n", definition.trim());
+        self.drawings.push(Drawing { title, diagram: diagram::svg(automaton), legend });
         self
     }
 
-    /// Shows a run: its jumps and its ending.
+    /// Shows a composition: what joins its components.
+    pub fn composition(mut self, title: &'static str, composition: &Composition) -> Self {
+        let diagram = diagram::composition_svg(composition);
+        self.drawings.push(Drawing { title, diagram, legend: String::new() });
+        self
+    }
+
+    /// Shows a run: its plot, its jumps and its ending.
     pub fn run(mut self, title: &'static str, trajectory: Trajectory) -> Self {
         self.runs.push(Run { title, trajectory });
         self
@@ -77,54 +86,106 @@ impl Exhibit {
     /// Holds a number that was `found` against the `answer`, from which it may differ by
     /// `tolerance`, in its unit.
     pub fn compare(
-        mut self,
+        self,
         quantity: impl Into<String>,
         found: f64,
         answer: f64,
         tolerance: f64,
     ) -> Self {
-        self.comparisons.push(Comparison { quantity: quantity.into(), found, answer, tolerance });
-        self
+        self.compare_all(quantity, [found], [answer], tolerance)
     }
 
-    /// Holds the instants of the jumps of a run, in seconds, against the `answers`, one after the
-    /// other; there may be more of either.
-    pub fn compare_jumps(
+    /// Holds numbers against as many answers, one after the other.
+    pub fn compare_all(
         mut self,
-        trajectory: &Trajectory,
+        quantity: impl Into<String>,
+        found: impl IntoIterator<Item = f64>,
         answers: impl IntoIterator<Item = f64>,
         tolerance: f64,
     ) -> Self {
-        for (number, (jump, answer)) in (1..).zip(trajectory.jumps().iter().zip(answers)) {
-            let quantity = format!("jump {number}, {}, in s", jump.label);
-            self = self.compare(quantity, jump.at.t, answer, tolerance);
-        }
+        let (found, answers) = (found.into_iter().collect(), answers.into_iter().collect());
+        let quantity = quantity.into();
+        self.comparisons.push(Comparison { quantity, found, answers, tolerance });
         self
+    }
+
+    /// Holds the instants of the jumps of a run, in seconds, against the `answers`, which ascend: all
+    /// of them if the run lasts to its horizon, and else as many as there are answers.
+    pub fn compare_jumps(
+        self,
+        run: &Trajectory,
+        answers: impl IntoIterator<Item = f64>,
+        tolerance: f64,
+    ) -> Self {
+        let lasts = run.ending().reason == Reason::Horizon;
+        let end = if lasts { run.ending().at.t } else { f64::INFINITY };
+        let answers: Vec<f64> = answers.into_iter().take_while(|answer| *answer <= end).collect();
+        let count = if lasts { usize::MAX } else { answers.len() };
+        let found: Vec<f64> = instants(run).take(count).collect();
+        self.compare_all("jumps in s", found, answers, tolerance)
     }
 
     /// What differs by more than its tolerance, as sentences.
     pub fn disagreements(&self) -> Vec<String> {
-        let wrong = |one: &&Comparison| one.error().is_nan() || one.error() > one.tolerance;
+        let wrong = |one: &&Comparison| {
+            let agrees = one.error().is_some_and(|error| error <= one.tolerance);
+            !agrees
+        };
         self.comparisons.iter().filter(wrong).map(Comparison::to_sentence).collect()
     }
 
-    /// The pictures: the name of a file, and an SVG document.
-    pub fn pictures(&self) -> impl Iterator<Item = (String, &str)> {
-        self.drawings.iter().map(|drawing| (self.picture_of(drawing), &*drawing.diagram))
+    /// The diagrams: the name of a file, and an SVG document.
+    pub fn diagrams(&self) -> impl Iterator<Item = (String, &str)> {
+        self.drawings.iter().map(|drawing| (self.diagram_of(drawing), &*drawing.diagram))
     }
 
-    fn picture_of(&self, drawing: &Drawing) -> String {
-        format!("{}-{}.svg", self.name, drawing.title.replace(' ', "-"))
+    /// The plots of the runs: the name of a file, and an SVG document.
+    pub fn plots(&self) -> impl Iterator<Item = (String, String)> {
+        self.runs.iter().map(|run| (self.plot_of(run), diagram::plot(&run.trajectory)))
+    }
+
+    fn diagram_of(&self, drawing: &Drawing) -> String {
+        format!("{}-{}.svg", self.name, file_name(drawing.title))
+    }
+
+    fn plot_of(&self, run: &Run) -> String {
+        format!("{}-{}.svg", self.name, file_name(run.title))
     }
 }
 
+/// The title in small letters, with hyphens for all else.
+fn file_name(title: &str) -> String {
+    let words = title.split(|letter: char| !letter.is_ascii_alphanumeric());
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    words.join("-").to_ascii_lowercase()
+}
+
 impl Comparison {
-    fn error(&self) -> f64 {
-        (self.found - self.answer).abs()
+    /// The largest difference; `None` if there are not as many numbers as answers, or one of them
+    /// is no number.
+    fn error(&self) -> Option<f64> {
+        let pairs = self.found.iter().zip(&self.answers);
+        let mut errors = pairs.map(|(found, answer)| (found - answer).abs());
+        let largest = errors
+            .try_fold(0.0, |largest: f64, error| (!error.is_nan()).then(|| largest.max(error)));
+        largest.filter(|_| self.found.len() == self.answers.len())
     }
 
     fn to_sentence(&self) -> String {
-        let Comparison { quantity, found, answer, tolerance } = self;
-        format!("{quantity}: {found} differs from {answer} by more than {tolerance:e}")
+        let Comparison { quantity, found, answers, tolerance } = self;
+        format!("{quantity}: {found:?} are not within {tolerance:e} of {answers:?}")
+    }
+}
+
+/// The instants of the jumps of a run, in seconds.
+pub fn instants(run: &Trajectory) -> impl Iterator<Item = f64> {
+    run.jumps().iter().map(|jump| jump.at.t)
+}
+
+/// Where the jumps of a run accumulate, in seconds; NaN if it is not Zeno.
+pub fn accumulation(run: &Trajectory) -> f64 {
+    match run.ending().reason {
+        Reason::Zeno(zeno) => zeno.accumulation,
+        _ => f64::NAN,
     }
 }

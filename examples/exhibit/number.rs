@@ -17,3 +17,15 @@ pub fn number(value: f64) -> String {
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     short.replace('-', "−")
 }
+
+/// Several values; of many of them the first three and the last.
+pub fn numbers(values: &[f64]) -> String {
+    const MOST: usize = 5;
+    let texts: Vec<String> = values.iter().map(|&value| number(value)).collect();
+    match &texts[..] {
+        [first, second, third, .., last] if texts.len() > MOST => {
+            format!("{first}, {second}, {third}, …, {last}")
+        }
+        all => all.join(", "),
+    }
+}

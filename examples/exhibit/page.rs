@@ -1,7 +1,7 @@
 //! The exhibit as a page of the book, in Markdown.
 
 use super::show::story;
-use super::{Comparison, Exhibit, number};
+use super::{Comparison, Exhibit, numbers};
 
 /// Between these lines of an example stands its model.
 const MODEL: [&str; 2] = ["// ---- The model ", "// ---- The answer "];
@@ -19,14 +19,15 @@ impl Exhibit {
             self.model(),
         );
         for drawing in &self.drawings {
-            let (title, picture) = (drawing.title, self.picture_of(drawing));
-            page +=
-                &format!("\n![The automaton: {title}](pictures/{picture})\n\n{}", drawing.table);
+            let (title, picture) = (drawing.title, self.diagram_of(drawing));
+            page += &format!("\n![Diagram: {title}](pictures/{picture})\n\n{}", drawing.legend);
         }
         page += "\n## What happens\n";
         for run in &self.runs {
+            let (title, picture) = (run.title, self.plot_of(run));
             let lines = story(&run.trajectory).join("\n");
-            page += &format!("\n{}:\n\n```text\n{lines}\n```\n", run.title);
+            page += &format!("\n### {title}\n\n![Plot: {title}](pictures/{picture})\n\n");
+            page += &format!("```text\n{lines}\n```\n");
         }
         page += "\n## The answer\n\n| quantity | answer | agrees within |\n| --- | --: | --: |\n";
         self.comparisons.iter().for_each(|one| page += &row(one));
@@ -52,5 +53,5 @@ impl Exhibit {
 fn row(one: &Comparison) -> String {
     let tolerance =
         if one.tolerance == 0.0 { "exactly".into() } else { format!("{:e}", one.tolerance) };
-    format!("| {} | {} | {tolerance} |\n", one.quantity, number(one.answer))
+    format!("| {} | {} | {tolerance} |\n", one.quantity, numbers(&one.answers))
 }

@@ -8,7 +8,7 @@ use pleach::automaton::composition::Failure;
 use pleach::automaton::trajectory::{JumpRecord, Participant};
 use pleach::automaton::{Reason, Trajectory};
 
-use super::{Exhibit, number};
+use super::{Exhibit, number, numbers};
 
 /// The most jumps of a run that are told.
 const MOST_JUMPS: usize = 12;
@@ -28,11 +28,10 @@ impl Exhibit {
         }
         println!("Compared with the answer:");
         for one in &self.comparisons {
-            let (answer, error) = (number(one.answer), one.error());
-            println!(
-                "  {:40} {answer:>12}   error {error:.1e} ≤ {:e}",
-                one.quantity, one.tolerance
-            );
+            println!("  {}: {}", one.quantity, numbers(&one.answers));
+            if let Some(error) = one.error() {
+                println!("    largest error {error:.1e}, allowed {:e}", one.tolerance);
+            }
         }
         self.write_figures()?;
         match self.disagreements().join("\n") {
@@ -44,7 +43,10 @@ impl Exhibit {
     fn write_figures(&self) -> Result<(), Box<dyn Error>> {
         let folder = Path::new("figures").join(self.name);
         fs::create_dir_all(&folder)?;
-        for (name, svg) in self.pictures() {
+        for (name, svg) in self.diagrams() {
+            fs::write(folder.join(name), svg)?;
+        }
+        for (name, svg) in self.plots() {
             fs::write(folder.join(name), svg)?;
         }
         println!("Drawings: {}", folder.display());
@@ -58,7 +60,7 @@ pub(super) fn story(trajectory: &Trajectory) -> Vec<String> {
     let mut lines: Vec<String> =
         jumps.iter().take(MOST_JUMPS).map(|jump| told(trajectory, jump)).collect();
     if jumps.len() > MOST_JUMPS {
-        lines.push(format!("… and {} jumps more", jumps.len() - MOST_JUMPS));
+        lines.push("…".to_owned());
     }
     lines.push(ending(trajectory));
     lines
@@ -85,9 +87,8 @@ fn ending(trajectory: &Trajectory) -> String {
     match &trajectory.ending().reason {
         Reason::Horizon => format!("The horizon is reached at {t} s."),
         Reason::Zeno(zeno) => format!(
-            "The run is Zeno: every {} jumps take {} of the time of those before, and add up at \
-             {} s.",
-            zeno.cycle,
+            "The run is Zeno: {} {} of the time of the one before, and all of them end at {} s.",
+            if zeno.cycle == 1 { "each flow takes" } else { "each cycle of flows takes" },
             number(zeno.ratio),
             number(zeno.accumulation),
         ),

@@ -5,6 +5,9 @@ use std::fmt;
 
 use crate::predicate::Verdict;
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// What a predicate does between two successive instants.
 ///
 /// The two sides are half-open: an instant on the boundary belongs to one side and never to both.

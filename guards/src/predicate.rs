@@ -8,6 +8,9 @@ use crate::expression::Expression;
 use crate::function::NamedFunction;
 use crate::valuation::{EvaluationError, Valuation};
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// A statement about a state, as data: the one guard type of the project.
 ///
 /// Predicates begin as comparisons ([`Expression::at_most`] and its kin) and combine with
@@ -302,6 +305,12 @@ impl Verdict {
     pub const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
     /// What [`never()`] says.
     pub const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
+
+    /// Whether margin and verdict tell the same: a positive margin says that the predicate holds,
+    /// a negative one that it does not, and NaN says nothing.
+    pub fn is_consistent(self) -> bool {
+        if self.holds { self.margin >= 0.0 } else { self.margin <= 0.0 }
+    }
 
     /// The verdict on a conjunction of which this and `other` are the parts.
     #[must_use]

@@ -7,6 +7,7 @@ use pleach_guards::{CompiledPredicate, EvaluationError, LinearForm, Program};
 
 use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
+use crate::diagram::sketch::Sketch;
 use crate::flow::{Flow, Motion};
 use crate::reset::Reset;
 
@@ -17,6 +18,8 @@ pub(crate) struct Blueprint {
     pub(crate) events: Vec<&'static str>,
     pub(crate) coordinates: &'static [&'static str],
     pub(crate) initial: usize,
+    /// For pictures.
+    pub(crate) sketch: Sketch,
 }
 
 /// A location.
@@ -89,7 +92,8 @@ impl Blueprint {
         }
         let events = E::ALL.iter().map(|event| event.name()).collect();
         let initial = position(L::ALL, automaton.initial());
-        Ok(Blueprint { places, events, coordinates: S::NAMES, initial })
+        let sketch = Sketch::of(automaton);
+        Ok(Blueprint { places, events, coordinates: S::NAMES, initial, sketch })
     }
 }
 

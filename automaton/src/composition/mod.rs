@@ -62,15 +62,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod blueprint;
+pub(crate) mod blueprint;
 mod builder;
 mod flight;
 mod models;
+mod picture;
+mod replay;
 mod simulation;
 
 use std::sync::Arc;
 
 pub use builder::{CompositionBuilder, CompositionError};
+pub use replay::ReplayError;
 pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;
@@ -80,7 +83,7 @@ use crate::check::model::Model;
 /// Automata side by side; see the [module](self).
 #[derive(Clone)]
 pub struct Composition {
-    components: Vec<Component>,
+    pub(crate) components: Vec<Component>,
     labels: Vec<Label>,
     /// By slot.
     variables: Vec<String>,
@@ -89,15 +92,15 @@ pub struct Composition {
 }
 
 #[derive(Clone)]
-struct Component {
-    name: String,
-    blueprint: Arc<Blueprint>,
+pub(crate) struct Component {
+    pub(crate) name: String,
+    pub(crate) blueprint: Arc<Blueprint>,
     /// What checks read.
     model: Arc<Model>,
     /// By event: what it is called here.
-    events: Vec<String>,
+    pub(crate) events: Vec<String>,
     /// By coordinate: where its value is.
-    slots: Vec<usize>,
+    pub(crate) slots: Vec<usize>,
     /// By coordinate: whether it belongs to the component, and is not just read by it.
     owned: Vec<bool>,
     /// By event: the label, if the event is one.

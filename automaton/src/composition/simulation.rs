@@ -154,6 +154,19 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
         Composition::builder().add("automaton", self).build()?.run(horizon)
     }
 
+    /// Runs the automaton by itself with settings of one's own.
+    ///
+    /// # Errors
+    ///
+    /// As for [`run`](Self::run), and if the settings make no sense.
+    pub fn run_with(
+        &self,
+        settings: Settings,
+        horizon: f64,
+    ) -> Result<Trajectory, SimulationError> {
+        Composition::builder().add("automaton", self).build()?.run_with(settings, horizon)
+    }
+
     /// Runs the automaton by itself, from `state`, for `horizon` seconds.
     ///
     /// # Errors
@@ -496,10 +509,11 @@ impl System for Simulation<'_> {
         self.now = round.now();
         self.flight = None;
         let mut jumped = self.take_round(round, Readiness::Forced)?;
-        if !jumped {
-            let left = self.horizon - self.now.t;
-            let flight = self.plan(left.max(0.0))?;
-            if flight.duration <= 0.0 && left > 0.0 {
+        let left = self.horizon - self.now.t;
+        // At the horizon there is no flow to come.
+        if !jumped && left > 0.0 {
+            let flight = self.plan(left)?;
+            if flight.duration <= 0.0 {
                 jumped = self.take_round(round, Readiness::Possible)?;
             }
             self.flight = (!jumped).then_some(flight);

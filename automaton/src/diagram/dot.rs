@@ -1,11 +1,10 @@
 //! Graphs in the DOT language.
 
-use petgraph::visit::EdgeRef;
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::Valuation;
 
-use super::label::{location_lines, transition_lines};
-use crate::automaton::{Automaton, node};
+use super::sketch::Sketch;
+use crate::automaton::Automaton;
 
 /// The automaton in the DOT language. Transitions that only may be taken are dashed, and those
 /// that happen at once are bold.
@@ -16,18 +15,16 @@ pub fn dot<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) 
          edge [fontname=\"sans-serif\", fontsize=11];\n    \
          initial [shape=point];\n",
     );
-    let graph = automaton.graph();
-    for place in graph.node_indices() {
-        let label = quoted(&location_lines(automaton, graph[place]));
-        text.push_str(&format!("    l{} [label={label}];\n", place.index()));
+    let sketch = Sketch::of(automaton);
+    for (number, place) in sketch.places.iter().enumerate() {
+        text.push_str(&format!("    l{number} [label={}];\n", quoted(&place.lines())));
     }
-    if let Some(initial) = node(automaton.initial()) {
-        text.push_str(&format!("    initial -> l{};\n", initial.index()));
+    if let Some(initial) = sketch.initial {
+        text.push_str(&format!("    initial -> l{initial};\n"));
     }
-    for edge in graph.edge_references() {
-        let (source, target) = (edge.source().index(), edge.target().index());
-        let label = quoted(&transition_lines(edge.weight()));
-        let style = style(edge.weight().urgency);
+    for link in &sketch.links {
+        let (source, target) = (link.source, link.target);
+        let (label, style) = (quoted(&link.lines()), style(link.urgency));
         text.push_str(&format!("    l{source} -> l{target} [label={label}, style={style}];\n"));
     }
     text.push_str("}\n");

@@ -1,28 +1,67 @@
-//! Mermaid state diagrams.
+//! Mermaid diagrams.
 
-use petgraph::visit::EdgeRef;
 use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;
 
-use super::label::{location_lines, transition_lines};
-use crate::automaton::{Automaton, node};
+use super::sketch::Sketch;
+use crate::automaton::Automaton;
+use crate::composition::Composition;
 
 /// The automaton as a Mermaid `stateDiagram-v2`.
 pub fn mermaid<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     let mut text = String::from("stateDiagram-v2\n");
-    let graph = automaton.graph();
-    for place in graph.node_indices() {
-        for line in location_lines(automaton, graph[place]) {
-            text.push_str(&format!("    l{} : {}\n", place.index(), escaped(&line)));
+    let sketch = Sketch::of(automaton);
+    for (number, place) in sketch.places.iter().enumerate() {
+        for line in place.lines() {
+            text.push_str(&format!("    l{number} : {}\n", escaped(&line)));
         }
     }
-    if let Some(initial) = node(automaton.initial()) {
-        text.push_str(&format!("    [*] --> l{}\n", initial.index()));
+    if let Some(initial) = sketch.initial {
+        text.push_str(&format!("    [*] --> l{initial}\n"));
     }
-    for edge in graph.edge_references() {
-        let (source, target) = (edge.source().index(), edge.target().index());
-        let label = escaped(&transition_lines(edge.weight()).join(" "));
+    for link in &sketch.links {
+        let (source, target) = (link.source, link.target);
+        let label = escaped(&link.lines().join(" "));
         text.push_str(&format!("    l{source} --> l{target} : {label}\n"));
+    }
+    text
+}
+
+/// The composition as a Mermaid flow chart: a frame around each component, a hexagon for each
+/// label with dotted lines to those who take it together, and thick arrows from what is read to
+/// who reads it.
+pub fn composition_mermaid(composition: &Composition) -> String {
+    let mut text = String::from("flowchart LR\n");
+    for (component, (name, sketch)) in composition.sketches().iter().enumerate() {
+        text.push_str(&format!("    subgraph c{component}[\"{}\"]\n", escaped(name)));
+        for (number, place) in sketch.places.iter().enumerate() {
+            let lines: Vec<String> = place.lines().iter().map(|line| escaped(line)).collect();
+            let lines = lines.join("<br>");
+            text.push_str(&format!("        c{component}l{number}(\"{lines}\")\n"));
+        }
+        if let Some(initial) = sketch.initial {
+            text.push_str(&format!("        c{component}start(( )) --> c{component}l{initial}\n"));
+        }
+        for link in &sketch.links {
+            let (source, target) = (link.source, link.target);
+            let lines: Vec<String> = link.lines().iter().map(|line| escaped(line)).collect();
+            let lines = lines.join("<br>");
+            text.push_str(&format!(
+                "        c{component}l{source} -- \"{lines}\" --> c{component}l{target}\n"
+            ));
+        }
+        text.push_str("    end\n");
+    }
+    for (number, (label, participants)) in composition.labels().enumerate() {
+        text.push_str(&format!("    label{number}{{{{\"{}\"}}}}\n", escaped(label)));
+        for component in participants {
+            text.push_str(&format!("    label{number} -.- c{component}\n"));
+        }
+    }
+    for connection in composition.connections() {
+        let (from, to) = (connection.output, connection.input);
+        let label = escaped(&connection.label());
+        text.push_str(&format!("    c{from} == \"{label}\" ==> c{to}\n"));
     }
     text
 }

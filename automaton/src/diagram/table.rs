@@ -3,33 +3,143 @@
 use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;
 
-use crate::automaton::Automaton;
+use super::sketch::Sketch;
+use crate::automaton::{Automaton, Transition};
 
-/// The automaton in Markdown, as two tables: the full location × event table, and below it the
-/// guard and the reset of every event that occurs.
+/// The automaton in Markdown: the full location × event table; below it guard and reset, a row an
+/// event where all its transitions agree, and else a row a transition; and, where time changes or
+/// restricts anything, flow and invariant of every location.
+///
+/// The name of a guard is left out where it is the formula itself.
 pub fn table<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     let mut text = automaton.table().to_markdown();
-    text.push_str("\n| event | guard | holds where | reset |\n| --- | --- | --- | --- |\n");
-    for event in E::ALL {
-        let mut transitions = automaton.graph().edge_weights();
-        if let Some(transition) = transitions.find(|transition| transition.event == *event) {
-            let (guard, reset) = (&transition.guard, transition.reset.name());
-            let cells = [
-                format!("**{}**", event.name()),
-                guard.name().to_owned(),
-                guard.predicate().to_string(),
-                if reset.is_empty() { "—".to_owned() } else { reset.into_owned() },
-            ];
-            text.push_str(&format!(
-                "| {} |\n",
-                cells.map(|cell: String| escaped(&cell)).join(" | ")
-            ));
-        }
+    text.push('\n');
+    text.push_str(&markdown(&transitions(automaton)));
+    let sketch = Sketch::of(automaton);
+    if sketch.places.iter().any(|place| !place.flow.is_empty() || place.invariant.is_some()) {
+        text.push('\n');
+        text.push_str(&markdown(&modes(&sketch)));
     }
     text
 }
 
+/// Column by column: its head and its cells.
+type Columns = Vec<(&'static str, Vec<String>)>;
+
+const NOTHING: &str = "—";
+
+fn transitions<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Columns {
+    let rows = rows(automaton);
+    let column = |cell: &dyn Fn(&Row<'_, L, E, S>) -> String| rows.iter().map(cell).collect();
+    let mut columns: Columns =
+        vec![("event", column(&|row| format!("**{}**", row.transition.event.name())))];
+    if rows.iter().any(|row| row.stands == Stands::Alone) {
+        columns.push(("transition", column(&|row| row.way())));
+    }
+    let has_name = |row: &Row<'_, L, E, S>| {
+        let guard = &row.transition.guard;
+        guard.name() != guard.predicate().to_string()
+    };
+    if rows.iter().any(has_name) {
+        let name = |row: &Row<'_, L, E, S>| match has_name(row) {
+            true => row.transition.guard.name().to_owned(),
+            false => NOTHING.to_owned(),
+        };
+        columns.push(("guard", column(&name)));
+    }
+    columns.push(("holds where", column(&|row| row.transition.guard.predicate().to_string())));
+    columns.push(("reset", column(&|row| or_nothing(row.transition.reset.name().into_owned()))));
+    columns
+}
+
+/// A row of the table.
+struct Row<'a, L, E, S> {
+    transition: &'a Transition<E, S>,
+    source: L,
+    target: L,
+    stands: Stands,
+}
+
+/// What a row stands for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stands {
+    /// One of the transitions on its event, which differ.
+    Alone,
+    /// The only transition on its event.
+    Only,
+    /// All transitions on its event.
+    ForAll,
+}
+
+impl<L: Location, E, S> Row<'_, L, E, S> {
+    fn way(&self) -> String {
+        match self.stands {
+            Stands::ForAll => "all".to_owned(),
+            Stands::Alone | Stands::Only => {
+                format!("{} → {}", self.source.name(), self.target.name())
+            }
+        }
+    }
+}
+
+fn rows<L: Location, E: Event, S: Valuation>(
+    automaton: &Automaton<L, E, S>,
+) -> Vec<Row<'_, L, E, S>> {
+    let table = automaton.table();
+    let mut rows = Vec::new();
+    for event in E::ALL {
+        let of_event: Vec<_> = automaton
+            .graph()
+            .edge_weights()
+            .zip(table.rows())
+            .filter(|(transition, _)| transition.event == *event)
+            .collect();
+        let stands = match &of_event[..] {
+            [_] => Stands::Only,
+            [(first, _), others @ ..] if others.iter().all(|(other, _)| is_same(first, other)) => {
+                Stands::ForAll
+            }
+            _ => Stands::Alone,
+        };
+        let shown = if stands == Stands::ForAll { 1 } else { of_event.len() };
+        rows.extend(of_event.into_iter().take(shown).map(|(transition, row)| {
+            let (source, target) = (row.source, row.target);
+            Row { transition, source, target, stands }
+        }));
+    }
+    rows
+}
+
+/// Whether guard and reset read the same.
+fn is_same<E, S>(one: &Transition<E, S>, other: &Transition<E, S>) -> bool {
+    one.guard == other.guard && one.reset.name() == other.reset.name()
+}
+
+fn modes(sketch: &Sketch) -> Columns {
+    let places = || sketch.places.iter();
+    vec![
+        ("location", places().map(|place| format!("**{}**", place.name)).collect()),
+        ("flow", places().map(|place| or_nothing(place.flow.join(", "))).collect()),
+        (
+            "time passes while",
+            places().map(|place| or_nothing(place.invariant.clone().unwrap_or_default())).collect(),
+        ),
+    ]
+}
+
+fn or_nothing(text: String) -> String {
+    if text.is_empty() { NOTHING.to_owned() } else { text }
+}
+
 /// A bar would end the cell.
-fn escaped(text: &str) -> String {
-    text.replace('|', r"\|")
+fn markdown(columns: &Columns) -> String {
+    let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let mut text = row(columns.iter().map(|(head, _)| (*head).to_owned()).collect());
+    text.push_str(&row(columns.iter().map(|_| "---".to_owned()).collect()));
+    let height = columns.first().map_or(0, |(_, cells)| cells.len());
+    for number in 0..height {
+        let cells = columns.iter().map(|(_, cells)| cells[number].replace('|', r"\|"));
+        text.push_str(&row(cells.collect()));
+    }
+    text
 }

@@ -30,6 +30,9 @@
 use super::{FreeSpace, HalfPlane, Segment};
 use crate::Point;
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// As a fraction of the tolerance τ of the free space: the distance below which a way touches a
 /// wall, and rounding spoils the direction from one to the other. Far below the τ/2 that the sight
 /// set keeps beyond the clearance.
@@ -52,10 +55,14 @@ pub fn voronoi_half_planes(
         .filter_map(|&neighbour| {
             let middle = nalgebra::center(&position, &neighbour);
             let bisector = HalfPlane::through(middle, neighbour - position)?;
-            let shrunk = HalfPlane { offset: bisector.offset - clearance, ..bisector };
-            Some(shrunk.widened_to(position))
+            Some(own_side(bisector, position, clearance))
         })
         .collect()
+}
+
+/// The side of a bisector on which a robot stays: `clearance` from it, or where the robot is.
+pub fn own_side(bisector: HalfPlane, position: Point, clearance: f64) -> HalfPlane {
+    HalfPlane { offset: bisector.offset - clearance, ..bisector }.widened_to(position)
 }
 
 /// Half-planes whose intersection with the disc of `radius` around `position` is a convex subset

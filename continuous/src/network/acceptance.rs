@@ -36,9 +36,14 @@
 //!
 //! The same argument bounds the euclidean length of a link by [`worst_separation`].
 
+use std::ops::Add;
+
 use super::reliability::LinkReliability;
 use crate::Point;
 pub use crate::geometry::Segment;
+
+#[cfg(any(kani, test))]
+mod proofs;
 
 /// h_i: the time share that a sender at `own` needs to carry its flows, given as pairs of a flow
 /// F_ij and the place of the receiver. Infinite if a receiver of a flow cannot be reached.
@@ -68,16 +73,33 @@ pub fn worst_load(
     receivers: &[(f64, Segment)],
     reliability: &impl LinkReliability,
 ) -> f64 {
-    let worst_from = |place: Point| -> f64 {
-        receivers
-            .iter()
-            .map(|&(flow, receiver)| {
-                let [start, end] = ends(&receiver);
-                term(flow, &place, &start, reliability).max(term(flow, &place, &end, reliability))
-            })
-            .sum()
+    let terms_from = |place: Point| {
+        receivers.iter().map(move |&(flow, receiver)| {
+            ends(&receiver).map(|end| term(flow, &place, &end, reliability))
+        })
     };
-    worst_from(own.from).max(worst_from(own.to))
+    worst_corner(ends(&own).map(terms_from))
+}
+
+/// The largest sum over the corners of the moves: `terms` has one list for each end of the
+/// sender's move, with the terms of every receiver for both ends of its own.
+///
+/// Any number will do that can be added and compared: the load is a sum of `f64`, and a model
+/// checker takes whole numbers.
+pub fn worst_corner<N, Terms>(terms: [Terms; 2]) -> N
+where
+    N: Copy + PartialOrd + Add<Output = N> + Default,
+    Terms: IntoIterator<Item = [N; 2]>,
+{
+    let worst_from = |terms: Terms| {
+        terms.into_iter().fold(N::default(), |sum, [start, end]| sum + larger(start, end))
+    };
+    let [start, end] = terms;
+    larger(worst_from(start), worst_from(end))
+}
+
+fn larger<N: PartialOrd>(one: N, other: N) -> N {
+    if other > one { other } else { one }
 }
 
 /// A convex function of a move is largest at one of its ends.

@@ -15,6 +15,9 @@
 
 use thiserror::Error;
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// How reliably a link carries packets over a distance.
 ///
 /// # What a model must satisfy
@@ -123,9 +126,15 @@ impl CubicReliability {
         Ok(Self { full_range, max_range })
     }
 
-    /// q: how much of the transition from u down to l is left, clamped to [0, 1].
+    /// q: how much of the transition from u down to l is left, in [0, 1]; exact at both ends.
     fn remaining(&self, distance: f64) -> f64 {
-        ((self.max_range - distance) / (self.max_range - self.full_range)).clamp(0.0, 1.0)
+        if distance <= self.full_range {
+            1.0
+        } else if distance >= self.max_range {
+            0.0
+        } else {
+            (self.max_range - distance) / (self.max_range - self.full_range)
+        }
     }
 }
 

@@ -6,6 +6,9 @@
 
 use super::IdSet;
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// What a robot knows of the agreement about one path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Agreement {
@@ -52,11 +55,20 @@ impl Agreement {
         }
     }
 
+    /// Whether every place of a path with `places` places has voted.
+    pub fn is_settled(&self, places: usize) -> bool {
+        (0..places).all(|place| self.voted.contains(place))
+    }
+
+    /// Whether the robot at `place` has said that it is a break point.
+    pub fn is_break_point(&self, place: usize) -> bool {
+        self.breaks.contains(place)
+    }
+
     /// The break points of a path with `places` places, once every place has voted.
     pub fn break_points(&self, places: usize) -> Option<Vec<usize>> {
-        (0..places)
-            .all(|place| self.voted.contains(place))
-            .then(|| (0..places).filter(|&place| self.breaks.contains(place)).collect())
+        self.is_settled(places)
+            .then(|| (0..places).filter(|&place| self.is_break_point(place)).collect())
     }
 
     /// Whether every place in `places` has reached its destination.

@@ -5,6 +5,9 @@
 //! the recruit that found the path. Notices are therefore numbered, and the greater number wins:
 //! a max-consensus that neither loss, nor repetition, nor delay can confuse.
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// A numbered notice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bulletin<N> {

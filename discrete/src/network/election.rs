@@ -7,6 +7,9 @@
 
 use super::{IdSet, NodeId};
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// What a robot offers; the greater, the better. Compared by `rank` first, then by `merit`, then
 /// by `economy`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,7 +23,7 @@ pub struct Bid {
 }
 
 /// One robot's view of an election.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Election {
     number: u32,
     tokens: IdSet,

@@ -1,15 +1,26 @@
 //! Sets of small numbers: tokens of an election, votes along a path.
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// A set of numbers below a few thousand, as bits.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+///
+/// The numbers below 64 have a word of their own, so that the sets of most networks allocate
+/// nothing.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct IdSet {
-    words: Vec<u64>,
+    first: u64,
+    /// 64 numbers a word, from 64 on; the last word is not 0.
+    rest: Vec<u64>,
 }
+
+/// How many numbers a word holds.
+const WIDTH: usize = u64::BITS as usize;
 
 impl IdSet {
     /// The empty set.
     pub const fn new() -> Self {
-        IdSet { words: Vec::new() }
+        IdSet { first: 0, rest: Vec::new() }
     }
 
     /// The set of one number.
@@ -21,27 +32,29 @@ impl IdSet {
 
     /// Adds `id`; says whether it is new.
     pub fn insert(&mut self, id: usize) -> bool {
-        let (word, bit) = (id / 64, 1 << (id % 64));
-        if word >= self.words.len() {
-            self.words.resize(word + 1, 0);
+        let (at, bit) = (id / WIDTH, 1 << (id % WIDTH));
+        if at > self.rest.len() {
+            self.rest.resize(at, 0);
         }
-        let new = self.words[word] & bit == 0;
-        self.words[word] |= bit;
-        new
+        let word = if at == 0 { &mut self.first } else { &mut self.rest[at - 1] };
+        let is_new = *word & bit == 0;
+        *word |= bit;
+        is_new
     }
 
     /// Whether `id` is in the set.
     pub fn contains(&self, id: usize) -> bool {
-        self.words.get(id / 64).is_some_and(|word| word & (1 << (id % 64)) != 0)
+        self.word(id / WIDTH) & (1 << (id % WIDTH)) != 0
     }
 
     /// Adds every number of `other`; says whether any is new.
     pub fn merge(&mut self, other: &IdSet) -> bool {
-        if other.words.len() > self.words.len() {
-            self.words.resize(other.words.len(), 0);
+        if other.rest.len() > self.rest.len() {
+            self.rest.resize(other.rest.len(), 0);
         }
-        let mut grown = false;
-        for (mine, theirs) in self.words.iter_mut().zip(&other.words) {
+        let mut grown = other.first & !self.first != 0;
+        self.first |= other.first;
+        for (mine, theirs) in self.rest.iter_mut().zip(&other.rest) {
             grown |= theirs & !*mine != 0;
             *mine |= theirs;
         }
@@ -50,27 +63,35 @@ impl IdSet {
 
     /// Whether every number of `other` is in the set.
     pub fn includes(&self, other: &IdSet) -> bool {
-        other.words.iter().enumerate().all(|(at, theirs)| {
-            let mine = self.words.get(at).copied().unwrap_or(0);
-            theirs & !mine == 0
-        })
+        other.words().enumerate().all(|(at, theirs)| theirs & !self.word(at) == 0)
     }
 
     /// How many numbers there are.
     pub fn len(&self) -> usize {
-        self.words.iter().map(|word| word.count_ones() as usize).sum()
+        self.words().map(|word| word.count_ones() as usize).sum()
     }
 
     /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
-        self.words.iter().all(|&word| word == 0)
+        self.words().all(|word| word == 0)
     }
 
     /// The numbers, ascending.
     pub fn iter(&self) -> impl Iterator<Item = usize> + '_ {
-        self.words.iter().enumerate().flat_map(|(at, &word)| {
-            (0..64).filter(move |bit| word & (1 << bit) != 0).map(move |bit| 64 * at + bit)
+        self.words().enumerate().flat_map(|(at, word)| {
+            (0..WIDTH).filter(move |bit| word & (1 << bit) != 0).map(move |bit| WIDTH * at + bit)
         })
+    }
+
+    fn words(&self) -> impl Iterator<Item = u64> + '_ {
+        std::iter::once(self.first).chain(self.rest.iter().copied())
+    }
+
+    fn word(&self, at: usize) -> u64 {
+        match at.checked_sub(1) {
+            None => self.first,
+            Some(at) => self.rest.get(at).copied().unwrap_or(0),
+        }
     }
 }
 
@@ -81,5 +102,34 @@ impl FromIterator<usize> for IdSet {
             set.insert(id);
         }
         set
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::BTreeSet;
+
+    proptest! {
+        /// Also with numbers beyond the first word.
+        #[test]
+        fn a_set_of_bits_is_a_set(
+            one in prop::collection::btree_set(0..300_usize, 0..8),
+            other in prop::collection::btree_set(0..300_usize, 0..8),
+            id in 0..300_usize,
+        ) {
+            let bits = |ids: &BTreeSet<usize>| ids.iter().copied().collect::<IdSet>();
+            let mut union = bits(&one);
+            prop_assert_eq!(union.includes(&bits(&other)), one.is_superset(&other));
+            prop_assert_eq!(union.merge(&bits(&other)), !one.is_superset(&other));
+            let expected: BTreeSet<usize> = one.union(&other).copied().collect();
+            prop_assert!(union.iter().eq(expected.iter().copied()));
+            prop_assert_eq!(union.len(), expected.len());
+            prop_assert_eq!(union.is_empty(), expected.is_empty());
+            prop_assert_eq!(union.contains(id), expected.contains(&id));
+            prop_assert_eq!(&union, &bits(&expected));
+            prop_assert_eq!(union.insert(id), !expected.contains(&id));
+        }
     }
 }

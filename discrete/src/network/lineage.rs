@@ -13,6 +13,21 @@ pub struct Lineage {
     root: usize,
 }
 
+/// Whether a post that hung itself on the bearer of this way would close a cycle: the way leads
+/// through it.
+///
+/// ```
+/// use pleach_discrete::network::PostId;
+/// use pleach_discrete::network::lineage::closes_cycle;
+///
+/// let way = [PostId(4), PostId(1)];
+/// assert!(closes_cycle(&way, PostId(1)));
+/// assert!(!closes_cycle(&way, PostId(2)));
+/// ```
+pub fn closes_cycle(way: &[PostId], post: PostId) -> bool {
+    way.contains(&post)
+}
+
 impl Lineage {
     /// The lineage of access point `root`.
     pub const fn of_access_point(root: usize) -> Self {
@@ -52,7 +67,7 @@ impl Lineage {
 
     /// Whether the way leads through `post`.
     pub fn contains(&self, post: PostId) -> bool {
-        self.posts.contains(&post)
+        closes_cycle(&self.posts, post)
     }
 
     /// The posts on the way, the first being the post itself.

@@ -2,6 +2,9 @@
 
 use super::{Anchor, NodeId, Post};
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// One place of Σ: the robot that stands there at t_h and the post that it holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hop<P> {
@@ -43,6 +46,24 @@ pub struct Ties {
     pub bears_others: bool,
 }
 
+/// The last break point of a path with so many places: the leader's when L_b = 1, else the one
+/// before p₁.
+pub const fn last_break_point(places: usize, releases_leader: bool) -> usize {
+    places.saturating_sub(if releases_leader { 1 } else { 2 })
+}
+
+/// Whether the robot at `place` is a break point of a path whose last break point is `last`.
+///
+/// The paper names junctions and leaves. A robot is one in effect if it services a task, if
+/// it has a tree neighbour off Σ, if Σ crosses an access point just before or behind it, or
+/// if it is the last that Σ relieves; and b₁ = s₁. A crossing is thus walked by one robot
+/// alone, which hangs on the access point: two in a chain would hold each other back.
+pub const fn is_break_point(place: usize, last: usize, ties: Ties, at_crossing: bool) -> bool {
+    place == 0
+        || place == last
+        || place < last && (ties.services_task || ties.bears_others || at_crossing)
+}
+
 impl<P> Path<P> {
     /// The number of places.
     pub fn len(&self) -> usize {
@@ -54,25 +75,17 @@ impl<P> Path<P> {
         self.hops.is_empty()
     }
 
-    /// The last place that is a break point: the leader when L_b = 1, else the robot before p₁.
+    /// The last place that is a break point, see [`last_break_point`].
     pub fn last_break_point(&self) -> usize {
-        self.len().saturating_sub(if self.releases_leader { 1 } else { 2 })
+        last_break_point(self.len(), self.releases_leader)
     }
 
-    /// Whether the robot at `place` is a break point of Σ.
-    ///
-    /// The paper names junctions and leaves. A robot is one in effect if it services a task, if
-    /// it has a tree neighbour off Σ, if Σ crosses an access point just before or behind it, or
-    /// if it is the last that Σ relieves; and b₁ = s₁. A crossing is thus walked by one robot
-    /// alone, which hangs on the access point: two in a chain would hold each other back.
+    /// Whether the robot at `place` is a break point of Σ, see [`is_break_point`].
     pub fn is_break_point(&self, place: usize, ties: Ties) -> bool {
-        let last = self.last_break_point();
         let crosses =
             |place: usize| self.hops.get(place).is_some_and(|hop| !hop.crossing.is_empty());
         let at_crossing = crosses(place) || place.checked_sub(1).is_some_and(crosses);
-        place == 0
-            || place == last
-            || place < last && (ties.services_task || ties.bears_others || at_crossing)
+        is_break_point(place, self.last_break_point(), ties, at_crossing)
     }
 
     /// The place that `post` has on the path.

@@ -6,6 +6,9 @@
 use super::{Phase, Role};
 use crate::{Event, Location, Row, TransitionTable, Urgency};
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 impl Location for Role {
     const ALL: &'static [Self] = &Role::ALL;
 
@@ -62,6 +65,31 @@ impl Event for RoleEvent {
             RoleEvent::Relieved => "relieved",
             RoleEvent::Retired => "retired",
         }
+    }
+}
+
+impl RoleEvent {
+    /// Whether the robot goes away from the place that it held, which another must hold by then:
+    /// the guards of these events ask for it.
+    pub const fn needs_replacement(self) -> bool {
+        matches!(self, RoleEvent::Recruited | RoleEvent::Relieved)
+    }
+}
+
+/// Whether a transition leaves no place that matters without a robot (Algorithm 4).
+///
+/// A leaf goes when another robot is at its place, or leads: as a leader it stays where it is
+/// until it is released (L_b = 1). So does a junction; and it is none any more when its place
+/// services a task, when one branch is left, and when none is.
+pub const fn keeps_places_held(source: Role, event: RoleEvent, target: Role) -> bool {
+    let goes_on = event.needs_replacement() || matches!(target, Role::Leader);
+    match source {
+        Role::Leaf => goes_on,
+        Role::Junction => {
+            goes_on
+                || matches!(event, RoleEvent::Entrusted | RoleEvent::Posted | RoleEvent::Retired)
+        }
+        _ => true,
     }
 }
 
@@ -246,9 +274,8 @@ mod tests {
 
     #[test]
     fn a_leaf_leaves_its_role_only_when_it_is_relieved_or_leads() {
-        for row in ROLES.enabled(Role::Leaf) {
-            let relieved = matches!(row.event, RoleEvent::Relieved | RoleEvent::Recruited);
-            assert!(relieved || row.target == Role::Leader, "{row:?}");
+        for row in ROLES.rows() {
+            assert!(keeps_places_held(row.source, row.event, row.target), "{row:?}");
         }
     }
 

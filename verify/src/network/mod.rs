@@ -7,9 +7,10 @@
 //!
 //! Three layers, each using the one before:
 //!
-//! 1. pure functions that state the properties: over identities only, in [`tree`], [`team`]
-//!    and [`duty`] (small slices, bounded loops, no allocation, so that a model checker runs
-//!    the same code); over places and flows, in [`motion`], [`separation`] and [`link`];
+//! 1. pure functions that state the properties: over identities only, in [`tree`], [`team`],
+//!    [`election`] and [`duty`] (small slices, bounded loops, no allocation, so that a model
+//!    checker runs the same code); over places and flows, in [`motion`], [`separation`] and
+//!    [`link`];
 //! 2. checks that apply them to what observers record and name the offenders: [`instant`] for
 //!    one snapshot, [`period`] for two;
 //! 3. the [`Monitor`] that runs every check over a mission, and [`audit`] over a recorded one.
@@ -72,6 +73,8 @@
 //! ```
 
 pub mod duty;
+pub mod election;
+pub mod exploration;
 pub mod instant;
 pub mod link;
 pub mod motion;
@@ -83,6 +86,8 @@ pub mod tree;
 mod extremes;
 mod limits;
 mod monitor;
+#[cfg(any(kani, test))]
+mod proofs;
 mod property;
 #[cfg(test)]
 mod sample;

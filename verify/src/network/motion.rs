@@ -72,7 +72,7 @@ pub fn interval_within(motion: &Segment, place: Point, radius: f64) -> Option<(f
 
 /// The first fraction of the period that none of the intervals covers, if there is one.
 pub fn first_gap(intervals: &mut [(f64, f64)]) -> Option<f64> {
-    intervals.sort_by(|a, b| a.0.total_cmp(&b.0));
+    intervals.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut covered = 0.0;
     for &(start, end) in intervals.iter() {
         if start > covered {

@@ -24,7 +24,12 @@ pub fn leader_comes_last(roles: &[Role], primary_team: &[usize], active: bool) -
 /// the path, without its last one (p₁, or the leader to be released).
 pub fn is_run_of_path(team: &[usize], path: &[usize]) -> bool {
     let Some((_, before_last)) = path.split_last() else { return false };
-    !team.is_empty() && before_last.windows(team.len()).any(|run| run == team)
+    !team.is_empty() && before_last.windows(team.len()).any(|run| are_same(run, team))
+}
+
+/// Robot by robot, which a model checker follows better than a comparison of memory.
+fn are_same(one: &[usize], other: &[usize]) -> bool {
+    one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one == other)
 }
 
 /// Whether the active team 𝒜 is one team: nobody, the primary team, or a subgroup of Σ
@@ -40,7 +45,9 @@ pub fn is_run_of_path(team: &[usize], path: &[usize]) -> bool {
 /// assert!(!is_one_team(&[3, 7], &primary_team, &path)); // p₁ does not move
 /// ```
 pub fn is_one_team(active_team: &[usize], primary_team: &[usize], path: &[usize]) -> bool {
-    active_team.is_empty() || active_team == primary_team || is_run_of_path(active_team, path)
+    active_team.is_empty()
+        || are_same(active_team, primary_team)
+        || is_run_of_path(active_team, path)
 }
 
 /// Whether Σ without its last robot and the primary team have no robot in common.
@@ -94,9 +101,9 @@ pub fn subgroups_partition(path: &[usize], break_points: &[usize], subgroups: &[
         if subgroup.first() != Some(start) {
             return false;
         }
-        match rest.strip_prefix(*subgroup) {
-            Some(behind) => rest = behind,
-            None => return false,
+        match rest.split_at_checked(subgroup.len()) {
+            Some((front, behind)) if are_same(front, subgroup) => rest = behind,
+            _ => return false,
         }
     }
     rest.first() == Some(end)

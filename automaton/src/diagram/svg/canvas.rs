@@ -1,13 +1,15 @@
 //! The strokes that a picture of an automaton is made of. Colours and lines are up to one style
 //! sheet, in which the classes of the strokes are named.
 
-use svg::Document;
-use svg::node::element::{Circle, Definitions, Line, Marker, Path, Rectangle, Style, Text};
+use svg::node::element::{Circle, Definitions, Group, Line, Marker, Path, Rectangle, Style, Text};
+use svg::{Document, Node};
 
 /// The size of the text, in pixels.
 const FONT_SIZE: f64 = 13.0;
 /// From one line of text to the next, in pixels.
 pub(super) const LINE_HEIGHT: f64 = 17.0;
+/// White around the picture, in pixels.
+pub(super) const MARGIN: f64 = 16.0;
 /// The mean width of a character of a sans-serif font, as a share of its size, on the safe side.
 const CHARACTER_WIDTH: f64 = 0.6;
 /// From the middle of a line of text down to its base line, as a share of the size of the font.
@@ -33,6 +35,21 @@ text { font-family: 'DejaVu Sans', 'Segoe UI', Helvetica, Arial, sans-serif; fil
 .at-once { stroke-width: 2.2; }
 .head { fill: #1b1f24; }";
 
+/// What else there is in pictures of runs and of compositions; the others do without.
+const MORE_STYLE: &str = "
+.missed { stroke: #c0392b; }
+.missed-text { fill: #c0392b; font-weight: bold; }
+.missed-dot { fill: #c0392b; }
+.location.missed { fill: #fbeae8; stroke-dasharray: 6 4; }
+.arrow.missed { stroke-dasharray: 7 4; }
+.frame { fill: none; stroke: #7d8894; stroke-width: 1.2; }
+.wire { fill: none; stroke: #2f6f4f; stroke-width: 1.4; stroke-dasharray: 2 3; }
+.wire-dot { fill: #2f6f4f; }
+.wire-text { fill: #2f6f4f; font-weight: bold; }
+.pipe { fill: none; stroke: #8a5a12; stroke-width: 2; }
+.pipe-dot { fill: #8a5a12; }
+.pipe-text { fill: #8a5a12; }";
+
 /// A place in the picture, in pixels; y grows downwards.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
@@ -52,43 +69,58 @@ pub(super) fn text_width(text: &str) -> f64 {
     text.chars().count() as f64 * FONT_SIZE * CHARACTER_WIDTH
 }
 
-/// An SVG document while it is being drawn.
+/// A picture while it is being drawn.
+#[derive(Default)]
 pub(super) struct Canvas {
-    document: Document,
+    strokes: Vec<Box<dyn Node>>,
+    /// Whether runs or a composition are in the picture, too.
+    is_rich: bool,
 }
 
 impl Canvas {
     pub fn new() -> Self {
-        let triangle = Path::new().set("class", "head").set("d", "M 0 0 L 10 4 L 0 8 z");
-        let head = Marker::new()
-            .set("id", "head")
-            .set("viewBox", "0 0 10 8")
-            .set("refX", 10)
-            .set("refY", 4)
-            .set("markerWidth", 11)
-            .set("markerHeight", 9)
-            .set("markerUnits", "userSpaceOnUse")
-            .set("orient", "auto")
-            .add(triangle);
+        Canvas::default()
+    }
+
+    /// The strokes as an SVG document.
+    pub fn finish(self, Size { width, height }: Size) -> String {
+        let (width, height) = (number(width), number(height));
+        let view = format!("0 0 {width} {height}");
+        let (mut style, mut definitions) =
+            (STYLE.to_owned(), Definitions::new().add(head("head", "head")));
+        if self.is_rich {
+            style.push_str(MORE_STYLE);
+            definitions = definitions
+                .add(head("missed-head", "missed-dot"))
+                .add(head("pipe-head", "pipe-dot"));
+        }
         let paper =
             Rectangle::new().set("class", "paper").set("width", "100%").set("height", "100%");
         let document = Document::new()
             .set("font-size", FONT_SIZE)
-            .add(Style::new(STYLE))
-            .add(Definitions::new().add(head))
+            .add(Style::new(style))
+            .add(definitions)
             .add(paper);
-        Canvas { document }
-    }
-
-    pub fn finish(self, Size { width, height }: Size) -> String {
-        let (width, height) = (number(width), number(height));
-        let view = format!("0 0 {width} {height}");
-        let document = self.document.set("width", width).set("height", height).set("viewBox", view);
+        let document = self.strokes.into_iter().fold(document, Document::add);
+        let document = document.set("width", width).set("height", height).set("viewBox", view);
         format!("{document}\n")
     }
 
-    fn add(&mut self, element: impl Into<Box<dyn svg::Node>>) {
-        svg::Node::append(&mut self.document, element.into());
+    /// Puts another picture here, with its upper left corner at `corner`.
+    pub fn inset(&mut self, picture: Canvas, corner: Place) {
+        let shift = format!("translate({} {})", number(corner.x), number(corner.y));
+        self.is_rich |= picture.is_rich;
+        let group = picture.strokes.into_iter().fold(Group::new(), Group::add);
+        self.add(group.set("transform", shift));
+    }
+
+    /// Classes for runs and compositions are used from now on.
+    pub fn enrich(&mut self) {
+        self.is_rich = true;
+    }
+
+    fn add(&mut self, element: impl Into<Box<dyn Node>>) {
+        self.strokes.push(element.into());
     }
 
     /// A line of text whose middle is at the height of `place`.
@@ -99,8 +131,13 @@ impl Canvas {
     }
 
     /// The box of a location.
-    pub fn location(&mut self, corner: Place, size: Size) {
-        self.add(rectangle(corner, size).set("class", "location").set("rx", 8));
+    pub fn location(&mut self, corner: Place, size: Size, class: &str) {
+        self.add(rectangle(corner, size).set("class", class).set("rx", 8));
+    }
+
+    /// The frame of a component.
+    pub fn frame(&mut self, corner: Place, size: Size) {
+        self.add(rectangle(corner, size).set("class", "frame").set("rx", 4));
     }
 
     /// The ground of a row.
@@ -116,14 +153,25 @@ impl Canvas {
 
     /// Where a transition begins.
     pub fn dot(&mut self, at: Place) {
-        let circle = Circle::new().set("class", "dot").set("r", DOT);
+        self.dot_of(at, "dot");
+    }
+
+    /// A dot of another colour.
+    pub fn dot_of(&mut self, at: Place, class: &str) {
+        let circle = Circle::new().set("class", class).set("r", DOT);
         self.add(circle.set("cx", number(at.x)).set("cy", number(at.y)));
     }
 
     /// An arrow with its head at `to`.
     pub fn arrow(&mut self, from: Place, to: Place, class: &str) {
         let line = line(from, to).set("class", format!("arrow {class}"));
-        self.add(line.set("marker-end", "url(#head)"));
+        self.add(line.set("marker-end", head_of(class)));
+    }
+
+    /// A line or an arrow along a path in the notation of SVG.
+    pub fn path(&mut self, path: &str, class: &str, has_head: bool) {
+        let stroke = Path::new().set("class", class).set("d", path);
+        self.add(if has_head { stroke.set("marker-end", head_of(class)) } else { stroke });
     }
 
     /// From a dot above `at` round to `at`.
@@ -139,7 +187,7 @@ impl Canvas {
             y = number(at.y),
         );
         let path = Path::new().set("class", format!("arrow {class}")).set("d", curve);
-        self.add(path.set("marker-end", "url(#head)"));
+        self.add(path.set("marker-end", head_of(class)));
     }
 
     /// The arrow from nowhere to the initial location, whose box is `length` below.
@@ -147,6 +195,29 @@ impl Canvas {
         let start = Place { y: from.y + DOT, ..from };
         self.dot(start);
         self.arrow(start, Place { y: from.y + length, ..from }, "must");
+    }
+}
+
+/// The head of an arrow; `class` gives its colour.
+fn head(name: &str, class: &str) -> Marker {
+    let triangle = Path::new().set("class", class).set("d", "M 0 0 L 10 4 L 0 8 z");
+    Marker::new()
+        .set("id", name)
+        .set("viewBox", "0 0 10 8")
+        .set("refX", 10)
+        .set("refY", 4)
+        .set("markerWidth", 11)
+        .set("markerHeight", 9)
+        .set("markerUnits", "userSpaceOnUse")
+        .set("orient", "auto")
+        .add(triangle)
+}
+
+fn head_of(class: &str) -> &'static str {
+    match class {
+        _ if class.contains("missed") => "url(#missed-head)",
+        _ if class.contains("pipe") => "url(#pipe-head)",
+        _ => "url(#head)",
     }
 }
 
@@ -167,6 +238,6 @@ fn line(from: Place, to: Place) -> Line {
 }
 
 /// A tenth of a pixel is fine enough.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     format!("{value:.1}")
 }

@@ -45,7 +45,7 @@ impl Robot {
     fn leader_bid(&self) -> Option<Bid> {
         let task = self.tasks.last()?;
         let gap = (task.target - task.position).norm();
-        let distance = self.site.free_space.distance(self.position, task.target);
+        let distance = self.site.distance(self.position, task.target);
         let unit = BID_RESOLUTION * self.site.build_length;
         let within_reach = gap <= self.site.settings.service_radius && distance.is_finite();
         within_reach.then(|| Bid {

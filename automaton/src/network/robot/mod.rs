@@ -8,6 +8,7 @@
 //! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
 //! what its guards see of all this are `facts`.
 
+mod abstraction;
 mod attachment;
 mod exchange;
 mod facts;
@@ -33,6 +34,7 @@ use pleach_discrete::network::{
 };
 
 pub use facts::{Facts, VARIABLES};
+pub use links::TreeLink;
 pub use motion::{Objection, Proposal};
 pub use routing::{FlowReport, RouteLink};
 
@@ -47,7 +49,7 @@ use super::site::Site;
 use hearing::Neighbour;
 
 /// A robot of the network.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Robot {
     // What it knows from the beginning.
     id: NodeId,
@@ -301,6 +303,11 @@ impl Robot {
         if !std::mem::take(&mut self.has_news) && !is_due {
             return;
         }
+        self.reflect();
+    }
+
+    /// The robot puts together what it has heard, whether or not there is news in it.
+    fn reflect(&mut self) {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
         self.handle_exchange();
         self.keep_place();

@@ -89,7 +89,7 @@ impl Robot {
     }
 
     /// No message is longer under way than there are robots to pass it on.
-    fn longest_wait(&self) -> usize {
+    pub(super) fn longest_wait(&self) -> usize {
         self.site.robots + self.site.access_points.len()
     }
 

@@ -13,6 +13,8 @@
 
 mod conic;
 mod exact;
+#[cfg(any(kani, test))]
+mod proofs;
 
 use crate::geometry::{Disc, HalfPlane};
 use crate::{Point, Vector};
@@ -88,17 +90,14 @@ impl Motion {
 impl MotionProblem {
     /// Whether a point meets every constraint up to [`FEASIBILITY_TOLERANCE`].
     pub fn admits(&self, point: &Point) -> bool {
-        self.smallest_margin(point) >= -FEASIBILITY_TOLERANCE
+        is_admitted(self.smallest_margin(point))
     }
 
     /// The smallest margin of a point over all constraints; infinite if there are none.
     pub fn smallest_margin(&self, point: &Point) -> f64 {
         let lines = self.half_planes.iter().map(|half_plane| half_plane.margin(*point));
         let circles = self.discs.iter().map(|disc| disc.margin(*point));
-        // A margin that is not a number counts as broken, which f64::min would hide.
-        lines.chain(circles).fold(f64::INFINITY, |least, margin| {
-            if margin < least || margin.is_nan() { margin } else { least }
-        })
+        smallest(lines.chain(circles))
     }
 
     /// Adds c̃_i ≥ `floor` of eq. (22) as a half-plane, from the residual c_i at the position and
@@ -140,6 +139,19 @@ impl MotionProblem {
         }
         self.position
     }
+}
+
+/// Whether a margin is that of a point inside, up to [`FEASIBILITY_TOLERANCE`].
+pub fn is_admitted(margin: f64) -> bool {
+    margin >= -FEASIBILITY_TOLERANCE
+}
+
+/// The smallest of some margins; infinite if there are none. One that is not a number counts as
+/// broken, which `f64::min` would hide: then the answer is not a number either.
+pub fn smallest(margins: impl IntoIterator<Item = f64>) -> f64 {
+    margins.into_iter().fold(f64::INFINITY, |least, margin| {
+        if margin < least || margin.is_nan() { margin } else { least }
+    })
 }
 
 /// The part of the tolerance that closed forms may use; the rest is for the rounding after them.

@@ -1,5 +1,8 @@
 //! The dual iteration (14): a robot's multiplier rises while its residual misses the reserve.
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// Largest multiplier λ, in units of the objective per unit of rate.
 ///
 /// Where no routing reaches the reserve, the dual has no maximum and λ would grow without end. The
@@ -14,7 +17,12 @@ pub const MULTIPLIER_CAP: f64 = 100.0;
 /// `step` is ε, see [`safe_step`]; `residual` is c_i, for the shares that answered the present
 /// multipliers; `reserve` is η.
 pub fn dual_step(multiplier: f64, step: f64, residual: f64, reserve: f64) -> f64 {
-    (multiplier - step * (residual - reserve)).clamp(0.0, MULTIPLIER_CAP)
+    projected(multiplier - step * (residual - reserve))
+}
+
+/// The nearest multiplier in [0, [`MULTIPLIER_CAP`]]: [·]₊ of (14), capped.
+pub fn projected(multiplier: f64) -> f64 {
+    multiplier.clamp(0.0, MULTIPLIER_CAP)
 }
 
 /// What a robot knows of one of its links when it chooses its step.
@@ -76,7 +84,7 @@ impl Default for DualState {
 impl DualState {
     /// At rest at a multiplier, which is brought into [0, [`MULTIPLIER_CAP`]].
     pub fn new(multiplier: f64) -> Self {
-        let multiplier = multiplier.clamp(0.0, MULTIPLIER_CAP);
+        let multiplier = projected(multiplier);
         Self { multiplier, previous: multiplier, momentum: 1.0 }
     }
 
@@ -94,11 +102,7 @@ impl DualState {
         let momentum = if against { 1.0 } else { self.momentum };
         let next = 0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt());
         let extrapolated = stepped + (momentum - 1.0) / next * progress;
-        Self {
-            multiplier: extrapolated.clamp(0.0, MULTIPLIER_CAP),
-            previous: stepped,
-            momentum: next,
-        }
+        Self { multiplier: projected(extrapolated), previous: stepped, momentum: next }
     }
 }
 

@@ -2,6 +2,9 @@
 
 use crate::network::LinkReliability;
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// A link as its sender sees it when it computes its shares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkOffer {
@@ -66,8 +69,19 @@ pub fn local_minimiser(
 
 /// [b − μ]₊ / (2w); zero for an offer with numbers that make no sense.
 pub(super) fn share(link: &LinkOffer, multiplier: f64, budget_price: f64) -> f64 {
-    let share = (link.value(multiplier) - budget_price) / (2.0 * link.weight);
-    if share > 0.0 { share } else { 0.0 }
+    positive_part((link.value(multiplier) - budget_price) / (2.0 * link.weight))
+}
+
+/// \[a\]₊; zero for what is not a number.
+pub fn positive_part(number: f64) -> f64 {
+    if number > 0.0 { number } else { 0.0 }
+}
+
+/// Whether shares are ones that the local Lagrangian is minimised over: T ≥ 0, Σ T ≤ `budget` up
+/// to a rounding of `tolerance`.
+pub fn is_feasible(shares: &[f64], budget: f64, tolerance: f64) -> bool {
+    let total: f64 = shares.iter().sum();
+    shares.iter().all(|&share| share >= 0.0) && total <= budget + tolerance
 }
 
 /// μ: the least price ≥ 0 on time at which the shares fit into the budget.
@@ -117,7 +131,7 @@ mod tests {
             let mut shares = Vec::new();
             let price = local_minimiser(multiplier, &links, budget, &mut shares);
             let total: f64 = shares.iter().sum();
-            prop_assert!(price >= 0.0 && total <= budget * (1.0 + 1e-12));
+            prop_assert!(price >= 0.0 && is_feasible(&shares, budget, budget * 1e-12));
             prop_assert!(price == 0.0 || (total - budget).abs() < 1e-12);
             for (link, &share) in links.iter().zip(&shares) {
                 let gradient = 2.0 * link.weight * share - link.value(multiplier) + price;

@@ -1,0 +1,201 @@
+//! Pictures: one column a location, one row an event.
+//!
+//! Automata of real models have nearly as many transitions as pairs of locations. Drawn as boxes
+//! and curves they become a tangle in which no label finds its edge. Here every location is a
+//! column with a line downwards, and every event a row with its label at the left; the row's
+//! arrows lead from the dots on the locations that it leaves to the location that it enters. An
+//! event with several targets, urgencies or priorities has a row for each. A transition back to
+//! its own source is a loop.
+
+use pleach_discrete::Urgency;
+
+use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Place, Size, text_width};
+use super::{label_class, stroke_class, wrapped};
+use crate::diagram::sketch::Sketch;
+
+/// Between a text and the border of its box, in pixels.
+const PADDING: f64 = 10.0;
+/// White between columns, in pixels.
+const GAP: f64 = 22.0;
+/// Above the boxes, where the initial location is entered, in pixels.
+const ENTRANCE: f64 = 30.0;
+/// The least height of a row, in pixels: a loop fits.
+const ROW_HEIGHT: f64 = 48.0;
+/// Longer labels are broken, in characters.
+const LINE_LENGTH: usize = 44;
+/// Longer flows and invariants in the boxes of locations are broken, in characters.
+const BOX_LINE_LENGTH: usize = 26;
+
+/// How the picture is read, in its upper left corner.
+const KEY: [&str; 2] =
+    ["event [guard] / reset (urgency, priority)", "from each ● to where → points"];
+
+/// Draws the columns and rows; also says how large the picture is.
+pub(super) fn draw(sketch: &Sketch) -> (Canvas, Size) {
+    let mut rows = rows(sketch);
+    let labels = rows.iter().flat_map(|row| &row.label).map(String::as_str);
+    let label_width = labels.chain(KEY).map(text_width).fold(0.0, f64::max);
+    let columns = columns(sketch, MARGIN + label_width + GAP);
+    let right = columns.last().map_or(MARGIN + label_width, |last| last.x + last.width / 2.0);
+    let bottom = stack(&mut rows, MARGIN + ENTRANCE + box_height(&columns) + PADDING);
+
+    let mut canvas = Canvas::new();
+    draw_labels(&mut canvas, &rows, right);
+    draw_columns(&mut canvas, &columns, bottom);
+    for row in &rows {
+        draw_arrows(&mut canvas, row, &columns);
+    }
+    if let Some(initial) = sketch.initial.and_then(|number| columns.get(number)) {
+        canvas.initial_arrow(Place { x: initial.x, y: MARGIN }, ENTRANCE);
+    }
+    (canvas, Size { width: right + MARGIN, height: bottom + LINE_HEIGHT + MARGIN })
+}
+
+/// A location: its box, and the line below it.
+struct Column {
+    lines: Vec<String>,
+    is_missed: bool,
+    x: f64,
+    width: f64,
+}
+
+/// The transitions that share event, target, urgency and priority.
+struct Row {
+    label: Vec<String>,
+    /// The columns that it leaves.
+    sources: Vec<usize>,
+    /// The column that it enters.
+    target: usize,
+    urgency: Urgency,
+    is_missed: bool,
+    /// Where it begins in the picture.
+    top: f64,
+}
+
+impl Row {
+    fn height(&self) -> f64 {
+        (self.label.len() as f64 * LINE_HEIGHT + PADDING).max(ROW_HEIGHT)
+    }
+
+    fn middle(&self) -> f64 {
+        self.top + self.height() / 2.0
+    }
+}
+
+fn columns(sketch: &Sketch, left: f64) -> Vec<Column> {
+    let mut from = left;
+    let places = sketch.places.iter();
+    places
+        .map(|place| {
+            let lines = place.lines();
+            let lines: Vec<String> =
+                lines.iter().flat_map(|line| wrapped(line, BOX_LINE_LENGTH)).collect();
+            let longest = lines.iter().map(|line| text_width(line)).fold(0.0, f64::max);
+            let width = longest + 2.0 * PADDING;
+            let x = from + width / 2.0;
+            from += width + GAP;
+            Column { lines, is_missed: place.is_missed, x, width }
+        })
+        .collect()
+}
+
+/// By event: first those of the event that occurs first.
+fn rows(sketch: &Sketch) -> Vec<Row> {
+    let mut rows: Vec<Row> = Vec::new();
+    for link in sketch.links_by_event() {
+        let lines = link.lines();
+        let label: Vec<String> = lines.iter().flat_map(|line| wrapped(line, LINE_LENGTH)).collect();
+        let known = rows.iter_mut().find(|row| row.target == link.target && row.label == label);
+        match known {
+            Some(row) => row.sources.push(link.source),
+            None => rows.push(Row {
+                label,
+                sources: vec![link.source],
+                target: link.target,
+                urgency: link.urgency,
+                is_missed: link.is_missed,
+                top: 0.0,
+            }),
+        }
+    }
+    rows
+}
+
+/// Puts the rows below each other; returns where they end.
+fn stack(rows: &mut [Row], mut top: f64) -> f64 {
+    for row in rows {
+        row.top = top;
+        top += row.height();
+    }
+    top + PADDING
+}
+
+/// The key, and the labels of the rows on a ground of alternating colour.
+fn draw_labels(canvas: &mut Canvas, rows: &[Row], right: f64) {
+    for (number, line) in KEY.iter().enumerate() {
+        let y = MARGIN + ENTRANCE + (number as f64 + 0.5) * LINE_HEIGHT;
+        canvas.label(Place { x: MARGIN, y }, line, "key");
+    }
+    for (number, row) in rows.iter().enumerate() {
+        if number % 2 == 0 {
+            let corner = Place { x: MARGIN / 2.0, y: row.top };
+            canvas.stripe(corner, Size { width: right, height: row.height() });
+        }
+        let first = row.middle() - (row.label.len() as f64 - 1.0) / 2.0 * LINE_HEIGHT;
+        for (at, line) in row.label.iter().enumerate() {
+            let class = label_class(at, line);
+            canvas.label(Place { x: MARGIN, y: first + at as f64 * LINE_HEIGHT }, line, class);
+        }
+    }
+}
+
+fn draw_arrows(canvas: &mut Canvas, row: &Row, columns: &[Column]) {
+    let y = row.middle();
+    let target = columns[row.target].x;
+    if row.is_missed {
+        canvas.enrich();
+    }
+    let class = stroke_class(row.urgency, row.is_missed);
+    let places = || row.sources.iter().map(|&source| columns[source].x);
+    let [leftmost, rightmost] = [places().fold(target, f64::min), places().fold(target, f64::max)];
+    for outermost in [leftmost, rightmost] {
+        if outermost != target {
+            canvas.arrow(Place { x: outermost, y }, Place { x: target, y }, &class);
+        }
+    }
+    for x in places() {
+        match x == target {
+            true => canvas.returning_arrow(Place { x, y }, &class),
+            false => canvas.dot(Place { x, y }),
+        }
+    }
+}
+
+/// The boxes, and the lines down to where the names stand again.
+fn draw_columns(canvas: &mut Canvas, columns: &[Column], bottom: f64) {
+    let (top, height) = (MARGIN + ENTRANCE, box_height(columns));
+    for column in columns {
+        let corner = Place { x: column.x - column.width / 2.0, y: top };
+        canvas.column_line(column.x, top + height, bottom);
+        let class = if column.is_missed { "location missed" } else { "location" };
+        if column.is_missed {
+            canvas.enrich();
+        }
+        canvas.location(corner, Size { width: column.width, height }, class);
+        let lines = column.lines.len() as f64;
+        let first = top + height / 2.0 - (lines - 1.0) / 2.0 * LINE_HEIGHT;
+        for (at, line) in column.lines.iter().enumerate() {
+            let class = if at == 0 { "name middle" } else { "middle" };
+            canvas.label(Place { x: column.x, y: first + at as f64 * LINE_HEIGHT }, line, class);
+        }
+        if let Some(name) = column.lines.first() {
+            let y = bottom + LINE_HEIGHT / 2.0;
+            canvas.label(Place { x: column.x, y }, name, "name middle");
+        }
+    }
+}
+
+fn box_height(columns: &[Column]) -> f64 {
+    let lines = columns.iter().map(|column| column.lines.len()).max().unwrap_or(1);
+    (lines as f64 * LINE_HEIGHT).max(KEY.len() as f64 * LINE_HEIGHT) + PADDING
+}

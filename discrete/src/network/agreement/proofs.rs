@@ -1,0 +1,82 @@
+//! Whoever has heard every vote knows the same break points, in whatever order it heard them.
+
+use super::*;
+
+/// Places of the path.
+const PLACES: usize = 4;
+
+/// What somebody knows who has heard any of the votes, and of any of the arrivals.
+fn any_view(votes: [bool; PLACES]) -> Agreement {
+    let mut view = Agreement::new(1);
+    for (place, vote) in votes.into_iter().enumerate() {
+        if kani::any() {
+            view.vote(place, vote);
+        }
+    }
+    view
+}
+
+fn merged(mut one: Agreement, other: &Agreement) -> Agreement {
+    one.merge(other);
+    one
+}
+
+/// Four places, any votes, any two views of them: merging is commutative, and as soon as what
+/// both know together is settled, it tells every vote as it was cast.
+#[kani::proof]
+#[kani::unwind(6)]
+fn settled_views_tell_every_vote() {
+    let votes: [bool; PLACES] = kani::any();
+    let (one, other) = (any_view(votes), any_view(votes));
+    let both = merged(one.clone(), &other);
+    kani::cover!(both.is_settled(PLACES) && !one.is_settled(PLACES) && !other.is_settled(PLACES));
+    assert!(both == merged(other, &one));
+    if both.is_settled(PLACES) {
+        for (place, vote) in votes.into_iter().enumerate() {
+            assert!(both.is_break_point(place) == vote);
+        }
+    }
+}
+
+/// A vote stands: whatever is said for the same place afterwards changes nothing.
+#[kani::proof]
+#[kani::unwind(6)]
+fn a_vote_stands() {
+    let votes: [bool; PLACES] = kani::any();
+    let mut view = any_view(votes);
+    let before = view.clone();
+    let place = usize::from(kani::any_where(|place: &u8| usize::from(*place) < PLACES));
+    for voter in 0..PLACES {
+        // The number of the place is a constant in each round of this loop.
+        if voter == place && before.has_voted(voter) {
+            view.vote(voter, kani::any());
+        }
+    }
+    kani::cover!(before.has_voted(place));
+    assert!(view == before);
+}
+
+/// Arrivals are never forgotten, and those of a range of places are known together exactly if
+/// each is known.
+#[kani::proof]
+#[kani::unwind(6)]
+fn arrivals_are_known_together_if_each_is_known() {
+    let (arrived, heard): ([bool; PLACES], [bool; PLACES]) = (kani::any(), kani::any());
+    let (mut view, mut other) = (Agreement::new(1), Agreement::new(1));
+    for place in 0..PLACES {
+        if arrived[place] {
+            view.arrive(place);
+        }
+        if heard[place] {
+            other.arrive(place);
+        }
+    }
+    view.merge(&other);
+    let (first, end): (u8, u8) =
+        (kani::any_where(|first| *first < 4), kani::any_where(|end| *end <= 4));
+    let places = usize::from(first)..usize::from(end);
+    let expected =
+        (0..PLACES).all(|place| !places.contains(&place) || arrived[place] || heard[place]);
+    kani::cover!(expected && places.len() == 3 && !(arrived[1] && arrived[2]));
+    assert!(view.have_arrived(places) == expected);
+}

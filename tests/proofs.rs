@@ -1,0 +1,116 @@
+//! `docs/proofs.md` names every harness, every property and every lemma, and nothing else.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use pleach::verify::network::Property;
+
+/// The packages that may have harnesses.
+const PACKAGES: [&str; 6] = ["", "guards", "discrete", "continuous", "automaton", "verify"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn document() -> String {
+    fs::read_to_string(root().join("docs/proofs.md")).unwrap()
+}
+
+/// The files below a folder.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
+}
+
+/// Every harness in the sources, with the path of its file.
+fn harnesses() -> BTreeSet<(String, String)> {
+    let mut harnesses = BTreeSet::new();
+    for path in PACKAGES.iter().flat_map(|package| files(&root().join(package).join("src"))) {
+        let source = fs::read_to_string(&path).unwrap();
+        let path = path.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/");
+        for after in source.split("#[kani::proof]").skip(1) {
+            let name = after.split("fn ").nth(1).unwrap().split('(').next().unwrap();
+            harnesses.insert((name.to_owned(), path.clone()));
+        }
+    }
+    harnesses
+}
+
+/// The rows of the tables below a heading of the document, up to the next one of its level.
+fn rows<'a>(document: &'a str, heading: &str) -> Vec<&'a str> {
+    let (_, chapter) = document.split_once(&format!("\n## {heading}\n")).unwrap();
+    let chapter = chapter.split("\n## ").next().unwrap();
+    chapter.lines().filter(|line| line.starts_with("| ")).collect()
+}
+
+/// The text and the target of the link that a row begins with.
+fn link(row: &str) -> Option<(String, String)> {
+    let (text, rest) = row.strip_prefix("| [")?.split_once("](../")?;
+    Some((text.trim_matches('`').to_owned(), rest.split_once(')')?.0.to_owned()))
+}
+
+#[test]
+fn the_document_names_every_harness() {
+    let document = document();
+    let rows = rows(&document, "Harnesses");
+    let named: BTreeSet<_> = rows.iter().filter_map(|row| link(row)).collect();
+    let harnesses = harnesses();
+    assert!(harnesses.len() > 40, "the harnesses are not where they are looked for");
+    assert_eq!(named, harnesses);
+}
+
+#[test]
+fn the_document_counts_the_harnesses() {
+    let document = document();
+    let rows = rows(&document, "Harnesses");
+    let of_kind = |kind: &str| rows.iter().filter(|row| row.contains(kind)).count();
+    let (all, random) = (of_kind("| all "), of_kind("| random "));
+    assert_eq!(all + random, harnesses().len());
+    let sentence = format!("{} harnesses, {all} of them exhaustively", all + random);
+    assert!(document.contains(&sentence), "it should say: {sentence}");
+}
+
+#[test]
+fn the_document_names_every_property() {
+    let document = document();
+    let rows = rows(&document, "Properties and who checks them");
+    let named: Vec<&str> = rows.iter().map(|row| row.split(" | ").next().unwrap()).collect();
+    let named: Vec<&str> = named.iter().filter_map(|cell| cell.strip_prefix("| ")).collect();
+    let properties = Property::ALL.map(Property::name);
+    // The first two rows are the head of the table.
+    assert_eq!(named[2..], properties);
+}
+
+#[test]
+fn the_document_names_every_lemma() {
+    let document = document();
+    let named: BTreeSet<String> = rows(&document, "Lemmas over the reals")
+        .iter()
+        .filter_map(|row| link(row))
+        .map(|(_, target)| target)
+        .collect();
+    let folder = root().join("proofs/smt");
+    let lemmas: BTreeSet<String> = files(&folder)
+        .iter()
+        .map(|path| path.file_name().unwrap().to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".smt2"))
+        .map(|name| format!("proofs/smt/{name}"))
+        .collect();
+    assert_eq!(named, lemmas);
+    assert!(document.contains(&format!("{} lemmas proven", lemmas.len())));
+}
+
+/// The properties name lemmas, too.
+#[test]
+fn the_properties_name_lemmas_that_exist() {
+    for row in rows(&document(), "Properties and who checks them").iter().skip(2) {
+        let lemmas = row.split('|').nth(3).unwrap();
+        for lemma in lemmas.split(',').map(str::trim).filter(|lemma| !lemma.is_empty()) {
+            let file = root().join(format!("proofs/smt/{lemma}.smt2"));
+            assert!(file.exists(), "{lemma} in: {row}");
+        }
+    }
+}
