@@ -19,6 +19,7 @@
 
 pub mod automaton;
 pub mod builder;
+pub mod check;
 pub mod composition;
 pub mod coordinates;
 pub mod coverage;
@@ -37,6 +38,7 @@ pub mod zeno;
 
 pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
+pub use check::{Finding, Report};
 pub use composition::{
     Composition, CompositionBuilder, CompositionError, Exploration, ExplorationError, Failure,
     Policy, ReplayError, Settings, Simulation, SimulationError,

@@ -67,6 +67,7 @@ mod builder;
 mod exploration;
 mod flight;
 mod jumps;
+mod models;
 mod picture;
 mod replay;
 mod simulation;
@@ -79,6 +80,8 @@ pub use replay::ReplayError;
 pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;
+
+use crate::check::model::Model;
 
 /// Automata side by side; see the [module](self).
 #[derive(Clone)]
@@ -95,6 +98,8 @@ pub struct Composition {
 pub(crate) struct Component {
     pub(crate) name: String,
     pub(crate) blueprint: Arc<Blueprint>,
+    /// What checks read.
+    model: Arc<Model>,
     /// By event: what it is called here.
     pub(crate) events: Vec<String>,
     /// By coordinate: where its value is.
