@@ -83,6 +83,7 @@ fn main() -> Result<ExitCode, Error> {
         uncaught += usize::from(verdict != Verdict::Caught);
         let seconds = begin.elapsed().as_secs();
         println!("{verdict}: {} ({}, {seconds} s)", fault.name, fault.engine);
+        println!("    {}", fault.wrong);
     }
     println!("{} faults, {} of them caught", planted.len(), planted.len() - uncaught);
     Ok(if uncaught == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -119,6 +120,7 @@ impl<'a> Workshop<'a> {
 
     /// Plants one fault in sources that have no other, and runs its command.
     fn try_out(&self, fault: &Fault) -> Result<Verdict, Error> {
+        fs::create_dir_all(&self.copy)?;
         for path in SOURCES {
             renew(&self.root.join(path), &self.copy.join(path), &self.copy.join(&fault.file))?;
         }
