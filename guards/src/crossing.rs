@@ -139,5 +139,9 @@ mod tests {
         assert!(Hysteresis::new(1.0, 0.0).is_err());
         assert!(Hysteresis::new(f64::NAN, 0.0).is_err());
         assert!(Hysteresis::new(0.0, 0.0).is_ok());
+        let error = Hysteresis::new(1.0, 0.5).expect_err("inverted");
+        let text = "hysteresis releases at 1 and engages at 0.5: \
+                    the first must be at most the second";
+        assert_eq!(error.to_string(), text);
     }
 }
