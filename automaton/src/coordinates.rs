@@ -220,7 +220,10 @@ macro_rules! coordinates {
         impl $crate::Coordinates for $state {
             const NAMES: &'static [&'static str] = {
                 const NAMES: &[&str] = &[$($crate::coordinates!(@word $field $($word)?)),+];
-                assert!($crate::discrete::vocabulary::all_differ(NAMES), "two names are the same");
+                const _: () = assert!(
+                    $crate::discrete::vocabulary::all_differ(NAMES),
+                    "two names are the same"
+                );
                 NAMES
             };
 
