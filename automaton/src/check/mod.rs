@@ -99,7 +99,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     pub fn check_with(&self, effort: Effort) -> Report {
         let model = Model::of(self);
         let (inquiry, _) = examined(&model, effort);
-        inquiry.report.sorted()
+        inquiry.report.finished()
     }
 }
 
@@ -121,7 +121,7 @@ impl Composition {
         }
         labels::report_labels(&models, &reaches, &mut report);
         labels::report_inputs(&models, &mut report);
-        report.sorted()
+        report.finished()
     }
 }
 

@@ -56,8 +56,7 @@ impl Inquiry<'_> {
         let mut known = usize::MAX;
         while known != search.fires.len() {
             known = search.fires.len();
-            for number in 0..transitions {
-                let transition = &self.model.transitions[number];
+            for (number, transition) in self.model.transitions.iter().enumerate() {
                 if is_satisfiable[number] && search.is_reached[transition.source] {
                     self.look_at(number, &mut search);
                 }
