@@ -43,6 +43,11 @@ classics! {
     heater_and_controller from "../examples/heater_and_controller.rs"
     two_tanks from "../examples/two_tanks.rs"
     gear_shift from "../examples/gear_shift.rs"
+    navigation from "../examples/navigation.rs"
+    clock_synchronisation from "../examples/clock_synchronisation.rs"
+    filtered_oscillator from "../examples/filtered_oscillator.rs"
+    platoon from "../examples/platoon.rs"
+    two_phase_commit from "../examples/two_phase_commit.rs"
 }
 
 fn keep_page(name: &str, page: &str) {
@@ -57,7 +62,7 @@ fn keep_diagrams<'a>(diagrams: impl Iterator<Item = (String, &'a str)>) {
 
 /// Plots are drawn anew with everything else, and not compared: the last digits of a run are not
 /// the same on every machine.
-fn keep_plots(plots: impl Iterator<Item = (String, String)>) {
+fn keep_plots<'a>(plots: impl Iterator<Item = (String, &'a str)>) {
     for (name, svg) in plots {
         let file = root().join(PICTURES).join(name);
         if is_update() {
@@ -69,8 +74,18 @@ fn keep_plots(plots: impl Iterator<Item = (String, String)>) {
 
 const PICTURES: &str = "docs/classics/pictures";
 
+#[test]
+fn every_document_has_a_line_in_the_contents() {
+    let contents = read("docs/SUMMARY.md");
+    for entry in fs::read_dir(root().join("docs")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let is_listed = name == "SUMMARY.md" || contents.contains(&format!("({name})"));
+        assert!(is_listed || !name.ends_with(".md"), "{name} is not in SUMMARY.md");
+    }
+}
+
 /// Examples that are no classics: they are about the robots.
-const OTHERS: [&str; 1] = ["stress"];
+const OTHERS: [&str; 2] = ["explore", "stress"];
 
 #[test]
 fn every_example_has_a_page_and_every_page_a_line_in_the_contents() {

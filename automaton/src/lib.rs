@@ -40,8 +40,8 @@ pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
 pub use check::{Finding, Report};
 pub use composition::{
-    Composition, CompositionBuilder, CompositionError, Failure, Policy, ReplayError, Settings,
-    Simulation, SimulationError,
+    Composition, CompositionBuilder, CompositionError, Exploration, ExplorationError, Failure,
+    Policy, ReplayError, Settings, Simulation, SimulationError,
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};

@@ -245,6 +245,13 @@ mod tests {
     }
 
     #[test]
+    fn a_refusal_names_location_and_event() {
+        let refusal = InvalidTransition { location: Door::Open, event: Hand::Pull };
+        let text = "no transition leaves location `open` on event `pull`";
+        assert_eq!(refusal.to_string(), text);
+    }
+
+    #[test]
     fn rows_come_by_priority_and_then_by_declaration() {
         let events = DOOR.enabled(Door::Closed).map(|row| row.event);
         assert!(events.eq([Hand::Pull, Hand::Turn, Hand::Push]));
@@ -258,6 +265,7 @@ mod tests {
             row(Door::Open, Hand::Push, Door::Closed, 1),
             row(Door::Open, Hand::Push, Door::Removed, 0),
         ]);
+        assert!(!TWICE.is_deterministic());
         assert_eq!(TWICE.conflict(), Some(&TWICE.rows()[1]));
         assert_eq!(TWICE.next(Door::Open, Hand::Push), Ok(Door::Removed));
     }

@@ -46,3 +46,19 @@ impl fmt::Display for Urgency {
         formatter.write_str(self.name())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Urgency::{AtOnce, May, Must};
+
+    #[test]
+    fn time_waits_for_all_but_may() {
+        assert_eq!([May, Must, AtOnce].map(super::Urgency::is_forced), [false, true, true]);
+    }
+
+    #[test]
+    fn urgencies_print_their_name() {
+        let names = [May, Must, AtOnce].map(|urgency| urgency.to_string());
+        assert_eq!(names, ["may", "must", "at once"]);
+    }
+}

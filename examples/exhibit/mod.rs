@@ -17,6 +17,9 @@ use pleach::discrete::{Event, Location};
 
 pub use number::{number, numbers};
 
+/// What is folded up below the tables of an automaton.
+const DEFINITION: &str = "The formal definition";
+
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
 
@@ -41,7 +44,8 @@ struct Drawing {
 
 struct Run {
     title: &'static str,
-    trajectory: Trajectory,
+    story: Vec<String>,
+    plot: Option<String>,
 }
 
 /// Numbers that a run gives beside those that it should give.
@@ -65,7 +69,10 @@ impl Exhibit {
         automaton: &Automaton<L, E, S>,
     ) -> Self {
         let (table, definition) = (diagram::table(automaton), diagram::latex(automaton));
-        let legend = format!("{table}\n```math\n{}\n```\n", definition.trim());
+        let definition = format!("```math\n{}\n```", definition.trim());
+        let folded =
+            format!("<details><summary>{DEFINITION}</summary>\n\n{definition}\n\n</details>");
+        let legend = format!("{table}\n{folded}\n");
         self.drawings.push(Drawing { title, diagram: diagram::svg(automaton), legend });
         self
     }
@@ -79,7 +86,14 @@ impl Exhibit {
 
     /// Shows a run: its plot, its jumps and its ending.
     pub fn run(mut self, title: &'static str, trajectory: Trajectory) -> Self {
-        self.runs.push(Run { title, trajectory });
+        let (story, plot) = (show::story(&trajectory), Some(diagram::plot(&trajectory)));
+        self.runs.push(Run { title, story, plot });
+        self
+    }
+
+    /// Shows what happens where no time passes: a line for each jump.
+    pub fn story(mut self, title: &'static str, story: Vec<String>) -> Self {
+        self.runs.push(Run { title, story, plot: None });
         self
     }
 
@@ -140,8 +154,8 @@ impl Exhibit {
     }
 
     /// The plots of the runs: the name of a file, and an SVG document.
-    pub fn plots(&self) -> impl Iterator<Item = (String, String)> {
-        self.runs.iter().map(|run| (self.plot_of(run), diagram::plot(&run.trajectory)))
+    pub fn plots(&self) -> impl Iterator<Item = (String, &str)> {
+        self.runs.iter().filter_map(|run| Some((self.plot_of(run), run.plot.as_deref()?)))
     }
 
     fn diagram_of(&self, drawing: &Drawing) -> String {

@@ -1,6 +1,5 @@
 //! The exhibit as a page of the book, in Markdown.
 
-use super::show::story;
 use super::{Comparison, Exhibit, numbers};
 
 /// Between these lines of an example stands its model.
@@ -24,9 +23,11 @@ impl Exhibit {
         }
         page += "\n## What happens\n";
         for run in &self.runs {
-            let (title, picture) = (run.title, self.plot_of(run));
-            let lines = story(&run.trajectory).join("\n");
-            page += &format!("\n### {title}\n\n![Plot: {title}](pictures/{picture})\n\n");
+            let (title, picture, lines) = (run.title, self.plot_of(run), run.story.join("\n"));
+            page += &format!("\n### {title}\n\n");
+            if run.plot.is_some() {
+                page += &format!("![Plot: {title}](pictures/{picture})\n\n");
+            }
             page += &format!("```text\n{lines}\n```\n");
         }
         page += "\n## The answer\n\n| quantity | answer | agrees within |\n| --- | --: | --: |\n";

@@ -22,7 +22,7 @@ impl Exhibit {
     pub fn show(&self) -> Result<(), Box<dyn Error>> {
         for run in &self.runs {
             println!("{}:", run.title);
-            for line in story(&run.trajectory) {
+            for line in &run.story {
                 println!("  {line}");
             }
         }

@@ -134,10 +134,25 @@ mod tests {
         assert_eq!(Crossing::between(at(0.0, false), at(1.0, true)), Crossing::Rising);
     }
 
+    /// Off below −1, on from 2, and between them as it was; both ends belong to what is on.
+    #[test]
+    fn a_switch_turns_at_its_thresholds() {
+        let switch = Hysteresis::new(-1.0, 2.0).expect("in order");
+        let cases = [(-1.5, false, false), (-1.0, false, true), (1.5, false, true)];
+        for (margin, from_off, from_on) in cases.into_iter().chain([(2.0, true, true)]) {
+            let found = (switch.update(false, margin), switch.update(true, margin));
+            assert_eq!(found, (from_off, from_on), "{margin}");
+        }
+    }
+
     #[test]
     fn inverted_bands_are_refused() {
         assert!(Hysteresis::new(1.0, 0.0).is_err());
         assert!(Hysteresis::new(f64::NAN, 0.0).is_err());
         assert!(Hysteresis::new(0.0, 0.0).is_ok());
+        let error = Hysteresis::new(1.0, 0.5).expect_err("inverted");
+        let text = "hysteresis releases at 1 and engages at 0.5: \
+                    the first must be at most the second";
+        assert_eq!(error.to_string(), text);
     }
 }

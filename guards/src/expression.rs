@@ -367,6 +367,12 @@ mod tests {
     }
 
     #[test]
+    fn the_negation_of_a_constant_is_a_constant() {
+        assert_eq!(-constant(2.0), constant(-2.0));
+        assert_eq!(-&constant(2.0), constant(-2.0));
+    }
+
+    #[test]
     fn variables_are_listed_once_in_order() {
         let expression = (variable("b") + variable("a")) * variable("b").max(variable("c"));
         assert!(expression.variables().into_iter().eq(["a", "b", "c"]));

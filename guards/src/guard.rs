@@ -59,3 +59,23 @@ impl fmt::Display for Guard {
         write!(formatter, "{}: {}", self.name, self.predicate)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expression::variable;
+
+    #[test]
+    fn a_guard_says_what_its_predicate_says() {
+        let low = variable("x").less_than(1.0);
+        let guard = Guard::new("low", low.clone());
+        assert_eq!((guard.name(), guard.predicate()), ("low", &low));
+        assert_eq!(guard.to_string(), "low: x < 1");
+        assert_eq!(Guard::from(low.clone()).name(), "x < 1");
+        for x in [0.5, 1.0] {
+            let state = [("x", x)];
+            assert_eq!(guard.evaluate(&state), low.evaluate(&state));
+            assert_eq!(guard.holds(&state), Ok(x < 1.0));
+        }
+    }
+}

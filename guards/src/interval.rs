@@ -316,6 +316,10 @@ mod tests {
             (point(LARGE) + point(2.0), point(LARGE + 2.0)),
             (point(LARGE) + point(1.0), above(LARGE)),
             (point(LARGE) + point(3.0), below(LARGE + 4.0)),
+            (point(3.0) + point(LARGE), below(LARGE + 4.0)),
+            (point(LARGE) + point(0.25), above(LARGE)),
+            (point(0.25) + point(LARGE), above(LARGE)),
+            (point(-0.25) + point(LARGE), below(LARGE)),
             (point(odd) * point(odd), above(odd * odd)),
             (point(3.0) * point(-7.0), point(-21.0)),
             (point(1e-200) * point(1e-200), Interval { lower: -5e-324, upper: 5e-324 }),
@@ -349,6 +353,42 @@ mod tests {
         assert_eq!(over(-4.0, -1.0).ln(), None);
     }
 
+    /// Of what is negative, −∞ alone has powers with a broken exponent.
+    #[test]
+    fn broken_powers_of_what_is_unbounded_below_include_that_of_infinity() {
+        let over = |lower, upper| Interval { lower, upper };
+        let found = over(f64::NEG_INFINITY, 4.0).power(-0.5).expect("there are such powers");
+        assert_eq!((found.lower, found.upper), (0.0, f64::INFINITY));
+        let found = over(-9.0, 4.0).power(-0.5).expect("there are such powers");
+        assert!((found.lower - 0.5).abs() < 1e-12, "{found}");
+        let found = over(f64::NEG_INFINITY, -1.0).power(1.5).expect("that of −∞");
+        assert!(found.lower > 1e308 && found.upper == f64::INFINITY, "{found}");
+    }
+
+    #[test]
+    fn the_middle_is_inside_and_finite_where_anything_is() {
+        let infinity = f64::INFINITY;
+        let cases = [
+            (2.0, 6.0, 4.0, 4.0),
+            (-3.0, -2.0, 1.0, -2.5),
+            (f64::MAX, f64::MAX, 0.0, f64::MAX),
+            (5.0, infinity, infinity, 10.0),
+            (0.25, infinity, infinity, 1.25),
+            (f64::MAX, infinity, infinity, f64::MAX),
+            (-infinity, -5.0, infinity, -10.0),
+            (-infinity, 0.25, infinity, -0.75),
+            (-infinity, f64::MIN, infinity, f64::MIN),
+            (-infinity, infinity, infinity, 0.0),
+            (infinity, infinity, 0.0, infinity),
+            (-infinity, -infinity, 0.0, -infinity),
+        ];
+        for (lower, upper, width, middle) in cases {
+            let interval = Interval { lower, upper };
+            assert_eq!((interval.width(), interval.midpoint()), (width, middle), "{interval}");
+            assert!(interval.contains(middle), "{interval}");
+        }
+    }
+
     #[test]
     fn halves_cover_unbounded_intervals() {
         for whole in [Interval::WHOLE, Interval { lower: 1e308, upper: f64::INFINITY }] {
@@ -363,5 +403,13 @@ mod tests {
     fn ends_in_the_wrong_order_are_refused() {
         assert!(Interval::new(1.0, 0.0).is_err());
         assert!(Interval::new(f64::NAN, 0.0).is_err());
+        let error = Interval::new(1.5, 0.0).expect_err("the wrong order");
+        let text = "no number lies from 1.5 to 0: the first must be at most the second";
+        assert_eq!(error.to_string(), text);
+    }
+
+    #[test]
+    fn intervals_print_their_ends() {
+        assert_eq!(Interval { lower: -0.5, upper: f64::INFINITY }.to_string(), "[-0.5, inf]");
     }
 }

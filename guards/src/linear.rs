@@ -58,7 +58,6 @@ impl Expression {
         let form = |part: &Expression| part.linear_form_over(number);
         let (zero, minus_one) = (number(0.0)?, number(-1.0)?);
         let mut form = match self {
-            Expression::Constant(value) => LinearForm::of_constant(number(*value)?),
             Expression::Variable(name) => LinearForm {
                 coefficients: BTreeMap::from([(name.to_string(), number(1.0)?)]),
                 constant: zero.clone(),

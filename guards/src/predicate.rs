@@ -409,6 +409,7 @@ mod tests {
         assert_eq!(verdict(&one, 1.0), (0.0, true));
         assert_eq!(verdict(&not(one.clone()), 1.0), (0.0, false));
         assert_eq!(one, one.clone());
+        assert!(format!("{one:?}").contains("near"));
         assert_ne!(one, other);
         let mixed = not(one).or(variable("x").at_most(0.0));
         assert!(mixed.functions().into_iter().eq(["near"]));

@@ -395,3 +395,31 @@ impl Test {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expression::{constant, variable};
+
+    const NAMES: [&str; 3] = ["x", "y", "z"];
+
+    #[test]
+    fn affine_expressions_take_one_step_for_each_further_term() {
+        let [x, y, z] = NAMES.map(variable);
+        let sum = 2.0 * &x + &y * (1.0 - 3.0 * constant(2.0)) - &z + 1.0;
+        let program = sum.compile(&NAMES).expect("these are the names");
+        assert_eq!((program.instructions.len(), program.depth), (3, 0));
+        assert_eq!(program.evaluate(&[4.0, 0.5, 3.0]), 8.0 - 2.5 - 3.0 + 1.0);
+    }
+
+    /// What is taken from the stack leaves room: the terms of a long sum use the same two places.
+    #[test]
+    fn a_stack_is_as_deep_as_its_expression() {
+        let [x, y, z] = NAMES.map(variable);
+        let term = || (&x - &y) * (&y + &z);
+        let sum: Expression = (0..100).map(|_| term()).sum();
+        let program = sum.compile(&NAMES).expect("these are the names");
+        assert_eq!(program.depth, 2);
+        assert_eq!(program.evaluate(&[3.0, 1.0, 2.0]), 600.0);
+    }
+}

@@ -38,6 +38,13 @@ impl<V: Valuation + ?Sized> Valuation for &V {
     }
 }
 
+/// The state without variables.
+impl Valuation for () {
+    fn value(&self, _variable: &str) -> Option<f64> {
+        None
+    }
+}
+
 /// Pairs of name and value; the first pair of a name counts.
 impl Valuation for [(&str, f64)] {
     fn value(&self, variable: &str) -> Option<f64> {
@@ -91,3 +98,33 @@ impl fmt::Display for EvaluationError {
 }
 
 impl Error for EvaluationError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The value of `variable`, as a state behind a reference gives it.
+    fn value(state: impl Valuation, variable: &str) -> Option<f64> {
+        state.value(variable)
+    }
+
+    #[test]
+    fn states_are_seen_through_names() {
+        let pairs = [("x", 0.25), ("y", 7.0), ("x", 5.0)];
+        let named = BTreeMap::from([("x".to_owned(), 0.25), ("y".to_owned(), 7.0)]);
+        for (name, expected) in [("x", Some(0.25)), ("y", Some(7.0)), ("z", None)] {
+            assert_eq!(value(pairs, name), expected);
+            assert_eq!(value(pairs.as_slice(), name), expected);
+            assert_eq!(value(&named, name), expected);
+            assert_eq!(named.value(name), expected);
+        }
+    }
+
+    #[test]
+    fn errors_say_what_is_missing() {
+        let unknown = EvaluationError::UnknownVariable { variable: "y".into() };
+        assert_eq!(unknown.to_string(), "the state has no variable `y`");
+        let undefined = EvaluationError::NotANumber { expression: "0 ÷ 0".into() };
+        assert_eq!(undefined.to_string(), "`0 ÷ 0` is not a number in this state");
+    }
+}

@@ -2,10 +2,12 @@
 
 mod common;
 
+use std::collections::BTreeMap;
+
 use common::{expressions, predicates};
 use pleach_guards::{
-    Expression, Interval, LinearForm, NoDisjunctiveForm, Predicate, Substitution, Truth, constant,
-    not, variable,
+    Expression, Interval, LinearForm, NoDisjunctiveForm, Predicate, Relation, Substitution, Truth,
+    constant, never, not, variable,
 };
 use proptest::prelude::*;
 
@@ -150,6 +152,51 @@ fn arithmetic_on_whole_numbers_is_exact() {
 }
 
 #[test]
+fn boxes_are_seen_through_names() {
+    let over = |lower, upper| Interval::new(lower, upper).expect("these ends are in order");
+    let (first, other) = (over(0.0, 1.0), over(2.0, 3.0));
+    let pairs = [("x", first), ("y", other), ("x", other)];
+    let named = BTreeMap::from([("x".to_owned(), first), ("y".to_owned(), other)]);
+    for (name, expected) in [("x", Some(first)), ("y", Some(other)), ("z", None)] {
+        assert_eq!(variable(name).range(&pairs).ok(), expected);
+        assert_eq!(variable(name).range(&&pairs).ok(), expected);
+        assert_eq!(variable(name).range(pairs.as_slice()).ok(), expected);
+        assert_eq!(variable(name).range(&named).ok(), expected);
+    }
+}
+
+/// In the unit box, x ≤ 1 always holds, x > 1 never, and x ≤ y may hold.
+#[test]
+fn the_truth_of_parts_decides_where_it_can() {
+    let unit = Interval::new(0.0, 1.0).expect("these ends are in order");
+    let region = [("x", unit), ("y", unit)];
+    let parts = [
+        (variable("x").at_most(1.0), Truth::Always),
+        (variable("x").more_than(1.0), Truth::Never),
+        (variable("x").at_most(variable("y")), Truth::Undecided),
+    ];
+    for (one, first) in &parts {
+        assert_eq!(one.truth(&region), Ok(*first));
+        for (other, second) in &parts {
+            let both = [first, second];
+            let expected = |settling: Truth, otherwise: Truth| {
+                if both.contains(&&settling) {
+                    settling
+                } else if both.contains(&&Truth::Undecided) {
+                    Truth::Undecided
+                } else {
+                    otherwise
+                }
+            };
+            let conjunction = expected(Truth::Never, Truth::Always);
+            assert_eq!(one.clone().and(other.clone()).truth(&region), Ok(conjunction));
+            let disjunction = expected(Truth::Always, Truth::Never);
+            assert_eq!(one.clone().or(other.clone()).truth(&region), Ok(disjunction));
+        }
+    }
+}
+
+#[test]
 fn waves_know_their_crests() {
     let over = |lower, upper| Interval::new(lower, upper).expect("these ends are in order");
     assert_eq!(over(1.0, 2.0).sin().upper(), 1.0);
@@ -159,6 +206,9 @@ fn waves_know_their_crests() {
     assert_eq!(over(99.0, 101.0).cos().upper(), 1.0);
     assert!(over(101.0, 102.0).cos().upper() < 0.9);
     assert_eq!(over(0.0, 6.5).cos(), over(-1.0, 1.0));
+    assert!((over(1.0, 2.0).sin().lower() - 1f64.sin()).abs() < 1e-12);
+    assert!((over(1.0, 2.0).cos().lower() - 2f64.cos()).abs() < 1e-12);
+    assert!((over(1.0, 2.0).cos().upper() - 1f64.cos()).abs() < 1e-12);
 }
 
 #[test]
@@ -167,6 +217,7 @@ fn what_has_no_value_anywhere_is_an_error() {
     assert!(variable("x").ln().range(&negative).is_err());
     assert!(variable("x").square_root().at_most(1.0).truth(&negative).is_err());
     assert!(variable("y").range(&negative).is_err());
+    assert!(constant(f64::NAN).range(&negative).is_err());
 }
 
 #[test]
@@ -183,6 +234,77 @@ fn functions_are_undecided_and_have_no_normal_form() {
 }
 
 #[test]
+fn negations_of_functions_stay() {
+    let near = Predicate::function("near", |state| variable("x").evaluate(state));
+    let apart = not(near.clone().and(variable("x").at_most(1.0)));
+    assert_eq!(apart.negation_normal_form().to_string(), "¬near(…) ∨ x > 1");
+    assert_eq!(not(not(near.clone())).negation_normal_form(), near);
+}
+
+#[test]
+fn forms_are_as_large_as_allowed_and_no_larger() {
+    let [x, y, _] = NAMES.map(variable);
+    let outside = |a: &Expression| a.at_most(0.0).or(a.at_least(1.0));
+    let corners = outside(&x).and(outside(&y));
+    assert_eq!(corners.disjunctive_form(4).map(|form| form.len()), Ok(4));
+    let error = NoDisjunctiveForm::TooLarge { limit: 3 };
+    assert_eq!(corners.disjunctive_form(3), Err(error.clone()));
+    assert_eq!(outside(&x).or(corners.clone()).disjunctive_form(5).ok(), None);
+    // What grows on the way counts, too.
+    assert_eq!(corners.and(never()).disjunctive_form(3), Err(error.clone()));
+    assert_eq!(error.to_string(), "the normal form has more than the 3 parts allowed");
+    let error = NoDisjunctiveForm::Function { name: "near".into() };
+    assert_eq!(error.to_string(), "the function `near` is not made of comparisons");
+
+    let close = x.abs().max(&y).at_most(1.0);
+    assert!(close.by_cases(4).is_ok() && close.by_cases(3).is_err());
+}
+
+#[test]
+fn strict_relations_exclude_equal_numbers() {
+    use Relation::{AtLeast, AtMost, LessThan, MoreThan};
+    let relations = [AtMost, LessThan, AtLeast, MoreThan];
+    assert_eq!(relations.map(Relation::is_strict), [false, true, false, true]);
+    assert_eq!(relations.map(Relation::opposite), [MoreThan, AtLeast, LessThan, AtMost]);
+}
+
+/// Terms that are 0 and factors that are 1 are left out.
+#[test]
+fn derivatives_are_short() {
+    let [x, y, _] = NAMES.map(variable);
+    let cases = [
+        (constant(3.0), "0"),
+        (&x + &y, "1"),
+        (&y + &x, "1"),
+        (&y - &x, "−1"),
+        (-&y, "0"),
+        (-&x * &y, "−1 · y"),
+        (&x * 2.0, "2"),
+        (2.0 * &x, "2"),
+        (&y * &x, "y"),
+        (&x * &x, "x + x"),
+        (&x / 2.0, "1 ÷ 2"),
+        (&y / 2.0, "0"),
+        (&x * &y / 1.0, "y"),
+        (&y / &x, "(−y) ÷ x²"),
+        (x.power(0.0), "0"),
+        (y.power(3.0), "0"),
+        (x.power(1.0), "1"),
+        (x.power(2.0), "2 · x"),
+        (x.power(3.0), "3 · x²"),
+        (x.sin() * y.cos(), "cos(x) · cos(y)"),
+        (-x.cos(), "−(−sin(x))"),
+        (x.ln() + x.exp(), "1 ÷ x + exp(x)"),
+        (x.abs(), "x ÷ |x|"),
+        ((&x + 1.0).min(&x), "1"),
+        (y.max(1.0), "0"),
+    ];
+    for (expression, expected) in cases {
+        assert_eq!(expression.derivative("x").to_string(), expected, "{expression}");
+    }
+}
+
+#[test]
 fn what_is_not_affine_has_no_linear_form() {
     let [x, y, _] = NAMES.map(variable);
     for expression in
@@ -192,6 +314,9 @@ fn what_is_not_affine_has_no_linear_form() {
     }
     let form = (constant(4.0).square_root() * &x - &x * 2.0).linear_form().expect("it is affine");
     assert_eq!((form.coefficients().count(), form.constant()), (0, &0.0));
+    let form = (x.power(1.0) * 3.0 - &y - &y).linear_form().expect("it is affine");
+    let found = ["x", "y", "z"].map(|name| form.coefficient(name).copied());
+    assert_eq!(found, [Some(3.0), Some(-2.0), None]);
 }
 
 /// A box and some states in it, its corners among them.

@@ -70,6 +70,32 @@ fn functions_print_their_name() {
 }
 
 #[test]
+fn greek_letters_become_their_commands() {
+    let letters = "αβγδεζηθκλμνξπρστφχψωΓΔΘΛΣΦΨΩ";
+    let names = "alpha beta gamma delta varepsilon zeta eta theta kappa lambda mu nu xi pi rho \
+                 sigma tau varphi chi psi omega Gamma Delta Theta Lambda Sigma Phi Psi Omega";
+    for (letter, name) in letters.chars().zip(names.split(' ')) {
+        assert_eq!(variable(&letter.to_string()).to_latex(), format!("\\{name}"));
+        let word = variable(&format!("a{letter}")).to_latex();
+        assert_eq!(word, format!("\\mathit{{a\\{name} }}"));
+    }
+}
+
+#[test]
+fn latex_subscripts_are_numbers_letters_or_words() {
+    let cases = [
+        ("x_12", "x_{12}"),
+        ("x_i", "x_{i}"),
+        ("x_a1", r"x_{\mathit{a1}}"),
+        ("x_a_b", r"x_{\mathit{a\_b}}"),
+        ("50%", r"\mathit{50\%}"),
+    ];
+    for (name, expected) in cases {
+        assert_eq!(variable(name).to_latex(), expected);
+    }
+}
+
+#[test]
 fn latex_uses_its_commands() {
     let [speed, limit] = ["speed", "σ_max"].map(variable);
     let slow = (&speed * 2.0).power(2.0).less_than(limit.square_root());

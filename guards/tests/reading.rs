@@ -136,6 +136,8 @@ fn errors_say_where_and_what() {
         ("tan(x) ≤ 1", 1, "a function: abs, sqrt, sin, cos, exp, ln, min or max", "tan"),
         ("min(x) ≤ 1", 6, "an operator or `,`", ")"),
         ("`x ≤ 1", 1, "a closing backtick", "`x ≤ 1"),
+        ("(x = 3)", 4, relation, "="),
+        ("(far(…))", 2, "a comparison (a function can be given by code only)", "far"),
         ("y ≤ 1 ∧ far(…)", 9, "a comparison (a function can be given by code only)", "far"),
     ];
     for (text, column, expected, found) in cases {
@@ -146,6 +148,17 @@ fn errors_say_where_and_what() {
     assert_eq!(error.to_string(), "column 3: expected an operator or the end, found `≤`");
     let error = "x +".parse::<Expression>().expect_err("half a sum");
     assert_eq!(error.to_string(), format!("column 4: expected {operand}, found the end"));
+}
+
+/// Nesting counts what is open, not what was.
+#[test]
+fn what_stands_side_by_side_is_not_nested() {
+    for part in ["(x) + ", "|x| + ", "sin(x) + ", "min(x, x) + ", "√(x) + ", "1 - -x + "] {
+        let text = part.repeat(120) + "x";
+        assert!(text.parse::<Expression>().is_ok(), "{part}");
+    }
+    let text = "¬(x ≤ 1) ∧ ".repeat(120) + "x ≤ 1";
+    assert!(text.parse::<Predicate>().is_ok());
 }
 
 /// The least stack that is common, of the main thread on Windows: 1 MiB.

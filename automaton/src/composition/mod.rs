@@ -64,7 +64,9 @@
 
 pub(crate) mod blueprint;
 mod builder;
+mod exploration;
 mod flight;
+mod jumps;
 mod models;
 mod picture;
 mod replay;
@@ -73,6 +75,7 @@ mod simulation;
 use std::sync::Arc;
 
 pub use builder::{CompositionBuilder, CompositionError};
+pub use exploration::{Exploration, ExplorationError, Reached};
 pub use replay::ReplayError;
 pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
 

@@ -209,6 +209,31 @@ mod tests {
         }
     }
 
+    /// Links are perfect up to 0.4 and half as good at 0.6.
+    #[test]
+    fn a_load_is_the_sum_of_flows_by_reliabilities() {
+        let at = |x: f64, y: f64| Point::new(x, y);
+        let receivers = [(0.3, at(0.1, 0.2)), (0.2, at(0.7, 0.2)), (0.0, at(9.0, 9.0))];
+        assert!((load(at(0.1, 0.2), &receivers, &link()) - (0.3 + 0.2 * 2.0)).abs() <= ROUNDING);
+        let still = receivers.map(|(flow, place)| (flow, Segment::still(place)));
+        let own = Segment { from: at(0.1, 0.2), to: at(0.7, 0.2) };
+        let worst = worst_load(own, &still, &link());
+        assert!((worst - (0.3 * 2.0 + 0.2)).abs() <= ROUNDING, "{worst}");
+    }
+
+    /// A right triangle with sides of 3, 4 and 5, from each end of either move.
+    #[test]
+    fn the_worst_separation_is_attained_between_two_ends() {
+        let (near, far) = (Point::new(1.0, 1.0), Point::new(4.0, 1.0));
+        let [other_near, other_far] = [Point::new(4.0, 1.0), Point::new(4.0, 5.0)];
+        for (from, to) in [(near, far), (far, near)] {
+            for (start, end) in [(other_near, other_far), (other_far, other_near)] {
+                let other = Segment { from: start, to: end };
+                assert_eq!(worst_separation(Segment { from, to }, other), 5.0);
+            }
+        }
+    }
+
     #[test]
     fn a_receiver_that_leaves_the_range_makes_the_load_infinite() {
         let away = Segment { from: Point::new(0.5, 0.0), to: Point::new(0.9, 0.0) };

@@ -76,3 +76,30 @@ impl Agreement {
         places.all(|place| self.arrived.contains(place))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn break_points_are_told_once_every_place_has_voted() {
+        let mut agreement = Agreement::new(7);
+        for (place, vote) in [(3, true), (0, true), (2, false)] {
+            agreement.vote(place, vote);
+            assert_eq!(agreement.break_points(4), None);
+        }
+        agreement.vote(1, false);
+        assert_eq!(agreement.break_points(4), Some(vec![0, 3]));
+        assert_eq!(agreement.break_points(3), Some(vec![0]));
+    }
+
+    #[test]
+    fn another_path_is_not_heard() {
+        let (mut mine, mut other) = (Agreement::new(7), Agreement::new(8));
+        assert_eq!((mine.number(), other.number()), (7, 8));
+        other.vote(0, true);
+        other.arrive(0);
+        mine.merge(&other);
+        assert_eq!(mine, Agreement::new(7));
+    }
+}

@@ -45,3 +45,16 @@ impl<N: Clone> Bulletin<N> {
         newer
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bulletins_count_from_zero() {
+        let first = Bulletin::first("announced");
+        let third = first.next("called").next("resumed");
+        assert_eq!((first.sequence(), *first.notice()), (0, "announced"));
+        assert_eq!((third.sequence(), *third.notice()), (2, "resumed"));
+    }
+}

@@ -71,3 +71,24 @@ impl Election {
         self.best
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_election_is_complete_with_the_last_token_of_its_roster() {
+        let bid = Bid { rank: 1, merit: -3, economy: 0 };
+        let roster: IdSet = [2, 5].into_iter().collect();
+        let mut election = Election::new(7);
+        assert_eq!(election.number(), 7);
+        for (robot, offer) in [(2, Some(bid)), (4, None)] {
+            election.place(robot, offer);
+            assert!(election.has_token(robot));
+            assert!(!election.has_token(5) && !election.is_complete(&roster));
+        }
+        election.place(5, None);
+        assert!(election.is_complete(&roster));
+        assert_eq!(election.best(), Some((bid, 2)));
+    }
+}

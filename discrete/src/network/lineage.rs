@@ -75,3 +75,50 @@ impl Lineage {
         &self.posts
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lineage of the last of `posts`, each hanging on the one before it.
+    fn lineage(root: usize, posts: &[u32]) -> Lineage {
+        posts.iter().fold(Lineage::of_access_point(root), |lineage, &post| {
+            lineage.extended_by(PostId(post)).expect("the posts differ")
+        })
+    }
+
+    #[test]
+    fn the_way_leads_up_to_the_access_point() {
+        let way = lineage(3, &[4, 6, 5]);
+        assert_eq!(way.posts(), [5, 6, 4].map(PostId));
+        assert_eq!((way.hops(), way.root()), (3, 3));
+        assert_eq!(lineage(2, &[]).hops(), 0);
+        let passed = (0..9).filter(|&post| way.contains(PostId(post)));
+        assert!(passed.eq([4, 5, 6]));
+    }
+
+    #[test]
+    fn no_post_comes_twice() {
+        let way = lineage(0, &[4, 6]);
+        for post in 0..9 {
+            assert_eq!(way.extended_by(PostId(post)).is_none(), [4, 6].contains(&post));
+            assert_eq!(closes_cycle(way.posts(), PostId(post)), [4, 6].contains(&post));
+        }
+    }
+
+    /// Root, post and parent all have to be the same; an access point extends nothing.
+    #[test]
+    fn an_extension_is_known_without_building_it() {
+        let ways = [lineage(0, &[]), lineage(1, &[]), lineage(0, &[4]), lineage(1, &[4])];
+        let ways = ways.into_iter().chain([lineage(0, &[4, 6]), lineage(0, &[6])]);
+        let ways: Vec<Lineage> = ways.collect();
+        for way in &ways {
+            for parent in &ways {
+                for post in [4, 6].map(PostId) {
+                    let extends = parent.extended_by(post).as_ref() == Some(way);
+                    assert_eq!(way.extends(parent, post), extends, "{way:?} {parent:?} {post:?}");
+                }
+            }
+        }
+    }
+}

@@ -147,4 +147,35 @@ mod tests {
         let crossing = subgroups(&points).find(|subgroup| subgroup.first == 2);
         assert_eq!(crossing, Some(Subgroup { first: 2, end: 3 }), "one robot crosses alone");
     }
+
+    #[test]
+    fn the_last_break_point_is_the_leader_or_the_one_before_the_first_of_the_team() {
+        let released = path(6, 9);
+        let kept = Path { releases_leader: false, ..path(6, 9) };
+        assert_eq!((released.last_break_point(), kept.last_break_point()), (5, 4));
+        let points = |path: &Path<()>| {
+            let is_break_point = |place: &usize| path.is_break_point(*place, Ties::default());
+            (0..path.len()).filter(is_break_point).collect::<Vec<_>>()
+        };
+        assert_eq!((points(&released), points(&kept)), (vec![0, 5], vec![0, 4]));
+        assert!(!released.is_empty() && path(0, 9).is_empty());
+    }
+
+    /// Up from the recruit and down again: 0 and 4 hang on 1 and 3, these on 2 and access point 0.
+    #[test]
+    fn a_path_knows_its_places_and_where_it_descends() {
+        let mut path = path(5, 2);
+        let parents = [(0, 1), (1, 2), (4, 3)].map(|(post, on)| (post, Anchor::Post(PostId(on))));
+        for (place, parent) in parents.into_iter().chain([(3, Anchor::Access(0))]) {
+            path.hops[place].post.parent = Some(parent);
+        }
+        let descents = (0..6).filter(|&place| path.descends(place));
+        assert!(descents.eq([3]));
+        for place in 0..7 {
+            let post = PostId(place as u32);
+            assert_eq!(path.place_of(post), (place < 5).then_some(place));
+            assert_eq!(path.passes(Anchor::Post(post)), place < 5);
+            assert_eq!(path.passes(Anchor::Access(place)), place == 0);
+        }
+    }
 }

@@ -82,3 +82,35 @@ impl Post {
         !self.is_primary()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Redundant, fixed, primary, leading, and whether others may hang on it.
+    #[test]
+    fn posts_are_what_their_kind_says() {
+        let follower = PostKind::Primary { follows: Some(PostId(2)) };
+        let cases = [
+            (PostKind::Redundant, [true, false, false, false, true]),
+            (PostKind::Fixed, [false, true, false, false, true]),
+            (follower, [false, false, true, false, false]),
+            (PostKind::Primary { follows: None }, [false, false, true, true, false]),
+        ];
+        for (kind, expected) in cases {
+            let post = Post { kind, ..Post::redundant(PostId(1)) };
+            let found = [post.is_redundant(), post.is_fixed(), post.is_primary()];
+            assert_eq!(found, expected[..3], "{kind:?}");
+            assert_eq!([post.is_leading(), post.bears_redundant()], expected[3..], "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn a_post_hangs_on_its_parent_alone() {
+        let free = Post::redundant(PostId(1));
+        let hanging = Post { parent: Some(Anchor::Post(PostId(2))), ..free };
+        let rooted = Post { parent: Some(Anchor::Access(2)), ..free };
+        assert!(hanging.hangs_on(PostId(2)) && !hanging.hangs_on(PostId(3)));
+        assert!(!free.hangs_on(PostId(2)) && !rooted.hangs_on(PostId(2)));
+    }
+}

@@ -279,6 +279,43 @@ mod tests {
         }
     }
 
+    /// Held places against a table: of a leaf and of a junction, the events on which it may go.
+    #[test]
+    fn places_are_left_only_as_the_algorithm_allows() {
+        use RoleEvent::{Entrusted, Posted, Recruited, Relieved, Retired};
+        let replaced = RoleEvent::ALL.iter().filter(|event| event.needs_replacement());
+        assert!(replaced.eq(&[Recruited, Relieved]));
+        for source in Role::ALL {
+            let ways_out: &[RoleEvent] = match source {
+                Role::Leaf => &[Recruited, Relieved],
+                Role::Junction => &[Recruited, Relieved, Entrusted, Posted, Retired],
+                _ => RoleEvent::ALL,
+            };
+            for &event in RoleEvent::ALL {
+                for target in Role::ALL {
+                    let allowed = ways_out.contains(&event) || target == Role::Leader;
+                    let found = keeps_places_held(source, event, target);
+                    assert_eq!(found, allowed, "{source:?} {event:?} {target:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_lower_case_words_that_differ() {
+        let names = |names: Vec<&'static str>| {
+            assert!(crate::vocabulary::all_differ(&names), "{names:?}");
+            let is_word = |word: &str| {
+                !word.is_empty() && word.chars().all(|letter| letter.is_ascii_lowercase())
+            };
+            assert!(names.iter().all(|name| name.split(' ').all(is_word)), "{names:?}");
+        };
+        names(Role::ALL.iter().map(|&role| Location::name(role)).collect());
+        names(Phase::ALL.iter().map(|&phase| Location::name(phase)).collect());
+        names(RoleEvent::ALL.iter().map(|event| event.name()).collect());
+        names(MissionStep::ALL.iter().map(|step| step.name()).collect());
+    }
+
     #[test]
     fn the_end_is_final() {
         assert_eq!(MISSION.enabled(Phase::Ended).count(), 0);

@@ -91,3 +91,55 @@ fn enclose(rounded: f64, error: f64) -> Interval {
         upper: if error <= 0.0 { rounded } else { rounded.next_up() },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_point(found: Interval, value: f64) -> bool {
+        found.lower == value && found.upper == value
+    }
+
+    /// Where the sign of the error is not seen.
+    fn is_widened(found: Interval, value: f64) -> bool {
+        found.lower == value.next_down() && found.upper == value.next_up()
+    }
+
+    #[test]
+    fn zero_and_quotients_by_infinity_are_exact() {
+        for other in [3.0, -1e-300, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(is_point(product(0.0, other), 0.0));
+            assert!(is_point(product(other, 0.0), 0.0));
+            assert!(is_point(quotient(0.0, other), 0.0));
+            assert!(is_point(quotient(other, f64::INFINITY), 0.0));
+        }
+        assert!(is_point(around_root(0.0), 0.0));
+        assert!(is_point(nearly(0.0), 0.0));
+        assert!(is_widened(nearly(std::f64::consts::TAU), std::f64::consts::TAU));
+    }
+
+    /// Twice the bound and half of it: powers of two, so that every result is exact.
+    #[test]
+    fn below_the_bound_no_error_is_seen() {
+        for value in [FAINT, 2.0 * FAINT] {
+            assert!(is_point(product(value, 1.0), value));
+            assert!(is_point(quotient(value, 1.0), value));
+            assert!(is_point(quotient(-value, 1.0), -value));
+        }
+        let faint = FAINT / 2.0;
+        assert!(is_widened(product(faint, 1.0), faint));
+        assert!(is_widened(product(-faint, 1.0), -faint));
+        assert!(is_widened(quotient(faint, FAINT), 0.5));
+        assert!(is_widened(quotient(1.0, 1.0 / faint), faint));
+    }
+
+    /// The bound is an odd power of two, and its half an even one.
+    #[test]
+    fn below_the_bound_no_error_of_a_root_is_seen() {
+        let bound = around_root(FAINT);
+        assert_eq!(bound.lower.next_up(), bound.upper);
+        let root = 2f64.powi(-485);
+        assert!(is_point(around_root(root * root * 4.0), 2.0 * root));
+        assert!(is_widened(around_root(root * root), root));
+    }
+}
