@@ -1,10 +1,10 @@
 //! Which transitions can ever be taken, and which locations be entered.
 //!
 //! A run begins in the initial state, or, where the model has none, in any state of the initial
-//! location. From there on, a transition is *live* if its guard can hold in a location that is
-//! reached, or on the boundary of the guard, since a flow lands just beyond it: after time has passed there, while no forced transition was due; or right on entry, in
-//! a state that a live transition lands in. What is not live is so by proof; a reset that is a
-//! function can land anywhere.
+//! location. From there on, a transition is *live* if its guard can hold, or be on the boundary of
+//! holding, in a location that is reached: after time has passed there, while no forced transition
+//! was due; or right on entry, in a state that a live transition lands in. What is not live is so
+//! by proof; a reset that is a function can land anywhere.
 
 use std::collections::BTreeSet;
 
