@@ -45,12 +45,12 @@ pub(super) fn report_labels(models: &[Model], reaches: &[Reach], report: &mut Re
         return;
     }
     let product = explore(models, reaches, &labels);
+    let is_taken = |number: usize| is_refused[number] || product.takes(number);
+    let all_taken = (0..labels.len()).all(is_taken);
     if !product.is_complete {
-        let message = format!(
-            "whether labels block is open: only {} combinations of locations were looked at",
-            product.states.len()
-        );
-        report.add(Finding::new(Kind::Unexplored, Severity::Note, Place::default(), message));
+        if !all_taken || models.iter().zip(reaches).any(waits_for_labels) {
+            report_unexplored(&product, report);
+        }
         return;
     }
     let mut is_dead = is_refused.clone();
@@ -61,6 +61,22 @@ pub(super) fn report_labels(models: &[Model], reaches: &[Reach], report: &mut Re
         }
     }
     report_deadlocks(models, reaches, &labels, &is_dead, &product, report);
+}
+
+/// Whether a component may have to wait for others.
+fn waits_for_labels((model, reach): (&Model, &Reach)) -> bool {
+    (0..model.transitions.len()).any(|number| {
+        let is_forced = model.transitions[number].urgency.is_forced();
+        reach.is_live[number] && is_forced && !model.is_own(number)
+    })
+}
+
+fn report_unexplored(product: &Product, report: &mut Report) {
+    let message = format!(
+        "whether labels block is open: only {} combinations of locations were looked at",
+        product.states.len()
+    );
+    report.add(Finding::new(Kind::Unexplored, Severity::Note, Place::default(), message));
 }
 
 fn report_lonely(label: &Label, models: &[Model], report: &mut Report) {

@@ -34,19 +34,27 @@
 //!
 //! # What is asked
 //!
-//! | kind | severity | asked by |
+//! | [kind](Kind) | severity | the question |
 //! | --- | --- | --- |
-//! | [`Blocked`](Kind::Blocked), [`EmptyInvariant`](Kind::EmptyInvariant) | error, warning | where the flow leaves the invariant, does a guard hold? |
-//! | [`LandsOutside`](Kind::LandsOutside), [`LeavesRange`](Kind::LeavesRange) | error, warning | where do resets lead? |
-//! | [`TimelessCycle`](Kind::TimelessCycle) | error, note | do forced transitions follow each other for ever? |
-//! | [`Overlap`](Kind::Overlap), [`Choice`](Kind::Choice), [`Shadowed`](Kind::Shadowed) | warning, note, warning | which transitions can be due together? |
-//! | [`NeverFires`](Kind::NeverFires), [`Unreachable`](Kind::Unreachable) | warning | what can ever happen? |
-//! | [`StartsOutside`](Kind::StartsOutside), [`StartsOutOfRange`](Kind::StartsOutOfRange), [`NoInitialState`](Kind::NoInitialState) | error, warning, warning | can a run begin? |
-//! | [`NothingMoves`](Kind::NothingMoves) | warning | does what a location waits for change there? |
-//! | [`Unchecked`](Kind::Unchecked) | note | what is a function? |
-//! | [`RefusedLabel`](Kind::RefusedLabel), [`BlockedLabel`](Kind::BlockedLabel), [`LonelyLabel`](Kind::LonelyLabel) | error, error, warning | can the components of a label take it together? |
-//! | [`Deadlock`](Kind::Deadlock) | warning | does a component wait for labels for ever? |
-//! | [`UnreadInput`](Kind::UnreadInput) | warning | is what is connected read? |
+//! | blocked | error | where the flow leaves the invariant, does a guard hold? |
+//! | empty invariant | warning | does the invariant hold anywhere? |
+//! | lands outside | error | do resets lead into the invariant of the target? |
+//! | leaves its range | warning | do they stay within the declared ranges? |
+//! | timeless cycle | error | do forced transitions follow each other for ever? |
+//! | overlap | warning | can two forced transitions be due together? |
+//! | choice | note | can two transitions be possible together that only may be taken? |
+//! | shadowed priority | warning | is there a state in which it is its turn? |
+//! | never fires, unreachable | warning | what can ever happen? |
+//! | starts outside | error | is the initial state within the invariant? |
+//! | starts out of range, no initial state | warning | where does a run begin? |
+//! | nothing moves | warning | does what a location waits for change there? |
+//! | unchecked | note | what is a function? |
+//! | refused label | error | does every component of a label ever take it? |
+//! | blocked label | error | can they take it together? |
+//! | lonely label | warning | does more than one component know it? |
+//! | deadlock | warning | does a component wait for labels for ever? |
+//! | unread input | warning | is what is connected read? |
+//! | unexplored | note | was something too large to be looked at? |
 //!
 //! Most of these are questions whether some predicate holds in some state within the declared
 //! [ranges](crate::Builder::range): [`decision`](crate::decision) finds a witness, or proves that
@@ -99,7 +107,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     pub fn check_with(&self, effort: Effort) -> Report {
         let model = Model::of(self);
         let (inquiry, _) = examined(&model, effort);
-        inquiry.report.sorted()
+        inquiry.report.finished()
     }
 }
 
@@ -121,7 +129,7 @@ impl Composition {
         }
         labels::report_labels(&models, &reaches, &mut report);
         labels::report_inputs(&models, &mut report);
-        report.sorted()
+        report.finished()
     }
 }
 

@@ -1,10 +1,10 @@
 //! Which transitions can ever be taken, and which locations be entered.
 //!
 //! A run begins in the initial state, or, where the model has none, in any state of the initial
-//! location. From there on, a transition is *live* if its guard can hold in a location that is
-//! reached, or on the boundary of the guard, since a flow lands just beyond it: after time has passed there, while no forced transition was due; or right on entry, in
-//! a state that a live transition lands in. What is not live is so by proof; a reset that is a
-//! function can land anywhere.
+//! location. From there on, a transition is *live* if its guard can hold, or be on the boundary of
+//! holding, in a location that is reached: after time has passed there, while no forced transition
+//! was due; or right on entry, in a state that a live transition lands in. What is not live is so
+//! by proof; a reset that is a function can land anywhere.
 
 use std::collections::BTreeSet;
 
@@ -56,8 +56,7 @@ impl Inquiry<'_> {
         let mut known = usize::MAX;
         while known != search.fires.len() {
             known = search.fires.len();
-            for number in 0..transitions {
-                let transition = &self.model.transitions[number];
+            for (number, transition) in self.model.transitions.iter().enumerate() {
                 if is_satisfiable[number] && search.is_reached[transition.source] {
                     self.look_at(number, &mut search);
                 }

@@ -149,15 +149,43 @@ impl Report {
         self.exclusions.extend(other.exclusions);
     }
 
-    pub(super) fn sorted(mut self) -> Report {
+    /// The worst first; what is noted of several components alike, is noted once.
+    pub(super) fn finished(mut self) -> Report {
         self.findings.sort_by_key(|finding| finding.severity);
-        self
+        let mut findings: Vec<Finding> = Vec::with_capacity(self.findings.len());
+        let mut alike: Vec<Vec<String>> = Vec::with_capacity(self.findings.len());
+        for finding in self.findings {
+            match findings.iter().position(|known| known.is_repeated_by(&finding)) {
+                Some(known) => alike[known].extend(finding.place.component),
+                None => {
+                    findings.push(finding);
+                    alike.push(Vec::new());
+                }
+            }
+        }
+        for (finding, others) in findings.iter_mut().zip(alike) {
+            if !others.is_empty() {
+                let names = others.iter().map(|name| format!("`{name}`"));
+                let names = names.collect::<Vec<_>>().join(", ");
+                finding.message.push_str(&format!("; likewise in {names}"));
+            }
+        }
+        Report { findings, exclusions: self.exclusions }
     }
 }
 
 impl Finding {
     pub(super) fn new(kind: Kind, severity: Severity, place: Place, message: String) -> Self {
         Finding { kind, severity, place, message, witness: None }
+    }
+
+    /// Whether both are notes that differ in nothing but the component.
+    fn is_repeated_by(&self, other: &Finding) -> bool {
+        let at = |finding: &Finding| Place { component: None, ..finding.place.clone() };
+        self.severity == Severity::Note
+            && other.severity == Severity::Note
+            && self.place.component != other.place.component
+            && (self.kind, at(self), &self.message) == (other.kind, at(other), &other.message)
     }
 
     pub(super) fn shown_by(self, witness: State) -> Self {

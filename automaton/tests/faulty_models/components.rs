@@ -152,3 +152,20 @@ fn faults_of_components_name_them() {
     let expected = ["warning: never fires: component `guard`, location `asleep`, on `lock`"];
     check(house(door(), alarmed).label("lock").label("unlock"), &expected);
 }
+
+#[test]
+fn what_is_noted_of_several_components_is_noted_once() {
+    let Wear { angle } = Wear::coordinates();
+    let free = Automaton::<_, Handle, _>::starting_in(Door::Open)
+        .initially(Wear { angle: 1.0 })
+        .transition(from(Door::Open).on(Handle::Close).to(Door::Shut).may(angle.at_least(0.0)))
+        .transition(from(Door::Open).on(Handle::Lock).to(Door::Locked).may(angle.at_least(0.5)))
+        .build()
+        .expect("the door fits");
+    let doors = Composition::builder().add("left", &free).add("right", &free).add("back", &free);
+    let report = doors.build().expect("the doors fit").check();
+    assert!(report.is_sound(), "{report}");
+    let [note] = report.findings() else { panic!("{report}") };
+    assert_eq!(note.place.component.as_deref(), Some("left"));
+    assert!(note.message.ends_with("; likewise in `right`, `back`"), "{note}");
+}
