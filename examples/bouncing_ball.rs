@@ -14,7 +14,7 @@
 
 mod exhibit;
 
-use exhibit::{Exhibit, Shown, instants};
+use exhibit::{Exhibit, Shown, accumulation};
 use pleach::prelude::*;
 use std::error::Error;
 
@@ -75,14 +75,10 @@ fn zeno_time() -> f64 {
 pub fn exhibit() -> Shown {
     let ball = bouncing_ball()?;
     let trajectory = ball.run(10.0)?;
-    let accumulation = match trajectory.ending().reason {
-        Reason::Zeno(zeno) => zeno.accumulation,
-        _ => f64::NAN,
-    };
     Ok(Exhibit::new("bouncing_ball", include_str!("bouncing_ball.rs"))
         .automaton("ball", &ball)
-        .compare_all("impacts in s", instants(&trajectory, 8), (1..=8).map(impact), 1e-12)
-        .compare("Zeno time in s", accumulation, zeno_time(), 1e-12)
+        .compare_jumps(&trajectory, (1..=8).map(impact), 1e-12)
+        .compare("Zeno time in s", accumulation(&trajectory), zeno_time(), 1e-12)
         .run("A ball dropped from 1 m", trajectory))
 }
 

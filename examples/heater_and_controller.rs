@@ -17,7 +17,7 @@
 
 mod exhibit;
 
-use exhibit::{Exhibit, Shown, instants};
+use exhibit::{Exhibit, Shown};
 use pleach::prelude::*;
 use std::error::Error;
 
@@ -102,11 +102,10 @@ fn switchings() -> impl Iterator<Item = f64> {
     let cooling = |from: f64| 10.0 * (from / LOW).ln();
     let warming = 10.0 * ((50.0 - LOW) / (50.0 - HIGH)).ln();
     let (first, cycle) = (cooling(START), warming + cooling(HIGH));
-    let instants = (0..).flat_map(move |number| {
+    (0..).flat_map(move |number| {
         let turned_on = first + f64::from(number) * cycle;
         [turned_on, turned_on + warming]
-    });
-    instants.take_while(|t| *t <= HORIZON)
+    })
 }
 
 /// The temperature ten times a second.
@@ -116,13 +115,14 @@ fn temperatures(run: &Trajectory) -> impl Iterator<Item = f64> {
 
 /// Composition and monolith for 20 s.
 pub fn exhibit() -> Shown {
-    let composed = heater_and_controller()?.run(HORIZON)?;
-    let alone = monolith()?.run(HORIZON)?;
+    let (composition, monolith) = (heater_and_controller()?, monolith()?);
+    let (composed, alone) = (composition.run(HORIZON)?, monolith.run(HORIZON)?);
     Ok(Exhibit::new("heater_and_controller", include_str!("heater_and_controller.rs"))
         .automaton("heater", &heater()?)
         .automaton("controller", &controller()?)
-        .automaton("monolith", &monolith()?)
-        .compare_all("switching, in s", instants(&composed, usize::MAX), switchings(), 1e-12)
+        .composition("both", &composition)
+        .automaton("monolith", &monolith)
+        .compare_jumps(&composed, switchings(), 1e-12)
         .compare_all("temperature in °C", temperatures(&composed), temperatures(&alone), 1e-12)
         .run("Heater and controller", composed)
         .run("The monolith", alone))

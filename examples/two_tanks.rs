@@ -17,7 +17,7 @@
 
 mod exhibit;
 
-use exhibit::{Exhibit, Shown, instants};
+use exhibit::{Exhibit, Shown, accumulation};
 use pleach::prelude::*;
 use std::error::Error;
 
@@ -73,14 +73,10 @@ fn zeno_time() -> f64 {
 pub fn exhibit() -> Shown {
     let tanks = two_tanks()?;
     let trajectory = tanks.run(10.0)?;
-    let accumulation = match trajectory.ending().reason {
-        Reason::Zeno(zeno) => zeno.accumulation,
-        _ => f64::NAN,
-    };
     Ok(Exhibit::new("two_tanks", include_str!("two_tanks.rs"))
         .automaton("tanks", &tanks)
-        .compare_all("change-overs in s", instants(&trajectory, 8), (1..=8).map(change_over), 1e-12)
-        .compare("Zeno time in s", accumulation, zeno_time(), 1e-12)
+        .compare_jumps(&trajectory, (1..=8).map(change_over), 1e-12)
+        .compare("Zeno time in s", accumulation(&trajectory), zeno_time(), 1e-12)
         .run("From 0 and 1 litres", trajectory))
 }
 

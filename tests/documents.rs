@@ -24,7 +24,7 @@ use pleach::summary::Summary;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 8] = [
+const WRITTEN: [&str; 9] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
@@ -33,6 +33,7 @@ const WRITTEN: [&str; 8] = [
     "docs/semantics.md",
     "docs/automata.md",
     "docs/proofs.md",
+    "docs/exploration.md",
 ];
 
 fn keep_up_to_date(path: &str, document: &str) {

@@ -2,10 +2,14 @@
 
 #![allow(clippy::unwrap_used)] // a test that panics has failed
 
+#[path = "../examples/planted_faults/catalogue.rs"]
+mod catalogue;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use catalogue::faults;
 use pleach::verify::network::Property;
 
 /// The packages that may have harnesses.
@@ -112,5 +116,23 @@ fn the_properties_name_lemmas_that_exist() {
             let file = root().join(format!("proofs/smt/{lemma}.smt2"));
             assert!(file.exists(), "{lemma} in: {row}");
         }
+    }
+}
+
+/// What is planted is in the document, with the engine that catches it, and still applies.
+#[test]
+fn the_document_names_every_fault_and_each_applies() {
+    let document = document();
+    let rows = rows(&document, "Planted faults");
+    let faults = faults(root()).unwrap();
+    assert!(faults.len() >= 15);
+    // The first two rows are the head of the table.
+    assert_eq!(rows.len(), faults.len() + 2);
+    for fault in faults {
+        let planted = fault.planted(root()).unwrap();
+        assert!(planted.contains(&fault.after) && !fault.says.is_empty(), "{}", fault.name);
+        let row = format!("| {} | {} | {} |", fault.name, fault.wrong, fault.engine);
+        assert!(rows.iter().any(|found| found.starts_with(&row)), "it should have: {row}");
+        assert!(fault.command.starts_with("test -p "), "{}", fault.name);
     }
 }

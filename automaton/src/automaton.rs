@@ -60,6 +60,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) initial_state: Option<S>,
     /// What the model says of the coordinates' ranges, by name.
     pub(crate) ranges: Vec<(String, RangeInclusive<f64>)>,
+    /// The names of all variables, where the type of the state tells.
+    pub(crate) known: Option<&'static [&'static str]>,
     /// The nodes stand in the order of `L::ALL`.
     pub(crate) graph: DiGraph<L, Transition<E, S>>,
     /// By node.

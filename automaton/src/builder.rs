@@ -188,6 +188,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         self.check_parts()?;
         if let Some(names) = self.known {
             self.check_variables(|name| names.contains(&name))?;
+            self.check_initial_state(names)?;
         }
         let mut graph = DiGraph::with_capacity(L::ALL.len(), self.rows.len());
         for &location in L::ALL {
@@ -199,8 +200,8 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         }
         let leaving = L::ALL.iter().map(|&location| self.leaving(location)).collect();
         let modes = L::ALL.iter().map(|&location| self.mode(location)).collect();
-        let Builder { rows, initial, initial_state, ranges, .. } = self;
-        Ok(Automaton { rows, initial, initial_state, ranges, graph, modes, leaving })
+        let Builder { rows, initial, initial_state, ranges, known, .. } = self;
+        Ok(Automaton { rows, initial, initial_state, ranges, known, graph, modes, leaving })
     }
 
     /// The automaton, after a look at any one state of the model, whose values do not matter:
@@ -280,6 +281,16 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             let in_order = lower <= upper;
             if !in_order {
                 return Err(BuildError::EmptyRange { variable, lower, upper });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_initial_state(&self, names: &[&'static str]) -> Result<(), BuildError> {
+        for &variable in names {
+            let value = self.initial_state.as_ref().and_then(|state| state.value(variable));
+            if let Some(value) = value.filter(|value| !value.is_finite()) {
+                return Err(BuildError::InitialNotFinite { variable, value });
             }
         }
         Ok(())

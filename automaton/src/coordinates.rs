@@ -31,6 +31,15 @@ pub trait Coordinates: Valuation + Clone + Send + Sync + 'static {
     }
 }
 
+/// The state of an automaton that is all locations.
+impl Coordinates for () {
+    const NAMES: &'static [&'static str] = &[];
+
+    fn from_values(_values: &[f64]) -> Self {}
+
+    fn write(&self, _values: &mut [f64]) {}
+}
+
 /// A coordinate of states `S` as a variable in formulas.
 ///
 /// It is an [`Expression`] in all that follows from reading it; beyond that it can be given a
@@ -211,7 +220,10 @@ macro_rules! coordinates {
         impl $crate::Coordinates for $state {
             const NAMES: &'static [&'static str] = {
                 const NAMES: &[&str] = &[$($crate::coordinates!(@word $field $($word)?)),+];
-                assert!($crate::discrete::vocabulary::all_differ(NAMES), "two names are the same");
+                const _: () = assert!(
+                    $crate::discrete::vocabulary::all_differ(NAMES),
+                    "two names are the same"
+                );
                 NAMES
             };
 

@@ -4,11 +4,12 @@
 //! [`TransitionTable`](pleach_discrete::TransitionTable), and its guards are
 //! [predicates as data](pleach_guards). It can be
 //!
-//! * **run**: an automaton over [coordinates], or a [`composition`] of several, runs as it is and
-//!   leaves a [`Trajectory`]; anything else that is a [`System`] runs on the same [`Executor`]. What a
-//!   run is, the [executor's page](executor) and `docs/semantics.md` say;
-//! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG and tables from the automaton itself, so that
-//!   pictures cannot drift from the code;
+//! * **run**: an automaton over [coordinates](mod@coordinates), or a [`composition`] of several,
+//!   runs as it is and leaves a [`Trajectory`]; anything else that is a [`System`] runs on the same
+//!   [`Executor`]. What a run is, the [executor's page](executor) and `docs/semantics.md` say;
+//! * **drawn**: [`diagram`] writes Mermaid, DOT, SVG, LaTeX and tables from the automaton itself,
+//!   so that pictures cannot drift from the code, and plots what it went through;
+//! * **covered**: [`coverage`] counts what a set of runs has been through, and what it left out;
 //! * **checked**: [`decision`] finds a state in which guards and invariants hold together, or proves
 //!   that there is none.
 //!
@@ -18,6 +19,7 @@
 
 pub mod automaton;
 pub mod builder;
+pub mod check;
 pub mod composition;
 pub mod coordinates;
 pub mod coverage;
@@ -36,9 +38,10 @@ pub mod zeno;
 
 pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
+pub use check::{Finding, Report};
 pub use composition::{
-    Composition, CompositionBuilder, CompositionError, Failure, Policy, ReplayError, Settings,
-    Simulation, SimulationError,
+    Composition, CompositionBuilder, CompositionError, Exploration, ExplorationError, Failure,
+    Policy, ReplayError, Settings, Simulation, SimulationError,
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};

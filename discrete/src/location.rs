@@ -1,5 +1,6 @@
 //! The two vocabularies of a discrete graph.
 
+use std::convert::Infallible;
 use std::fmt::Debug;
 
 /// The locations of an automaton, usually an enum without fields.
@@ -20,4 +21,13 @@ pub trait Event: Copy + Eq + Ord + Debug + 'static {
 
     /// The name in traces, tables and diagrams: lower-case words, different for each event.
     fn name(self) -> &'static str;
+}
+
+/// The events of an automaton that never jumps: there are none.
+impl Event for Infallible {
+    const ALL: &'static [Self] = &[];
+
+    fn name(self) -> &'static str {
+        match self {}
+    }
 }

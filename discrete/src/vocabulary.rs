@@ -48,7 +48,8 @@ macro_rules! vocabulary {
 
             fn name(self) -> &'static str {
                 const NAMES: &[&str] = &[$($crate::vocabulary!(@word $variant $($word)?)),+];
-                const { assert!($crate::vocabulary::all_differ(NAMES), "two names are the same") };
+                const _: () =
+                    assert!($crate::vocabulary::all_differ(NAMES), "two names are the same");
                 NAMES[self as usize]
             }
         }

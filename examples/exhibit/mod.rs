@@ -12,11 +12,13 @@ mod show;
 
 use std::error::Error;
 
-use pleach::automaton::{Automaton, Trajectory, diagram};
+use pleach::automaton::{Automaton, Composition, Coordinates, Reason, Trajectory, diagram};
 use pleach::discrete::{Event, Location};
-use pleach::guards::Valuation;
 
 pub use number::{number, numbers};
+
+/// What is folded up below the tables of an automaton.
+const DEFINITION: &str = "The formal definition";
 
 /// What a classic makes: an exhibit, or whatever kept it from running.
 pub type Shown = Result<Exhibit, Box<dyn Error>>;
@@ -32,20 +34,23 @@ pub struct Exhibit {
     comparisons: Vec<Comparison>,
 }
 
+/// An automaton or a composition.
 struct Drawing {
     title: &'static str,
     diagram: String,
-    table: String,
+    /// What stands below the diagram, in Markdown.
+    legend: String,
 }
 
 struct Run {
     title: &'static str,
-    trajectory: Trajectory,
+    story: Vec<String>,
+    plot: Option<String>,
 }
 
 /// Numbers that a run gives beside those that it should give.
 struct Comparison {
-    quantity: &'static str,
+    quantity: String,
     found: Vec<f64>,
     answers: Vec<f64>,
     tolerance: f64,
@@ -57,40 +62,81 @@ impl Exhibit {
         Exhibit { name, source, drawings: Vec::new(), runs: Vec::new(), comparisons: Vec::new() }
     }
 
-    /// Shows an automaton, as a diagram and as tables.
-    pub fn automaton<L: Location, E: Event, S: Valuation>(
+    /// Shows an automaton: as a diagram, as tables, and by its formal definition.
+    pub fn automaton<L: Location, E: Event, S: Coordinates>(
         mut self,
         title: &'static str,
         automaton: &Automaton<L, E, S>,
     ) -> Self {
-        let (diagram, table) = (diagram::svg(automaton), diagram::table(automaton));
-        self.drawings.push(Drawing { title, diagram, table });
+        let (table, definition) = (diagram::table(automaton), diagram::latex(automaton));
+        let definition = format!("```math\n{}\n```", definition.trim());
+        let folded =
+            format!("<details><summary>{DEFINITION}</summary>\n\n{definition}\n\n</details>");
+        let legend = format!("{table}\n{folded}\n");
+        self.drawings.push(Drawing { title, diagram: diagram::svg(automaton), legend });
         self
     }
 
-    /// Shows a run: its jumps and its ending.
+    /// Shows a composition: what joins its components.
+    pub fn composition(mut self, title: &'static str, composition: &Composition) -> Self {
+        let diagram = diagram::composition_svg(composition);
+        self.drawings.push(Drawing { title, diagram, legend: String::new() });
+        self
+    }
+
+    /// Shows a run: its plot, its jumps and its ending.
     pub fn run(mut self, title: &'static str, trajectory: Trajectory) -> Self {
-        self.runs.push(Run { title, trajectory });
+        let (story, plot) = (show::story(&trajectory), Some(diagram::plot(&trajectory)));
+        self.runs.push(Run { title, story, plot });
+        self
+    }
+
+    /// Shows what happens where no time passes: a line for each jump.
+    pub fn story(mut self, title: &'static str, story: Vec<String>) -> Self {
+        self.runs.push(Run { title, story, plot: None });
         self
     }
 
     /// Holds a number that was `found` against the `answer`, from which it may differ by
     /// `tolerance`, in its unit.
-    pub fn compare(self, quantity: &'static str, found: f64, answer: f64, tolerance: f64) -> Self {
+    pub fn compare(
+        self,
+        quantity: impl Into<String>,
+        found: f64,
+        answer: f64,
+        tolerance: f64,
+    ) -> Self {
         self.compare_all(quantity, [found], [answer], tolerance)
     }
 
     /// Holds numbers against as many answers, one after the other.
     pub fn compare_all(
         mut self,
-        quantity: &'static str,
+        quantity: impl Into<String>,
         found: impl IntoIterator<Item = f64>,
         answers: impl IntoIterator<Item = f64>,
         tolerance: f64,
     ) -> Self {
         let (found, answers) = (found.into_iter().collect(), answers.into_iter().collect());
+        let quantity = quantity.into();
         self.comparisons.push(Comparison { quantity, found, answers, tolerance });
         self
+    }
+
+    /// Holds the instants of the jumps of a run, in seconds, against the `answers`, which ascend: all
+    /// of them if the run lasts to its horizon, and else as many as there are answers.
+    pub fn compare_jumps(
+        self,
+        run: &Trajectory,
+        answers: impl IntoIterator<Item = f64>,
+        tolerance: f64,
+    ) -> Self {
+        let lasts = run.ending().reason == Reason::Horizon;
+        let end = if lasts { run.ending().at.t } else { f64::INFINITY };
+        let answers: Vec<f64> = answers.into_iter().take_while(|answer| *answer <= end).collect();
+        let count = if lasts { usize::MAX } else { answers.len() };
+        let found: Vec<f64> = instants(run).take(count).collect();
+        self.compare_all("jumps in s", found, answers, tolerance)
     }
 
     /// What differs by more than its tolerance, as sentences.
@@ -102,14 +148,30 @@ impl Exhibit {
         self.comparisons.iter().filter(wrong).map(Comparison::to_sentence).collect()
     }
 
-    /// The pictures: the name of a file, and an SVG document.
-    pub fn pictures(&self) -> impl Iterator<Item = (String, &str)> {
-        self.drawings.iter().map(|drawing| (self.picture_of(drawing), &*drawing.diagram))
+    /// The diagrams: the name of a file, and an SVG document.
+    pub fn diagrams(&self) -> impl Iterator<Item = (String, &str)> {
+        self.drawings.iter().map(|drawing| (self.diagram_of(drawing), &*drawing.diagram))
     }
 
-    fn picture_of(&self, drawing: &Drawing) -> String {
-        format!("{}-{}.svg", self.name, drawing.title.replace(' ', "-"))
+    /// The plots of the runs: the name of a file, and an SVG document.
+    pub fn plots(&self) -> impl Iterator<Item = (String, &str)> {
+        self.runs.iter().filter_map(|run| Some((self.plot_of(run), run.plot.as_deref()?)))
     }
+
+    fn diagram_of(&self, drawing: &Drawing) -> String {
+        format!("{}-{}.svg", self.name, file_name(drawing.title))
+    }
+
+    fn plot_of(&self, run: &Run) -> String {
+        format!("{}-{}.svg", self.name, file_name(run.title))
+    }
+}
+
+/// The title in small letters, with hyphens for all else.
+fn file_name(title: &str) -> String {
+    let words = title.split(|letter: char| !letter.is_ascii_alphanumeric());
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    words.join("-").to_ascii_lowercase()
 }
 
 impl Comparison {
@@ -129,7 +191,15 @@ impl Comparison {
     }
 }
 
-/// The instants of the first `count` jumps of a run, in seconds.
-pub fn instants(run: &Trajectory, count: usize) -> impl Iterator<Item = f64> {
-    run.jumps().iter().take(count).map(|jump| jump.at.t)
+/// The instants of the jumps of a run, in seconds.
+pub fn instants(run: &Trajectory) -> impl Iterator<Item = f64> {
+    run.jumps().iter().map(|jump| jump.at.t)
+}
+
+/// Where the jumps of a run accumulate, in seconds; NaN if it is not Zeno.
+pub fn accumulation(run: &Trajectory) -> f64 {
+    match run.ending().reason {
+        Reason::Zeno(zeno) => zeno.accumulation,
+        _ => f64::NAN,
+    }
 }

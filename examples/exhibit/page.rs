@@ -1,6 +1,5 @@
 //! The exhibit as a page of the book, in Markdown.
 
-use super::show::story;
 use super::{Comparison, Exhibit, numbers};
 
 /// Between these lines of an example stands its model.
@@ -19,14 +18,17 @@ impl Exhibit {
             self.model(),
         );
         for drawing in &self.drawings {
-            let (title, picture) = (drawing.title, self.picture_of(drawing));
-            page +=
-                &format!("\n![The automaton: {title}](pictures/{picture})\n\n{}", drawing.table);
+            let (title, picture) = (drawing.title, self.diagram_of(drawing));
+            page += &format!("\n![Diagram: {title}](pictures/{picture})\n\n{}", drawing.legend);
         }
         page += "\n## What happens\n";
         for run in &self.runs {
-            let lines = story(&run.trajectory).join("\n");
-            page += &format!("\n{}:\n\n```text\n{lines}\n```\n", run.title);
+            let (title, picture, lines) = (run.title, self.plot_of(run), run.story.join("\n"));
+            page += &format!("\n### {title}\n\n");
+            if run.plot.is_some() {
+                page += &format!("![Plot: {title}](pictures/{picture})\n\n");
+            }
+            page += &format!("```text\n{lines}\n```\n");
         }
         page += "\n## The answer\n\n| quantity | answer | agrees within |\n| --- | --: | --: |\n";
         self.comparisons.iter().for_each(|one| page += &row(one));

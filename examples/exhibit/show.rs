@@ -22,7 +22,7 @@ impl Exhibit {
     pub fn show(&self) -> Result<(), Box<dyn Error>> {
         for run in &self.runs {
             println!("{}:", run.title);
-            for line in story(&run.trajectory) {
+            for line in &run.story {
                 println!("  {line}");
             }
         }
@@ -43,7 +43,10 @@ impl Exhibit {
     fn write_figures(&self) -> Result<(), Box<dyn Error>> {
         let folder = Path::new("figures").join(self.name);
         fs::create_dir_all(&folder)?;
-        for (name, svg) in self.pictures() {
+        for (name, svg) in self.diagrams() {
+            fs::write(folder.join(name), svg)?;
+        }
+        for (name, svg) in self.plots() {
             fs::write(folder.join(name), svg)?;
         }
         println!("Drawings: {}", folder.display());

@@ -38,6 +38,13 @@ impl<V: Valuation + ?Sized> Valuation for &V {
     }
 }
 
+/// The state without variables.
+impl Valuation for () {
+    fn value(&self, _variable: &str) -> Option<f64> {
+        None
+    }
+}
+
 /// Pairs of name and value; the first pair of a name counts.
 impl Valuation for [(&str, f64)] {
     fn value(&self, variable: &str) -> Option<f64> {

@@ -9,6 +9,7 @@ use thiserror::Error;
 use super::blueprint::{Blueprint, Change, PlaceMotion};
 use super::{Component, Composition, Label};
 use crate::automaton::Automaton;
+use crate::check::model::Model;
 use crate::coordinates::Coordinates;
 
 /// A [`Composition`] that is being put together.
@@ -26,6 +27,7 @@ pub struct CompositionBuilder {
 struct Part {
     name: String,
     blueprint: Arc<Blueprint>,
+    model: Arc<Model>,
     initial: Vec<f64>,
     renamed: Vec<(String, String)>,
 }
@@ -133,6 +135,7 @@ impl CompositionBuilder {
             Ok(blueprint) => self.parts.push(Part {
                 name: name.to_owned(),
                 blueprint: Arc::new(blueprint),
+                model: Arc::new(Model::of(automaton)),
                 initial: state.to_values(),
                 renamed: Vec::new(),
             }),
@@ -198,6 +201,7 @@ impl CompositionBuilder {
                 owned: sources[places].iter().map(Option::is_none).collect(),
                 labels: (0..part.blueprint.events.len()).map(own_label).collect(),
                 blueprint: part.blueprint,
+                model: part.model,
             };
             component.check_inputs()?;
             composition.components.push(component);

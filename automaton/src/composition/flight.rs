@@ -180,7 +180,8 @@ enum Kind {
 }
 
 /// The flow of all components in their locations.
-struct Field<'a> {
+pub(super) struct Field<'a> {
+    composition: &'a Composition,
     /// With their place, and whether they solve their flow themselves.
     moving: Vec<(&'a Component, &'a Place)>,
     exact: Vec<(&'a Component, &'a Solution)>,
@@ -190,7 +191,7 @@ struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    fn of(composition: &'a Composition, locations: &[usize], start: &'a [f64]) -> Self {
+    pub(super) fn of(composition: &'a Composition, locations: &[usize], start: &'a [f64]) -> Self {
         let (mut moving, mut exact) = (Vec::new(), Vec::new());
         for (component, &location) in composition.components.iter().zip(locations) {
             let place = component.place(location);
@@ -200,7 +201,7 @@ impl<'a> Field<'a> {
                 PlaceMotion::Rates(_) | PlaceMotion::Field(_) => moving.push((component, place)),
             }
         }
-        Field { moving, exact, start, scratch: RefCell::default() }
+        Field { composition, moving, exact, start, scratch: RefCell::default() }
     }
 
     fn kind(&self) -> Kind {
@@ -286,6 +287,16 @@ impl<'a> Field<'a> {
                 PlaceMotion::Exact(_) => {}
             }
         }
+    }
+
+    /// The name of what changes while time passes, if anything does: a variable that has a rate,
+    /// or a component that solves its flow itself.
+    pub(super) fn mover(&self) -> Option<String> {
+        let mut rates = vec![0.0; self.start.len()];
+        self.rates(0.0, self.start, &mut rates);
+        let moving = rates.iter().position(|rate| *rate != 0.0);
+        let variable = moving.map(|slot| self.composition.variables[slot].clone());
+        variable.or_else(|| self.exact.first().map(|(component, _)| component.name.clone()))
     }
 
     /// Puts what is solved by itself where it is at `time`.

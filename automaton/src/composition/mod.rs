@@ -64,7 +64,10 @@
 
 pub(crate) mod blueprint;
 mod builder;
+mod exploration;
 mod flight;
+mod jumps;
+mod models;
 mod picture;
 mod replay;
 mod simulation;
@@ -72,10 +75,13 @@ mod simulation;
 use std::sync::Arc;
 
 pub use builder::{CompositionBuilder, CompositionError};
+pub use exploration::{Exploration, ExplorationError, Reached};
 pub use replay::ReplayError;
 pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;
+
+use crate::check::model::Model;
 
 /// Automata side by side; see the [module](self).
 #[derive(Clone)]
@@ -92,6 +98,8 @@ pub struct Composition {
 pub(crate) struct Component {
     pub(crate) name: String,
     pub(crate) blueprint: Arc<Blueprint>,
+    /// What checks read.
+    model: Arc<Model>,
     /// By event: what it is called here.
     pub(crate) events: Vec<String>,
     /// By coordinate: where its value is.

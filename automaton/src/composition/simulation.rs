@@ -2,12 +2,13 @@
 
 use pleach_continuous::flow::{EventSearch, Tolerances};
 use pleach_discrete::{Event, Location};
-use pleach_guards::{EvaluationError, Verdict};
+use pleach_guards::Verdict;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::blueprint::{Change, Leaving};
+use super::blueprint::Leaving;
 use super::flight::Flight;
+use super::jumps::{Joint, Standing};
 use super::{Component, Composition, CompositionError};
 use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
@@ -279,7 +280,7 @@ impl<'a> Simulation<'a> {
                 continue;
             }
             if let Some(jump) = self.next_of(component, readiness)? {
-                self.take(jump, round)?;
+                self.take(&jump, round)?;
                 any = true;
             }
         }
@@ -288,15 +289,11 @@ impl<'a> Simulation<'a> {
 
     /// The first jump in total order that `component` can take part in.
     fn next_of(&self, component: usize, readiness: Readiness) -> Result<Option<Joint>, Failure> {
-        let place = self.composition.components[component].place(self.locations[component]);
-        for (transition, leaving) in place.leaving.iter().enumerate() {
+        for (transition, leaving) in self.standing().leaving(component).iter().enumerate() {
             let label = self.composition.components[component].labels[leaving.event];
             let joint = match label {
                 None if !self.is_wanted(leaving, readiness) => None,
-                None => self
-                    .allows(component, leaving, &self.values)?
-                    .holds
-                    .then(|| Joint { label: None, parts: vec![(component, transition)] }),
+                None => self.standing().alone(component, transition, &self.values)?,
                 Some(label) => self.joint(label, readiness)?,
             };
             if joint.is_some() {
@@ -308,25 +305,14 @@ impl<'a> Simulation<'a> {
 
     /// The jump that all participants of a label take together, if they can and one of them wants.
     fn joint(&self, label: usize, readiness: Readiness) -> Result<Option<Joint>, Failure> {
-        let mut parts = Vec::new();
-        let mut is_wanted = false;
-        for &(component, event) in &self.composition.labels[label].participants {
-            if self.jumped[component] {
-                return Ok(None);
-            }
-            let place = self.composition.components[component].place(self.locations[component]);
-            let mut on_event =
-                place.leaving.iter().enumerate().filter(|(_, leaving)| leaving.event == event);
-            let found = loop {
-                let Some((transition, leaving)) = on_event.next() else { return Ok(None) };
-                if self.allows(component, leaving, &self.values)?.holds {
-                    break (transition, leaving);
-                }
-            };
-            is_wanted |= self.is_wanted(found.1, readiness);
-            parts.push((component, found.0));
+        let participants = &self.composition.labels[label].participants;
+        if participants.iter().any(|(component, _)| self.jumped[*component]) {
+            return Ok(None);
         }
-        Ok(is_wanted.then_some(Joint { label: Some(label), parts }))
+        let joint = self.standing().together(label, &self.values)?;
+        Ok(joint.filter(|joint| {
+            self.standing().parts(joint).any(|leaving| self.is_wanted(leaving, readiness))
+        }))
     }
 
     fn is_wanted(&self, leaving: &Leaving, readiness: Readiness) -> bool {
@@ -335,34 +321,24 @@ impl<'a> Simulation<'a> {
             || self.settings.policy == Policy::Early
     }
 
-    /// All parts find x⁻ and change only what belongs to them, so that their order is no matter.
-    fn take(&mut self, jump: Joint, round: &mut Round<'_, Taken>) -> Result<(), Failure> {
-        let before = self.values.clone();
-        let mut moves = Vec::with_capacity(jump.parts.len());
-        for &(component, transition) in &jump.parts {
-            let source = self.locations[component];
-            let leaving = &self.composition.components[component].place(source).leaving[transition];
-            self.composition.components[component]
-                .change(&leaving.change, &before, &mut self.values)
-                .map_err(|fault| self.formula(component, source, "the reset".into(), &fault))?;
-            moves.push(Move { component, source, target: leaving.target, transition });
-        }
-        for one in &moves {
+    fn take(&mut self, jump: &Joint, round: &mut Round<'_, Taken>) -> Result<(), Failure> {
+        let taken = self.standing().taken(jump, &self.values)?;
+        self.values.clone_from(&taken.values);
+        for one in &taken.moves {
             self.locations[one.component] = one.target;
             self.jumped[one.component] = true;
         }
-        let label = match jump.label {
-            Some(label) => self.composition.labels[label].name.clone(),
-            None => self.composition.event_of(&moves[0]),
-        };
-        let participants: Box<[usize]> = moves.iter().map(|one| one.component).collect();
-        let taken = Taken { label, moves, values: self.values.clone() };
+        let participants: Box<[usize]> = taken.moves.iter().map(|one| one.component).collect();
         match &*participants {
             [alone] => round.jumped(*alone, taken),
             all if all.len() == self.locations.len() => round.jumped_together(taken),
             _ => round.jumped_some(participants, taken),
         }
         Ok(())
+    }
+
+    fn standing(&self) -> Standing<'_> {
+        Standing { composition: self.composition, locations: &self.locations }
     }
 
     // ---- Verdicts --------------------------------------------------------------------------
@@ -387,7 +363,7 @@ impl<'a> Simulation<'a> {
                 let part = || format!("the invariant `{invariant}`");
                 let own = invariant
                     .evaluate_at(state, &component.slots)
-                    .map_err(|fault| self.formula(index, location, part(), &fault))?;
+                    .map_err(|fault| self.standing().formula(index, location, part(), &fault))?;
                 verdict = verdict.and(own);
             }
         }
@@ -409,7 +385,7 @@ impl<'a> Simulation<'a> {
             for leaving in &component.place(self.locations[index]).leaving {
                 let is_own = component.labels[leaving.event].is_none();
                 if is_own && self.is_wanted(leaving, readiness) {
-                    verdict = verdict.or(self.allows(index, leaving, state)?);
+                    verdict = verdict.or(self.standing().allows(index, leaving, state)?);
                 }
             }
         }
@@ -434,7 +410,7 @@ impl<'a> Simulation<'a> {
             let mut any = Verdict::NEVER;
             let leaving = &component.place(self.locations[index]).leaving;
             for leaving in leaving.iter().filter(|leaving| leaving.event == event) {
-                let allowed = self.allows(index, leaving, state)?;
+                let allowed = self.standing().allows(index, leaving, state)?;
                 any = any.or(allowed);
                 if self.is_wanted(leaving, readiness) {
                     wanted = wanted.or(allowed);
@@ -445,39 +421,8 @@ impl<'a> Simulation<'a> {
         Ok(all.and(wanted))
     }
 
-    fn allows(&self, index: usize, leaving: &Leaving, state: &[f64]) -> Result<Verdict, Failure> {
-        let part = || format!("the guard `{}`", leaving.guard);
-        let slots = &self.composition.components[index].slots;
-        leaving
-            .guard
-            .evaluate_at(state, slots)
-            .map_err(|fault| self.formula(index, self.locations[index], part(), &fault))
-    }
-
-    // ---- Failures --------------------------------------------------------------------------
-
-    fn formula(
-        &self,
-        index: usize,
-        location: usize,
-        part: String,
-        fault: &EvaluationError,
-    ) -> Failure {
-        let component = &self.composition.components[index];
-        Failure::Formula {
-            component: component.name.clone(),
-            location: component.place(location).name.to_owned(),
-            part,
-            reason: fault.to_string(),
-        }
-    }
-
     pub(super) fn failure(&self, reason: String) -> Failure {
-        let components = self.composition.components.iter().zip(&self.locations);
-        let places = components.map(|(component, &location)| {
-            format!("`{}` of `{}`", component.place(location).name, component.name)
-        });
-        Failure::Flow { locations: places.collect::<Vec<_>>().join(", "), reason }
+        Failure::Flow { locations: self.standing().names(), reason }
     }
 }
 
@@ -488,12 +433,6 @@ enum Readiness {
     Forced,
     /// All.
     Possible,
-}
-
-/// A jump that can be taken: components, each with one of its transitions.
-struct Joint {
-    label: Option<usize>,
-    parts: Vec<(usize, usize)>,
 }
 
 impl System for Simulation<'_> {
@@ -560,36 +499,6 @@ impl Observer<Simulation<'_>> for Recorder {
             phase.samples.extend(flight.samples.iter().map(shifted));
         }
         std::ops::ControlFlow::Continue(())
-    }
-}
-
-impl Component {
-    fn change(
-        &self,
-        change: &Change,
-        before: &[f64],
-        after: &mut [f64],
-    ) -> Result<(), EvaluationError> {
-        match change {
-            Change::Assignments(assignments) => {
-                for (coordinate, value) in assignments {
-                    let new = value.evaluate_at(before, &self.slots);
-                    if new.is_nan() {
-                        let expression =
-                            format!("the new {}", self.blueprint.coordinates[*coordinate]);
-                        return Err(EvaluationError::NotANumber { expression });
-                    }
-                    after[self.slots[*coordinate]] = new;
-                }
-            }
-            Change::Function(function) => {
-                let mut own = Vec::with_capacity(self.slots.len());
-                self.gather(before, &mut own);
-                function(&mut own)?;
-                self.scatter(&own, after);
-            }
-        }
-        Ok(())
     }
 }
 

@@ -23,7 +23,7 @@ const ROUNDS_UNTIL_ROSTER_SETTLES: usize = 8;
 const PATIENCE_WITH_ELECTIONS: usize = 4;
 
 /// An access point.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct AccessPoint {
     number: usize,
     site: Arc<Site>,
@@ -64,6 +64,11 @@ impl AccessPoint {
         }
     }
 
+    /// Its number among the access points.
+    pub const fn number(&self) -> usize {
+        self.number
+    }
+
     fn id(&self) -> NodeId {
         self.site.robots + self.number
     }
@@ -78,6 +83,11 @@ impl AccessPoint {
     pub fn speak(&mut self) -> Arc<Beacon> {
         let (beacon, _) = self.voice.say(self.public_state());
         beacon
+    }
+
+    /// What the access point would tell its neighbours now.
+    pub fn beacon(&self) -> Beacon {
+        self.public_state()
     }
 
     fn public_state(&self) -> Beacon {
@@ -173,8 +183,7 @@ impl AccessPoint {
     }
 
     fn is_within_changeover(&self, other: Point) -> bool {
-        self.site.free_space.distance(self.position, other)
-            <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
+        self.site.distance(self.position, other) <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
     }
 
     /// Which robots hang on the access points.
@@ -240,7 +249,7 @@ impl AccessPoint {
         let Some(election) = &self.election else { return };
         self.election_rounds += 1;
         let is_leader_election = matches!(self.bulletin.notice(), Notice::Task { .. });
-        let longest = self.site.robots + self.site.access_points.len();
+        let longest = self.longest_wait();
         let (outcome, reason) = if election.is_complete(&roster) {
             if !is_leader_election || election.best().is_some() {
                 return;
@@ -263,6 +272,11 @@ impl AccessPoint {
         self.issue(Notice::Ended { outcome, reason: reason.into(), task: Some(task) });
     }
 
+    /// No message is longer under way than there are nodes to pass it on.
+    fn longest_wait(&self) -> usize {
+        self.site.robots + self.site.access_points.len()
+    }
+
     fn issue(&mut self, notice: Notice) {
         self.take_up(Shared::new(self.bulletin.next(notice)));
     }
@@ -270,6 +284,25 @@ impl AccessPoint {
     /// The newest word on the mission that it knows.
     pub fn notice(&self) -> &Notice {
         self.bulletin.notice()
+    }
+
+    /// Everything, apart from what it hears, that decides what the access point says from now on;
+    /// for explorers. Waits that are over are over, however long.
+    pub fn account(&self) -> String {
+        let settled = match self.bulletin.notice() {
+            Notice::Quiet => self.settled_rounds.min(ROUNDS_UNTIL_ROSTER_SETTLES),
+            _ => 0,
+        };
+        let patience = PATIENCE_WITH_ELECTIONS * self.longest_wait() + 1;
+        let electing = matches!(self.bulletin.notice(), Notice::Task { .. } | Notice::Call { .. });
+        let rounds = if electing { self.election_rounds.min(patience) } else { 0 };
+        format!(
+            "{:?}",
+            (
+                (self.number, &self.bulletin, &self.announced, &self.election, rounds),
+                (&self.agreement, &self.route, &self.crossing, &self.roster, settled),
+            )
+        )
     }
 
     /// Takes what it has told observers since the last call.

@@ -114,7 +114,7 @@ pub struct Beacon {
 
 /// What a node said last. A node with nothing new to say sends the very same beacon again, and
 /// who hears it knows without reading it.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Voice {
     last: Option<Arc<Beacon>>,
 }

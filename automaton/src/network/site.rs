@@ -1,6 +1,8 @@
 //! What every robot knows from the beginning: the floor plan, the access points, the radio and
 //! the settings.
 
+use std::fmt::Debug;
+
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
 use pleach_continuous::network::reliability::{CubicReliability, ReliabilityError};
@@ -26,6 +28,15 @@ pub struct Site {
     pub build_length: f64,
     /// d_hard: the geodesic length that no link of the tree exceeds.
     pub hard_length: f64,
+    /// How ways are measured where they are not those of the floor plan.
+    measure: Option<Box<dyn Measure>>,
+}
+
+/// A way to measure ways: by the floor plan as robots do or, where only the shape of a network
+/// matters, by a graph of places.
+pub trait Measure: Debug + Send + Sync {
+    /// The length of the shortest way.
+    fn distance(&self, from: Point, to: Point) -> f64;
 }
 
 /// Why no site can be made of a scenario.
@@ -61,7 +72,22 @@ impl Site {
             build_length: settings.longest_new_link(),
             hard_length: settings.longest_tree_link(),
             settings,
+            measure: None,
         })
+    }
+
+    /// The same site where the lengths of ways are those of `measure`.
+    #[must_use]
+    pub fn measured_by(self, measure: impl Measure + 'static) -> Self {
+        Site { measure: Some(Box::new(measure)), ..self }
+    }
+
+    /// The length of the shortest way in 𝒲_f; infinite if there is none.
+    pub fn distance(&self, from: Point, to: Point) -> f64 {
+        match &self.measure {
+            Some(measure) => measure.distance(from, to),
+            None => self.free_space.distance(from, to),
+        }
     }
 
     /// The geodesic length of a link, or infinity when it is longer than any link of the tree.
@@ -70,7 +96,7 @@ impl Site {
         if straight > REACH_OF_INTEREST * self.hard_length {
             return f64::INFINITY;
         }
-        self.free_space.distance(from, to)
+        self.distance(from, to)
     }
 }
 

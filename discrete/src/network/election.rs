@@ -23,7 +23,7 @@ pub struct Bid {
 }
 
 /// One robot's view of an election.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Election {
     number: u32,
     tokens: IdSet,

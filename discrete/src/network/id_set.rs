@@ -7,7 +7,7 @@ mod proofs;
 ///
 /// The numbers below 64 have a word of their own, so that the sets of most networks allocate
 /// nothing.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct IdSet {
     first: u64,
     /// 64 numbers a word, from 64 on; the last word is not 0.

@@ -60,26 +60,32 @@ pub mod role {
 /// The guards of the mission automaton (Algorithms 1, 3 and 5).
 pub mod mission {
     use super::{Guard, is, is_not};
-    use crate::variable;
+    use crate::{Predicate, variable};
+
+    /// A step that a robot takes only while it is not exchanging duties: what two robots have
+    /// offered each other stays as it is until both have taken it.
+    fn disengaged(name: &'static str, predicate: Predicate) -> Guard {
+        Guard::new(name, predicate.and(is_not("engaged")))
+    }
 
     /// The mission is said to have ended.
     pub fn ended() -> Guard {
-        Guard::new("ended", is("end_announced"))
+        disengaged("ended", is("end_announced"))
     }
 
     /// A task is announced.
     pub fn announced() -> Guard {
-        Guard::new("announced", is("announced"))
+        disengaged("announced", is("announced"))
     }
 
     /// Every token is known: line 1 of Algorithm 1.
     pub fn elected() -> Guard {
-        Guard::new("elected", is("election_over"))
+        disengaged("elected", is("election_over"))
     }
 
     /// The elected leader has past duties: L_b = 1.
     pub fn bound() -> Guard {
-        Guard::new("bound", is("bound"))
+        disengaged("bound", is("bound"))
     }
 
     /// A local stationary point (Sec. V-A2): the whole primary team has stood still for a while,
@@ -87,7 +93,7 @@ pub mod mission {
     pub fn trapped() -> Guard {
         let at_rest = variable("still").at_least(variable("window"));
         let stuck = is_not("slack").and(is_not("pending"));
-        Guard::new("trapped", is("first").and(at_rest).and(stuck).and(is_not("bound")))
+        disengaged("trapped", is("first").and(at_rest).and(stuck).and(is_not("bound")))
     }
 
     /// The team, or a robot on Σ, has not moved for long, and no recruit could help.
@@ -97,12 +103,12 @@ pub mod mission {
 
     /// A recruit is called for.
     pub fn called() -> Guard {
-        Guard::new("called", is("called"))
+        disengaged("called", is("called"))
     }
 
     /// This robot won the recruit election.
     pub fn recruited() -> Guard {
-        Guard::new("recruited", is("won"))
+        disengaged("recruited", is("won"))
     }
 
     /// This robot called, and no recruit can come.
@@ -112,7 +118,7 @@ pub mod mission {
 
     /// The path Σ is announced.
     pub fn path_heard() -> Guard {
-        Guard::new("path heard", is("path_announced"))
+        disengaged("path heard", is("path_announced"))
     }
 
     /// Every place of Σ has said whether it is a break point.
@@ -122,17 +128,17 @@ pub mod mission {
 
     /// Every member of the active subgroup has arrived, eq. (26).
     pub fn subgroup_arrived() -> Guard {
-        Guard::new("subgroup arrived", is("subgroup_arrived").and(is_not("engaged")))
+        disengaged("subgroup arrived", is("subgroup_arrived"))
     }
 
     /// Another robot holds the post of the last robot that Σ relieves.
     pub fn relieved() -> Guard {
-        Guard::new("relieved", is("relieved").and(is_not("engaged")))
+        disengaged("relieved", is("relieved"))
     }
 
     /// The primary team is said to be the active team.
     pub fn resumed() -> Guard {
-        Guard::new("resumed", is("resumed"))
+        disengaged("resumed", is("resumed"))
     }
 
     /// The leader is near enough to its task, eq. (2): near enough for a replacer behind it to
@@ -142,12 +148,11 @@ pub mod mission {
         let near = variable("distance").at_most(variable("reach"));
         let stuck = variable("still").at_least(variable("window"));
         let within = variable("distance").at_most(variable("radius")).and(stuck).and(is("slack"));
-        let free = is_not("bound").and(is_not("engaged"));
-        Guard::new("reached", is("leads").and(free).and(near.or(within)))
+        disengaged("reached", is("leads").and(is_not("bound")).and(near.or(within)))
     }
 
     /// The task is said to be serviced.
     pub fn serviced() -> Guard {
-        Guard::new("serviced", is("service_announced"))
+        disengaged("serviced", is("service_announced"))
     }
 }

@@ -23,6 +23,8 @@ const ENTRANCE: f64 = 30.0;
 const ROW_HEIGHT: f64 = 48.0;
 /// Longer labels are broken, in characters.
 const LINE_LENGTH: usize = 44;
+/// Longer flows and invariants in the boxes of locations are broken, in characters.
+const BOX_LINE_LENGTH: usize = 26;
 
 /// How the picture is read, in its upper left corner.
 const KEY: [&str; 2] =
@@ -86,6 +88,8 @@ fn columns(sketch: &Sketch, left: f64) -> Vec<Column> {
     places
         .map(|place| {
             let lines = place.lines();
+            let lines: Vec<String> =
+                lines.iter().flat_map(|line| wrapped(line, BOX_LINE_LENGTH)).collect();
             let longest = lines.iter().map(|line| text_width(line)).fold(0.0, f64::max);
             let width = longest + 2.0 * PADDING;
             let x = from + width / 2.0;

@@ -24,6 +24,11 @@ const PATIENCE_WITH_BARREN_POSTS: u32 = 2;
 impl Robot {
     /// Renews the robot's place in the tree from what it has heard.
     pub fn keep_place(&mut self) {
+        if self.is_engaged() {
+            // The place goes with the duty that is being handed over.
+            self.trace_lineage();
+            return self.collect_below();
+        }
         if self.duty.is_redundant() && (!self.tree_is_frozen() || self.anchor().is_none()) {
             self.choose_parent();
         }
@@ -39,6 +44,7 @@ impl Robot {
         let barren = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
             && !self.bears_branch()
             && !self.tree_is_frozen()
+            && !self.is_engaged()
             && !self.awaits_release;
         self.barren_periods = if barren { self.barren_periods + 1 } else { 0 };
         if self.barren_periods >= PATIENCE_WITH_BARREN_POSTS
@@ -226,7 +232,7 @@ impl Robot {
         let Some(parent) = self.bearer(anchor) else { return };
         let own = self.duty.post().map(|post| post.id);
         let gain = REATTACHMENT_GAIN * self.site.build_length;
-        let mut nearest = self.site.free_space.distance(parent.position(), goal) - gain;
+        let mut nearest = self.site.distance(parent.position(), goal) - gain;
         let mut better = None;
         for neighbour in self.neighbours.iter().filter(|n| Self::accepts_redundant(n)) {
             let candidate = self.anchor_of(neighbour);
@@ -242,7 +248,7 @@ impl Robot {
             {
                 continue;
             }
-            let distance = self.site.free_space.distance(neighbour.position(), goal);
+            let distance = self.site.distance(neighbour.position(), goal);
             if distance < nearest {
                 (nearest, better) = (distance, Some((candidate, neighbour.id())));
             }

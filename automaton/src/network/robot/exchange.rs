@@ -2,7 +2,8 @@
 //!
 //! A mover that touches a parked robot nearer to its goal offers it its duty. The parked robot
 //! answers with its own; the mover, which is within δ of the post, takes it; and when the parked
-//! robot sees that, it takes the mover's duty. A post is never without a robot, and no duty is
+//! robot sees that, it takes the mover's duty. From the offer to the end neither takes a step of
+//! the mission, so that what is taken over is what was offered. A post is never without a robot, and no duty is
 //! ever done by two. With every exchange the
 //! way that remains gets shorter, so that exchanges come to an end. A mover that cannot pass
 //! takes a partner somewhat farther from its goal too, but no robot twice in a row.
@@ -22,7 +23,7 @@ const GAIN: f64 = 0.05;
 const PATIENCE: u32 = 2;
 /// Control periods without progress after which it takes a partner that is not nearer: one that
 /// leaves no room to pass, at a corner say.
-const LAST_RESORT: u32 = 10;
+pub(super) const LAST_RESORT: u32 = 10;
 /// How much farther from the goal, in ρ, such a partner may be.
 const CONCESSION: f64 = 4.0;
 
@@ -38,12 +39,12 @@ impl Robot {
         }
         let Some(goal) = self.goal() else { return };
         let gain = if self.still_periods < LAST_RESORT { GAIN } else { -CONCESSION };
-        let own_way = self.site.free_space.distance(self.position, goal);
+        let own_way = self.site.distance(self.position, goal);
         let mut nearest = own_way - gain * self.clearance();
         let mut partner = None;
         for neighbour in &self.neighbours {
             if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
-                let way = self.site.free_space.distance(neighbour.position(), goal);
+                let way = self.site.distance(neighbour.position(), goal);
                 let is_return = way >= own_way && self.last_partner == Some(neighbour.id());
                 if way < nearest && !is_return && self.could_be_replaced_by(neighbour) {
                     (nearest, partner) = (way, Some(neighbour.id()));
@@ -116,7 +117,6 @@ impl Robot {
     /// One round of the protocol: answer offers, complete exchanges.
     pub fn handle_exchange(&mut self) {
         self.complete_own_offer();
-        self.keep_offer_true();
         self.conclude_reply();
         self.answer_offer();
     }
@@ -136,13 +136,6 @@ impl Robot {
         self.report(MissionEvent::DutiesExchanged { mover: self.id, parked: partner });
     }
 
-    /// What is offered is the duty as it is now: the mission goes on meanwhile.
-    fn keep_offer_true(&mut self) {
-        if let Some(offer) = &mut self.offer {
-            offer.duty = self.duty;
-        }
-    }
-
     /// The reply stands until the mover's offer is gone: then it has taken the post, and this
     /// robot takes the duty.
     fn conclude_reply(&mut self) {
@@ -152,21 +145,12 @@ impl Robot {
             mover.beacon.offer.as_ref().is_none_or(|offer| offer.number != number)
         });
         if !concluded {
-            return self.note_offer(to);
+            return;
         }
         self.reply = None;
         if let Some(duty) = self.taking.take() {
             self.left_post = self.duty.post().map(|post| post.id);
             self.take_over(duty, to);
-        }
-    }
-
-    /// The duty offered, as the mover's last beacon has it.
-    fn note_offer(&mut self, mover: NodeId) {
-        let offered =
-            self.neighbour(mover).and_then(|n| n.beacon.offer.as_ref()).map(|offer| offer.duty);
-        if let (Some(taking), Some(offered)) = (&mut self.taking, offered) {
-            *taking = offered;
         }
     }
 
@@ -204,7 +188,8 @@ impl Robot {
         matches!(self.duty, Duty::Wait { place, .. } if Some(place) == last)
     }
 
-    /// Whether an exchange is under way; the robot then stands still.
+    /// Whether an exchange is under way. The robot then stands still, and what it does stays what
+    /// it is: a duty that changed after it was offered would be taken over as it had been.
     pub(super) fn is_engaged(&self) -> bool {
         self.offer.is_some() || self.reply.is_some()
     }

@@ -228,7 +228,7 @@ impl Robot {
 
 impl Robot {
     /// A robot on Σ may have to wait until the others of its subgroup have gone their way.
-    fn patience(&self) -> f64 {
+    pub(super) fn patience(&self) -> f64 {
         let walk = self.site.hard_length / self.site.settings.step_radius;
         PATIENCE * f64::from(STATIONARY_WINDOW).max(walk)
     }
@@ -238,4 +238,4 @@ impl Robot {
 const PATIENCE: f64 = 4.0;
 
 /// Control periods without motion that make a stationary point.
-const STATIONARY_WINDOW: u32 = 8;
+pub(super) const STATIONARY_WINDOW: u32 = 8;

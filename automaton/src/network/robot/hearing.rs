@@ -1,7 +1,6 @@
 //! Listening: the table of neighbours and what each of them last said.
 
 use std::cell::OnceCell;
-use std::ops::Range;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -14,14 +13,20 @@ use super::super::site::Site;
 use super::Robot;
 
 /// A node that the robot hears, R_ij > 0.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Neighbour {
     pub beacon: Arc<Beacon>,
     pub distance: f64,
     pub reliability: f64,
     walk: OnceCell<f64>,
     measured: (Point, Point),
+    /// Rounds since it was heard.
+    silent_rounds: u8,
 }
+
+/// A neighbour that is not heard for more rounds than this is out of range. So many messages in
+/// succession may be lost and nothing comes of it; a control period has more rounds.
+const PATIENCE_WITH_SILENCE: u8 = 2;
 
 impl Neighbour {
     /// A node as heard from `own`.
@@ -33,7 +38,14 @@ impl Neighbour {
             reliability: site.link.reliability(distance),
             walk: OnceCell::new(),
             measured: (own, beacon.position),
+            silent_rounds: 0,
         }
+    }
+
+    /// The same node, as last heard, seen from elsewhere.
+    pub fn seen_from(&self, own: Point, site: &Site) -> Self {
+        let silent_rounds = self.silent_rounds;
+        Neighbour { silent_rounds, ..Neighbour::new(&self.beacon, own, site) }
     }
 
     pub fn id(&self) -> NodeId {
@@ -59,28 +71,32 @@ impl Neighbour {
 
 impl Robot {
     /// Takes in the beacons heard in one round, in ascending order of their senders.
+    ///
+    /// A message may be lost: who is not heard for a round or two is taken to be where it was.
     pub fn hear<'a>(&mut self, beacons: impl Iterator<Item = &'a Arc<Beacon>>) {
-        let mut heard = 0;
+        let mut at = 0;
         for beacon in beacons {
-            let rest = &self.neighbours[heard..];
-            let silent = rest.iter().take_while(|known| known.id() < beacon.sender).count();
-            self.forget(heard..heard + silent);
-            match self.neighbours.get(heard) {
-                Some(known) if known.id() == beacon.sender => self.renew(heard, beacon),
+            while self.neighbours.get(at).is_some_and(|known| known.id() < beacon.sender) {
+                at = self.miss(at);
+            }
+            match self.neighbours.get(at) {
+                Some(known) if known.id() == beacon.sender => self.renew(at, beacon),
                 _ => {
-                    self.neighbours
-                        .insert(heard, Neighbour::new(beacon, self.position, &self.site));
+                    self.neighbours.insert(at, Neighbour::new(beacon, self.position, &self.site));
                     self.receive_news();
                 }
             }
-            heard += 1;
+            at += 1;
         }
-        self.forget(heard..self.neighbours.len());
+        while at < self.neighbours.len() {
+            at = self.miss(at);
+        }
     }
 
     /// A neighbour that the robot knows is heard again.
     fn renew(&mut self, at: usize, beacon: &Arc<Beacon>) {
         let known = &mut self.neighbours[at];
+        known.silent_rounds = 0;
         let has_moved = known.measured != (self.position, beacon.position);
         if has_moved {
             *known = Neighbour::new(beacon, self.position, &self.site);
@@ -92,12 +108,25 @@ impl Robot {
         self.receive_news();
     }
 
-    /// Neighbours are not heard any more.
-    fn forget(&mut self, silent: Range<usize>) {
-        if !silent.is_empty() {
-            self.neighbours.drain(silent);
-            self.receive_news();
+    /// A neighbour that the robot knows is not heard; says where the next one stands.
+    fn miss(&mut self, at: usize) -> usize {
+        let known = &mut self.neighbours[at];
+        let silent_rounds = known.silent_rounds + 1;
+        if known.measured.0 != self.position {
+            *known = known.seen_from(self.position, &self.site);
         }
+        known.silent_rounds = silent_rounds;
+        if silent_rounds > PATIENCE_WITH_SILENCE || known.reliability <= 0.0 {
+            self.neighbours.remove(at);
+            self.receive_news();
+            return at;
+        }
+        at + 1
+    }
+
+    /// Whom the robot hears, and for how many rounds it has not.
+    pub fn audible(&self) -> impl Iterator<Item = (NodeId, u8)> {
+        self.neighbours.iter().map(|neighbour| (neighbour.id(), neighbour.silent_rounds))
     }
 
     /// What the robot hears has changed.

@@ -37,7 +37,8 @@ impl Robot {
         let competes =
             self.lineage.as_ref().is_some_and(|lineage| self.eligible.contains(lineage.root()));
         let mut election = Election::new(self.bulletin.sequence());
-        election.place(self.id, competes.then(|| self.leader_bid()).flatten());
+        self.bid = competes.then(|| self.leader_bid()).flatten();
+        election.place(self.id, self.bid);
         self.election = Some(election);
     }
 
@@ -45,7 +46,7 @@ impl Robot {
     fn leader_bid(&self) -> Option<Bid> {
         let task = self.tasks.last()?;
         let gap = (task.target - task.position).norm();
-        let distance = self.site.free_space.distance(self.position, task.target);
+        let distance = self.site.distance(self.position, task.target);
         let unit = BID_RESOLUTION * self.site.build_length;
         let within_reach = gap <= self.site.settings.service_radius && distance.is_finite();
         within_reach.then(|| Bid {

@@ -34,7 +34,7 @@ impl Robot {
     }
 
     /// The links of the tree at this robot: to its parent first, then to its children.
-    pub(super) fn tree_links(&self) -> Vec<TreeLink> {
+    pub fn tree_links(&self) -> Vec<TreeLink> {
         let mut links = Vec::new();
         links.extend(self.parent_link());
         links.extend(self.tree_children().map(|child| TreeLink {
@@ -91,9 +91,8 @@ impl Robot {
                 .robot_at(place + 1)
                 .or_else(|| self.holder(path.hops.get(place + 1)?.post.id).map(Neighbour::id));
         }
-        let distance = |&access: &usize| {
-            self.site.free_space.distance(self.position, self.site.access_points[access])
-        };
+        let distance =
+            |&access: &usize| self.site.distance(self.position, self.site.access_points[access]);
         let nearest =
             hop.crossing.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied()?;
         Some(self.site.robots + nearest)

@@ -8,6 +8,7 @@
 //! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
 //! what its guards see of all this are `facts`.
 
+mod abstraction;
 mod attachment;
 mod exchange;
 mod facts;
@@ -28,11 +29,12 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Bulletin, Election, Exchange, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
+    Agreement, Bid, Bulletin, Election, Exchange, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
     PostId, Reply, Role, RoleEvent, Subgroup,
 };
 
 pub use facts::{Facts, VARIABLES};
+pub use links::TreeLink;
 pub use motion::{Objection, Proposal};
 pub use routing::{FlowReport, RouteLink};
 
@@ -47,7 +49,7 @@ use super::site::Site;
 use hearing::Neighbour;
 
 /// A robot of the network.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Robot {
     // What it knows from the beginning.
     id: NodeId,
@@ -94,6 +96,8 @@ pub struct Robot {
     roster: Arc<IdSet>,
     eligible: Arc<IdSet>,
     election: Option<Election>,
+    /// What it has bid in this election itself.
+    bid: Option<Bid>,
     waited_rounds: usize,
     route: Option<(u32, Shared<Vec<Hop>>)>,
     awaits_release: bool,
@@ -169,6 +173,7 @@ impl Robot {
             roster: Arc::default(),
             eligible: Arc::default(),
             election: None,
+            bid: None,
             waited_rounds: 0,
             route: None,
             awaits_release: false,
@@ -301,6 +306,11 @@ impl Robot {
         if !std::mem::take(&mut self.has_news) && !is_due {
             return;
         }
+        self.reflect();
+    }
+
+    /// The robot puts together what it has heard, whether or not there is news in it.
+    fn reflect(&mut self) {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
         self.handle_exchange();
         self.keep_place();

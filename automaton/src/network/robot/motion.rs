@@ -63,7 +63,7 @@ pub struct Objection {
 impl Robot {
     /// Whether the robot stands still unless it is asked for; robots that settle on their post
     /// count as parked.
-    pub(super) fn is_parked(&self) -> bool {
+    pub fn is_parked(&self) -> bool {
         match self.duty {
             Duty::Shift { .. } => self.active_subgroup().is_none(),
             Duty::Hold(_) | Duty::Wait { .. } => {
@@ -73,7 +73,7 @@ impl Robot {
     }
 
     /// ψ_i: where the robot goes now (Algorithm 2), if it goes anywhere.
-    pub(super) fn goal(&self) -> Option<Point> {
+    pub fn goal(&self) -> Option<Point> {
         if self.is_engaged() || self.phase == Phase::Ended {
             return None;
         }

@@ -88,9 +88,7 @@ impl Robot {
 
     /// Geodesic distance to the announced task.
     pub(super) fn remaining(&self) -> f64 {
-        self.tasks
-            .last()
-            .map_or(0.0, |task| self.site.free_space.distance(self.position, task.target))
+        self.tasks.last().map_or(0.0, |task| self.site.distance(self.position, task.target))
     }
 
     /// Whether the robot has room to move: its link is neither at its limit nor is it bunched.

@@ -1,0 +1,226 @@
+//! An automaton as checks read it: without its types, and with its formulas as data.
+
+use pleach_discrete::{Event, Location, Urgency};
+use pleach_guards::{Expression, not};
+use pleach_guards::{Guard, Interval, Predicate, Substitution, Valuation, always, variable};
+
+use super::report::Place;
+use crate::automaton::Automaton;
+use crate::decision::{Region, State};
+use crate::flow::Flow;
+use crate::reset::Reset;
+
+/// An automaton, alone or as a component.
+#[derive(Clone, Debug)]
+pub(crate) struct Model {
+    /// The name, of a component.
+    pub(crate) component: Option<String>,
+    pub(crate) modes: Vec<Mode>,
+    /// In the order of the table.
+    pub(crate) transitions: Vec<Transition>,
+    /// What the events are called.
+    pub(crate) events: Vec<String>,
+    /// By event: whether other components take part in it.
+    pub(crate) is_label: Vec<bool>,
+    pub(crate) initial: usize,
+    pub(crate) initial_state: Option<State>,
+    /// Whether the type of the state says its coordinates, so that runs can start in one.
+    pub(crate) has_coordinates: bool,
+    /// All variables that are known to be there.
+    pub(crate) region: Region,
+    /// What belongs to another component.
+    pub(crate) inputs: Vec<String>,
+}
+
+/// A location with what is said of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Mode {
+    pub(crate) name: &'static str,
+    pub(crate) motion: Motion,
+    pub(crate) invariant: Predicate,
+    /// The transitions that leave it, in their total order.
+    pub(crate) leaving: Vec<usize>,
+}
+
+/// A flow.
+#[derive(Clone, Debug)]
+pub(crate) enum Motion {
+    Rates(Vec<(String, Expression)>),
+    Function(String),
+}
+
+/// A transition.
+#[derive(Clone, Debug)]
+pub(crate) struct Transition {
+    pub(crate) source: usize,
+    pub(crate) target: usize,
+    pub(crate) event: usize,
+    pub(crate) urgency: Urgency,
+    pub(crate) priority: u8,
+    pub(crate) guard: Guard,
+    pub(crate) effect: Effect,
+}
+
+/// A reset.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Effect {
+    Assignments(Vec<(String, Expression)>),
+    Function(String),
+}
+
+impl Model {
+    pub(crate) fn of<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Self {
+        let modes = automaton.modes.iter().zip(L::ALL).zip(&automaton.leaving);
+        let modes = modes.map(|((mode, location), leaving)| Mode {
+            name: location.name(),
+            motion: mode.flow.as_ref().map_or(Motion::Rates(Vec::new()), motion),
+            invariant: mode.invariant.clone().unwrap_or_else(always),
+            leaving: leaving.iter().map(|edge| edge.index()).collect(),
+        });
+        let transitions = automaton.graph.edge_indices().filter_map(|edge| {
+            let (source, target) = automaton.graph.edge_endpoints(edge)?;
+            let transition = &automaton.graph[edge];
+            Some(Transition {
+                source: source.index(),
+                target: target.index(),
+                event: E::ALL.iter().position(|event| *event == transition.event)?,
+                urgency: transition.urgency,
+                priority: transition.priority,
+                guard: transition.guard.clone(),
+                effect: effect(&transition.reset),
+            })
+        });
+        let mut model = Model {
+            component: None,
+            modes: modes.collect(),
+            transitions: transitions.collect(),
+            events: E::ALL.iter().map(|event| event.name().to_owned()).collect(),
+            is_label: vec![false; E::ALL.len()],
+            initial: L::ALL.iter().position(|one| *one == automaton.initial).unwrap_or_default(),
+            initial_state: None,
+            has_coordinates: automaton.known.is_some(),
+            region: Region::new(),
+            inputs: Vec::new(),
+        };
+        let declared = automaton.known.into_iter().flatten().map(|name| (*name).to_owned());
+        let names: Vec<String> = declared.chain(model.variables()).collect();
+        for name in names {
+            let range = automaton.range(&name);
+            let range = Interval::new(*range.start(), *range.end()).unwrap_or(Interval::WHOLE);
+            model.region.insert(name, range);
+        }
+        model.initial_state = automaton.initial_state.as_ref().map(|state| {
+            let value = |name: &String| Some((name.clone(), state.value(name)?));
+            model.region.keys().filter_map(value).collect()
+        });
+        model
+    }
+
+    /// What formulas name.
+    pub(crate) fn variables(&self) -> Vec<String> {
+        let predicates = self.modes.iter().map(|mode| &mode.invariant);
+        let guards = self.transitions.iter().map(|one| one.guard.predicate());
+        let in_predicates = predicates.chain(guards).flat_map(Predicate::variables);
+        let in_rates = self.modes.iter().flat_map(Mode::rates);
+        let in_resets = self.transitions.iter().flat_map(Transition::assignments);
+        let in_formulas = in_rates.chain(in_resets).flat_map(|(_, formula)| formula.variables());
+        in_predicates.chain(in_formulas).map(str::to_owned).collect()
+    }
+
+    pub(crate) fn mode_at(&self, location: usize) -> Place {
+        Place {
+            component: self.component.clone(),
+            location: Some(self.modes[location].name),
+            ..Place::default()
+        }
+    }
+
+    pub(crate) fn place_of(&self, transitions: &[usize]) -> Place {
+        let location = transitions.first().map(|&first| self.transitions[first].source);
+        let events = transitions.iter().map(|&one| self.event(one).to_owned()).collect();
+        let location = location.map(|location| self.modes[location].name);
+        Place { component: self.component.clone(), location, events, variable: None }
+    }
+
+    pub(crate) fn event(&self, transition: usize) -> &str {
+        &self.events[self.transitions[transition].event]
+    }
+
+    /// Whether the component takes the transition by itself.
+    pub(crate) fn is_own(&self, transition: usize) -> bool {
+        !self.is_label[self.transitions[transition].event]
+    }
+
+    /// Whether time has to wait for the transition, whatever other components do.
+    pub(crate) fn is_forced(&self, transition: usize) -> bool {
+        self.is_own(transition) && self.transitions[transition].urgency.is_forced()
+    }
+
+    /// What the declared ranges say of one variable; nothing if it has none.
+    pub(crate) fn range_of(&self, name: &str) -> Predicate {
+        let range = self.region.get(name).copied().unwrap_or(Interval::WHOLE);
+        let lower = variable(name).at_least(range.lower());
+        let upper = variable(name).at_most(range.upper());
+        let ends = [(range.lower(), lower), (range.upper(), upper)];
+        Predicate::all(ends.into_iter().filter(|(end, _)| end.is_finite()).map(|(_, bound)| bound))
+    }
+}
+
+impl Mode {
+    /// The rates that are formulas.
+    pub(crate) fn rates(&self) -> &[(String, Expression)] {
+        match &self.motion {
+            Motion::Rates(rates) => rates,
+            Motion::Function(_) => &[],
+        }
+    }
+
+    pub(crate) fn rests(&self) -> bool {
+        matches!(&self.motion, Motion::Rates(rates) if rates.is_empty())
+    }
+}
+
+impl Transition {
+    /// The assignments, as far as the reset is data.
+    pub(crate) fn assignments(&self) -> &[(String, Expression)] {
+        match &self.effect {
+            Effect::Assignments(assignments) => assignments,
+            Effect::Function(_) => &[],
+        }
+    }
+
+    /// The values of the variables after the jump as formulas over x⁻, if the reset is data.
+    pub(crate) fn substitution(&self) -> Option<Substitution> {
+        match &self.effect {
+            Effect::Assignments(assignments) => {
+                Some(Substitution::new(assignments.iter().cloned()))
+            }
+            Effect::Function(_) => None,
+        }
+    }
+
+    pub(crate) fn refused(&self) -> Predicate {
+        not(self.guard.predicate().clone())
+    }
+}
+
+fn motion<S>(flow: &Flow<S>) -> Motion {
+    match flow.rates() {
+        Some(rates) => Motion::Rates(
+            rates.iter().map(|one| (one.coordinate().to_owned(), one.rate().clone())).collect(),
+        ),
+        None => Motion::Function(flow.name().into_owned()),
+    }
+}
+
+fn effect<S>(reset: &Reset<S>) -> Effect {
+    match reset.assignments() {
+        Some(assignments) => Effect::Assignments(
+            assignments
+                .iter()
+                .map(|one| (one.coordinate().to_owned(), one.value().clone()))
+                .collect(),
+        ),
+        None => Effect::Function(reset.name().into_owned()),
+    }
+}

@@ -1,0 +1,252 @@
+//! What checks have to say, for people and for tests.
+
+use std::fmt;
+
+use crate::decision::{Proof, State};
+
+/// What was found out about a model before anything runs.
+///
+/// It prints as a list, the worst first.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[must_use = "a report that nobody reads helps nobody"]
+pub struct Report {
+    findings: Vec<Finding>,
+    exclusions: Vec<Exclusion>,
+}
+
+/// One thing that is wrong with a model, or could be.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Finding {
+    /// What it is.
+    pub kind: Kind,
+    /// How bad it is.
+    pub severity: Severity,
+    /// Where it is.
+    pub place: Place,
+    /// What is wrong, and what would be right.
+    pub message: String,
+    /// A state in which it shows. For what happens in a jump, it is the state before, x⁻.
+    pub witness: Option<State>,
+}
+
+/// A fault that was looked for and cannot be, with the proof.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Exclusion {
+    /// What cannot be.
+    pub kind: Kind,
+    /// Where.
+    pub place: Place,
+    /// Why.
+    pub proof: Proof,
+}
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Runs that come there cannot go on, or something can never happen that all rests on.
+    Error,
+    /// The model says something that its writer most likely does not mean.
+    Warning,
+    /// Worth knowing: a deliberate freedom of the model, or a limit of what was checked.
+    Note,
+}
+
+/// What a finding is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Kind {
+    /// Two forced transitions of one location and priority can be due together.
+    Overlap,
+    /// Several transitions may be taken, and the model leaves it open which.
+    Choice,
+    /// A transition can be due only where another goes first.
+    Shadowed,
+    /// A transition can never be taken.
+    NeverFires,
+    /// A location can never be entered.
+    Unreachable,
+    /// A state that neither time nor a transition can leave.
+    Blocked,
+    /// An invariant that holds nowhere.
+    EmptyInvariant,
+    /// A jump that lands outside the invariant of its target, where nothing can go on.
+    LandsOutside,
+    /// A jump that gives a coordinate a value outside its declared range.
+    LeavesRange,
+    /// Forced transitions that follow each other for ever while no time passes.
+    TimelessCycle,
+    /// Nothing says in which state a run starts.
+    NoInitialState,
+    /// The initial state is outside the invariant of the initial location.
+    StartsOutside,
+    /// The initial state is outside the declared ranges.
+    StartsOutOfRange,
+    /// A location waits for something to change that rests there and moves elsewhere.
+    NothingMoves,
+    /// A function, which no check can see into.
+    Unchecked,
+    /// A label that only one component knows.
+    LonelyLabel,
+    /// A label that one of its components never takes.
+    RefusedLabel,
+    /// A label whose components never come together where all of them take it.
+    BlockedLabel,
+    /// A component that waits for ever for labels that nobody else takes any more.
+    Deadlock,
+    /// A connected input that no formula reads.
+    UnreadInput,
+    /// An exploration that was given up.
+    Unexplored,
+}
+
+/// Where a finding is, as far as that makes sense for its kind.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub struct Place {
+    /// The component of a composition.
+    pub component: Option<String>,
+    /// The location.
+    pub location: Option<&'static str>,
+    /// The events of the transitions.
+    pub events: Vec<String>,
+    /// The variable.
+    pub variable: Option<String>,
+}
+
+impl Report {
+    /// The findings, the worst first, and otherwise in the order of the model.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
+    }
+
+    /// The findings of one severity.
+    pub fn of(&self, severity: Severity) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(move |finding| finding.severity == severity)
+    }
+
+    /// The faults that were proven not to be there.
+    pub fn exclusions(&self) -> &[Exclusion] {
+        &self.exclusions
+    }
+
+    /// Whether there is no error and no warning. Notes do not count.
+    pub fn is_sound(&self) -> bool {
+        self.findings.iter().all(|finding| finding.severity == Severity::Note)
+    }
+
+    pub(super) fn add(&mut self, finding: Finding) {
+        self.findings.push(finding);
+    }
+
+    pub(super) fn exclude(&mut self, kind: Kind, place: Place, proof: Proof) {
+        self.exclusions.push(Exclusion { kind, place, proof });
+    }
+
+    pub(super) fn merge(&mut self, other: Report) {
+        self.findings.extend(other.findings);
+        self.exclusions.extend(other.exclusions);
+    }
+
+    pub(super) fn sorted(mut self) -> Report {
+        self.findings.sort_by_key(|finding| finding.severity);
+        self
+    }
+}
+
+impl Finding {
+    pub(super) fn new(kind: Kind, severity: Severity, place: Place, message: String) -> Self {
+        Finding { kind, severity, place, message, witness: None }
+    }
+
+    pub(super) fn shown_by(self, witness: State) -> Self {
+        Finding { witness: Some(witness), ..self }
+    }
+}
+
+impl Kind {
+    /// The name in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Kind::Overlap => "overlap",
+            Kind::Choice => "choice",
+            Kind::Shadowed => "shadowed priority",
+            Kind::NeverFires => "never fires",
+            Kind::Unreachable => "unreachable",
+            Kind::Blocked => "blocked",
+            Kind::EmptyInvariant => "empty invariant",
+            Kind::LandsOutside => "lands outside",
+            Kind::LeavesRange => "leaves its range",
+            Kind::TimelessCycle => "timeless cycle",
+            Kind::NoInitialState => "no initial state",
+            Kind::StartsOutside => "starts outside",
+            Kind::StartsOutOfRange => "starts out of range",
+            Kind::NothingMoves => "nothing moves",
+            Kind::Unchecked => "unchecked",
+            Kind::LonelyLabel => "lonely label",
+            Kind::RefusedLabel => "refused label",
+            Kind::BlockedLabel => "blocked label",
+            Kind::Deadlock => "deadlock",
+            Kind::UnreadInput => "unread input",
+            Kind::Unexplored => "unexplored",
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        })
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let component = self.component.iter().map(|name| format!("component `{name}`"));
+        let location = self.location.iter().map(|name| format!("location `{name}`"));
+        let events = self.events.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>();
+        let events = (!events.is_empty()).then(|| format!("on {}", events.join(" and ")));
+        let variable = self.variable.iter().map(|name| format!("variable `{name}`"));
+        let parts: Vec<String> = component.chain(location).chain(events).chain(variable).collect();
+        formatter.write_str(if parts.is_empty() { "the model" } else { "" })?;
+        formatter.write_str(&parts.join(", "))
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Finding { kind, severity, place, message, witness } = self;
+        write!(formatter, "{severity}: {kind}: {place}: {message}")?;
+        if let Some(state) = witness.as_ref().filter(|state| !state.is_empty()) {
+            let values = state.iter().map(|(name, value)| format!("{name} = {value}"));
+            write!(formatter, "\n    for example at {}", values.collect::<Vec<_>>().join(", "))?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for finding in &self.findings {
+            writeln!(formatter, "{finding}")?;
+        }
+        let count = |severity| match (self.of(severity).count(), severity) {
+            (1, severity) => format!("1 {severity}"),
+            (number, severity) => format!("{number} {severity}s"),
+        };
+        let [errors, warnings, notes] =
+            [Severity::Error, Severity::Warning, Severity::Note].map(count);
+        let excluded = self.exclusions.len();
+        write!(formatter, "{errors}, {warnings}, {notes}; {excluded} faults excluded by proof")
+    }
+}

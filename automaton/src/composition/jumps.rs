@@ -1,0 +1,176 @@
+//! Which jumps can be taken from where a composition stands, and what they lead to.
+//!
+//! Running a composition and exploring it both go by this.
+
+use pleach_guards::{EvaluationError, Verdict};
+
+use super::blueprint::{Change, Leaving};
+use super::simulation::{Failure, Move, Taken};
+use super::{Component, Composition};
+
+/// The locations of all components.
+#[derive(Clone, Copy)]
+pub(super) struct Standing<'a> {
+    pub(super) composition: &'a Composition,
+    /// By component.
+    pub(super) locations: &'a [usize],
+}
+
+/// A jump that can be taken: components, each with one of its transitions.
+#[derive(Clone, Debug)]
+pub(super) struct Joint {
+    pub(super) label: Option<usize>,
+    pub(super) parts: Vec<(usize, usize)>,
+}
+
+impl<'a> Standing<'a> {
+    /// The transitions that leave the location of `component`, in their total order.
+    pub(super) fn leaving(self, component: usize) -> &'a [Leaving] {
+        &self.composition.components[component].place(self.locations[component]).leaving
+    }
+
+    /// Whether the guard of a transition of `component` holds in `state`.
+    pub(super) fn allows(
+        self,
+        component: usize,
+        leaving: &Leaving,
+        state: &[f64],
+    ) -> Result<Verdict, Failure> {
+        let part = || format!("the guard `{}`", leaving.guard);
+        let slots = &self.composition.components[component].slots;
+        leaving
+            .guard
+            .evaluate_at(state, slots)
+            .map_err(|fault| self.formula(component, self.locations[component], part(), &fault))
+    }
+
+    /// The jump that `component` takes by itself with one of its transitions, if the guard holds.
+    pub(super) fn alone(
+        self,
+        component: usize,
+        transition: usize,
+        state: &[f64],
+    ) -> Result<Option<Joint>, Failure> {
+        let leaving = &self.leaving(component)[transition];
+        let holds = self.allows(component, leaving, state)?.holds;
+        Ok(holds.then(|| Joint { label: None, parts: vec![(component, transition)] }))
+    }
+
+    /// The jump that all participants of a label take together, if the guards of all hold.
+    pub(super) fn together(self, label: usize, state: &[f64]) -> Result<Option<Joint>, Failure> {
+        let participants = &self.composition.labels[label].participants;
+        let mut parts = Vec::with_capacity(participants.len());
+        for &(component, event) in participants {
+            let mut on_event = self
+                .leaving(component)
+                .iter()
+                .enumerate()
+                .filter(|(_, leaving)| leaving.event == event);
+            let transition = loop {
+                let Some((transition, leaving)) = on_event.next() else { return Ok(None) };
+                if self.allows(component, leaving, state)?.holds {
+                    break transition;
+                }
+            };
+            parts.push((component, transition));
+        }
+        Ok(Some(Joint { label: Some(label), parts }))
+    }
+
+    /// Every jump that can be taken in `state`: by component and in the order of its transitions,
+    /// then by label.
+    pub(super) fn all(self, state: &[f64]) -> Result<Vec<Joint>, Failure> {
+        let mut jumps = Vec::new();
+        for (index, component) in self.composition.components.iter().enumerate() {
+            for (transition, leaving) in self.leaving(index).iter().enumerate() {
+                if component.labels[leaving.event].is_none() {
+                    jumps.extend(self.alone(index, transition, state)?);
+                }
+            }
+        }
+        for label in 0..self.composition.labels.len() {
+            jumps.extend(self.together(label, state)?);
+        }
+        Ok(jumps)
+    }
+
+    /// The transitions that make up a jump.
+    pub(super) fn parts(self, jump: &Joint) -> impl Iterator<Item = &'a Leaving> {
+        jump.parts.iter().map(move |&(component, transition)| &self.leaving(component)[transition])
+    }
+
+    /// What a jump does in `state`. All parts find x⁻ and change only what belongs to them, so that
+    /// their order is no matter.
+    pub(super) fn taken(self, jump: &Joint, state: &[f64]) -> Result<Taken, Failure> {
+        let mut values = state.to_vec();
+        let mut moves = Vec::with_capacity(jump.parts.len());
+        for (&(component, transition), leaving) in jump.parts.iter().zip(self.parts(jump)) {
+            let source = self.locations[component];
+            self.composition.components[component]
+                .change(&leaving.change, state, &mut values)
+                .map_err(|fault| self.formula(component, source, "the reset".into(), &fault))?;
+            moves.push(Move { component, source, target: leaving.target, transition });
+        }
+        let label = match jump.label {
+            Some(label) => self.composition.labels[label].name.clone(),
+            None => self.composition.event_of(&moves[0]),
+        };
+        Ok(Taken { label, moves, values })
+    }
+
+    /// A formula of `component` that has no value.
+    pub(super) fn formula(
+        self,
+        component: usize,
+        location: usize,
+        part: String,
+        fault: &EvaluationError,
+    ) -> Failure {
+        let component = &self.composition.components[component];
+        Failure::Formula {
+            component: component.name.clone(),
+            location: component.place(location).name.to_owned(),
+            part,
+            reason: fault.to_string(),
+        }
+    }
+
+    /// The locations by name, for messages.
+    pub(super) fn names(self) -> String {
+        let components = self.composition.components.iter().zip(self.locations);
+        let places = components.map(|(component, &location)| {
+            format!("`{}` of `{}`", component.place(location).name, component.name)
+        });
+        places.collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl Component {
+    fn change(
+        &self,
+        change: &Change,
+        before: &[f64],
+        after: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        match change {
+            Change::Assignments(assignments) => {
+                for (coordinate, value) in assignments {
+                    let new = value.evaluate_at(before, &self.slots);
+                    if new.is_nan() {
+                        let expression =
+                            format!("the new {}", self.blueprint.coordinates[*coordinate]);
+                        return Err(EvaluationError::NotANumber { expression });
+                    }
+                    after[self.slots[*coordinate]] = new;
+                }
+            }
+            Change::Function(function) => {
+                let mut own = Vec::with_capacity(self.slots.len());
+                self.gather(before, &mut own);
+                function(&mut own)?;
+                self.scatter(&own, after);
+            }
+        }
+        Ok(())
+    }
+}

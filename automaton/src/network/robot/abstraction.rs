@@ -1,0 +1,122 @@
+//! The robot without its continuous side, for exhaustive exploration.
+//!
+//! Between two jumps of the discrete protocol the flow carries a robot somewhere, and time
+//! passes. An explorer does not follow the flow. It chooses what may come of it: where the robot
+//! stands, and for how long it has not got on. Everything else is the robot itself.
+//! [`Robot::account`] says which robots an explorer need not tell apart.
+
+use std::fmt::Write;
+
+use pleach_continuous::Point;
+use pleach_discrete::network::{Bid, Election, NodeId, Phase, Subgroup};
+
+use super::super::beacon::Beacon;
+use super::super::duty::{Duty, Path};
+use super::Robot;
+use super::facts::STATIONARY_WINDOW;
+
+impl Robot {
+    /// In place of the flow: the robot stands at `position`, and has not got on for
+    /// `still_periods` control periods.
+    pub fn stand_at(&mut self, position: Point, still_periods: u32) {
+        (self.position, self.arrival, self.resting_place) = (position, position, position);
+        self.still_periods = still_periods;
+        self.stir();
+    }
+
+    /// Measures anew how far its neighbours are.
+    pub fn look_round(&mut self) {
+        for known in &mut self.neighbours {
+            *known = known.seen_from(self.position, &self.site);
+        }
+    }
+
+    /// In place of a round of messages: thinks over what it knows, without counting a round.
+    pub fn think(&mut self) {
+        self.reflect();
+        self.stir();
+        self.is_quiet = false;
+    }
+
+    /// What the robot would tell its neighbours now.
+    pub fn beacon(&self) -> Beacon {
+        self.public_state()
+    }
+
+    /// The duty that it takes over once the mover that offered it has taken its own.
+    pub const fn taking(&self) -> Option<&Duty> {
+        self.taking.as_ref()
+    }
+
+    /// The path Σ that it was told of last.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// The subgroups that it has computed from the break points.
+    pub fn subgroups(&self) -> &[Subgroup] {
+        &self.subgroups
+    }
+
+    /// The number of the election that it knows to be over, and the winner with its bid.
+    pub fn concluded_election(&self) -> Option<(u32, Option<(Bid, NodeId)>)> {
+        let election = self.election.as_ref()?;
+        let over = election.is_complete(&self.roster);
+        over.then(|| (election.number(), election.best()))
+    }
+
+    /// The number of the election that it takes part in, or took part in last.
+    pub fn election_number(&self) -> Option<u32> {
+        self.election.as_ref().map(Election::number)
+    }
+
+    /// What it has bid itself in the election with this number, if it has taken part in it and
+    /// in none since.
+    pub fn own_bid(&self, number: u32) -> Option<Bid> {
+        self.bid.filter(|_| self.election_number() == Some(number))
+    }
+
+    /// For how many control periods the robot has not got on.
+    pub const fn still_periods(&self) -> u32 {
+        self.still_periods
+    }
+
+    /// The numbers of control periods without progress at which its guards change, ascending.
+    pub fn still_thresholds(&self) -> [u32; 3] {
+        [STATIONARY_WINDOW, super::exchange::LAST_RESORT, self.patience().ceil() as u32]
+    }
+
+    /// Everything, apart from what it hears, that decides what the robot says and does from now
+    /// on: robots with equal accounts that hear the same have the same future, as long as they
+    /// are moved alike. Left out are routes and motion, which the explorer stands for, and how
+    /// long a wait has been over.
+    pub fn account(&self) -> String {
+        let mut account = String::new();
+        let waited = match self.phase {
+            Phase::RecruitElection => self.waited_rounds.min(2 * self.longest_wait() + 1),
+            _ => 0,
+        };
+        // Writing into a string does not fail.
+        let _ = write!(
+            account,
+            "{:?}",
+            (
+                (self.id, self.position, self.still_periods, self.role, self.phase),
+                (self.duty, self.left_post, &self.offer, self.offers_made, self.last_partner),
+                (&self.reply, self.taking, self.parent, &self.lineage, &self.below),
+                (self.can_detach, self.barren_periods, &self.bulletin, &self.tasks, &self.roster),
+                (
+                    &self.eligible,
+                    &self.election,
+                    self.bid,
+                    waited,
+                    &self.route,
+                    self.awaits_release
+                ),
+                (&self.path, &self.agreement, &self.subgroups, self.subgroup, self.team),
+                self.audible().map(|(_, silent)| silent).collect::<Vec<_>>(),
+            )
+        );
+        account
+    }
+}

@@ -1,0 +1,11 @@
+//! Two locations have two names.
+
+use pleach_discrete::{Location, vocabulary};
+
+vocabulary! {
+    enum Heater: Location { Off = "off", On = "off" }
+}
+
+fn main() {
+    let _ = Heater::On.name();
+}

@@ -1,0 +1,154 @@
+//! Compositions with one fault each.
+
+use pleach_automaton::{Automaton, Composition, coordinates, from};
+use pleach_discrete::vocabulary;
+use pleach_guards::always;
+
+use crate::{faults, notes};
+
+vocabulary! {
+    enum Door: Location { Open = "open", Shut = "shut", Locked = "locked" }
+    enum Handle: Event { Close = "close", Lock = "lock", Unlock = "unlock" }
+    enum Guard: Location { Awake = "awake", Asleep = "asleep" }
+    enum Duty: Event { Lock = "lock", Doze = "doze", Unlock = "unlock" }
+    enum Dog: Location { Lying = "lying" }
+    enum Bark: Event { Bark = "bark" }
+}
+coordinates! {
+    struct Wear { angle = "α" }
+    struct Watch { seen = "α", night = "n" }
+}
+
+type DoorParts = pleach_automaton::Builder<Door, Handle, Wear>;
+type GuardParts = pleach_automaton::Builder<Guard, Duty, Watch>;
+
+fn door() -> DoorParts {
+    let Wear { angle } = Wear::coordinates();
+    Automaton::starting_in(Door::Open)
+        .initially(Wear { angle: 1.0 })
+        .range(&angle, 0.0..=1.0)
+        .flow(Door::Open, angle.rate(-1.0))
+        .transition(from(Door::Open).on(Handle::Close).to(Door::Shut).must(angle.at_most(0.0)))
+        .transition(from(Door::Shut).on(Handle::Lock).to(Door::Locked).may(always()))
+        .transition(from(Door::Locked).on(Handle::Unlock).to(Door::Shut).may(always()))
+}
+
+fn guard() -> GuardParts {
+    let Watch { seen, night } = Watch::coordinates();
+    let [awake, asleep] = [Guard::Awake, Guard::Asleep];
+    Automaton::starting_in(awake)
+        .initially(Watch { seen: 0.0, night: 0.0 })
+        .flow(awake, night.rate(1.0))
+        .flow(asleep, night.rate(1.0))
+        .transition(from(awake).on(Duty::Lock).to(awake).must(seen.at_most(0.0)))
+        .transition(from(awake).on(Duty::Unlock).to(awake).may(night.at_least(3.0)))
+        .transition(from(awake).on(Duty::Doze).to(asleep).may(night.at_least(9.0)))
+}
+
+fn house(door: DoorParts, guard: GuardParts) -> pleach_automaton::CompositionBuilder {
+    Composition::builder()
+        .add("door", &door.build().expect("the door fits"))
+        .add("guard", &guard.build().expect("the guard fits"))
+        .connect("door.α", "guard.α")
+}
+
+fn check(house: pleach_automaton::CompositionBuilder, expected: &[&str]) {
+    let report = house.build().expect("the components fit").check();
+    assert_eq!(faults(&report), expected, "{report}");
+    assert_eq!(notes(&report), 0, "{report}");
+}
+
+#[test]
+fn a_door_and_its_guard_are_sound() {
+    check(house(door(), guard()).label("lock").label("unlock"), &[]);
+}
+
+#[test]
+fn labels_that_nobody_else_knows() {
+    let expected = ["warning: lonely label: component `guard`, on `doze`"];
+    check(house(door(), guard()).label("lock").label("unlock").label("doze"), &expected);
+}
+
+#[test]
+fn labels_that_a_component_never_takes() {
+    let Watch { seen, night } = Watch::coordinates();
+    let [awake, asleep] = [Guard::Awake, Guard::Asleep];
+    let forgetful = Automaton::starting_in(awake)
+        .initially(Watch { seen: 0.0, night: 0.0 })
+        .transition(from(awake).on(Duty::Lock).to(awake).must(seen.at_most(0.0)))
+        .transition(from(awake).on(Duty::Doze).to(asleep).may(night.at_least(9.0)));
+    let expected = ["error: refused label: component `guard`, on `unlock`"];
+    check(house(door(), forgetful).label("lock").label("unlock"), &expected);
+}
+
+#[test]
+fn labels_whose_takers_never_meet() {
+    let Wear { angle } = Wear::coordinates();
+    let Watch { seen, night } = Watch::coordinates();
+    let [awake, asleep] = [Guard::Awake, Guard::Asleep];
+    // It opens only together with a guard who has fallen asleep at locking, and says so by `doze`.
+    let door = Automaton::starting_in(Door::Open)
+        .initially(Wear { angle: 1.0 })
+        .flow(Door::Open, angle.rate(-1.0))
+        .transition(from(Door::Open).on(Handle::Lock).to(Door::Shut).may(always()))
+        .transition(from(Door::Open).on(Handle::Unlock).to(Door::Open).may(always()))
+        .transition(from(Door::Shut).on(Handle::Close).to(Door::Locked).may(angle.at_most(0.5)));
+    let guard = Automaton::starting_in(awake)
+        .initially(Watch { seen: 0.0, night: 0.0 })
+        .transition(from(awake).on(Duty::Lock).to(asleep).may(seen.at_most(0.5)))
+        .transition(from(asleep).on(Duty::Unlock).to(awake).may(night.at_least(0.0)));
+    let expected = ["error: blocked label: on `unlock`"];
+    check(house(door, guard).label("lock").label("unlock"), &expected);
+}
+
+#[test]
+fn waiting_for_a_partner_who_has_gone() {
+    let Watch { seen, night } = Watch::coordinates();
+    let [awake, asleep] = [Guard::Awake, Guard::Asleep];
+    let wear = Wear::coordinates();
+    let hurried = Automaton::starting_in(Door::Open)
+        .initially(Wear { angle: 1.0 })
+        .range(&wear.angle, 0.0..=1.0)
+        .flow(Door::Open, wear.angle.rate(-1.0))
+        .transition(from(Door::Open).on(Handle::Close).to(Door::Shut).must(wear.angle.at_most(0.0)))
+        .transition(from(Door::Shut).on(Handle::Lock).to(Door::Locked).at_once(always()))
+        .transition(from(Door::Locked).on(Handle::Unlock).to(Door::Shut).may(always()));
+    let guard = Automaton::starting_in(awake)
+        .initially(Watch { seen: 0.0, night: 0.0 })
+        .flow(awake, night.rate(1.0))
+        .transition(from(awake).on(Duty::Lock).to(awake).may(seen.at_most(0.0)))
+        .transition(from(awake).on(Duty::Unlock).to(awake).may(seen.at_most(0.0)))
+        .transition(from(awake).on(Duty::Doze).to(asleep).may(night.at_least(9.0)));
+    let expected = ["warning: deadlock: component `door`, location `shut`, on `lock`"];
+    check(house(hurried, guard).label("lock").label("unlock"), &expected);
+}
+
+#[test]
+fn inputs_that_nobody_reads() {
+    let dog = Automaton::<Dog, Bark, Watch>::starting_in(Dog::Lying)
+        .initially(Watch { seen: 0.0, night: 0.0 })
+        .transition(
+            from(Dog::Lying)
+                .on(Bark::Bark)
+                .to(Dog::Lying)
+                .may(Watch::coordinates().night.at_least(1.0)),
+        )
+        .build()
+        .expect("the dog fits");
+    let yard = house(door(), guard())
+        .add("dog", &dog)
+        .connect("door.α", "dog.α")
+        .label("lock")
+        .label("unlock");
+    check(yard, &["warning: unread input: component `dog`, variable `α`"]);
+}
+
+#[test]
+fn faults_of_components_name_them() {
+    let Watch { seen, .. } = Watch::coordinates();
+    let [awake, asleep] = [Guard::Awake, Guard::Asleep];
+    // The door's angle is at most 1, which the guard's reading inherits.
+    let alarmed = guard().transition(from(asleep).on(Duty::Lock).to(awake).may(seen.at_least(2.0)));
+    let expected = ["warning: never fires: component `guard`, location `asleep`, on `lock`"];
+    check(house(door(), alarmed).label("lock").label("unlock"), &expected);
+}

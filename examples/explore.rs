@@ -1,0 +1,49 @@
+//! Explores the coordination protocol exhaustively and says what it found.
+//!
+//! ```text
+//! cargo run --release --example explore -- [thorough] [WORDS OF A CAMPAIGN'S NAME]
+//! ```
+//!
+//! Without `thorough` it runs what the tests run too; otherwise the campaigns that take minutes.
+//! A property that fails is told as a story, and the program ends with status 1.
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use pleach::verify::network::exploration::{Campaign, CampaignError, QUICK, THOROUGH};
+
+fn main() -> Result<ExitCode, CampaignError> {
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    let thorough = words.first().is_some_and(|word| word == "thorough");
+    let campaigns = if thorough { THOROUGH } else { QUICK };
+    words.drain(..usize::from(thorough));
+    let wanted = words.join(" ");
+    let mut all_met = true;
+    for campaign in campaigns.iter().filter(|campaign| campaign.name.contains(&wanted)) {
+        all_met &= report(campaign)?;
+    }
+    Ok(if all_met { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Runs one campaign; says whether it is as expected.
+fn report(campaign: &Campaign) -> Result<bool, CampaignError> {
+    let begin = Instant::now();
+    let findings = campaign.run()?;
+    let is_met = campaign.is_met_by(&findings);
+    println!(
+        "{}: {} configurations, {} states (at most {} in one), {} transitions, {:.1} s{}",
+        campaign.name,
+        findings.configurations,
+        findings.states,
+        findings.largest,
+        findings.transitions,
+        begin.elapsed().as_secs_f64(),
+        if is_met { "" } else { " — not as expected" }
+    );
+    println!("    configurations in which a mission may end so: {:?}", findings.outcomes);
+    println!("    properties that fail: {}", findings.failures.len());
+    if let Some(failure) = findings.failures.iter().min_by_key(|failure| failure.story.len()) {
+        println!("{failure}");
+    }
+    Ok(is_met)
+}

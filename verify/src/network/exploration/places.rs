@@ -1,0 +1,212 @@
+//! Graphs of places: where robots may stand, and from where to where a message goes.
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+use pleach_automaton::network::scenario::{
+    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Settings, Task, WorkspaceOutline,
+};
+use pleach_automaton::network::site::Measure;
+use pleach_continuous::Point;
+
+/// The number of a place: first those where the robots start, then those of the access points,
+/// then others.
+pub type Place = usize;
+
+/// Ways are this share of the longest link that may be made, for each step from place to place:
+/// two steps are then too long for a link, and a link of one step is not slack.
+const STEP: f64 = 0.97;
+
+/// l and u of the radio; nothing depends on them.
+const RANGES: LinkRanges = LinkRanges { full_range: 1.0, max_range: 1.2 };
+
+/// A connected graph of places with robots, access points and tasks on it.
+///
+/// Robots hear each other, and a link of the tree may be made, where two places are one or
+/// neighbours. The length of a way is its number of steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Places {
+    robots: usize,
+    access_points: usize,
+    tasks: Vec<Place>,
+    steps: Vec<Vec<usize>>,
+    /// The length of a step.
+    step: f64,
+}
+
+/// Why no exploration starts from a graph.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlacesError {
+    /// An edge or a task names a place that there is not.
+    #[error("there is no place {place}: the places are 0 to {}", .places - 1)]
+    NoSuchPlace {
+        /// The place named.
+        place: Place,
+        /// How many there are.
+        places: usize,
+    },
+    /// A place cannot be reached from the first.
+    #[error("no way leads from place 0 to place {place}")]
+    Disconnected {
+        /// Such a place.
+        place: Place,
+    },
+    /// There is no robot or no access point.
+    #[error("there must be a robot and an access point")]
+    Empty,
+}
+
+impl Places {
+    /// Places 0 … with these neighbours: a robot on each of the first `robots`, an access point
+    /// on each of the next `access_points`, and the tasks where `tasks` says.
+    ///
+    /// # Errors
+    /// When a number is out of range or the graph is not connected.
+    pub fn new(
+        robots: usize,
+        access_points: usize,
+        places: usize,
+        edges: &[(Place, Place)],
+        tasks: &[Place],
+    ) -> Result<Self, PlacesError> {
+        if robots == 0 || access_points == 0 || places < robots + access_points {
+            return Err(PlacesError::Empty);
+        }
+        let named = edges.iter().flat_map(|&(a, b)| [a, b]).chain(tasks.iter().copied());
+        if let Some(place) = named.into_iter().find(|&place| place >= places) {
+            return Err(PlacesError::NoSuchPlace { place, places });
+        }
+        let steps: Vec<Vec<usize>> =
+            (0..places).map(|from| steps_from(from, places, edges)).collect();
+        if let Some(place) = steps[0].iter().position(|&steps| steps == usize::MAX) {
+            return Err(PlacesError::Disconnected { place });
+        }
+        let mut places = Places { robots, access_points, tasks: tasks.to_vec(), steps, step: 0.0 };
+        places.step = STEP * Settings::resolve(&places.scenario()).longest_new_link();
+        Ok(places)
+    }
+
+    /// Robots and access points on a graph of their places, with a branch of places for each
+    /// task: from the place named, so many steps to the task.
+    ///
+    /// # Errors
+    /// When a number is out of range or the graph is not connected.
+    pub fn with_branches(
+        robots: usize,
+        access_points: usize,
+        graph: &[(Place, Place)],
+        branches: &[(Place, usize)],
+    ) -> Result<Self, PlacesError> {
+        let (mut edges, mut tasks, mut places) =
+            (graph.to_vec(), Vec::new(), robots + access_points);
+        for &(from, steps) in branches {
+            let mut last = from;
+            for place in places..places + steps {
+                edges.push((last, place));
+                last = place;
+            }
+            places += steps;
+            tasks.push(last);
+        }
+        Places::new(robots, access_points, places, &edges, &tasks)
+    }
+
+    /// The number of robots.
+    pub const fn robots(&self) -> usize {
+        self.robots
+    }
+
+    /// The number of places.
+    pub fn count(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// The number of robots and access points.
+    pub const fn nodes(&self) -> usize {
+        self.robots + self.access_points
+    }
+
+    /// The number of steps of the shortest way.
+    pub fn steps(&self, from: Place, to: Place) -> usize {
+        self.steps[from][to]
+    }
+
+    /// Whether a link may lead from one place to the other.
+    pub fn are_linked(&self, from: Place, to: Place) -> bool {
+        self.steps(from, to) <= 1
+    }
+
+    /// The places one step nearer to `to`, ascending.
+    pub fn next_steps(&self, from: Place, to: Place) -> impl Iterator<Item = Place> + '_ {
+        let nearer = move |&place: &Place| {
+            self.steps(from, place) == 1 && self.steps(place, to) + 1 == self.steps(from, to)
+        };
+        (0..self.steps.len()).filter(nearer)
+    }
+
+    /// Where a place lies. The places are so close together that all robots would be in range of
+    /// each other: what counts is the graph.
+    pub fn position(&self, place: Place) -> Point {
+        let angle = TAU * place as f64 / self.steps.len() as f64;
+        let round = |coordinate: f64| (coordinate * 1e3).round() / 1e3;
+        Point::new(round(0.45 * angle.cos()), round(0.45 * angle.sin()))
+    }
+
+    /// The place nearest to a position.
+    pub fn place_at(&self, position: Point) -> Place {
+        let distance = |&place: &Place| (self.position(place) - position).norm();
+        (0..self.steps.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or_default()
+    }
+
+    /// Where the tasks are.
+    pub fn task_positions(&self) -> Vec<Point> {
+        self.tasks.iter().map(|&place| self.position(place)).collect()
+    }
+
+    /// The mission with robots, access points and tasks at their places, in an empty room.
+    pub fn scenario(&self) -> Scenario {
+        let at = |place: Place| self.position(place).into();
+        let side = 2.0;
+        Scenario {
+            name: "places".into(),
+            description: None,
+            workspace: WorkspaceOutline {
+                boundary: vec![[-side, -side], [side, -side], [side, side], [-side, side]],
+                holes: Vec::new(),
+            },
+            link: RANGES,
+            control: Control::default(),
+            access_point: (self.robots..self.nodes())
+                .map(|place| AccessPoint { position: at(place) })
+                .collect(),
+            robot: (0..self.robots)
+                .map(|place| RobotStart { position: at(place), rate: 0.0 })
+                .collect(),
+            task: self.tasks.iter().map(|&place| Task { position: at(place) }).collect(),
+        }
+    }
+}
+
+impl Measure for Places {
+    fn distance(&self, from: Point, to: Point) -> f64 {
+        self.step * self.steps(self.place_at(from), self.place_at(to)) as f64
+    }
+}
+
+/// The numbers of steps from `from` to every place; `usize::MAX` where no way leads.
+fn steps_from(from: Place, places: usize, edges: &[(Place, Place)]) -> Vec<usize> {
+    let mut steps = vec![usize::MAX; places];
+    steps[from] = 0;
+    let mut ahead = VecDeque::from([from]);
+    while let Some(place) = ahead.pop_front() {
+        for &(a, b) in edges {
+            for (here, there) in [(a, b), (b, a)] {
+                if here == place && steps[there] == usize::MAX {
+                    steps[there] = steps[place] + 1;
+                    ahead.push_back(there);
+                }
+            }
+        }
+    }
+    steps
+}
