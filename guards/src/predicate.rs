@@ -388,6 +388,25 @@ mod tests {
     }
 
     #[test]
+    fn variables_are_listed_once_in_order() {
+        let [a, b, c] = ["a", "b", "c"].map(variable);
+        let predicate = c.at_most(&a).and(not(b.at_most(&a).or(c.less_than(1.0))));
+        assert!(predicate.variables().into_iter().eq(["a", "b", "c"]));
+    }
+
+    #[test]
+    fn verdict_and_margin_are_parts_of_what_is_evaluated() {
+        let low = variable("x").less_than(0.5);
+        for x in [-2.0, 0.5, 3.0] {
+            assert_eq!(low.margin(&[("x", x)]), Ok(0.5 - x));
+            assert_eq!(low.holds(&[("x", x)]), Ok(x < 0.5));
+        }
+        assert!(Verdict { margin: 0.0, holds: false }.is_consistent());
+        assert!(!Verdict { margin: 0.25, holds: false }.is_consistent());
+        assert!(!Verdict { margin: -0.25, holds: true }.is_consistent());
+    }
+
+    #[test]
     fn infinity_equals_itself() {
         assert_eq!(verdict(&variable("x").at_most(f64::INFINITY), f64::INFINITY), (0.0, true));
     }

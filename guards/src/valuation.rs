@@ -117,6 +117,7 @@ mod tests {
             assert_eq!(value(pairs.as_slice(), name), expected);
             assert_eq!(value(&named, name), expected);
             assert_eq!(named.value(name), expected);
+            assert_eq!(value((), name), None);
         }
     }
 

@@ -165,7 +165,8 @@ fn boxes_are_seen_through_names() {
     }
 }
 
-/// In the unit box, x ≤ 1 always holds, x > 1 never, and x ≤ y may hold.
+/// In the unit box, x ≤ 1 always holds, x > 1 and x ≤ −1 never, x ≤ 0 in a corner and x ≤ y in a
+/// half.
 #[test]
 fn the_truth_of_parts_decides_where_it_can() {
     let unit = Interval::new(0.0, 1.0).expect("these ends are in order");
@@ -173,6 +174,8 @@ fn the_truth_of_parts_decides_where_it_can() {
     let parts = [
         (variable("x").at_most(1.0), Truth::Always),
         (variable("x").more_than(1.0), Truth::Never),
+        (variable("x").at_most(-1.0), Truth::Never),
+        (variable("x").at_most(0.0), Truth::Undecided),
         (variable("x").at_most(variable("y")), Truth::Undecided),
     ];
     for (one, first) in &parts {

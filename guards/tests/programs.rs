@@ -25,6 +25,7 @@ proptest! {
         values in values(),
     ) {
         let compiled = predicate.compile(&NAMES).expect("these are all names that occur");
+        prop_assert_eq!(compiled.to_string(), predicate.to_string());
         let expected = predicate.evaluate(&state(values));
         let [delta, x, y] = values;
         let compact = compiled.evaluate(&values);
@@ -84,6 +85,7 @@ fn functions_see_the_slice_under_the_listed_names() {
         Ok(2.0 - (variable("x") - variable("y")).evaluate(state)?)
     });
     let guard = near.and(variable("x").at_least(0.0)).compile(&["y", "x"]).expect("x is listed");
+    assert!(guard.variables().eq(["y", "x"]));
     let verdict = |margin, holds| Ok(Verdict { margin, holds });
     assert_eq!(guard.evaluate(&[1.0, 2.5]), verdict(0.5, true));
     assert_eq!(guard.evaluate_at(&[1.0, 2.0, 4.0], &[0, 2]), verdict(-1.0, false));
