@@ -142,12 +142,19 @@ fn skew(trajectory: &Trajectory, nodes: usize) -> f64 {
 
 /// Twenty rounds of five nodes.
 pub fn exhibit() -> Shown {
-    let trajectory = network(RATES)?.run(HORIZON)?;
+    let network = network(RATES)?;
+    let trajectory = network.run(HORIZON)?;
     let jumps = trajectory.jumps().len();
     Ok(Exhibit::new("clock_synchronisation", include_str!("clock_synchronisation.rs"))
-        .automaton("node 1", &node(Action::Tick1, RATES[0])?)
+        .component("node 1", &node(Action::Tick1, RATES[0])?)
+        .checked(&network.check())
         .compare("jumps", jumps as f64, f64::from(10 * ROUNDS), 0.0)
-        .compare_all("first round, in s", instants(&trajectory).take(10), closed_form().take(10), 1e-12)
+        .compare_all(
+            "first round, in s",
+            instants(&trajectory).take(10),
+            closed_form().take(10),
+            1e-12,
+        )
         .compare("worst skew, in s", skew(&trajectory, 5), WORST_SKEW, 1e-12)
         .run("Twenty rounds", trajectory))
 }

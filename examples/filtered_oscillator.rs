@@ -151,13 +151,15 @@ const ORDER: usize = 4;
 /// The oscillator with four filters over the published horizon, and without them for long.
 pub fn exhibit() -> Shown {
     let oscillator = oscillator()?;
-    let trajectory = filtered_oscillator(ORDER)?.run(HORIZON)?;
+    let chain = filtered_oscillator(ORDER)?;
+    let trajectory = chain.run(HORIZON)?;
     let filtered = trajectory.value("filter 4.z", HORIZON).unwrap_or(f64::NAN);
     let long = oscillator.run(60.0)?;
     let [.., before, _, _, _, last] = long.jumps() else { return Err("it stands still".into()) };
     Ok(Exhibit::new("filtered_oscillator", include_str!("filtered_oscillator.rs"))
         .automaton("oscillator", &oscillator)
-        .automaton("filter", &filter()?)
+        .component("filter", &filter()?)
+        .checked(&chain.check())
         .compare_all("switches, in s", instants(&trajectory).take(4), switches().take(4), 1e-12)
         .compare("output at 4 s", filtered, output(ORDER, HORIZON), 1e-9)
         .compare("period in the end, in s", last.at.t - before.at.t, period(), 1e-9)

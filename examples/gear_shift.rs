@@ -56,6 +56,7 @@ const GEARS: [(Gear, Shift, f64); 5] = [
     (Fifth, Into5, 10.0),
 ];
 const LIMIT: f64 = 600.0; // rad/s
+const FASTEST: f64 = 58.0; // m/s, above what the drag allows
 const TORQUE: f64 = 190.0; // T_m in Nm, at PEAK
 const PEAK: f64 = 420.0; // ω_m in rad/s
 const ROLLOFF: f64 = 0.4; // β
@@ -71,15 +72,19 @@ fn acceleration(speed: &Expression, ratio: f64) -> Expression {
 /// A car at full throttle.
 pub fn gear_shift() -> Result<Automaton<Gear, Shift, Car>, BuildError> {
     let Car { speed } = Car::coordinates();
-    let mut car =
-        Automaton::starting_in(Selecting).initially(Car { speed: 0.0 }).range(&speed, 0.0..=58.0);
+    let mut car = Automaton::starting_in(Selecting)
+        .initially(Car { speed: 0.0 })
+        .range(&speed, 0.0..=FASTEST);
     for (order, (gear, into, ratio)) in (0..).zip(GEARS) {
         let engine = ratio * &speed;
         let select = from(Selecting).on(into).to(gear).at_once(engine.less_than(LIMIT));
         car = car
             .flow(gear, speed.rate(acceleration(&speed, ratio)))
-            .transition(select.priority(order))
-            .transition(from(gear).on(Limit).to(Selecting).must(engine.at_least(LIMIT)));
+            .transition(select.priority(order));
+        if ratio * FASTEST >= LIMIT {
+            let limit = from(gear).on(Limit).to(Selecting).must(engine.at_least(LIMIT));
+            car = car.transition(limit);
+        }
     }
     car.build()
 }

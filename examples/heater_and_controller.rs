@@ -118,8 +118,8 @@ pub fn exhibit() -> Shown {
     let (composition, monolith) = (heater_and_controller()?, monolith()?);
     let (composed, alone) = (composition.run(HORIZON)?, monolith.run(HORIZON)?);
     Ok(Exhibit::new("heater_and_controller", include_str!("heater_and_controller.rs"))
-        .automaton("heater", &heater()?)
-        .automaton("controller", &controller()?)
+        .component("heater", &heater()?)
+        .component("controller", &controller()?)
         .composition("both", &composition)
         .automaton("monolith", &monolith)
         .compare_jumps(&composed, switchings(), 1e-12)

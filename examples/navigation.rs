@@ -86,9 +86,11 @@ fn navigation(map: &str, start: Body) -> Result<Automaton<Cell, Side, Body>, Bui
             (Side::South, cell_at(west, south - 1.0), y.at_most(south) & vy.less_than(0.0)),
             (Side::North, cell_at(west, south + 1.0), y.at_least(south + 1.0) & vy.more_than(0.0)),
         ];
-        for (side, neighbour, crossed) in sides {
+        // At a corner two sides are crossed together: the first goes first.
+        for (order, (side, neighbour, crossed)) in (0..).zip(sides) {
             if neighbour != cell {
-                grid = grid.transition(from(cell).on(side).to(neighbour).must(crossed));
+                let crossing = from(cell).on(side).to(neighbour).must(crossed);
+                grid = grid.transition(crossing.priority(order));
             }
         }
     }

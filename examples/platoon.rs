@@ -158,7 +158,8 @@ fn states(leader: f64) -> Vec<Vec<f64>> {
 
 /// The platoon behind a leader that brakes hard.
 pub fn exhibit() -> Shown {
-    let trajectory = platoon(BRAKING)?.run(HORIZON)?;
+    let platoon = platoon(BRAKING)?;
+    let trajectory = platoon.run(HORIZON)?;
     let switches = [5.0, 10.0, 15.0, 20.0];
     let gaps = switches.map(|time| {
         let excess = |name| trajectory.value(name, time).unwrap_or(f64::NAN);
@@ -166,8 +167,9 @@ pub fn exhibit() -> Shown {
     });
     let answers = states(BRAKING).into_iter().map(|x| [x[0], x[3], x[6]]);
     Ok(Exhibit::new("platoon", include_str!("platoon.rs"))
-        .automaton("radio", &radio()?)
-        .automaton("vehicles", &vehicles(BRAKING)?)
+        .component("radio", &radio()?)
+        .component("vehicles", &vehicles(BRAKING)?)
+        .checked(&platoon.check())
         .compare_all("switches, in s", instants(&trajectory), switches, 1e-12)
         .compare_all("gaps at the switches, in m", gaps.concat(), answers.flatten(), 1e-9)
         .run("A leader that brakes with 9 m/s²", trajectory))

@@ -142,9 +142,10 @@ pub fn exhibit() -> Shown {
     let inconsistent = five.states().filter(|state| !is_consistent(state)).count() as f64;
     let agreed = three.find(|state| tally(state) == [0, 0, 3, 0]).ok_or("nobody commits")?;
     Ok(Exhibit::new("two_phase_commit", include_str!("two_phase_commit.rs"))
-        .automaton("coordinator", &coordinator()?)
-        .automaton("ballot", &ballot()?)
-        .automaton("participant", &participant()?)
+        .component("coordinator", &coordinator()?)
+        .component("ballot", &ballot()?)
+        .component("participant", &participant()?)
+        .checked(&two_phase_commit(3)?.check())
         .compare_all("states with three and with five participants", found, PUBLISHED, 0.0)
         .compare("inconsistent ones among those with five", inconsistent, 0.0, 0.0)
         .story("One of the shortest ways to a commit of three", agreed.path()))

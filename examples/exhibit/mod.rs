@@ -12,6 +12,7 @@ mod show;
 
 use std::error::Error;
 
+use pleach::automaton::check::{Report, Severity};
 use pleach::automaton::{Automaton, Composition, Coordinates, Reason, Trajectory, diagram};
 use pleach::discrete::{Event, Location};
 
@@ -29,6 +30,8 @@ pub struct Exhibit {
     name: &'static str,
     /// The text of the example.
     source: &'static str,
+    /// What the checks before the run have found wrong.
+    faults: Vec<String>,
     drawings: Vec<Drawing>,
     runs: Vec<Run>,
     comparisons: Vec<Comparison>,
@@ -59,11 +62,22 @@ struct Comparison {
 impl Exhibit {
     /// Begins the exhibit of the example called `name`, whose file is `source`.
     pub fn new(name: &'static str, source: &'static str) -> Self {
-        Exhibit { name, source, drawings: Vec::new(), runs: Vec::new(), comparisons: Vec::new() }
+        let (drawings, runs, comparisons) = (Vec::new(), Vec::new(), Vec::new());
+        Exhibit { name, source, faults: Vec::new(), drawings, runs, comparisons }
     }
 
-    /// Shows an automaton: as a diagram, as tables, and by its formal definition.
+    /// Shows an automaton that runs by itself, and keeps what its check has found.
     pub fn automaton<L: Location, E: Event, S: Coordinates>(
+        self,
+        title: &'static str,
+        automaton: &Automaton<L, E, S>,
+    ) -> Self {
+        self.component(title, automaton).checked(&automaton.check())
+    }
+
+    /// Shows an automaton that is a part of a composition: as a diagram, as tables, and by its
+    /// formal definition.
+    pub fn component<L: Location, E: Event, S: Coordinates>(
         mut self,
         title: &'static str,
         automaton: &Automaton<L, E, S>,
@@ -77,11 +91,19 @@ impl Exhibit {
         self
     }
 
+    /// Keeps what a check has found wrong; in an exhibit nothing should be.
+    pub fn checked(mut self, report: &Report) -> Self {
+        let findings = report.findings().iter();
+        let wrong = findings.filter(|finding| finding.severity != Severity::Note);
+        self.faults.extend(wrong.map(|finding| finding.message.clone()));
+        self
+    }
+
     /// Shows a composition: what joins its components.
     pub fn composition(mut self, title: &'static str, composition: &Composition) -> Self {
         let diagram = diagram::composition_svg(composition);
         self.drawings.push(Drawing { title, diagram, legend: String::new() });
-        self
+        self.checked(&composition.check())
     }
 
     /// Shows a run: its plot, its jumps and its ending.
@@ -139,13 +161,14 @@ impl Exhibit {
         self.compare_all("jumps in s", found, answers, tolerance)
     }
 
-    /// What differs by more than its tolerance, as sentences.
+    /// What the checks have found, and what differs by more than its tolerance, as sentences.
     pub fn disagreements(&self) -> Vec<String> {
         let wrong = |one: &&Comparison| {
             let agrees = one.error().is_some_and(|error| error <= one.tolerance);
             !agrees
         };
-        self.comparisons.iter().filter(wrong).map(Comparison::to_sentence).collect()
+        let differences = self.comparisons.iter().filter(wrong).map(Comparison::to_sentence);
+        self.faults.iter().cloned().chain(differences).collect()
     }
 
     /// The diagrams: the name of a file, and an SVG document.

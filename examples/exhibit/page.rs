@@ -21,6 +21,10 @@ impl Exhibit {
             let (title, picture) = (drawing.title, self.diagram_of(drawing));
             page += &format!("\n![Diagram: {title}](pictures/{picture})\n\n{}", drawing.legend);
         }
+        page += &match &*self.faults {
+            [] => "\nThe checks before a run find nothing wrong.\n".to_owned(),
+            faults => format!("\nThe checks before a run find: {}\n", faults.join("; ")),
+        };
         page += "\n## What happens\n";
         for run in &self.runs {
             let (title, picture, lines) = (run.title, self.plot_of(run), run.story.join("\n"));

@@ -55,7 +55,7 @@ use super::flight::Field;
 use super::jumps::{Joint, Standing};
 use super::simulation::Failure;
 
-/// All states that a composition can reach without time; see the [module](self).
+/// All states that a composition can reach without time; see the [module](crate::composition).
 #[derive(Clone)]
 pub struct Exploration {
     composition: Composition,
