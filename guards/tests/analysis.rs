@@ -320,6 +320,7 @@ fn what_is_not_affine_has_no_linear_form() {
     let form = (x.power(1.0) * 3.0 - &y - &y).linear_form().expect("it is affine");
     let found = ["x", "y", "z"].map(|name| form.coefficient(name).copied());
     assert_eq!(found, [Some(3.0), Some(-2.0), None]);
+    assert!(form.coefficients().eq([("x", &3.0), ("y", &-2.0)]));
 }
 
 /// A box and some states in it, its corners among them.

@@ -26,6 +26,8 @@ fn parentheses_stand_only_where_structure_needs_them() {
         (-(&a * &b), "−a · b"),
         (-&a * &b, "(−a) · b"),
         (&a + (-&b), "a + (−b)"),
+        (-2.0 * &a / &b, "−2 · a ÷ b"),
+        (&a + (-2.0 * &b), "a + (−2 · b)"),
         ((&a + &b).abs().power(2.0), "|a + b|²"),
         (a.power(-12.0), "a⁻¹²"),
         (a.power(1.5), "a^1.5"),

@@ -99,6 +99,8 @@ fn operators_bind_as_in_mathematics() {
     let inner = Predicate::All([always(), c].into());
     assert_eq!(read, Ok(Predicate::All([a.or(b), inner].into())));
     assert_eq!("never".parse(), Ok(never()));
+    assert_eq!("(never or always)".parse(), Ok(Predicate::Any([never(), always()].into())));
+    assert_eq!("((not always))".parse(), Ok(not(always())));
 }
 
 #[test]
