@@ -51,7 +51,7 @@ use pleach_guards::{EvaluationError, Predicate, Valuation};
 use thiserror::Error;
 
 use super::Composition;
-use super::flight::Field;
+use super::field::Field;
 use super::jumps::{Joint, Standing};
 use super::simulation::Failure;
 

@@ -65,11 +65,13 @@
 pub(crate) mod blueprint;
 mod builder;
 mod exploration;
+mod field;
 mod flight;
 mod jumps;
 mod models;
 mod picture;
 mod replay;
+mod settings;
 mod simulation;
 
 use std::sync::Arc;
@@ -77,7 +79,8 @@ use std::sync::Arc;
 pub use builder::{CompositionBuilder, CompositionError};
 pub use exploration::{Exploration, ExplorationError, Reached};
 pub use replay::ReplayError;
-pub use simulation::{Failure, Move, Policy, Settings, Simulation, SimulationError, Taken};
+pub use settings::{Policy, Settings};
+pub use simulation::{Failure, Move, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;
 

@@ -1,0 +1,93 @@
+//! How a composition is run.
+
+use pleach_continuous::flow::{EventSearch, Tolerances};
+use serde::{Deserialize, Serialize};
+
+use super::simulation::SimulationError;
+
+/// How a composition is run. The default is fit for most models.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// When transitions are taken that only may be.
+    pub policy: Policy,
+    /// The error of an integration step, relative to the state; 1e-9 by default.
+    pub relative_tolerance: f64,
+    /// The error of an integration step, in the unit of the state; 1e-9 by default.
+    pub absolute_tolerance: f64,
+    /// The longest integration step, in seconds; infinite by default, which JSON writes as null.
+    #[serde(with = "unbounded")]
+    pub largest_step: f64,
+    /// How exactly events are located, in seconds; 0, the default, is as exactly as numbers allow.
+    pub resolution: f64,
+    /// The most rounds of jumps at one instant, at least 1; 1,000 by default.
+    pub round_limit: u32,
+}
+
+/// When a transition is taken that only may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Policy {
+    /// As late as possible: where no time can pass, because an invariant ends.
+    Late,
+    /// As soon as its guard holds.
+    Early,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            policy: Policy::Late,
+            relative_tolerance: 1e-9,
+            absolute_tolerance: 1e-9,
+            largest_step: f64::INFINITY,
+            resolution: 0.0,
+            round_limit: 1000,
+        }
+    }
+}
+
+impl Settings {
+    pub(super) fn tolerances(&self) -> Tolerances {
+        self.try_tolerances().unwrap_or_default()
+    }
+
+    pub(super) fn search(&self) -> EventSearch {
+        let default = EventSearch::default();
+        EventSearch::new(self.resolution, default.looks()).unwrap_or(default)
+    }
+
+    fn try_tolerances(&self) -> Result<Tolerances, String> {
+        let tolerances = Tolerances::new(self.relative_tolerance, self.absolute_tolerance)
+            .map_err(|fault| fault.to_string())?;
+        if self.largest_step == f64::INFINITY {
+            return Ok(tolerances);
+        }
+        tolerances.with_largest_step(self.largest_step).map_err(|fault| fault.to_string())
+    }
+
+    /// Whether the settings make sense.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulationError::Settings`] if a tolerance or the resolution does not.
+    pub(super) fn check(&self) -> Result<(), SimulationError> {
+        self.try_tolerances().map_err(SimulationError::Settings)?;
+        let looks = EventSearch::default().looks();
+        EventSearch::new(self.resolution, looks)
+            .map_err(|fault| SimulationError::Settings(fault.to_string()))?;
+        Ok(())
+    }
+}
+
+/// JSON has no infinity.
+mod unbounded {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        value.is_finite().then_some(*value).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
+    }
+}
