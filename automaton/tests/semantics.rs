@@ -214,3 +214,28 @@ fn a_run_is_repeated_to_the_bit() {
     let machine = built(clock().transition(from(Here).on(Go).to(There).must(after(1.0 / 3.0))));
     assert_eq!(run(&machine, 2.0), run(&machine, 2.0));
 }
+
+#[test]
+fn inputs_that_read_one_coordinate_add_up() {
+    let source = built(clock());
+    coordinates! {
+        struct Sum { total = "s", left = "a", right = "b" }
+    }
+    let Sum { total, left, right } = Sum::coordinates();
+    let reader: Automaton<Place, Cue, Sum> = Automaton::starting_in(Here)
+        .initially(Sum { total: 0.0, left: 0.0, right: 0.0 })
+        .flow(Here, total.rate(&left + &right))
+        .build()
+        .expect("the reader is sound");
+    let composition = Composition::builder()
+        .add("source", &source)
+        .add("reader", &reader)
+        .connect("source.τ", "reader.a")
+        .connect("source.τ", "reader.b")
+        .build()
+        .expect("the parts fit");
+    let trajectory = composition.run(2.0).expect("it can be run");
+    // ṡ = 2t, so s = t².
+    let total = trajectory.value("reader.s", 2.0);
+    assert!(total.is_some_and(|total| (total - 4.0).abs() < 1e-12), "{total:?}");
+}

@@ -87,7 +87,8 @@ impl<'a> Field<'a> {
         }
         let mut matrix = DMatrix::zeros(size, size);
         for (row, column, coefficient) in entries {
-            matrix[(row, column)] = coefficient;
+            // Several inputs may read one coordinate.
+            matrix[(row, column)] += coefficient;
         }
         Some((matrix, offset))
     }
