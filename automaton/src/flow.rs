@@ -163,33 +163,38 @@ impl<S> fmt::Display for Rate<S> {
     }
 }
 
-/// A letter with a dot above, as one character where there is one: not every font combines them.
+/// Letters with a dot above that are characters of their own, each beside the letter without: not
+/// every font combines them.
+pub(crate) const DOTTED: [(char, char); 21] = [
+    ('a', 'ȧ'),
+    ('b', 'ḃ'),
+    ('c', 'ċ'),
+    ('d', 'ḋ'),
+    ('e', 'ė'),
+    ('f', 'ḟ'),
+    ('g', 'ġ'),
+    ('h', 'ḣ'),
+    ('m', 'ṁ'),
+    ('n', 'ṅ'),
+    ('o', 'ȯ'),
+    ('p', 'ṗ'),
+    ('r', 'ṙ'),
+    ('s', 'ṡ'),
+    ('t', 'ṫ'),
+    ('w', 'ẇ'),
+    ('x', 'ẋ'),
+    ('y', 'ẏ'),
+    ('z', 'ż'),
+    ('T', 'Ṫ'),
+    ('X', 'Ẋ'),
+];
+
+/// A letter with a dot above, as one character where there is one.
 fn dotted(letter: char, dot: char) -> String {
-    let composed = match letter {
-        'a' => 'ȧ',
-        'b' => 'ḃ',
-        'c' => 'ċ',
-        'd' => 'ḋ',
-        'e' => 'ė',
-        'f' => 'ḟ',
-        'g' => 'ġ',
-        'h' => 'ḣ',
-        'm' => 'ṁ',
-        'n' => 'ṅ',
-        'o' => 'ȯ',
-        'p' => 'ṗ',
-        'r' => 'ṙ',
-        's' => 'ṡ',
-        't' => 'ṫ',
-        'w' => 'ẇ',
-        'x' => 'ẋ',
-        'y' => 'ẏ',
-        'z' => 'ż',
-        'T' => 'Ṫ',
-        'X' => 'Ẋ',
-        _ => return format!("{letter}{dot}"),
-    };
-    composed.to_string()
+    match DOTTED.iter().find(|(plain, _)| *plain == letter) {
+        Some((_, composed)) => composed.to_string(),
+        None => format!("{letter}{dot}"),
+    }
 }
 
 impl<S> fmt::Debug for Rate<S> {

@@ -146,8 +146,7 @@ impl Simulation<'_> {
             beyond
         } else {
             // At the very start of a flow there is nothing before the end of an invariant.
-            let search = self.settings.resolution.max(2.0 * f64::EPSILON * onset.time);
-            if onset.before <= search {
+            if onset.before <= self.settings.search().tolerance(0.0, onset.time) {
                 return Ok(field.no_time());
             }
             field.sample(curve, onset.before)

@@ -8,6 +8,7 @@ use pleach_guards::{constant, variable};
 
 use crate::automaton::{Automaton, Transition};
 use crate::coordinates::Coordinates;
+use crate::flow::DOTTED;
 use crate::flow::Flow;
 
 /// H = (Q, X, Init, f, Inv, E, G, R) with the sets and maps of this automaton (Lygeros et al. 2003,
@@ -200,18 +201,7 @@ fn text(words: &str) -> String {
 
 /// The letter without the dot above it, if it has one.
 fn undotted(letter: char) -> Option<char> {
-    let pairs = [
-        ('ẋ', 'x'),
-        ('ẏ', 'y'),
-        ('ż', 'z'),
-        ('ḣ', 'h'),
-        ('Ṫ', 'T'),
-        ('ṫ', 't'),
-        ('ṗ', 'p'),
-        ('ṡ', 's'),
-        ('Ẋ', 'X'),
-    ];
-    pairs.iter().find(|(dotted, _)| *dotted == letter).map(|(_, plain)| *plain)
+    DOTTED.iter().find(|(_, dotted)| *dotted == letter).map(|(plain, _)| *plain)
 }
 
 /// Greek letters as mathematics.

@@ -55,7 +55,7 @@ impl EventSearch {
     }
 
     /// The width, in seconds, at which a bracket between these instants is narrow enough.
-    fn tolerance(&self, from: f64, to: f64) -> f64 {
+    pub fn tolerance(&self, from: f64, to: f64) -> f64 {
         self.resolution.max(SPACINGS * f64::EPSILON * from.abs().max(to.abs()))
     }
 }
