@@ -31,7 +31,7 @@ fn everything_holds_in_every_state_of_the_thorough_campaigns() {
 /// Two robots on an access point, a task beside one of them, and single messages in any order.
 #[test]
 fn everything_holds_in_every_order_of_single_messages() {
-    let places = Places::with_branches(2, &[(0, 2), (1, 2)], &[(1, 1)]).unwrap();
+    let places = Places::with_branches(2, 1, &[(0, 2), (1, 2)], &[(1, 1)]).unwrap();
     let medium = Medium::MessagesInAnyOrder;
     let mut protocol = Protocol::new(Configuration { places, medium, contacts: 0 }).unwrap();
     let exploration = explore(&mut protocol, ALWAYS, 1_000_000).unwrap();

@@ -17,6 +17,20 @@ pub fn are_conserved<Duty: PartialEq>(before: &[Duty], after: &[Duty]) -> bool {
         && before.iter().all(|duty| count(before, duty) == count(after, duty))
 }
 
+/// Whether at each of the `places` that must not be left, those of junctions and serviced tasks,
+/// a robot stands.
+///
+/// ```
+/// use pleach_verify::network::duty::are_occupied;
+///
+/// let (junction, task) = (3, 5);
+/// assert!(are_occupied(&[junction, task], &[5, 3, 4]));
+/// assert!(!are_occupied(&[junction, task], &[4, 5])); // the junction has been left
+/// ```
+pub fn are_occupied<Place: PartialEq>(places: &[Place], robots: &[Place]) -> bool {
+    places.iter().all(|place| robots.contains(place))
+}
+
 /// Which roles may follow one another, over one or several transitions.
 pub type RoleRelation = [[bool; Role::ALL.len()]; Role::ALL.len()];
 

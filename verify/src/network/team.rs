@@ -50,6 +50,27 @@ pub fn is_one_team(active_team: &[usize], primary_team: &[usize], path: &[usize]
         || is_run_of_path(active_team, path)
 }
 
+/// Whether one team is active: everyone who moves is in it, be it the primary team or a subgroup
+/// of Σ, and nobody of the other teams moves. Where nobody moves, no two teams do.
+///
+/// ```
+/// use pleach_verify::network::team::exactly_one_is_active;
+///
+/// let (primary_team, subgroups): (_, [&[usize]; 2]) = ([7, 8], [&[1, 2], &[3]]);
+/// assert!(exactly_one_is_active(&[2], &primary_team, &subgroups));
+/// assert!(!exactly_one_is_active(&[2, 3], &primary_team, &subgroups)); // two subgroups
+/// assert!(!exactly_one_is_active(&[3, 8], &primary_team, &subgroups)); // both kinds of team
+/// assert!(!exactly_one_is_active(&[5], &primary_team, &subgroups)); // in no team
+/// ```
+pub fn exactly_one_is_active(
+    moving: &[usize],
+    primary_team: &[usize],
+    subgroups: &[&[usize]],
+) -> bool {
+    let moves_alone = |team: &[usize]| moving.iter().all(|robot| team.contains(robot));
+    moves_alone(primary_team) || subgroups.iter().any(|team| moves_alone(team))
+}
+
 /// Whether Σ without its last robot and the primary team have no robot in common.
 pub fn teams_are_disjoint(path: &[usize], primary_team: &[usize]) -> bool {
     let Some((_, secondary_team)) = path.split_last() else { return true };

@@ -8,7 +8,7 @@
 use std::fmt::Write;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{NodeId, Phase, Subgroup};
+use pleach_discrete::network::{Bid, Election, NodeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Path};
@@ -58,11 +58,22 @@ impl Robot {
         &self.subgroups
     }
 
-    /// The number and the winner of the election that it knows to be over.
-    pub fn concluded_election(&self) -> Option<(u32, Option<NodeId>)> {
+    /// The number of the election that it knows to be over, and the winner with its bid.
+    pub fn concluded_election(&self) -> Option<(u32, Option<(Bid, NodeId)>)> {
         let election = self.election.as_ref()?;
         let over = election.is_complete(&self.roster);
-        over.then(|| (election.number(), election.best().map(|(_, winner)| winner)))
+        over.then(|| (election.number(), election.best()))
+    }
+
+    /// The number of the election that it takes part in, or took part in last.
+    pub fn election_number(&self) -> Option<u32> {
+        self.election.as_ref().map(Election::number)
+    }
+
+    /// What it has bid itself in the election with this number, if it has taken part in it and
+    /// in none since.
+    pub fn own_bid(&self, number: u32) -> Option<Bid> {
+        self.bid.filter(|_| self.election_number() == Some(number))
     }
 
     /// For how many control periods the robot has not got on.
@@ -94,7 +105,14 @@ impl Robot {
                 (self.duty, self.left_post, &self.offer, self.offers_made, self.last_partner),
                 (&self.reply, self.taking, self.parent, &self.lineage, &self.below),
                 (self.can_detach, self.barren_periods, &self.bulletin, &self.tasks, &self.roster),
-                (&self.eligible, &self.election, waited, &self.route, self.awaits_release),
+                (
+                    &self.eligible,
+                    &self.election,
+                    self.bid,
+                    waited,
+                    &self.route,
+                    self.awaits_release
+                ),
                 (&self.path, &self.agreement, &self.subgroups, self.subgroup, self.team),
                 self.audible().map(|(_, silent)| silent).collect::<Vec<_>>(),
             )

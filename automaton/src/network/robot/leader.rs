@@ -37,7 +37,8 @@ impl Robot {
         let competes =
             self.lineage.as_ref().is_some_and(|lineage| self.eligible.contains(lineage.root()));
         let mut election = Election::new(self.bulletin.sequence());
-        election.place(self.id, competes.then(|| self.leader_bid()).flatten());
+        self.bid = competes.then(|| self.leader_bid()).flatten();
+        election.place(self.id, self.bid);
         self.election = Some(election);
     }
 

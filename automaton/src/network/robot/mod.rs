@@ -29,7 +29,7 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Bulletin, Election, Exchange, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
+    Agreement, Bid, Bulletin, Election, Exchange, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
     PostId, Reply, Role, RoleEvent, Subgroup,
 };
 
@@ -96,6 +96,8 @@ pub struct Robot {
     roster: Arc<IdSet>,
     eligible: Arc<IdSet>,
     election: Option<Election>,
+    /// What it has bid in this election itself.
+    bid: Option<Bid>,
     waited_rounds: usize,
     route: Option<(u32, Shared<Vec<Hop>>)>,
     awaits_release: bool,
@@ -171,6 +173,7 @@ impl Robot {
             roster: Arc::default(),
             eligible: Arc::default(),
             election: None,
+            bid: None,
             waited_rounds: 0,
             route: None,
             awaits_release: false,

@@ -29,6 +29,7 @@ impl Robot {
     pub fn begin_recruit_election(&mut self) {
         let number = self.bulletin.sequence();
         self.election = Some(Election::new(number));
+        self.bid = None;
         self.waited_rounds = 1;
         self.route = None;
         if matches!(*self.bulletin.notice(), Notice::Call { caller, .. } if caller == self.id) {
@@ -71,8 +72,11 @@ impl Robot {
             None if self.waited_rounds < 2 * self.longest_wait() => return,
             None => self.stranded_bid(),
         };
-        if let Some(election) = &mut self.election {
+        if let Some(election) = &mut self.election
+            && !election.has_token(self.id)
+        {
             election.place(self.id, bid);
+            self.bid = bid;
         }
     }
 

@@ -5,15 +5,16 @@ use std::fmt;
 
 use pleach_automaton::network::beacon::Notice;
 
-use super::graphs::{Graph, graphs, numbered_graphs};
+use super::graphs::{Graph, graphs, numbered_graphs, trees};
+use super::medium::{Faults, Medium};
 use super::places::{Place, Places, PlacesError};
 use super::properties::{ALWAYS, has_ended};
-use super::protocol::{Configuration, Medium, Protocol, ProtocolError, State};
+use super::protocol::{Configuration, Protocol, ProtocolError, State};
 use super::story::story;
 use super::{Action, NodeError};
 use crate::exploration::{Exploration, ExplorationError, Fairness, StateId, explore};
 
-/// Which graphs of a number of robots and one access point are explored.
+/// Which graphs of a number of robots and access points are explored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Graphs {
     /// Every connected one, once for all that are the same but for the robots' numbers.
@@ -22,6 +23,9 @@ pub enum Graphs {
     Numbered,
     /// A line from the access point.
     Line,
+    /// Every tree with the access point as its root, once for all that are the same but for the
+    /// robots' numbers.
+    Trees,
 }
 
 /// All configurations of one kind: on every graph, from every place a branch of every length to
@@ -32,6 +36,8 @@ pub struct Campaign {
     pub name: &'static str,
     /// How many robots there are.
     pub robots: usize,
+    /// How many access points there are; lines and trees have one.
+    pub access_points: usize,
     /// On which graphs.
     pub graphs: Graphs,
     /// How many tasks there are.
@@ -118,7 +124,8 @@ impl Campaign {
         let mut findings = Findings::default();
         for graph in self.all_graphs() {
             for branches in self.branches() {
-                let places = Places::with_branches(self.robots, &graph, &branches)?;
+                let places =
+                    Places::with_branches(self.robots, self.access_points, &graph, &branches)?;
                 let name = format!("graph {graph:?} with branches {branches:?}");
                 self.visit(&name, places, &mut findings)?;
             }
@@ -128,15 +135,16 @@ impl Campaign {
 
     fn all_graphs(&self) -> Vec<Graph> {
         match self.graphs {
-            Graphs::UpToSymmetry => graphs(self.robots),
+            Graphs::UpToSymmetry => graphs(self.robots, self.access_points),
             Graphs::Numbered => numbered_graphs(self.robots),
+            Graphs::Trees => trees(self.robots),
             Graphs::Line => vec![(0..self.robots).map(|robot| (robot, robot + 1)).collect()],
         }
     }
 
     /// Every choice of a branch for each task.
     fn branches(&self) -> Vec<Vec<(Place, usize)>> {
-        let one: Vec<(Place, usize)> = (0..=self.robots)
+        let one: Vec<(Place, usize)> = (0..self.robots + self.access_points)
             .flat_map(|place| self.steps.iter().map(move |&steps| (place, steps)))
             .collect();
         (0..self.tasks).fold(vec![Vec::new()], |chosen, _| {
@@ -207,17 +215,33 @@ impl Findings {
     }
 }
 
-const ROUNDS: Medium = Medium::Rounds { losses: 0, delays: 0 };
+/// Rounds in which all messages arrive, and robots move between any two of them.
+const ROUNDS: Medium = rounds(Faults::NONE);
 /// One message of a whole mission is lost.
-const ONE_LOST: Medium = Medium::Rounds { losses: 1, delays: 0 };
+const ONE_LOST: Medium = rounds(Faults { losses: 1, ..Faults::NONE });
 /// One message of a whole mission is late.
-const ONE_LATE: Medium = Medium::Rounds { losses: 0, delays: 1 };
+const ONE_LATE: Medium = rounds(Faults { delays: 1, ..Faults::NONE });
+/// A copy of one message of a whole mission arrives later.
+const ONE_COPIED: Medium = rounds(Faults { duplicates: 1, ..Faults::NONE });
+
+const fn rounds(faults: Faults) -> Medium {
+    Medium::Rounds { faults, period: None }
+}
+
+/// The same in control periods: robots move after every so many rounds.
+const fn periods(faults: Faults) -> Medium {
+    Medium::Rounds { faults, period: Some(ROUNDS_OF_A_PERIOD) }
+}
+
+/// The fewest rounds of a control period for which two faults are explored.
+const ROUNDS_OF_A_PERIOD: u32 = 4;
 
 /// What every test run explores.
 pub const QUICK: &[Campaign] = &[
     Campaign {
         name: "two robots, every numbering",
         robots: 2,
+        access_points: 1,
         graphs: Graphs::Numbered,
         tasks: 2,
         steps: &[1, 2],
@@ -230,6 +254,7 @@ pub const QUICK: &[Campaign] = &[
     Campaign {
         name: "two robots, nodes in any order",
         robots: 2,
+        access_points: 1,
         graphs: Graphs::UpToSymmetry,
         tasks: 1,
         steps: &[1],
@@ -242,6 +267,7 @@ pub const QUICK: &[Campaign] = &[
     Campaign {
         name: "three robots",
         robots: 3,
+        access_points: 1,
         graphs: Graphs::UpToSymmetry,
         tasks: 1,
         steps: &[1, 2],
@@ -254,6 +280,7 @@ pub const QUICK: &[Campaign] = &[
     Campaign {
         name: "three robots, a message lost",
         robots: 3,
+        access_points: 1,
         graphs: Graphs::UpToSymmetry,
         tasks: 1,
         steps: &[1],
@@ -266,6 +293,7 @@ pub const QUICK: &[Campaign] = &[
     Campaign {
         name: "three robots, a message late",
         robots: 3,
+        access_points: 1,
         graphs: Graphs::UpToSymmetry,
         tasks: 1,
         steps: &[1],
@@ -275,6 +303,32 @@ pub const QUICK: &[Campaign] = &[
         states: 96_656,
         transitions: 169_028,
     },
+    Campaign {
+        name: "two robots, a message copied",
+        robots: 2,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1, 2],
+        medium: ONE_COPIED,
+        contacts: 1,
+        configurations: 0,
+        states: 0,
+        transitions: 0,
+    },
+    Campaign {
+        name: "two robots, two access points",
+        robots: 2,
+        access_points: 2,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: ROUNDS,
+        contacts: 1,
+        configurations: 0,
+        states: 0,
+        transitions: 0,
+    },
 ];
 
 /// What takes minutes.
@@ -282,6 +336,7 @@ pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "three robots, every numbering, two tasks",
         robots: 3,
+        access_points: 1,
         graphs: Graphs::Numbered,
         tasks: 2,
         steps: &[1, 2],
@@ -294,6 +349,7 @@ pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "three robots, a message lost, tasks far and near",
         robots: 3,
+        access_points: 1,
         graphs: Graphs::UpToSymmetry,
         tasks: 1,
         steps: &[1, 2],
@@ -306,6 +362,7 @@ pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "four robots",
         robots: 4,
+        access_points: 1,
         graphs: Graphs::UpToSymmetry,
         tasks: 1,
         steps: &[1, 2],
@@ -318,6 +375,7 @@ pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "four robots, two tasks",
         robots: 4,
+        access_points: 1,
         graphs: Graphs::UpToSymmetry,
         tasks: 2,
         steps: &[1],
@@ -330,6 +388,7 @@ pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "five robots",
         robots: 5,
+        access_points: 1,
         graphs: Graphs::UpToSymmetry,
         tasks: 1,
         steps: &[1],
@@ -342,6 +401,7 @@ pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "six robots in a line",
         robots: 6,
+        access_points: 1,
         graphs: Graphs::Line,
         tasks: 1,
         steps: &[1, 2],
@@ -350,5 +410,83 @@ pub const THOROUGH: &[Campaign] = &[
         configurations: 14,
         states: 47_474,
         transitions: 69_252,
+    },
+    Campaign {
+        name: "three robots, a message copied",
+        robots: 3,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: ONE_COPIED,
+        contacts: 1,
+        configurations: 0,
+        states: 0,
+        transitions: 0,
+    },
+    Campaign {
+        name: "three robots, two access points",
+        robots: 3,
+        access_points: 2,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: ROUNDS,
+        contacts: 0,
+        configurations: 0,
+        states: 0,
+        transitions: 0,
+    },
+    Campaign {
+        name: "six robots on every tree",
+        robots: 6,
+        access_points: 1,
+        graphs: Graphs::Trees,
+        tasks: 1,
+        steps: &[1],
+        medium: ROUNDS,
+        contacts: 0,
+        configurations: 0,
+        states: 0,
+        transitions: 0,
+    },
+    Campaign {
+        name: "three robots, two messages lost, moves once a period",
+        robots: 3,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: periods(Faults { losses: 2, ..Faults::NONE }),
+        contacts: 0,
+        configurations: 0,
+        states: 0,
+        transitions: 0,
+    },
+    Campaign {
+        name: "three robots, two messages late, moves once a period",
+        robots: 3,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: periods(Faults { delays: 2, ..Faults::NONE }),
+        contacts: 0,
+        configurations: 0,
+        states: 0,
+        transitions: 0,
+    },
+    Campaign {
+        name: "three robots in contact, a message lost, moves once a period",
+        robots: 3,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1, 2],
+        medium: periods(Faults { losses: 1, ..Faults::NONE }),
+        contacts: 1,
+        configurations: 0,
+        states: 0,
+        transitions: 0,
     },
 ];

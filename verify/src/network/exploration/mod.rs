@@ -11,6 +11,7 @@
 mod campaign;
 pub mod election;
 mod graphs;
+mod medium;
 mod node;
 mod places;
 pub mod properties;
@@ -18,9 +19,10 @@ mod protocol;
 mod story;
 
 pub use campaign::{Campaign, CampaignError, ENDS, Failure, Findings, Graphs, QUICK, THOROUGH};
-pub use graphs::{Graph, graphs, numbered_graphs};
+pub use graphs::{Graph, graphs, numbered_graphs, trees};
+pub use medium::{Faults, LONGEST_ECHO, Medium};
 pub use node::{BeaconId, Local, LocalId, Node, NodeError, Nodes, Stimulus};
 pub use places::{Place, Places, PlacesError};
 pub use properties::{ALWAYS, has_ended};
-pub use protocol::{Action, Configuration, Medium, Protocol, ProtocolError, State};
+pub use protocol::{Action, Configuration, Protocol, ProtocolError, State};
 pub use story::story;

@@ -86,17 +86,19 @@ impl Places {
         Ok(places)
     }
 
-    /// Robots and an access point on a graph of their places, with a branch of places for each
+    /// Robots and access points on a graph of their places, with a branch of places for each
     /// task: from the place named, so many steps to the task.
     ///
     /// # Errors
     /// When a number is out of range or the graph is not connected.
     pub fn with_branches(
         robots: usize,
+        access_points: usize,
         graph: &[(Place, Place)],
         branches: &[(Place, usize)],
     ) -> Result<Self, PlacesError> {
-        let (mut edges, mut tasks, mut places) = (graph.to_vec(), Vec::new(), robots + 1);
+        let (mut edges, mut tasks, mut places) =
+            (graph.to_vec(), Vec::new(), robots + access_points);
         for &(from, steps) in branches {
             let mut last = from;
             for place in places..places + steps {
@@ -106,7 +108,7 @@ impl Places {
             places += steps;
             tasks.push(last);
         }
-        Places::new(robots, 1, places, &edges, &tasks)
+        Places::new(robots, access_points, places, &edges, &tasks)
     }
 
     /// The number of robots.

@@ -11,7 +11,7 @@ use pleach_discrete::network::{Anchor, Phase, Post, PostId, PostKind, Role};
 
 use super::protocol::{Protocol, State};
 use crate::exploration::Property;
-use crate::network::{team, tree};
+use crate::network::{duty, election, team, tree};
 
 /// The properties that hold in every state.
 pub const ALWAYS: &[Property<Protocol>] = &[
@@ -22,7 +22,13 @@ pub const ALWAYS: &[Property<Protocol>] = &[
     Property { name: "posts that others hang on are held", holds: bearing_posts_are_held },
     Property { name: "serviced tasks are held", holds: serviced_tasks_are_held },
     Property { name: "no task is held twice", holds: no_task_is_held_twice },
+    Property {
+        name: "junctions and serviced tasks are occupied",
+        holds: junctions_and_tasks_are_occupied,
+    },
     Property { name: "elections agree", holds: elections_agree },
+    Property { name: "the best bidder is elected", holds: the_best_bidder_is_elected },
+    Property { name: "exactly one team is active", holds: exactly_one_team_is_active },
     Property { name: "subgroups agree", holds: subgroups_agree },
     Property { name: "subgroups partition the path", holds: subgroups_partition_the_path },
     Property { name: "teams are disjoint", holds: teams_are_disjoint },
@@ -147,10 +153,66 @@ pub fn no_task_is_held_twice(protocol: &Protocol, state: &State) -> bool {
         || (0..serviced(protocol, state)).all(|task| holders(protocol, state, task) < 2)
 }
 
+/// A robot stands at every serviced task, and at the place of every post, fixed or waiting on Σ,
+/// on which two branches hang: also while one robot relieves another of it.
+pub fn junctions_and_tasks_are_occupied(protocol: &Protocol, state: &State) -> bool {
+    let places = &protocol.configuration().places;
+    let duties = duties(protocol, state);
+    let bears_branches = |own: PostId| {
+        let hanging = duties.iter().filter_map(Duty::post).filter(|post| post.hangs_on(own));
+        hanging.filter(|post| !post.is_redundant()).count() > 1
+    };
+    let junctions = duties
+        .iter()
+        .filter_map(Duty::station)
+        .filter(|station| station.post.is_fixed() && bears_branches(station.post.id))
+        .map(|station| places.place_at(station.reference));
+    let tasks = places.task_positions().into_iter().take(serviced(protocol, state));
+    let needed: Vec<usize> =
+        junctions.chain(tasks.map(|position| places.place_at(position))).collect();
+    let robots: Vec<usize> =
+        (0..places.robots()).map(|robot| protocol.place_of(state, robot)).collect();
+    duty::are_occupied(&needed, &robots)
+}
+
 /// Robots that know an election to be over know the same winner.
 pub fn elections_agree(protocol: &Protocol, state: &State) -> bool {
     let over: Vec<_> = protocol.robots(state).filter_map(Robot::concluded_election).collect();
     over.iter().all(|(number, best)| over.iter().all(|(n, b)| n != number || b == best))
+}
+
+/// Whoever is elected has bid best of all that took part, ties going to the higher index.
+///
+/// Robots that have begun a later election remember no older bid of theirs: then the word has
+/// gone on, and the election was looked at before.
+pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
+    protocol.robots(state).filter_map(Robot::concluded_election).all(|(number, winner)| {
+        let took_part = |robot: &Robot| robot.election_number() == Some(number);
+        let bids: Vec<_> = protocol.robots(state).map(|robot| robot.own_bid(number)).collect();
+        !protocol.robots(state).all(took_part) || election::is_won_by_best(&bids, winner)
+    })
+}
+
+/// While Σ is walked one team is active: who moves for a task is in the primary team or in a
+/// subgroup, all in the same one.
+pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
+    let of = |is_member: &dyn Fn(&Robot) -> bool| -> Vec<usize> {
+        let robots = protocol.robots(state).enumerate();
+        robots.filter(|(_, robot)| is_member(robot)).map(|(id, _)| id).collect()
+    };
+    let is_shifting = |robot: &Robot| matches!(robot.duty(), Duty::Shift { .. });
+    let moving =
+        of(&|robot| robot.is_active() && (is_shifting(robot) || robot.duty().is_primary()));
+    let primary_team = of(&|robot| robot.duty().is_primary());
+    let known = protocol.robots(state).filter_map(agreed).max_by_key(|&(number, _)| number);
+    let subgroups: Vec<Vec<usize>> = known.map_or_else(Vec::new, |(_, groups)| {
+        let has_left = |robot: &Robot, places: std::ops::Range<usize>| {
+            is_shifting(robot) && robot.duty().place().is_some_and(|place| places.contains(&place))
+        };
+        groups.iter().map(|group| of(&|robot| has_left(robot, group.places()))).collect()
+    });
+    let subgroups: Vec<&[usize]> = subgroups.iter().map(Vec::as_slice).collect();
+    team::exactly_one_is_active(&moving, &primary_team, &subgroups)
 }
 
 /// The path that a robot has agreed on, by its number, and its subgroups.

@@ -8,30 +8,10 @@ use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::{Robot, Site, SiteError};
 use pleach_discrete::network::NodeId;
 
+use super::medium::{Copied, Faults, Medium};
 use super::node::{BeaconId, Local, LocalId, Node, NodeError, Nodes, Stimulus};
 use super::places::{Place, Places};
 use crate::exploration::Model;
-
-/// How messages go from node to node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Medium {
-    /// In rounds, as the network plays them: everybody speaks, then everybody hears.
-    Rounds {
-        /// How many messages may be lost on the way, one in a round. Who does not hear a
-        /// neighbour in a round takes it to be out of range.
-        losses: u32,
-        /// How many messages may be late, one in a round: what the receiver heard last of the
-        /// sender reaches it once more instead.
-        delays: u32,
-    },
-    /// One node at a time, in any order: it hears what everybody in range says now. Others may
-    /// speak and think any number of times meanwhile.
-    NodesInAnyOrder,
-    /// One message at a time, in any order. What is on its way from one node to another is
-    /// overtaken by what the sender says next, and stays with the receiver until then: messages
-    /// are late for any time, lost if a newer one comes, and heard again and again.
-    MessagesInAnyOrder,
-}
 
 /// What is explored: who stands where, how messages go, and how often a robot is in another's way.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +38,20 @@ pub enum Action {
     },
     /// The same, but `to` hears of `from` what it heard last.
     Delay {
+        /// The sender.
+        from: NodeId,
+        /// The receiver.
+        to: NodeId,
+    },
+    /// The same, and a copy of what `to` hears of `from` will arrive later.
+    Copy {
+        /// The sender.
+        from: NodeId,
+        /// The receiver.
+        to: NodeId,
+    },
+    /// The same, but the copy arrives after what `from` says.
+    Echo {
         /// The sender.
         from: NodeId,
         /// The receiver.
@@ -92,6 +86,12 @@ impl fmt::Display for Action {
             Action::Delay { from, to } => {
                 write!(f, "in a round {to} hears of {from} what it heard before")
             }
+            Action::Copy { from, to } => {
+                write!(f, "in a round what {to} hears of {from} is copied on the way")
+            }
+            Action::Echo { from, to } => {
+                write!(f, "in a round {to} hears {from}, and then the copy")
+            }
             Action::Listen(node) => write!(f, "{node} hears everybody in range"),
             Action::Hear { from, to } => write!(f, "{to} hears {from}"),
             Action::Think(node) => write!(f, "{node} thinks"),
@@ -111,10 +111,14 @@ pub struct State {
     pub locals: Arc<[LocalId]>,
     /// Contacts left.
     contacts: u32,
-    /// Losses left.
-    losses: u32,
-    /// Delays left.
-    delays: u32,
+    /// Faults of the medium left.
+    pub(super) faults: Faults,
+    /// Copies of messages that are on their way.
+    pub(super) copies: Vec<Copied>,
+    /// How many rounds of its period have passed, where there are periods.
+    pub(super) round: u32,
+    /// The robots that have moved in this period, as bits, where there are periods.
+    pub(super) moved: u32,
 }
 
 /// Why a configuration cannot be explored.
@@ -156,11 +160,10 @@ impl Protocol {
             .map(|number| Node::AccessPoint(Box::new(AccessPoint::new(number, Arc::clone(&site)))));
         let locals =
             robots.chain(access_points).map(|node| nodes.take_up(node, Vec::new())).collect();
-        let (losses, delays) = match configuration.medium {
-            Medium::Rounds { losses, delays } => (losses, delays),
-            Medium::NodesInAnyOrder | Medium::MessagesInAnyOrder => (0, 0),
-        };
-        let initial = State { locals, contacts: configuration.contacts, losses, delays };
+        let Configuration { medium, contacts, .. } = configuration;
+        let round = medium.period().unwrap_or(0);
+        let faults = medium.faults();
+        let initial = State { locals, contacts, faults, copies: Vec::new(), round, moved: 0 };
         let mut protocol = Protocol { configuration, nodes, initial };
         protocol.settle()?;
         Ok(protocol)
@@ -217,19 +220,24 @@ impl Protocol {
     }
 
     /// What a node hears if it hears everybody in range.
-    fn all_heard_by(&self, state: &State, receiver: NodeId) -> Vec<BeaconId> {
+    pub(super) fn all_heard_by(&self, state: &State, receiver: NodeId) -> Vec<BeaconId> {
         (0..state.locals.len())
             .filter(|&sender| self.is_in_range(state, sender, receiver))
             .map(|sender| self.nodes.local(state.locals[sender]).beacon)
             .collect()
     }
 
-    fn all_heard(&self, state: &State) -> Vec<Vec<BeaconId>> {
+    pub(super) fn all_heard(&self, state: &State) -> Vec<Vec<BeaconId>> {
         (0..state.locals.len()).map(|receiver| self.all_heard_by(state, receiver)).collect()
     }
 
     /// What `to` knows if it now hears `from`; none if there is nothing new.
-    fn heard_from(&self, state: &State, from: NodeId, to: NodeId) -> Option<Vec<BeaconId>> {
+    pub(super) fn heard_from(
+        &self,
+        state: &State,
+        from: NodeId,
+        to: NodeId,
+    ) -> Option<Vec<BeaconId>> {
         let sender_of = |&id: &BeaconId| self.nodes.beacon(id).sender;
         let mut heard = self.nodes.local(state.locals[to]).heard.clone();
         let said = self.nodes.local(state.locals[from]).beacon;
@@ -247,7 +255,7 @@ impl Protocol {
 
     // ---- Steps of nodes ----------------------------------------------------------------------
 
-    fn each(
+    pub(super) fn each(
         &mut self,
         state: &State,
         stimulus: impl Fn(NodeId) -> Stimulus,
@@ -260,7 +268,12 @@ impl Protocol {
             .collect()
     }
 
-    fn one(&mut self, state: &State, node: NodeId, stimulus: Stimulus) -> Result<State, NodeError> {
+    pub(super) fn one(
+        &mut self,
+        state: &State,
+        node: NodeId,
+        stimulus: Stimulus,
+    ) -> Result<State, NodeError> {
         let mut next = state.clone();
         let local = self.nodes.after(state.locals[node], stimulus)?;
         if local != state.locals[node] {
@@ -314,94 +327,19 @@ impl Protocol {
 
     // ---- What may happen ---------------------------------------------------------------------
 
-    fn messages(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
-        let nodes = state.locals.len();
-        let mut found = Vec::new();
-        match self.configuration.medium {
-            Medium::Rounds { .. } => {
-                let heard = self.all_heard(state);
-                let mut next = state.clone();
-                next.locals = self.each(state, |node| Stimulus::Round(heard[node].clone()))?;
-                found.push((Action::Round, next));
-            }
-            Medium::NodesInAnyOrder => {
-                for node in 0..nodes {
-                    let heard = self.all_heard_by(state, node);
-                    let next = self.one(state, node, Stimulus::Hear(heard))?;
-                    found.push((Action::Listen(node), next));
-                }
-            }
-            Medium::MessagesInAnyOrder => {
-                for to in 0..nodes {
-                    for from in (0..nodes).filter(|&from| from != to) {
-                        if let Some(heard) = self.heard_from(state, from, to) {
-                            let next = self.one(state, to, Stimulus::Hear(heard))?;
-                            found.push((Action::Hear { from, to }, next));
-                        }
-                    }
-                    let heard = self.nodes.local(state.locals[to]).heard.clone();
-                    let next = self.one(state, to, Stimulus::Hear(heard))?;
-                    found.push((Action::Think(to), next));
-                }
-            }
-        }
-        found.retain(|(_, next)| next != state);
-        Ok(found)
-    }
-
-    /// Rounds in which one message is lost or late.
-    fn faulty_rounds(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
-        let mut found = Vec::new();
-        if state.losses + state.delays == 0 {
-            return Ok(found);
-        }
-        let heard = self.all_heard(state);
-        for to in 0..heard.len() {
-            for at in 0..heard[to].len() {
-                let from = self.nodes.beacon(heard[to][at]).sender;
-                let known = &self.nodes.local(state.locals[to]).heard;
-                let known = known.iter().find(|&&id| self.nodes.beacon(id).sender == from).copied();
-                if state.losses > 0 {
-                    let mut without = heard[to].clone();
-                    without.remove(at);
-                    let mut next = self.round_with(state, &heard, to, without)?;
-                    next.losses -= 1;
-                    found.push((Action::Lose { from, to }, next));
-                }
-                if state.delays > 0
-                    && let Some(known) = known.filter(|&known| known != heard[to][at])
-                {
-                    let mut late = heard[to].clone();
-                    late[at] = known;
-                    let mut next = self.round_with(state, &heard, to, late)?;
-                    next.delays -= 1;
-                    found.push((Action::Delay { from, to }, next));
-                }
-            }
-        }
-        Ok(found)
-    }
-
-    /// A round in which `to` hears something else than everybody in range.
-    fn round_with(
-        &mut self,
-        state: &State,
-        heard: &[Vec<BeaconId>],
-        to: NodeId,
-        instead: Vec<BeaconId>,
-    ) -> Result<State, NodeError> {
-        let mut next = state.clone();
-        next.locals = self.each(state, |node| {
-            Stimulus::Round(if node == to { instead.clone() } else { heard[node].clone() })
-        })?;
-        Ok(next)
-    }
-
     fn bodies(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
         let mut found = Vec::new();
+        let period = self.configuration.medium.period();
+        if period.is_some_and(|rounds| state.round < rounds) {
+            return Ok(found);
+        }
         for robot in 0..self.configuration.places.robots() {
-            if let Some(place) = self.next_place(state, robot) {
-                let next = self.one(state, robot, Stimulus::Move(place))?;
+            let may_move = state.moved >> robot & 1 == 0;
+            if let Some(place) = self.next_place(state, robot).filter(|_| may_move) {
+                let mut next = self.one(state, robot, Stimulus::Move(place))?;
+                if period.is_some() {
+                    next.moved |= 1 << robot;
+                }
                 found.push((Action::Move(robot), next));
             }
             if state.contacts > 0 && self.is_in_contact(state, robot) {
