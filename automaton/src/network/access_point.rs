@@ -107,6 +107,7 @@ impl AccessPoint {
             way: None,
             can_detach: false,
             offer: None,
+            offers_made: 0,
             reply: None,
             team: None,
         }

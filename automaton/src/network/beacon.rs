@@ -106,6 +106,8 @@ pub struct Beacon {
     pub can_detach: bool,
     /// A standing offer to exchange duties.
     pub offer: Option<Exchange<Duty>>,
+    /// How many offers it has made so far.
+    pub offers_made: u32,
     /// The answer to an offer.
     pub reply: Option<Reply<Duty>>,
     /// What the primary team knows of itself, for the next member towards p₁.

@@ -103,7 +103,7 @@ impl Robot {
             (
                 (self.id, self.position, self.still_periods, self.role, self.phase),
                 (self.duty, self.left_post, &self.offer, self.offers_made, self.last_partner),
-                (&self.reply, self.taking, self.parent, &self.lineage, &self.below),
+                (&self.reply, self.taking, &self.answered, self.parent, &self.lineage, &self.below),
                 (self.can_detach, self.barren_periods, &self.bulletin, &self.tasks, &self.roster),
                 (
                     &self.eligible,

@@ -142,7 +142,9 @@ impl Robot {
         let Some(reply) = &self.reply else { return };
         let (to, number) = (reply.to, reply.number);
         let concluded = self.neighbour(to).is_some_and(|mover| {
-            mover.beacon.offer.as_ref().is_none_or(|offer| offer.number != number)
+            let stands = mover.beacon.offer.as_ref().is_some_and(|offer| offer.number == number);
+            // What the mover said before it made the offer may be heard again.
+            !stands && mover.beacon.offers_made >= number
         });
         if !concluded {
             return;
@@ -160,11 +162,13 @@ impl Robot {
         }
         let offered = self.neighbours.iter().find_map(|neighbour| {
             let offer = neighbour.beacon.offer.as_ref()?;
-            (offer.to == self.id).then_some((neighbour.id(), offer.number, offer.duty))
+            let is_new = self.answered.get(&neighbour.id()).is_none_or(|&last| last < offer.number);
+            (offer.to == self.id && is_new).then_some((neighbour.id(), offer.number, offer.duty))
         });
         let Some((to, number, duty)) = offered else { return };
         let accepted = self.may_be_relieved().then_some(self.duty);
         self.taking = accepted.map(|_| duty);
+        self.answered.insert(to, number);
         self.reply = Some(Reply { to, number, accepted });
     }
 

@@ -23,6 +23,7 @@ mod routing;
 mod team;
 mod yielding;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pleach_continuous::geometry::Destination;
@@ -81,6 +82,8 @@ pub struct Robot {
     last_partner: Option<NodeId>,
     reply: Option<Reply<Duty>>,
     taking: Option<Duty>,
+    /// The number of the offer answered last, by the robot that made it.
+    answered: BTreeMap<NodeId, u32>,
 
     // What it hears and where it hangs.
     neighbours: Vec<Neighbour>,
@@ -162,6 +165,7 @@ impl Robot {
             last_partner: None,
             reply: None,
             taking: None,
+            answered: BTreeMap::new(),
             neighbours: Vec::new(),
             parent: None,
             lineage: None,
@@ -230,6 +234,7 @@ impl Robot {
             way: self.way_asked_for(),
             can_detach: self.can_detach,
             offer: self.offer.clone(),
+            offers_made: self.offers_made,
             reply: self.reply.clone(),
             team: self.team,
         }

@@ -74,7 +74,7 @@ impl Robot {
 
     /// ψ_i: where the robot goes now (Algorithm 2), if it goes anywhere.
     pub fn goal(&self) -> Option<Point> {
-        if self.is_engaged() || self.phase == Phase::Ended {
+        if self.is_engaged() || self.phase == Phase::Ended || self.is_held_by_old_news() {
             return None;
         }
         if let Duty::Shift { .. } = self.duty {
@@ -89,6 +89,19 @@ impl Robot {
         let station = self.duty.station()?;
         self.place_aside().or_else(|| {
             (self.is_off(station.reference) && !self.is_near_mover()).then_some(station.reference)
+        })
+    }
+
+    /// Whether somebody that hangs on the post that this robot has left has not heard of it, and
+    /// still hangs on the robot: it would keep to the one that goes, and not to the one that came.
+    /// Where nobody came, the robot stands for its post on the way.
+    fn is_held_by_old_news(&self) -> bool {
+        self.left_post.is_some_and(|left| {
+            self.holder(left).is_some()
+                && self.neighbours.iter().any(|neighbour| {
+                    neighbour.beacon.parent == Some(self.id)
+                        && neighbour.post().is_some_and(|post| post.hangs_on(left))
+                })
         })
     }
 

@@ -111,9 +111,14 @@ impl Robot {
         hops.into_iter().flatten().map(|hop| hop.robot).collect()
     }
 
-    /// Whether another robot holds `post`.
+    /// Whether another robot holds `post` and knows its parent: it does not hang on this one any
+    /// more, unless that is the parent.
     pub(super) fn is_relieved_of(&self, post: PostId) -> bool {
-        self.holder(post).is_some()
+        let own = self.duty.post().map(|held| held.id);
+        self.holder(post).is_some_and(|holder| {
+            let hangs_here = |held: &Post| own.is_some_and(|own| held.hangs_on(own));
+            holder.beacon.parent != Some(self.id) || holder.post().is_some_and(hangs_here)
+        })
     }
 
     /// The place that this robot goes to along Σ.
@@ -150,6 +155,7 @@ impl Robot {
             let station = Station { post: hop.post, reference };
             self.duty = Duty::Hold(station);
             self.left_post = None;
+            self.remember_parent();
         }
     }
 
