@@ -50,13 +50,14 @@ impl<'a, L: Location, E: Event> TransitionTable<'a, L, E> {
     ///
     /// [`InvalidTransition`] if no row says so.
     pub fn next(&self, location: L, event: E) -> Result<L, InvalidTransition<L, E>> {
-        // Of several equal keys the first counts, which is the row declared first.
-        self.rows
-            .iter()
-            .filter(|row| row.source == location && row.event == event)
-            .min_by_key(|row| row.priority)
-            .map(|row| row.target)
-            .ok_or(InvalidTransition { location, event })
+        let mut first: Option<(u8, L)> = None;
+        for row in self.rows {
+            let comes_first = first.is_none_or(|(priority, _)| row.priority < priority);
+            if row.source == location && row.event == event && comes_first {
+                first = Some((row.priority, row.target));
+            }
+        }
+        first.map(|(_, target)| target).ok_or(InvalidTransition { location, event })
     }
 
     /// The rows that leave `location`, in their total order. Nothing is allocated.
@@ -264,6 +265,7 @@ mod tests {
         const TWICE: TransitionTable<Door, Hand> = TransitionTable::new(&[
             row(Door::Open, Hand::Push, Door::Closed, 1),
             row(Door::Open, Hand::Push, Door::Removed, 0),
+            row(Door::Open, Hand::Push, Door::Locked, 0),
         ]);
         assert!(!TWICE.is_deterministic());
         assert_eq!(TWICE.conflict(), Some(&TWICE.rows()[1]));

@@ -46,7 +46,7 @@ impl HalfPlane {
     /// `outward` has no direction.
     pub fn through(point: Point, outward: Vector) -> Option<HalfPlane> {
         let normal = Unit::try_new(outward, 0.0)?;
-        Some(HalfPlane { normal, offset: normal.dot(&point.coords) })
+        Some(HalfPlane { normal, offset: along(normal, point) })
     }
 
     /// The half-plane `normal · q ≤ offset`, for a normal of any length but zero.
@@ -57,7 +57,7 @@ impl HalfPlane {
 
     /// Signed distance from `point` to the border: positive inside, negative outside.
     pub fn margin(&self, point: Point) -> f64 {
-        self.offset - self.normal.dot(&point.coords)
+        self.offset - along(self.normal, point)
     }
 
     /// Whether `point` lies in the half-plane, its border included.
@@ -67,6 +67,12 @@ impl HalfPlane {
 
     /// The smallest half-plane with the same border direction that contains this one and `point`.
     pub fn widened_to(self, point: Point) -> HalfPlane {
-        HalfPlane { offset: self.offset.max(self.normal.dot(&point.coords)), ..self }
+        HalfPlane { offset: self.offset.max(along(self.normal, point)), ..self }
     }
+}
+
+/// normal · point, written out: a model checker takes long over a product that is made for
+/// vectors of any length.
+fn along(normal: Unit<Vector>, point: Point) -> f64 {
+    normal.x * point.x + normal.y * point.y
 }

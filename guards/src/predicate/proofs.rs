@@ -37,13 +37,15 @@ fn negation_follows_de_morgan() {
     assert!(is_same(one.or(other).opposite(), one.opposite().and(other.opposite())));
 }
 
-/// Any two whole numbers of one byte, and any relation: its verdict agrees with its margin, and
+/// Any two whole numbers from −8 to 7, and any relation: its verdict agrees with its margin, and
 /// the opposite relation gives the opposite verdict.
 #[kani::proof]
 #[kani::unwind(2)]
 fn comparisons_agree_with_their_margins() {
-    let (left, right): (i8, i8) = (kani::any(), kani::any());
-    let judge = |relation: Relation| relation.judge(f64::from(left), f64::from(right));
+    let number = || kani::any_where(|number: &i8| (-8..8).contains(number));
+    let (left, right) = (number(), number());
+    let (minuend, subtrahend) = (f64::from(left), f64::from(right));
+    let judge = |relation: Relation| relation.judge(minuend, subtrahend);
     let (at_most, less) = (judge(Relation::AtMost), judge(Relation::LessThan));
     let (at_least, more) = (judge(Relation::AtLeast), judge(Relation::MoreThan));
     kani::cover!(left == right);

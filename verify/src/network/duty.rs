@@ -36,7 +36,7 @@ pub type RoleRelation = [[bool; Role::ALL.len()]; Role::ALL.len()];
 
 /// The reflexive and transitive closure of the table's transitions (Warshall's algorithm):
 /// what an observer may see from one snapshot to the next, several jumps lying between.
-pub fn closure(is_allowed: &dyn Fn(Role, Role) -> bool) -> RoleRelation {
+pub fn closure(is_allowed: impl Fn(Role, Role) -> bool) -> RoleRelation {
     let mut relation = Role::ALL.map(|from| Role::ALL.map(|to| from == to || is_allowed(from, to)));
     for middle in 0..relation.len() {
         for from in 0..relation.len() {
@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn the_closure_passes_through_and_does_not_turn_back() {
         let chain = |from: Role, to: Role| from as usize + 1 == to as usize;
-        let relation = closure(&chain);
+        let relation = closure(chain);
         for from in Role::ALL {
             for to in Role::ALL {
                 assert_eq!(is_reachable(&relation, from, to), from <= to, "{from:?} {to:?}");

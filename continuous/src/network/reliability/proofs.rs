@@ -50,7 +50,7 @@ fn grid() -> [(f64, f64, f64); STEPS + 1] {
 ///
 /// Between the points of the grid the lemma is that of `proofs/smt/reliability-*.smt2`.
 #[kani::proof]
-#[kani::unwind(18)]
+#[kani::unwind(19)]
 fn reliability_falls_from_one_to_zero() {
     let grid = grid();
     let near: u8 = kani::any_where(|near| *near <= 16);

@@ -80,3 +80,21 @@ fn arrivals_are_known_together_if_each_is_known() {
     kani::cover!(expected && places.len() == 3 && !(arrived[1] && arrived[2]));
     assert!(view.have_arrived(places) == expected);
 }
+
+/// A view of another path changes nothing, whatever it says of votes and arrivals.
+#[kani::proof]
+#[kani::unwind(6)]
+fn a_view_of_another_path_changes_nothing() {
+    let (votes, others): ([bool; PLACES], [bool; PLACES]) = (kani::any(), kani::any());
+    let view = any_view(votes);
+    // One of a path before, or of one after.
+    let mut other = Agreement::new(if kani::any() { 0 } else { 2 });
+    for (place, vote) in others.into_iter().enumerate() {
+        other.vote(place, vote);
+        if kani::any() {
+            other.arrive(place);
+        }
+    }
+    kani::cover!(other.have_arrived(0..PLACES) && !view.has_voted(0) && view.is_break_point(1));
+    assert!(merged(view.clone(), &other) == view);
+}

@@ -18,7 +18,7 @@ fn bulletin(steps: u8) -> Bulletin<u8> {
 ///
 /// Assumes that each step has one notice, which the sole right to issue it gives.
 #[kani::proof]
-#[kani::unwind(4)]
+#[kani::unwind(5)]
 fn the_newest_word_wins_in_any_order() {
     let step = || kani::any_where(|step: &u8| *step < 4);
     let (known, one, other) = (step(), step(), step());

@@ -31,7 +31,7 @@ fn merged(mut one: Election, other: &Election) -> Election {
 /// Three robots, any bids of two ranks and two merits, any three views of the same election:
 /// merging is commutative, associative and idempotent.
 #[kani::proof]
-#[kani::unwind(4)]
+#[kani::unwind(5)]
 fn merging_views_is_taking_a_maximum() {
     let bids = [any_bid(), any_bid(), any_bid()];
     let (one, two, three) = (any_view(&bids), any_view(&bids), any_view(&bids));
@@ -43,7 +43,7 @@ fn merging_views_is_taking_a_maximum() {
 
 /// A view of another election changes nothing, whatever it says.
 #[kani::proof]
-#[kani::unwind(4)]
+#[kani::unwind(5)]
 fn a_view_of_another_election_changes_nothing() {
     let bids = [any_bid(), any_bid(), any_bid()];
     let view = any_view(&bids);

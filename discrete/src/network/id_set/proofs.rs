@@ -15,7 +15,7 @@ fn set_of(mask: u8) -> IdSet {
 
 /// Union, inclusion, number of elements and membership of any two sets of numbers below 8.
 #[kani::proof]
-#[kani::unwind(9)]
+#[kani::unwind(10)]
 fn a_merge_is_the_union() {
     let (one, other): (u8, u8) = (kani::any(), kani::any());
     let mut union = set_of(one);

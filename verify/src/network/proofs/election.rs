@@ -50,7 +50,7 @@ fn round(views: &mut [Election; ROBOTS], hears: &[[bool; ROBOTS]; ROBOTS]) {
 /// `exploration`, and change nothing but the number of rounds, see
 /// `merging_views_is_taking_a_maximum`.
 #[kani::proof]
-#[kani::unwind(6)]
+#[kani::unwind(8)]
 fn after_each_round_a_robot_knows_one_link_more() {
     let hears = any_graph();
     let mut views = begin(&[None; ROBOTS]);
@@ -80,7 +80,7 @@ fn after_each_round_a_robot_knows_one_link_more() {
 /// rounds every roster is complete, all have agreed, the winner bid and bid best, and at most one
 /// robot takes itself for the leader.
 #[kani::proof]
-#[kani::unwind(6)]
+#[kani::unwind(8)]
 fn robots_that_hear_each_other_elect_the_best_bidder() {
     let hears = any_graph();
     let bids = [any_bid(), any_bid(), any_bid(), any_bid()];

@@ -12,7 +12,7 @@ use crate::network::duty::{closure, is_reachable};
 #[kani::unwind(36)]
 fn an_observer_may_see_what_the_table_allows() {
     let relation =
-        closure(&|from, to| ROLES.rows().iter().any(|row| row.source == from && row.target == to));
+        closure(|from, to| ROLES.rows().iter().any(|row| row.source == from && row.target == to));
     let start = Role::ALL[below(Role::ALL.len())];
     let mut role = start;
     for _ in 0..3 {

@@ -23,7 +23,7 @@ fn a_projected_multiplier_is_never_negative() {
 ///
 /// The steps are computed one by one, and compared for any two numbers.
 #[kani::proof]
-#[kani::unwind(10)]
+#[kani::unwind(11)]
 fn a_multiplier_rises_while_the_reserve_is_missed() {
     let mut after = [[0.0; 9]; 8];
     for (multiplier, row) in after.iter_mut().enumerate() {

@@ -34,7 +34,7 @@ fn answer(one: f64, other: f64) -> (f64, [f64; 2]) {
 ///
 /// All numbers are exact in binary. For other links, `meets_the_optimality_conditions`.
 #[kani::proof]
-#[kani::unwind(5)]
+#[kani::unwind(6)]
 fn the_local_minimiser_is_feasible_and_pays_for_used_time_only() {
     let mut answers = [[(0.0, [0.0; 2]); 4]; 4];
     for (one, row) in answers.iter_mut().enumerate() {
