@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use pleach_automaton::network::beacon::Notice;
+use rayon::prelude::*;
 
 use super::graphs::{Graph, graphs, numbered_graphs, trees};
 use super::medium::{Faults, Medium};
@@ -116,21 +117,19 @@ pub const ENDS: &str = "every task is serviced, or the robots say why not";
 const MOST_STATES: usize = 5_000_000;
 
 impl Campaign {
-    /// Explores every configuration.
+    /// Explores every configuration, on as many threads as there are processors.
     ///
     /// # Errors
     /// When one of them has no end.
     pub fn run(&self) -> Result<Findings, CampaignError> {
-        let mut findings = Findings::default();
-        for graph in self.all_graphs() {
-            for branches in self.branches() {
-                let places =
-                    Places::with_branches(self.robots, self.access_points, &graph, &branches)?;
-                let name = format!("graph {graph:?} with branches {branches:?}");
-                self.visit(&name, places, &mut findings)?;
-            }
-        }
-        Ok(findings)
+        let (graphs, branches) = (self.all_graphs(), self.branches());
+        let configurations: Vec<_> =
+            graphs.iter().flat_map(|graph| branches.iter().map(move |b| (graph, b))).collect();
+        let found: Vec<Findings> = configurations
+            .par_iter()
+            .map(|(graph, branches)| self.visit(graph, branches))
+            .collect::<Result<_, _>>()?;
+        Ok(found.into_iter().fold(Findings::default(), Findings::and))
     }
 
     fn all_graphs(&self) -> Vec<Graph> {
@@ -156,19 +155,16 @@ impl Campaign {
         })
     }
 
-    fn visit(
-        &self,
-        name: &str,
-        places: Places,
-        findings: &mut Findings,
-    ) -> Result<(), CampaignError> {
+    /// Explores one configuration.
+    fn visit(&self, graph: &Graph, branches: &[(Place, usize)]) -> Result<Findings, CampaignError> {
+        let name = format!("graph {graph:?} with branches {branches:?}");
+        let places = Places::with_branches(self.robots, self.access_points, graph, branches)?;
         let (medium, contacts) = (self.medium, self.contacts);
         let mut protocol = Protocol::new(Configuration { places, medium, contacts })?;
-        let exploration = explore(&mut protocol, ALWAYS, MOST_STATES).map_err(|source| {
-            CampaignError::Exploration { configuration: name.to_owned(), source }
-        })?;
-        findings.add(name, &protocol, &exploration);
-        Ok(())
+        match explore(&mut protocol, ALWAYS, MOST_STATES) {
+            Ok(exploration) => Ok(Findings::of(&name, &protocol, &exploration)),
+            Err(source) => Err(CampaignError::Exploration { configuration: name, source }),
+        }
     }
 
     /// Whether there are as many configurations, states and transitions as expected, and nothing
@@ -181,38 +177,53 @@ impl Campaign {
 }
 
 impl Findings {
-    fn add(&mut self, name: &str, protocol: &Protocol, exploration: &Exploration<State, Action>) {
-        self.configurations += 1;
-        self.states += exploration.states().len();
-        self.transitions += exploration.transition_count();
-        self.largest = self.largest.max(exploration.states().len());
-        let mut fail = |property: &'static str, state: StateId| {
+    /// What one configuration has come to.
+    fn of(name: &str, protocol: &Protocol, exploration: &Exploration<State, Action>) -> Self {
+        let fail = |property: &'static str, state: StateId| {
             let story = story(protocol, exploration, state);
-            self.failures.push(Failure { configuration: name.to_owned(), property, story });
+            Failure { configuration: name.to_owned(), property, story }
         };
-        for violation in exploration.violations() {
-            fail(violation.property, violation.state);
-        }
-        let traps = exploration.traps(|state| has_ended(protocol, state), Fairness::Weak);
-        if let Some(&trap) = traps.first() {
-            fail(ENDS, trap);
-        }
-        let ended = |state: &&State| has_ended(protocol, state);
-        let mut outcomes: Vec<&'static str> = exploration
-            .states()
-            .iter()
-            .filter(ended)
-            .filter_map(|state| match protocol.locals(state).next()?.notice() {
-                Notice::Ended { outcome, .. } => Some(outcome.name()),
-                _ => None,
-            })
-            .collect();
-        outcomes.sort_unstable();
-        outcomes.dedup();
-        for outcome in outcomes {
-            *self.outcomes.entry(outcome).or_default() += 1;
+        let ended = |state: &State| has_ended(protocol, state);
+        let violations = exploration.violations().iter();
+        let trap = exploration.traps(ended, Fairness::Weak).first().copied();
+        Findings {
+            configurations: 1,
+            states: exploration.states().len(),
+            transitions: exploration.transition_count(),
+            largest: exploration.states().len(),
+            outcomes: outcomes(protocol, exploration).map(|outcome| (outcome, 1)).collect(),
+            failures: violations
+                .map(|violation| fail(violation.property, violation.state))
+                .chain(trap.map(|state| fail(ENDS, state)))
+                .collect(),
         }
     }
+
+    /// Both together.
+    fn and(mut self, other: Findings) -> Self {
+        self.configurations += other.configurations;
+        self.states += other.states;
+        self.transitions += other.transitions;
+        self.largest = self.largest.max(other.largest);
+        for (outcome, configurations) in other.outcomes {
+            *self.outcomes.entry(outcome).or_default() += configurations;
+        }
+        self.failures.extend(other.failures);
+        self
+    }
+}
+
+/// How the missions of a configuration may end.
+fn outcomes(
+    protocol: &Protocol,
+    exploration: &Exploration<State, Action>,
+) -> impl Iterator<Item = &'static str> {
+    exploration.states().iter().filter(|state| has_ended(protocol, state)).filter_map(|state| {
+        match protocol.locals(state).next()?.notice() {
+            Notice::Ended { outcome, .. } => Some(outcome.name()),
+            _ => None,
+        }
+    })
 }
 
 /// Rounds in which all messages arrive, and robots move between any two of them.
@@ -313,8 +324,8 @@ pub const QUICK: &[Campaign] = &[
         medium: ONE_COPIED,
         contacts: 1,
         configurations: 18,
-        states: 94_165,
-        transitions: 176_664,
+        states: 94_507,
+        transitions: 177_124,
     },
     Campaign {
         name: "two robots, two access points",
@@ -356,8 +367,8 @@ pub const THOROUGH: &[Campaign] = &[
         medium: ONE_LOST,
         contacts: 0,
         configurations: 88,
-        states: 414_926,
-        transitions: 806_078,
+        states: 409_690,
+        transitions: 796_021,
     },
     Campaign {
         name: "four robots",
@@ -369,8 +380,8 @@ pub const THOROUGH: &[Campaign] = &[
         medium: ROUNDS,
         contacts: 1,
         configurations: 580,
-        states: 1_103_445,
-        transitions: 1_456_491,
+        states: 902_755,
+        transitions: 1_198_189,
     },
     Campaign {
         name: "four robots, two tasks",
@@ -382,8 +393,8 @@ pub const THOROUGH: &[Campaign] = &[
         medium: ROUNDS,
         contacts: 0,
         configurations: 1450,
-        states: 409_045,
-        transitions: 531_855,
+        states: 390_520,
+        transitions: 506_225,
     },
     Campaign {
         name: "five robots",
@@ -395,8 +406,8 @@ pub const THOROUGH: &[Campaign] = &[
         medium: ROUNDS,
         contacts: 0,
         configurations: 2442,
-        states: 470_386,
-        transitions: 608_675,
+        states: 435_652,
+        transitions: 562_652,
     },
     Campaign {
         name: "six robots in a line",
@@ -475,5 +486,96 @@ pub const THOROUGH: &[Campaign] = &[
         configurations: 88,
         states: 433_543,
         transitions: 787_238,
+    },
+    Campaign {
+        name: "three robots, a message copied",
+        robots: 3,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: ONE_COPIED,
+        contacts: 1,
+        configurations: 44,
+        states: 500_319,
+        transitions: 918_010,
+    },
+    Campaign {
+        name: "three robots, a message lost and one late, moves once a period",
+        robots: 3,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: periods(Faults { losses: 1, delays: 1, duplicates: 0 }),
+        contacts: 0,
+        configurations: 44,
+        states: 284_759,
+        transitions: 727_202,
+    },
+    Campaign {
+        name: "three robots, a message lost and one copied, moves once a period",
+        robots: 3,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: periods(Faults { losses: 1, delays: 0, duplicates: 1 }),
+        contacts: 0,
+        configurations: 44,
+        states: 1_638_960,
+        transitions: 4_410_596,
+    },
+    Campaign {
+        name: "three robots, a message late and one copied, moves once a period",
+        robots: 3,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: periods(Faults { losses: 0, delays: 1, duplicates: 1 }),
+        contacts: 0,
+        configurations: 44,
+        states: 855_559,
+        transitions: 2_027_441,
+    },
+    Campaign {
+        name: "two robots in contact, two messages lost, moves once a period",
+        robots: 2,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1, 2],
+        medium: periods(Faults { losses: 2, ..Faults::NONE }),
+        contacts: 1,
+        configurations: 18,
+        states: 67_920,
+        transitions: 186_433,
+    },
+    Campaign {
+        name: "four robots, a message lost",
+        robots: 4,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: ONE_LOST,
+        contacts: 0,
+        configurations: 290,
+        states: 854_608,
+        transitions: 1_690_921,
+    },
+    Campaign {
+        name: "four robots, a message copied",
+        robots: 4,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: ONE_COPIED,
+        contacts: 0,
+        configurations: 290,
+        states: 2_674_971,
+        transitions: 4_907_833,
     },
 ];
