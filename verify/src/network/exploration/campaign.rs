@@ -7,7 +7,7 @@ use pleach_automaton::network::beacon::Notice;
 use rayon::prelude::*;
 
 use super::graphs::{Graph, graphs, numbered_graphs, trees};
-use super::medium::{Faults, Medium};
+use super::medium::Medium;
 use super::places::{Place, Places, PlacesError};
 use super::properties::{ALWAYS, has_ended};
 use super::protocol::{Configuration, Protocol, ProtocolError, State};
@@ -49,23 +49,26 @@ pub struct Campaign {
     pub medium: Medium,
     /// How often a parked robot is in a mover's way.
     pub contacts: u32,
-    /// How many configurations there are.
+    /// What there is to visit.
+    pub expected: Counts,
+}
+
+/// How much there is to visit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Configurations.
     pub configurations: usize,
-    /// How many states they have together.
+    /// States of all of them.
     pub states: usize,
-    /// How many transitions they have together.
+    /// Transitions of all of them.
     pub transitions: usize,
 }
 
 /// What a campaign has come to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
-    /// Configurations explored.
-    pub configurations: usize,
-    /// States of all of them.
-    pub states: usize,
-    /// Transitions of all of them.
-    pub transitions: usize,
+    /// What was visited.
+    pub counts: Counts,
     /// The most states of one.
     pub largest: usize,
     /// In how many configurations a mission may end so.
@@ -170,9 +173,7 @@ impl Campaign {
     /// Whether there are as many configurations, states and transitions as expected, and nothing
     /// fails.
     pub fn is_met_by(&self, findings: &Findings) -> bool {
-        let counts = (findings.configurations, findings.states, findings.transitions);
-        counts == (self.configurations, self.states, self.transitions)
-            && findings.failures.is_empty()
+        findings.counts == self.expected && findings.failures.is_empty()
     }
 }
 
@@ -186,11 +187,10 @@ impl Findings {
         let ended = |state: &State| has_ended(protocol, state);
         let violations = exploration.violations().iter();
         let trap = exploration.traps(ended, Fairness::Weak).first().copied();
+        let (states, transitions) = (exploration.states().len(), exploration.transition_count());
         Findings {
-            configurations: 1,
-            states: exploration.states().len(),
-            transitions: exploration.transition_count(),
-            largest: exploration.states().len(),
+            counts: Counts { configurations: 1, states, transitions },
+            largest: states,
             outcomes: outcomes(protocol, exploration).map(|outcome| (outcome, 1)).collect(),
             failures: violations
                 .map(|violation| fail(violation.property, violation.state))
@@ -201,9 +201,9 @@ impl Findings {
 
     /// Both together.
     fn and(mut self, other: Findings) -> Self {
-        self.configurations += other.configurations;
-        self.states += other.states;
-        self.transitions += other.transitions;
+        self.counts.configurations += other.counts.configurations;
+        self.counts.states += other.counts.states;
+        self.counts.transitions += other.counts.transitions;
         self.largest = self.largest.max(other.largest);
         for (outcome, configurations) in other.outcomes {
             *self.outcomes.entry(outcome).or_default() += configurations;
@@ -225,357 +225,3 @@ fn outcomes(
         }
     })
 }
-
-/// Rounds in which all messages arrive, and robots move between any two of them.
-const ROUNDS: Medium = rounds(Faults::NONE);
-/// One message of a whole mission is lost.
-const ONE_LOST: Medium = rounds(Faults { losses: 1, ..Faults::NONE });
-/// One message of a whole mission is late.
-const ONE_LATE: Medium = rounds(Faults { delays: 1, ..Faults::NONE });
-/// A copy of one message of a whole mission arrives later.
-const ONE_COPIED: Medium = rounds(Faults { duplicates: 1, ..Faults::NONE });
-
-const fn rounds(faults: Faults) -> Medium {
-    Medium::Rounds { faults, period: None }
-}
-
-/// The same in control periods: robots move after every so many rounds.
-const fn periods(faults: Faults) -> Medium {
-    Medium::Rounds { faults, period: Some(ROUNDS_OF_A_PERIOD) }
-}
-
-/// How many rounds the control periods have in which two faults are explored.
-const ROUNDS_OF_A_PERIOD: u32 = 4;
-
-/// What every test run explores.
-pub const QUICK: &[Campaign] = &[
-    Campaign {
-        name: "two robots, every numbering",
-        robots: 2,
-        access_points: 1,
-        graphs: Graphs::Numbered,
-        tasks: 2,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 144,
-        states: 32_397,
-        transitions: 42_527,
-    },
-    Campaign {
-        name: "two robots, nodes in any order",
-        robots: 2,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: Medium::NodesInAnyOrder,
-        contacts: 1,
-        configurations: 9,
-        states: 446_584,
-        transitions: 1_188_672,
-    },
-    Campaign {
-        name: "three robots",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 88,
-        states: 75_907,
-        transitions: 101_244,
-    },
-    Campaign {
-        name: "three robots, a message lost",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ONE_LOST,
-        contacts: 0,
-        configurations: 44,
-        states: 85_327,
-        transitions: 166_169,
-    },
-    Campaign {
-        name: "three robots, a message late",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ONE_LATE,
-        contacts: 1,
-        configurations: 44,
-        states: 89_073,
-        transitions: 156_021,
-    },
-    Campaign {
-        name: "two robots, a message copied",
-        robots: 2,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ONE_COPIED,
-        contacts: 1,
-        configurations: 18,
-        states: 94_507,
-        transitions: 177_124,
-    },
-    Campaign {
-        name: "two robots, two access points",
-        robots: 2,
-        access_points: 2,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 92,
-        states: 12_398,
-        transitions: 16_448,
-    },
-];
-
-/// What takes minutes.
-pub const THOROUGH: &[Campaign] = &[
-    Campaign {
-        name: "three robots, every numbering, two tasks",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::Numbered,
-        tasks: 2,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 2432,
-        states: 2_360_587,
-        transitions: 3_132_215,
-    },
-    Campaign {
-        name: "three robots, a message lost, tasks far and near",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ONE_LOST,
-        contacts: 0,
-        configurations: 88,
-        states: 409_690,
-        transitions: 796_021,
-    },
-    Campaign {
-        name: "four robots",
-        robots: 4,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 580,
-        states: 902_755,
-        transitions: 1_198_189,
-    },
-    Campaign {
-        name: "four robots, two tasks",
-        robots: 4,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 2,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 0,
-        configurations: 1450,
-        states: 390_520,
-        transitions: 506_225,
-    },
-    Campaign {
-        name: "five robots",
-        robots: 5,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 0,
-        configurations: 2442,
-        states: 435_652,
-        transitions: 562_652,
-    },
-    Campaign {
-        name: "six robots in a line",
-        robots: 6,
-        access_points: 1,
-        graphs: Graphs::Line,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 14,
-        states: 43_803,
-        transitions: 63_857,
-    },
-    Campaign {
-        name: "three robots, two access points",
-        robots: 3,
-        access_points: 2,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 0,
-        configurations: 810,
-        states: 137_200,
-        transitions: 182_302,
-    },
-    Campaign {
-        name: "six robots on every tree",
-        robots: 6,
-        access_points: 1,
-        graphs: Graphs::Trees,
-        tasks: 1,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 0,
-        configurations: 336,
-        states: 72_006,
-        transitions: 93_920,
-    },
-    Campaign {
-        name: "three robots, two messages lost, moves once a period",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: periods(Faults { losses: 2, ..Faults::NONE }),
-        contacts: 0,
-        configurations: 44,
-        states: 257_822,
-        transitions: 836_024,
-    },
-    Campaign {
-        name: "three robots, two messages late, moves once a period",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: periods(Faults { delays: 2, ..Faults::NONE }),
-        contacts: 0,
-        configurations: 44,
-        states: 103_328,
-        transitions: 216_713,
-    },
-    Campaign {
-        name: "three robots in contact, a message lost, moves once a period",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: periods(Faults { losses: 1, ..Faults::NONE }),
-        contacts: 1,
-        configurations: 88,
-        states: 433_543,
-        transitions: 787_238,
-    },
-    Campaign {
-        name: "three robots, a message copied",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ONE_COPIED,
-        contacts: 1,
-        configurations: 44,
-        states: 500_319,
-        transitions: 918_010,
-    },
-    Campaign {
-        name: "three robots, a message lost and one late, moves once a period",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: periods(Faults { losses: 1, delays: 1, duplicates: 0 }),
-        contacts: 0,
-        configurations: 44,
-        states: 284_759,
-        transitions: 727_202,
-    },
-    Campaign {
-        name: "three robots, a message lost and one copied, moves once a period",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: periods(Faults { losses: 1, delays: 0, duplicates: 1 }),
-        contacts: 0,
-        configurations: 44,
-        states: 1_638_960,
-        transitions: 4_410_596,
-    },
-    Campaign {
-        name: "three robots, a message late and one copied, moves once a period",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: periods(Faults { losses: 0, delays: 1, duplicates: 1 }),
-        contacts: 0,
-        configurations: 44,
-        states: 855_559,
-        transitions: 2_027_441,
-    },
-    Campaign {
-        name: "two robots in contact, two messages lost, moves once a period",
-        robots: 2,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: periods(Faults { losses: 2, ..Faults::NONE }),
-        contacts: 1,
-        configurations: 18,
-        states: 67_920,
-        transitions: 186_433,
-    },
-    Campaign {
-        name: "four robots, a message lost",
-        robots: 4,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ONE_LOST,
-        contacts: 0,
-        configurations: 290,
-        states: 854_608,
-        transitions: 1_690_921,
-    },
-    Campaign {
-        name: "four robots, a message copied",
-        robots: 4,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ONE_COPIED,
-        contacts: 0,
-        configurations: 290,
-        states: 2_674_971,
-        transitions: 4_907_833,
-    },
-];
