@@ -33,10 +33,10 @@ fn report(campaign: &Campaign) -> Result<bool, CampaignError> {
     println!(
         "{}: {} configurations, {} states (at most {} in one), {} transitions, {:.1} s{}",
         campaign.name,
-        findings.configurations,
-        findings.states,
+        findings.counts.configurations,
+        findings.counts.states,
         findings.largest,
-        findings.transitions,
+        findings.counts.transitions,
         begin.elapsed().as_secs_f64(),
         if is_met { "" } else { " — not as expected" }
     );

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use catalogue::faults;
 use pleach::verify::network::Property;
+use pleach::verify::network::exploration::{Campaign, Counts, QUICK, THOROUGH};
 
 /// The packages that may have harnesses.
 const PACKAGES: [&str; 6] = ["", "guards", "discrete", "continuous", "automaton", "verify"];
@@ -135,4 +136,26 @@ fn the_document_names_every_fault_and_each_applies() {
         assert!(rows.iter().any(|found| found.starts_with(&row)), "it should have: {row}");
         assert!(fault.command.starts_with("test -p "), "{}", fault.name);
     }
+}
+
+/// A number in groups of three digits.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let groups = digits.as_bytes().rchunks(3).rev().map(str::from_utf8);
+    groups.collect::<Result<Vec<_>, _>>().unwrap().join(" ")
+}
+
+#[test]
+fn the_document_of_the_exploration_counts_every_campaign() {
+    let document = fs::read_to_string(root().join("docs/exploration.md")).unwrap();
+    let named: Vec<&str> = rows(&document, "The campaigns")
+        .into_iter()
+        .filter(|row| !row.starts_with("| campaign") && !row.starts_with("| ---"))
+        .collect();
+    let row = |campaign: &Campaign| {
+        let Counts { configurations, states, transitions } = campaign.expected;
+        let counts = [configurations, states, transitions].map(grouped).join(" | ");
+        format!("| {} | {counts} |", campaign.name)
+    };
+    assert_eq!(named, QUICK.iter().chain(THOROUGH).map(row).collect::<Vec<_>>());
 }

@@ -114,6 +114,14 @@ pub struct Beacon {
     pub team: Option<TeamReport>,
 }
 
+impl Beacon {
+    /// Whether the same sender surely said this before `other`: it had heard, or offered, less.
+    /// A medium may deliver copies late.
+    pub fn is_older_than(&self, other: &Beacon) -> bool {
+        self.bulletin.sequence() < other.bulletin.sequence() || self.offers_made < other.offers_made
+    }
+}
+
 /// What a node said last. A node with nothing new to say sends the very same beacon again, and
 /// who hears it knows without reading it.
 #[derive(Clone, Debug, Default)]

@@ -72,29 +72,34 @@ impl Neighbour {
 impl Robot {
     /// Takes in the beacons heard in one round, in ascending order of their senders.
     ///
-    /// A message may be lost: who is not heard for a round or two is taken to be where it was.
+    /// A message may be lost: who is not heard for a round or two is taken to be where it was. One
+    /// that is overtaken by a newer one of its sender says nothing.
     pub fn hear<'a>(&mut self, beacons: impl Iterator<Item = &'a Arc<Beacon>>) {
         let mut at = 0;
         for beacon in beacons {
             while self.neighbours.get(at).is_some_and(|known| known.id() < beacon.sender) {
                 at = self.miss(at);
             }
-            match self.neighbours.get(at) {
-                Some(known) if known.id() == beacon.sender => self.renew(at, beacon),
-                _ => {
-                    self.neighbours.insert(at, Neighbour::new(beacon, self.position, &self.site));
-                    self.receive_news();
-                }
-            }
-            at += 1;
+            at = match self.neighbours.get(at).filter(|known| known.id() == beacon.sender) {
+                Some(known) if beacon.is_older_than(&known.beacon) => self.miss(at),
+                Some(_) => self.renew(at, beacon),
+                None => self.meet(at, beacon),
+            };
         }
         while at < self.neighbours.len() {
             at = self.miss(at);
         }
     }
 
-    /// A neighbour that the robot knows is heard again.
-    fn renew(&mut self, at: usize, beacon: &Arc<Beacon>) {
+    /// A node is heard that the robot does not know; says where the next neighbour stands.
+    fn meet(&mut self, at: usize, beacon: &Arc<Beacon>) -> usize {
+        self.neighbours.insert(at, Neighbour::new(beacon, self.position, &self.site));
+        self.receive_news();
+        at + 1
+    }
+
+    /// A neighbour that the robot knows is heard again; says where the next one stands.
+    fn renew(&mut self, at: usize, beacon: &Arc<Beacon>) -> usize {
         let known = &mut self.neighbours[at];
         known.silent_rounds = 0;
         let has_moved = known.measured != (self.position, beacon.position);
@@ -103,9 +108,10 @@ impl Robot {
         } else if !Arc::ptr_eq(&known.beacon, beacon) {
             known.beacon = Arc::clone(beacon);
         } else {
-            return;
+            return at + 1;
         }
         self.receive_news();
+        at + 1
     }
 
     /// A neighbour that the robot knows is not heard; says where the next one stands.

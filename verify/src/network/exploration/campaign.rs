@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use pleach_automaton::network::beacon::Notice;
+use rayon::prelude::*;
 
 use super::graphs::{Graph, graphs, numbered_graphs, trees};
-use super::medium::{Faults, Medium};
+use super::medium::Medium;
 use super::places::{Place, Places, PlacesError};
 use super::properties::{ALWAYS, has_ended};
 use super::protocol::{Configuration, Protocol, ProtocolError, State};
@@ -48,23 +49,26 @@ pub struct Campaign {
     pub medium: Medium,
     /// How often a parked robot is in a mover's way.
     pub contacts: u32,
-    /// How many configurations there are.
+    /// What there is to visit.
+    pub expected: Counts,
+}
+
+/// How much there is to visit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Configurations.
     pub configurations: usize,
-    /// How many states they have together.
+    /// States of all of them.
     pub states: usize,
-    /// How many transitions they have together.
+    /// Transitions of all of them.
     pub transitions: usize,
 }
 
 /// What a campaign has come to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
-    /// Configurations explored.
-    pub configurations: usize,
-    /// States of all of them.
-    pub states: usize,
-    /// Transitions of all of them.
-    pub transitions: usize,
+    /// What was visited.
+    pub counts: Counts,
     /// The most states of one.
     pub largest: usize,
     /// In how many configurations a mission may end so.
@@ -116,21 +120,19 @@ pub const ENDS: &str = "every task is serviced, or the robots say why not";
 const MOST_STATES: usize = 5_000_000;
 
 impl Campaign {
-    /// Explores every configuration.
+    /// Explores every configuration, on as many threads as there are processors.
     ///
     /// # Errors
     /// When one of them has no end.
     pub fn run(&self) -> Result<Findings, CampaignError> {
-        let mut findings = Findings::default();
-        for graph in self.all_graphs() {
-            for branches in self.branches() {
-                let places =
-                    Places::with_branches(self.robots, self.access_points, &graph, &branches)?;
-                let name = format!("graph {graph:?} with branches {branches:?}");
-                self.visit(&name, places, &mut findings)?;
-            }
-        }
-        Ok(findings)
+        let (graphs, branches) = (self.all_graphs(), self.branches());
+        let configurations: Vec<_> =
+            graphs.iter().flat_map(|graph| branches.iter().map(move |b| (graph, b))).collect();
+        let found: Vec<Findings> = configurations
+            .par_iter()
+            .map(|(graph, branches)| self.visit(graph, branches))
+            .collect::<Result<_, _>>()?;
+        Ok(found.into_iter().fold(Findings::default(), Findings::and))
     }
 
     fn all_graphs(&self) -> Vec<Graph> {
@@ -156,324 +158,70 @@ impl Campaign {
         })
     }
 
-    fn visit(
-        &self,
-        name: &str,
-        places: Places,
-        findings: &mut Findings,
-    ) -> Result<(), CampaignError> {
+    /// Explores one configuration.
+    fn visit(&self, graph: &Graph, branches: &[(Place, usize)]) -> Result<Findings, CampaignError> {
+        let name = format!("graph {graph:?} with branches {branches:?}");
+        let places = Places::with_branches(self.robots, self.access_points, graph, branches)?;
         let (medium, contacts) = (self.medium, self.contacts);
         let mut protocol = Protocol::new(Configuration { places, medium, contacts })?;
-        let exploration = explore(&mut protocol, ALWAYS, MOST_STATES).map_err(|source| {
-            CampaignError::Exploration { configuration: name.to_owned(), source }
-        })?;
-        findings.add(name, &protocol, &exploration);
-        Ok(())
+        match explore(&mut protocol, ALWAYS, MOST_STATES) {
+            Ok(exploration) => Ok(Findings::of(&name, &protocol, &exploration)),
+            Err(source) => Err(CampaignError::Exploration { configuration: name, source }),
+        }
     }
 
     /// Whether there are as many configurations, states and transitions as expected, and nothing
     /// fails.
     pub fn is_met_by(&self, findings: &Findings) -> bool {
-        let counts = (findings.configurations, findings.states, findings.transitions);
-        counts == (self.configurations, self.states, self.transitions)
-            && findings.failures.is_empty()
+        findings.counts == self.expected && findings.failures.is_empty()
     }
 }
 
 impl Findings {
-    fn add(&mut self, name: &str, protocol: &Protocol, exploration: &Exploration<State, Action>) {
-        self.configurations += 1;
-        self.states += exploration.states().len();
-        self.transitions += exploration.transition_count();
-        self.largest = self.largest.max(exploration.states().len());
-        let mut fail = |property: &'static str, state: StateId| {
+    /// What one configuration has come to.
+    fn of(name: &str, protocol: &Protocol, exploration: &Exploration<State, Action>) -> Self {
+        let fail = |property: &'static str, state: StateId| {
             let story = story(protocol, exploration, state);
-            self.failures.push(Failure { configuration: name.to_owned(), property, story });
+            Failure { configuration: name.to_owned(), property, story }
         };
-        for violation in exploration.violations() {
-            fail(violation.property, violation.state);
+        let ended = |state: &State| has_ended(protocol, state);
+        let violations = exploration.violations().iter();
+        let trap = exploration.traps(ended, Fairness::Weak).first().copied();
+        let (states, transitions) = (exploration.states().len(), exploration.transition_count());
+        Findings {
+            counts: Counts { configurations: 1, states, transitions },
+            largest: states,
+            outcomes: outcomes(protocol, exploration).map(|outcome| (outcome, 1)).collect(),
+            failures: violations
+                .map(|violation| fail(violation.property, violation.state))
+                .chain(trap.map(|state| fail(ENDS, state)))
+                .collect(),
         }
-        let traps = exploration.traps(|state| has_ended(protocol, state), Fairness::Weak);
-        if let Some(&trap) = traps.first() {
-            fail(ENDS, trap);
+    }
+
+    /// Both together.
+    fn and(mut self, other: Findings) -> Self {
+        self.counts.configurations += other.counts.configurations;
+        self.counts.states += other.counts.states;
+        self.counts.transitions += other.counts.transitions;
+        self.largest = self.largest.max(other.largest);
+        for (outcome, configurations) in other.outcomes {
+            *self.outcomes.entry(outcome).or_default() += configurations;
         }
-        let ended = |state: &&State| has_ended(protocol, state);
-        let mut outcomes: Vec<&'static str> = exploration
-            .states()
-            .iter()
-            .filter(ended)
-            .filter_map(|state| match protocol.locals(state).next()?.notice() {
-                Notice::Ended { outcome, .. } => Some(outcome.name()),
-                _ => None,
-            })
-            .collect();
-        outcomes.sort_unstable();
-        outcomes.dedup();
-        for outcome in outcomes {
-            *self.outcomes.entry(outcome).or_default() += 1;
-        }
+        self.failures.extend(other.failures);
+        self
     }
 }
 
-/// Rounds in which all messages arrive, and robots move between any two of them.
-const ROUNDS: Medium = rounds(Faults::NONE);
-/// One message of a whole mission is lost.
-const ONE_LOST: Medium = rounds(Faults { losses: 1, ..Faults::NONE });
-/// One message of a whole mission is late.
-const ONE_LATE: Medium = rounds(Faults { delays: 1, ..Faults::NONE });
-/// A copy of one message of a whole mission arrives later.
-const ONE_COPIED: Medium = rounds(Faults { duplicates: 1, ..Faults::NONE });
-
-const fn rounds(faults: Faults) -> Medium {
-    Medium::Rounds { faults, period: None }
+/// How the missions of a configuration may end.
+fn outcomes(
+    protocol: &Protocol,
+    exploration: &Exploration<State, Action>,
+) -> impl Iterator<Item = &'static str> {
+    exploration.states().iter().filter(|state| has_ended(protocol, state)).filter_map(|state| {
+        match protocol.locals(state).next()?.notice() {
+            Notice::Ended { outcome, .. } => Some(outcome.name()),
+            _ => None,
+        }
+    })
 }
-
-/// The same in control periods: robots move after every so many rounds.
-const fn periods(faults: Faults) -> Medium {
-    Medium::Rounds { faults, period: Some(ROUNDS_OF_A_PERIOD) }
-}
-
-/// How many rounds the control periods have in which two faults are explored.
-const ROUNDS_OF_A_PERIOD: u32 = 4;
-
-/// What every test run explores.
-pub const QUICK: &[Campaign] = &[
-    Campaign {
-        name: "two robots, every numbering",
-        robots: 2,
-        access_points: 1,
-        graphs: Graphs::Numbered,
-        tasks: 2,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 144,
-        states: 32_397,
-        transitions: 42_527,
-    },
-    Campaign {
-        name: "two robots, nodes in any order",
-        robots: 2,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: Medium::NodesInAnyOrder,
-        contacts: 1,
-        configurations: 9,
-        states: 446_584,
-        transitions: 1_188_672,
-    },
-    Campaign {
-        name: "three robots",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 88,
-        states: 75_907,
-        transitions: 101_244,
-    },
-    Campaign {
-        name: "three robots, a message lost",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ONE_LOST,
-        contacts: 0,
-        configurations: 44,
-        states: 85_327,
-        transitions: 166_169,
-    },
-    Campaign {
-        name: "three robots, a message late",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ONE_LATE,
-        contacts: 1,
-        configurations: 44,
-        states: 89_073,
-        transitions: 156_021,
-    },
-    Campaign {
-        name: "two robots, a message copied",
-        robots: 2,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ONE_COPIED,
-        contacts: 1,
-        configurations: 18,
-        states: 94_165,
-        transitions: 176_664,
-    },
-    Campaign {
-        name: "two robots, two access points",
-        robots: 2,
-        access_points: 2,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 92,
-        states: 12_398,
-        transitions: 16_448,
-    },
-];
-
-/// What takes minutes.
-pub const THOROUGH: &[Campaign] = &[
-    Campaign {
-        name: "three robots, every numbering, two tasks",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::Numbered,
-        tasks: 2,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 2432,
-        states: 2_360_587,
-        transitions: 3_132_215,
-    },
-    Campaign {
-        name: "three robots, a message lost, tasks far and near",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ONE_LOST,
-        contacts: 0,
-        configurations: 88,
-        states: 414_926,
-        transitions: 806_078,
-    },
-    Campaign {
-        name: "four robots",
-        robots: 4,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 580,
-        states: 1_103_445,
-        transitions: 1_456_491,
-    },
-    Campaign {
-        name: "four robots, two tasks",
-        robots: 4,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 2,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 0,
-        configurations: 1450,
-        states: 409_045,
-        transitions: 531_855,
-    },
-    Campaign {
-        name: "five robots",
-        robots: 5,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 0,
-        configurations: 2442,
-        states: 470_386,
-        transitions: 608_675,
-    },
-    Campaign {
-        name: "six robots in a line",
-        robots: 6,
-        access_points: 1,
-        graphs: Graphs::Line,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: ROUNDS,
-        contacts: 1,
-        configurations: 14,
-        states: 43_803,
-        transitions: 63_857,
-    },
-    Campaign {
-        name: "three robots, two access points",
-        robots: 3,
-        access_points: 2,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 0,
-        configurations: 810,
-        states: 137_200,
-        transitions: 182_302,
-    },
-    Campaign {
-        name: "six robots on every tree",
-        robots: 6,
-        access_points: 1,
-        graphs: Graphs::Trees,
-        tasks: 1,
-        steps: &[1],
-        medium: ROUNDS,
-        contacts: 0,
-        configurations: 336,
-        states: 72_006,
-        transitions: 93_920,
-    },
-    Campaign {
-        name: "three robots, two messages lost, moves once a period",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: periods(Faults { losses: 2, ..Faults::NONE }),
-        contacts: 0,
-        configurations: 44,
-        states: 257_822,
-        transitions: 836_024,
-    },
-    Campaign {
-        name: "three robots, two messages late, moves once a period",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1],
-        medium: periods(Faults { delays: 2, ..Faults::NONE }),
-        contacts: 0,
-        configurations: 44,
-        states: 103_328,
-        transitions: 216_713,
-    },
-    Campaign {
-        name: "three robots in contact, a message lost, moves once a period",
-        robots: 3,
-        access_points: 1,
-        graphs: Graphs::UpToSymmetry,
-        tasks: 1,
-        steps: &[1, 2],
-        medium: periods(Faults { losses: 1, ..Faults::NONE }),
-        contacts: 1,
-        configurations: 88,
-        states: 433_543,
-        transitions: 787_238,
-    },
-];

@@ -34,8 +34,8 @@ pub struct Faults {
     /// Messages that are late: what the receiver heard last of the sender reaches it once more
     /// instead.
     pub delays: u32,
-    /// Messages of which a copy arrives too, after what the sender says in one of the next
-    /// [`LONGEST_ECHO`] rounds, so that the receiver takes the copy for the sender's last word.
+    /// Messages of which a copy arrives too, in place of what the sender says in one of the next
+    /// [`LONGEST_ECHO`] rounds.
     pub duplicates: u32,
 }
 

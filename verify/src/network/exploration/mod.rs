@@ -9,6 +9,7 @@
 //! [`AccessPoint`]: pleach_automaton::network::access_point::AccessPoint
 
 mod campaign;
+mod campaigns;
 pub mod election;
 mod graphs;
 mod medium;
@@ -18,7 +19,8 @@ pub mod properties;
 mod protocol;
 mod story;
 
-pub use campaign::{Campaign, CampaignError, ENDS, Failure, Findings, Graphs, QUICK, THOROUGH};
+pub use campaign::{Campaign, CampaignError, Counts, ENDS, Failure, Findings, Graphs};
+pub use campaigns::{QUICK, THOROUGH};
 pub use graphs::{Graph, graphs, numbered_graphs, trees};
 pub use medium::{Faults, LONGEST_ECHO, Medium};
 pub use node::{BeaconId, Local, LocalId, Node, NodeError, Nodes, Stimulus};

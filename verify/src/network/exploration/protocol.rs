@@ -50,7 +50,7 @@ pub enum Action {
         /// The receiver.
         to: NodeId,
     },
-    /// The same, but the copy arrives after what `from` says.
+    /// The same, but the copy arrives in place of what `from` says.
     Echo {
         /// The sender.
         from: NodeId,
@@ -90,7 +90,7 @@ impl fmt::Display for Action {
                 write!(f, "in a round what {to} hears of {from} is copied on the way")
             }
             Action::Echo { from, to } => {
-                write!(f, "in a round {to} hears {from}, and then the copy")
+                write!(f, "in a round {to} hears the copy of what {from} said")
             }
             Action::Listen(node) => write!(f, "{node} hears everybody in range"),
             Action::Hear { from, to } => write!(f, "{to} hears {from}"),

@@ -1,0 +1,194 @@
+//! The campaigns that are explored, with the exact counts of each.
+
+use super::campaign::{Campaign, Counts, Graphs};
+use super::medium::{Faults, Medium};
+
+/// Rounds in which all messages arrive, and robots move between any two of them.
+const ROUNDS: Medium = rounds(Faults::NONE);
+/// One message of a whole mission is lost.
+const ONE_LOST: Medium = rounds(Faults { losses: 1, ..Faults::NONE });
+/// One message of a whole mission is late.
+const ONE_LATE: Medium = rounds(Faults { delays: 1, ..Faults::NONE });
+/// A copy of one message of a whole mission arrives later.
+const ONE_COPIED: Medium = rounds(Faults { duplicates: 1, ..Faults::NONE });
+
+const fn rounds(faults: Faults) -> Medium {
+    Medium::Rounds { faults, period: None }
+}
+
+/// The same in control periods: robots move after every so many rounds.
+const fn periods(faults: Faults) -> Medium {
+    Medium::Rounds { faults, period: Some(ROUNDS_OF_A_PERIOD) }
+}
+
+/// How many rounds the control periods have in which two faults are explored.
+const ROUNDS_OF_A_PERIOD: u32 = 4;
+
+/// On every graph of so many robots and an access point, with one task beside it; all messages
+/// arrive, and nobody is in another's way.
+const fn robots(robots: usize, expected: Counts) -> Campaign {
+    Campaign {
+        name: "",
+        robots,
+        access_points: 1,
+        graphs: Graphs::UpToSymmetry,
+        tasks: 1,
+        steps: &[1],
+        medium: ROUNDS,
+        contacts: 0,
+        expected,
+    }
+}
+
+/// What every test run explores.
+pub const QUICK: &[Campaign] = &[
+    Campaign {
+        name: "two robots, every numbering",
+        graphs: Graphs::Numbered,
+        tasks: 2,
+        steps: &[1, 2],
+        contacts: 1,
+        ..robots(2, Counts { configurations: 144, states: 32_397, transitions: 42_527 })
+    },
+    Campaign {
+        name: "two robots, nodes in any order",
+        medium: Medium::NodesInAnyOrder,
+        contacts: 1,
+        ..robots(2, Counts { configurations: 9, states: 446_584, transitions: 1_188_672 })
+    },
+    Campaign {
+        name: "three robots",
+        steps: &[1, 2],
+        contacts: 1,
+        ..robots(3, Counts { configurations: 88, states: 75_907, transitions: 101_244 })
+    },
+    Campaign {
+        name: "three robots, a message lost",
+        medium: ONE_LOST,
+        ..robots(3, Counts { configurations: 44, states: 85_327, transitions: 166_169 })
+    },
+    Campaign {
+        name: "three robots, a message late",
+        medium: ONE_LATE,
+        contacts: 1,
+        ..robots(3, Counts { configurations: 44, states: 89_073, transitions: 156_021 })
+    },
+    Campaign {
+        name: "two robots, a message copied",
+        steps: &[1, 2],
+        medium: ONE_COPIED,
+        contacts: 1,
+        ..robots(2, Counts { configurations: 18, states: 94_507, transitions: 177_124 })
+    },
+    Campaign {
+        name: "two robots, two access points",
+        access_points: 2,
+        contacts: 1,
+        ..robots(2, Counts { configurations: 92, states: 12_398, transitions: 16_448 })
+    },
+];
+
+/// What takes minutes.
+pub const THOROUGH: &[Campaign] = &[
+    Campaign {
+        name: "three robots, every numbering, two tasks",
+        graphs: Graphs::Numbered,
+        tasks: 2,
+        steps: &[1, 2],
+        contacts: 1,
+        ..robots(3, Counts { configurations: 2_432, states: 2_360_587, transitions: 3_132_215 })
+    },
+    Campaign {
+        name: "four robots",
+        steps: &[1, 2],
+        contacts: 1,
+        ..robots(4, Counts { configurations: 580, states: 902_755, transitions: 1_198_189 })
+    },
+    Campaign {
+        name: "four robots, two tasks",
+        tasks: 2,
+        ..robots(4, Counts { configurations: 1_450, states: 390_520, transitions: 506_225 })
+    },
+    Campaign {
+        name: "five robots",
+        ..robots(5, Counts { configurations: 2_442, states: 435_652, transitions: 562_652 })
+    },
+    Campaign {
+        name: "six robots on every tree",
+        graphs: Graphs::Trees,
+        ..robots(6, Counts { configurations: 336, states: 72_006, transitions: 93_920 })
+    },
+    Campaign {
+        name: "six robots in a line",
+        graphs: Graphs::Line,
+        steps: &[1, 2],
+        contacts: 1,
+        ..robots(6, Counts { configurations: 14, states: 43_803, transitions: 63_857 })
+    },
+    Campaign {
+        name: "three robots, two access points",
+        access_points: 2,
+        ..robots(3, Counts { configurations: 810, states: 137_200, transitions: 182_302 })
+    },
+    Campaign {
+        name: "three robots, a message lost, tasks far and near",
+        steps: &[1, 2],
+        medium: ONE_LOST,
+        ..robots(3, Counts { configurations: 88, states: 409_690, transitions: 796_021 })
+    },
+    Campaign {
+        name: "four robots, a message lost",
+        medium: ONE_LOST,
+        ..robots(4, Counts { configurations: 290, states: 854_608, transitions: 1_690_921 })
+    },
+    Campaign {
+        name: "three robots, a message copied",
+        medium: ONE_COPIED,
+        contacts: 1,
+        ..robots(3, Counts { configurations: 44, states: 500_319, transitions: 918_010 })
+    },
+    Campaign {
+        name: "four robots, a message copied",
+        medium: ONE_COPIED,
+        ..robots(4, Counts { configurations: 290, states: 2_674_971, transitions: 4_907_833 })
+    },
+    Campaign {
+        name: "two robots in contact, two messages lost, moves once a period",
+        steps: &[1, 2],
+        medium: periods(Faults { losses: 2, ..Faults::NONE }),
+        contacts: 1,
+        ..robots(2, Counts { configurations: 18, states: 67_920, transitions: 186_433 })
+    },
+    Campaign {
+        name: "three robots in contact, a message lost, moves once a period",
+        steps: &[1, 2],
+        medium: periods(Faults { losses: 1, ..Faults::NONE }),
+        contacts: 1,
+        ..robots(3, Counts { configurations: 88, states: 433_543, transitions: 787_238 })
+    },
+    Campaign {
+        name: "three robots, two messages lost, moves once a period",
+        medium: periods(Faults { losses: 2, ..Faults::NONE }),
+        ..robots(3, Counts { configurations: 44, states: 257_822, transitions: 836_024 })
+    },
+    Campaign {
+        name: "three robots, two messages late, moves once a period",
+        medium: periods(Faults { delays: 2, ..Faults::NONE }),
+        ..robots(3, Counts { configurations: 44, states: 103_328, transitions: 216_713 })
+    },
+    Campaign {
+        name: "three robots, a message lost and one late, moves once a period",
+        medium: periods(Faults { losses: 1, delays: 1, duplicates: 0 }),
+        ..robots(3, Counts { configurations: 44, states: 284_759, transitions: 727_202 })
+    },
+    Campaign {
+        name: "three robots, a message lost and one copied, moves once a period",
+        medium: periods(Faults { losses: 1, delays: 0, duplicates: 1 }),
+        ..robots(3, Counts { configurations: 44, states: 1_638_960, transitions: 4_410_596 })
+    },
+    Campaign {
+        name: "three robots, a message late and one copied, moves once a period",
+        medium: periods(Faults { losses: 0, delays: 1, duplicates: 1 }),
+        ..robots(3, Counts { configurations: 44, states: 855_559, transitions: 2_027_441 })
+    },
+];
