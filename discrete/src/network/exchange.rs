@@ -5,8 +5,26 @@
 //! the parked robot answers with its own and goes on doing it; the mover takes that and gives its
 //! offer up; then the parked robot takes what was offered. Each step is seen in the beacon of the
 //! one who took it, so that messages may be repeated or come late.
+//!
+//! ```
+//! use pleach_discrete::network::Dealings;
+//!
+//! let (mut mover, mut parked) = (Dealings::new(), Dealings::new());
+//! mover.make_offer(1, "relay");
+//! let offer = mover.offer().expect("it has just been made");
+//! parked.answer(0, offer, Some("leaf"));
+//! assert_eq!(parked.conclude(mover.offer(), mover.offers_made()), None); // not before the mover
+//!
+//! let reply = parked.reply().expect("it has just answered");
+//! assert_eq!(mover.hear(0, reply), Some("leaf"));
+//! assert_eq!(parked.conclude(mover.offer(), mover.offers_made()), Some("relay"));
+//! assert!(!mover.are_under_way() && !parked.are_under_way());
+//! ```
 
 use super::NodeId;
+
+#[cfg(any(kani, test))]
+mod proofs;
 
 /// A mover's standing offer to a parked robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,4 +46,106 @@ pub struct Reply<D> {
     pub number: u32,
     /// The duty that the parked robot handed over in return; none if it refused.
     pub accepted: Option<D>,
+}
+
+impl<D> Exchange<D> {
+    /// Whether `robot` is to answer, which has answered the offers of this mover up to the one
+    /// with the number `answered`.
+    pub fn asks(&self, robot: NodeId, answered: Option<u32>) -> bool {
+        self.to == robot && answered.is_none_or(|last| last < self.number)
+    }
+}
+
+impl<D> Reply<D> {
+    /// Whether the mover has heard this reply, to judge by its `offer`: it has given that one up.
+    pub fn is_heard(&self, offer: Option<&Exchange<D>>) -> bool {
+        offer.is_none_or(|offer| offer.number != self.number)
+    }
+}
+
+/// Where a robot stands in its exchanges: with an offer as a mover, with a reply as the parked one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dealings<D> {
+    offer: Option<Exchange<D>>,
+    offers_made: u32,
+    reply: Option<Reply<D>>,
+    /// What it gets for the duty that the reply hands over.
+    taking: Option<D>,
+}
+
+impl<D> Default for Dealings<D> {
+    fn default() -> Self {
+        Dealings::new()
+    }
+}
+
+impl<D> Dealings<D> {
+    /// Those of a robot that has never exchanged its duty.
+    pub const fn new() -> Self {
+        Dealings { offer: None, offers_made: 0, reply: None, taking: None }
+    }
+
+    /// The standing offer.
+    pub const fn offer(&self) -> Option<&Exchange<D>> {
+        self.offer.as_ref()
+    }
+
+    /// How many offers the robot has made so far.
+    pub const fn offers_made(&self) -> u32 {
+        self.offers_made
+    }
+
+    /// The answer that the mover has not heard yet.
+    pub const fn reply(&self) -> Option<&Reply<D>> {
+        self.reply.as_ref()
+    }
+
+    /// The duty that the robot takes over once the mover that offered it has taken its own.
+    pub const fn taking(&self) -> Option<&D> {
+        self.taking.as_ref()
+    }
+
+    /// Whether an exchange is under way.
+    pub const fn are_under_way(&self) -> bool {
+        self.offer.is_some() || self.reply.is_some()
+    }
+}
+
+impl<D: Copy> Dealings<D> {
+    /// The mover offers its `duty`.
+    pub fn make_offer(&mut self, to: NodeId, duty: D) {
+        self.offers_made += 1;
+        self.offer = Some(Exchange { to, number: self.offers_made, duty });
+    }
+
+    /// The parked robot answers the `offer` of `mover`: with the duty that it gives in return,
+    /// or none if it refuses.
+    pub fn answer(&mut self, mover: NodeId, offer: &Exchange<D>, given: Option<D>) {
+        self.taking = given.map(|_| offer.duty);
+        self.reply = Some(Reply { to: mover, number: offer.number, accepted: given });
+    }
+
+    /// The mover, which is robot `own`, hears what the robot says to which it made its offer: the
+    /// duty that it has now, if that one accepts.
+    pub fn hear(&mut self, own: NodeId, reply: &Reply<D>) -> Option<D> {
+        let offer = self.offer.as_ref()?;
+        if reply.to != own || reply.number != offer.number {
+            return None;
+        }
+        self.offer = None;
+        reply.accepted
+    }
+
+    /// The parked robot hears of the mover, which has this offer and has made so many: the duty
+    /// that it has now, if it has given its own and the mover has taken that.
+    pub fn conclude(&mut self, offer: Option<&Exchange<D>>, offers_made: u32) -> Option<D> {
+        let reply = self.reply.as_ref()?;
+        // What the mover said before it made the offer may be heard again.
+        let concluded = reply.is_heard(offer) && offers_made >= reply.number;
+        if !concluded {
+            return None;
+        }
+        self.reply = None;
+        self.taking.take()
+    }
 }

@@ -15,7 +15,7 @@ pub mod tables;
 pub use agreement::Agreement;
 pub use bulletin::Bulletin;
 pub use election::{Bid, Election};
-pub use exchange::{Exchange, Reply};
+pub use exchange::{Dealings, Exchange, Reply};
 pub use id_set::IdSet;
 pub use lineage::Lineage;
 pub use path::{Hop, Path, Subgroup};

@@ -45,7 +45,7 @@ impl Robot {
 
     /// The duty that it takes over once the mover that offered it has taken its own.
     pub const fn taking(&self) -> Option<&Duty> {
-        self.taking.as_ref()
+        self.dealings.taking()
     }
 
     /// The path Σ that it was told of last.
@@ -102,8 +102,8 @@ impl Robot {
             "{:?}",
             (
                 (self.id, self.position, self.still_periods, self.role, self.phase),
-                (self.duty, self.left_post, &self.offer, self.offers_made, self.last_partner),
-                (&self.reply, self.taking, &self.answered, self.parent, &self.lineage, &self.below),
+                (self.duty, self.left_post, &self.dealings, &self.answered, self.last_partner),
+                (self.parent, &self.lineage, &self.below),
                 (self.can_detach, self.barren_periods, &self.bulletin, &self.tasks, &self.roster),
                 (
                     &self.eligible,

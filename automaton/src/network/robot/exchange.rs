@@ -8,7 +8,7 @@
 //! way that remains gets shorter, so that exchanges come to an end. A mover that cannot pass
 //! takes a partner somewhat farther from its goal too, but no robot twice in a row.
 
-use pleach_discrete::network::{Exchange, NodeId, Phase, PostKind, Reply};
+use pleach_discrete::network::{NodeId, Phase, PostKind};
 
 use super::super::duty::Duty;
 use super::super::record::MissionEvent;
@@ -30,11 +30,7 @@ const CONCESSION: f64 = 4.0;
 impl Robot {
     /// Once a period: a mover that does not get on offers its duty to the robot in its way.
     pub fn consider_exchange(&mut self) {
-        if self.offer.is_some()
-            || self.reply.is_some()
-            || self.still_periods < PATIENCE
-            || !self.may_hand_over()
-        {
+        if self.is_engaged() || self.still_periods < PATIENCE || !self.may_hand_over() {
             return;
         }
         let Some(goal) = self.goal() else { return };
@@ -52,8 +48,7 @@ impl Robot {
             }
         }
         if let Some(to) = partner {
-            self.offers_made += 1;
-            self.offer = Some(Exchange { to, number: self.offers_made, duty: self.duty });
+            self.dealings.make_offer(to, self.duty);
         }
     }
 
@@ -122,15 +117,10 @@ impl Robot {
     }
 
     fn complete_own_offer(&mut self) {
-        let Some(offer) = &self.offer else { return };
-        let Some(partner) = self.neighbour(offer.to) else { return };
-        let Some(reply) = &partner.beacon.reply else { return };
-        if reply.to != self.id || reply.number != offer.number {
-            return;
-        }
-        let (partner, accepted) = (offer.to, reply.accepted);
-        self.offer = None;
-        let Some(duty) = accepted else { return };
+        let Some(partner) = self.dealings.offer().map(|offer| offer.to) else { return };
+        let heard = self.neighbour(partner).and_then(|parked| parked.beacon.reply.clone());
+        let Some(reply) = heard else { return };
+        let Some(duty) = self.dealings.hear(self.id, &reply) else { return };
         self.left_post = self.duty.post().map(|post| post.id);
         self.take_over(duty, partner);
         self.report(MissionEvent::DutiesExchanged { mover: self.id, parked: partner });
@@ -139,37 +129,29 @@ impl Robot {
     /// The reply stands until the mover's offer is gone: then it has taken the post, and this
     /// robot takes the duty.
     fn conclude_reply(&mut self) {
-        let Some(reply) = &self.reply else { return };
-        let (to, number) = (reply.to, reply.number);
-        let concluded = self.neighbour(to).is_some_and(|mover| {
-            let stands = mover.beacon.offer.as_ref().is_some_and(|offer| offer.number == number);
-            // What the mover said before it made the offer may be heard again.
-            !stands && mover.beacon.offers_made >= number
-        });
-        if !concluded {
-            return;
-        }
-        self.reply = None;
-        if let Some(duty) = self.taking.take() {
+        let Some(mover) = self.dealings.reply().map(|reply| reply.to) else { return };
+        let heard = self.neighbour(mover).map(|mover| &mover.beacon);
+        let heard = heard.map(|beacon| (beacon.offer.clone(), beacon.offers_made));
+        let Some((offer, offers_made)) = heard else { return };
+        if let Some(duty) = self.dealings.conclude(offer.as_ref(), offers_made) {
             self.left_post = self.duty.post().map(|post| post.id);
-            self.take_over(duty, to);
+            self.take_over(duty, mover);
         }
     }
 
     fn answer_offer(&mut self) {
-        if self.reply.is_some() {
+        if self.dealings.reply().is_some() {
             return;
         }
         let offered = self.neighbours.iter().find_map(|neighbour| {
             let offer = neighbour.beacon.offer.as_ref()?;
-            let is_new = self.answered.get(&neighbour.id()).is_none_or(|&last| last < offer.number);
-            (offer.to == self.id && is_new).then_some((neighbour.id(), offer.number, offer.duty))
+            let answered = self.answered.get(&neighbour.id()).copied();
+            offer.asks(self.id, answered).then(|| (neighbour.id(), offer.clone()))
         });
-        let Some((to, number, duty)) = offered else { return };
-        let accepted = self.may_be_relieved().then_some(self.duty);
-        self.taking = accepted.map(|_| duty);
-        self.answered.insert(to, number);
-        self.reply = Some(Reply { to, number, accepted });
+        let Some((mover, offer)) = offered else { return };
+        let given = self.may_be_relieved().then_some(self.duty);
+        self.answered.insert(mover, offer.number);
+        self.dealings.answer(mover, &offer, given);
     }
 
     fn take_over(&mut self, duty: Duty, partner: NodeId) {
@@ -182,7 +164,7 @@ impl Robot {
 
     /// Whether this robot may leave its post to a mover.
     fn may_be_relieved(&self) -> bool {
-        self.is_parked() && self.offer.is_none() && self.duty.station().is_some()
+        self.is_parked() && self.dealings.offer().is_none() && self.duty.station().is_some()
     }
 
     /// Whether its duty is that of the leader who is to be released: the last place of Σ.
@@ -195,6 +177,6 @@ impl Robot {
     /// Whether an exchange is under way. The robot then stands still, and what it does stays what
     /// it is: a duty that changed after it was offered would be taken over as it had been.
     pub(super) fn is_engaged(&self) -> bool {
-        self.offer.is_some() || self.reply.is_some()
+        self.dealings.are_under_way()
     }
 }

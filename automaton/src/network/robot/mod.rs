@@ -30,8 +30,8 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Bid, Bulletin, Election, Exchange, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
-    PostId, Reply, Role, RoleEvent, Subgroup,
+    Agreement, Bid, Bulletin, Dealings, Election, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
+    PostId, Role, RoleEvent, Subgroup,
 };
 
 pub use facts::{Facts, VARIABLES};
@@ -77,11 +77,8 @@ pub struct Robot {
     // Its duty, and the exchange of duties that it is engaged in.
     duty: Duty,
     left_post: Option<PostId>,
-    offer: Option<Exchange<Duty>>,
-    offers_made: u32,
+    dealings: Dealings<Duty>,
     last_partner: Option<NodeId>,
-    reply: Option<Reply<Duty>>,
-    taking: Option<Duty>,
     /// The number of the offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, u32>,
 
@@ -160,11 +157,8 @@ impl Robot {
             voice: Voice::default(),
             duty: Duty::Hold(Station { post, reference: position }),
             left_post: None,
-            offer: None,
-            offers_made: 0,
+            dealings: Dealings::new(),
             last_partner: None,
-            reply: None,
-            taking: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
             parent: None,
@@ -233,9 +227,9 @@ impl Robot {
             parked: self.is_parked(),
             way: self.way_asked_for(),
             can_detach: self.can_detach,
-            offer: self.offer.clone(),
-            offers_made: self.offers_made,
-            reply: self.reply.clone(),
+            offer: self.dealings.offer().cloned(),
+            offers_made: self.dealings.offers_made(),
+            reply: self.dealings.reply().cloned(),
             team: self.team,
         }
     }

@@ -45,7 +45,7 @@ pub fn has_handed_over(protocol: &Protocol, state: &State, robot: &Robot) -> boo
         return false;
     };
     let mover = protocol.robots(state).nth(reply.to);
-    mover.is_some_and(|m| m.beacon().offer.is_none_or(|offer| offer.number != reply.number))
+    mover.is_some_and(|mover| reply.is_heard(mover.beacon().offer.as_ref()))
 }
 
 /// The duty in effect of every robot: the one that it has or, if that is given away, the one
