@@ -2,11 +2,13 @@
 //!
 //! A mover that touches a parked robot nearer to its goal offers it its duty. The parked robot
 //! answers with its own; the mover, which is within δ of the post, takes it; and when the parked
-//! robot sees that, it takes the mover's duty. From the offer to the end neither takes a step of
-//! the mission, so that what is taken over is what was offered. A post is never without a robot, and no duty is
-//! ever done by two. With every exchange the
-//! way that remains gets shorter, so that exchanges come to an end. A mover that cannot pass
-//! takes a partner somewhat farther from its goal too, but no robot twice in a row.
+//! robot sees that, it takes the mover's duty: the [`Dealings`] of the two. From the offer to the end
+//! neither takes a step of the mission, so that what is taken over is what was offered. A post is
+//! never without a robot, and no duty is ever done by two. With every exchange the way that remains
+//! gets shorter, so that exchanges come to an end. A mover that cannot pass takes a partner somewhat
+//! farther from its goal too, but no robot twice in a row.
+//!
+//! [`Dealings`]: pleach_discrete::network::Dealings
 
 use pleach_discrete::network::{NodeId, Phase, PostKind};
 
@@ -129,13 +131,12 @@ impl Robot {
     /// The reply stands until the mover's offer is gone: then it has taken the post, and this
     /// robot takes the duty.
     fn conclude_reply(&mut self) {
-        let Some(mover) = self.dealings.reply().map(|reply| reply.to) else { return };
-        let heard = self.neighbour(mover).map(|mover| &mover.beacon);
-        let heard = heard.map(|beacon| (beacon.offer.clone(), beacon.offers_made));
-        let Some((offer, offers_made)) = heard else { return };
+        let Some(to) = self.dealings.reply().map(|reply| reply.to) else { return };
+        let Some(mover) = self.neighbour(to) else { return };
+        let (offer, offers_made) = (mover.beacon.offer.clone(), mover.beacon.offers_made);
         if let Some(duty) = self.dealings.conclude(offer.as_ref(), offers_made) {
             self.left_post = self.duty.post().map(|post| post.id);
-            self.take_over(duty, mover);
+            self.take_over(duty, to);
         }
     }
 
