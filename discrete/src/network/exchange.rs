@@ -149,3 +149,36 @@ impl<D: Copy> Dealings<D> {
         self.taking.take()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_meant_for_others_changes_nothing() {
+        let mut mover = Dealings::new();
+        mover.make_offer(4, 'a');
+        let offer = mover.offer().cloned().expect("it has been made");
+        assert!(offer.asks(4, None) && offer.asks(4, Some(0)));
+        assert!(!offer.asks(3, None) && !offer.asks(4, Some(1)));
+        for (to, number) in [(9, 1), (2, 8)] {
+            let before = mover.clone();
+            assert_eq!(mover.hear(2, &Reply { to, number, accepted: Some('b') }), None);
+            assert_eq!(mover, before);
+        }
+        assert_eq!(mover.hear(2, &Reply { to: 2, number: 1, accepted: Some('b') }), Some('b'));
+        assert!(!mover.are_under_way() && mover.offers_made() == 1);
+    }
+
+    #[test]
+    fn who_refuses_takes_nothing() {
+        let (mut mover, mut parked) = (Dealings::default(), Dealings::default());
+        mover.make_offer(1, 'a');
+        parked.answer(0, mover.offer().expect("it has been made"), None);
+        assert!(parked.are_under_way() && parked.taking().is_none());
+        assert_eq!(mover.hear(0, parked.reply().expect("it has answered")), None);
+        assert!(!mover.are_under_way());
+        assert_eq!(parked.conclude(mover.offer(), mover.offers_made()), None);
+        assert!(!parked.are_under_way());
+    }
+}
