@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use catalogue::faults;
 use pleach::verify::network::Property;
-use pleach::verify::network::exploration::{Campaign, Counts, QUICK, THOROUGH};
+use pleach::verify::network::exploration::{ALWAYS, Campaign, Counts, ENDS, QUICK, THOROUGH};
 
 /// The packages that may have harnesses.
 const PACKAGES: [&str; 6] = ["", "guards", "discrete", "continuous", "automaton", "verify"];
@@ -136,6 +136,16 @@ fn the_document_names_every_fault_and_each_applies() {
         assert!(rows.iter().any(|found| found.starts_with(&row)), "it should have: {row}");
         assert!(fault.command.starts_with("test -p "), "{}", fault.name);
     }
+}
+
+#[test]
+fn the_document_names_every_explored_property() {
+    let document = document();
+    let rows = rows(&document, "What is explored");
+    // The first two rows are the head of the table.
+    let named = rows[2..].iter().map(|row| row.split(" | ").nth(1).unwrap());
+    let explored = ALWAYS.iter().map(|property| property.name).chain([ENDS]);
+    assert_eq!(named.collect::<BTreeSet<_>>(), explored.collect());
 }
 
 /// A number in groups of three digits.
