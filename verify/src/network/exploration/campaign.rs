@@ -43,8 +43,10 @@ pub struct Campaign {
     pub graphs: Graphs,
     /// How many tasks there are.
     pub tasks: usize,
-    /// How many steps a task may be away from the graph.
+    /// How many steps a task may be away from where its branch begins.
     pub steps: &'static [usize],
+    /// Whether each branch begins at the task before it, and only the first one at a node.
+    pub in_a_row: bool,
     /// How messages go.
     pub medium: Medium,
     /// How often a parked robot is in a mover's way.
@@ -146,16 +148,20 @@ impl Campaign {
 
     /// Every choice of a branch for each task.
     fn branches(&self) -> Vec<Vec<(Place, usize)>> {
-        let one: Vec<(Place, usize)> = (0..self.robots + self.access_points)
-            .flat_map(|place| self.steps.iter().map(move |&steps| (place, steps)))
-            .collect();
-        (0..self.tasks).fold(vec![Vec::new()], |chosen, _| {
-            let longer = |chosen: &Vec<_>, &branch| [chosen.as_slice(), &[branch]].concat();
-            chosen
-                .iter()
-                .flat_map(|chosen| one.iter().map(move |branch| longer(chosen, branch)))
-                .collect()
-        })
+        let longer = |chosen: Vec<(Place, usize)>| {
+            let ends =
+                self.starts(&chosen).flat_map(|from| self.steps.iter().map(move |&n| (from, n)));
+            ends.map(|branch| [chosen.as_slice(), &[branch]].concat()).collect::<Vec<_>>()
+        };
+        (0..self.tasks).fold(vec![Vec::new()], |all, _| all.into_iter().flat_map(longer).collect())
+    }
+
+    /// Where another branch may begin.
+    fn starts(&self, chosen: &[(Place, usize)]) -> std::ops::Range<Place> {
+        let nodes = self.robots + self.access_points;
+        // The places of branches are numbered in turn, each branch ending with its task.
+        let places = nodes + chosen.iter().map(|&(_, steps)| steps).sum::<usize>();
+        if self.in_a_row && !chosen.is_empty() { places - 1..places } else { 0..nodes }
     }
 
     /// Explores one configuration.

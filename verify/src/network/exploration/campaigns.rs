@@ -34,6 +34,7 @@ const fn robots(robots: usize, expected: Counts) -> Campaign {
         graphs: Graphs::UpToSymmetry,
         tasks: 1,
         steps: &[1],
+        in_a_row: false,
         medium: ROUNDS,
         contacts: 0,
         expected,
@@ -61,6 +62,13 @@ pub const QUICK: &[Campaign] = &[
         steps: &[1, 2],
         contacts: 1,
         ..robots(3, Counts { configurations: 88, states: 75_907, transitions: 101_244 })
+    },
+    Campaign {
+        name: "three robots, a task behind the other",
+        tasks: 2,
+        steps: &[1, 2],
+        in_a_row: true,
+        ..robots(3, Counts { configurations: 176, states: 0, transitions: 0 })
     },
     Campaign {
         name: "three robots, a message lost",
@@ -108,6 +116,13 @@ pub const THOROUGH: &[Campaign] = &[
         name: "four robots, two tasks",
         tasks: 2,
         ..robots(4, Counts { configurations: 1_450, states: 390_520, transitions: 506_225 })
+    },
+    Campaign {
+        name: "four robots, a task behind the other",
+        tasks: 2,
+        steps: &[1, 2],
+        in_a_row: true,
+        ..robots(4, Counts { configurations: 1160, states: 0, transitions: 0 })
     },
     Campaign {
         name: "five robots",
