@@ -64,11 +64,12 @@ pub const QUICK: &[Campaign] = &[
         ..robots(3, Counts { configurations: 88, states: 75_907, transitions: 101_244 })
     },
     Campaign {
-        name: "three robots, a task behind the other",
-        tasks: 2,
+        name: "four robots in a line, three tasks in a row",
+        graphs: Graphs::Line,
+        tasks: 3,
         steps: &[1, 2],
         in_a_row: true,
-        ..robots(3, Counts { configurations: 176, states: 0, transitions: 0 })
+        ..robots(4, Counts { configurations: 40, states: 0, transitions: 0 })
     },
     Campaign {
         name: "three robots, a message lost",
@@ -105,6 +106,13 @@ pub const THOROUGH: &[Campaign] = &[
         steps: &[1, 2],
         contacts: 1,
         ..robots(3, Counts { configurations: 2_432, states: 2_360_587, transitions: 3_132_215 })
+    },
+    Campaign {
+        name: "three robots, a task behind the other",
+        tasks: 2,
+        steps: &[1, 2],
+        in_a_row: true,
+        ..robots(3, Counts { configurations: 176, states: 0, transitions: 0 })
     },
     Campaign {
         name: "four robots",
