@@ -5,7 +5,7 @@
 
 use pleach_verify::exploration::{Fairness, explore};
 use pleach_verify::network::exploration::{
-    ALWAYS, Campaign, Configuration, Medium, Places, Protocol, QUICK, THOROUGH, has_ended, story,
+    ALWAYS, Campaign, Configuration, Faults, Medium, Places, Protocol, QUICK, THOROUGH, has_ended, story,
 };
 
 fn assert_met(campaign: &Campaign) {
@@ -40,4 +40,21 @@ fn everything_holds_in_every_order_of_single_messages() {
     }
     assert!(exploration.traps(|state| has_ended(&protocol, state), Fairness::Weak).is_empty());
     assert_eq!(exploration.states().len(), 208_278);
+}
+
+/// Two access points, a leader that hangs on one of them and a recruit that hangs on the other and
+/// does not come as far as the leader: then it says so.
+#[test]
+fn who_joins_from_another_tree_and_does_not_get_there_says_why_not() {
+    let graph = [(0, 1), (0, 3), (1, 2), (2, 3), (2, 4)];
+    let places = Places::with_branches(3, 2, &graph, &[(4, 2)]).unwrap();
+    let medium = Medium::Rounds { faults: Faults::NONE, period: None };
+    let mut protocol = Protocol::new(Configuration { places, medium, contacts: 0 }).unwrap();
+    let exploration = explore(&mut protocol, ALWAYS, 1_000_000).unwrap();
+    assert_eq!(exploration.violations(), []);
+    let traps = exploration.traps(|state| has_ended(&protocol, state), Fairness::Weak);
+    if let Some(&trap) = traps.first() {
+        panic!("{}", story(&protocol, &exploration, trap));
+    }
+    assert_eq!(exploration.states().len(), 557);
 }
