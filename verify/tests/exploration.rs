@@ -5,7 +5,8 @@
 
 use pleach_verify::exploration::{Fairness, explore};
 use pleach_verify::network::exploration::{
-    ALWAYS, Campaign, Configuration, Faults, Medium, Places, Protocol, QUICK, THOROUGH, has_ended, story,
+    ALWAYS, Campaign, Configuration, Faults, Medium, Places, Protocol, QUICK, THOROUGH, has_ended,
+    story,
 };
 
 fn assert_met(campaign: &Campaign) {

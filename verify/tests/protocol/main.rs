@@ -157,7 +157,6 @@ impl fmt::Display for Tally {
 #[test]
 fn the_network_keeps_its_promises() {
     let config = Config {
-        cases: 64,
         failure_persistence: None,
         max_shrink_iters: 10_000,
         max_shrink_time: 60_000,

@@ -127,25 +127,22 @@ impl Mission {
 
     /// One word at a time, each with its own number, and every node comes to know newer ones only.
     fn hear_words(&mut self, protocol: &Protocol, state: &State) -> Result<(), String> {
-        let bulletins: Vec<_> = protocol
+        let mut spoken: Vec<_> = protocol
             .locals(state)
             .map(|local| &protocol.nodes().beacon(local.beacon).bulletin)
+            .map(|bulletin| (bulletin.sequence(), bulletin.notice()))
             .collect();
-        self.known.resize(bulletins.len(), 0);
-        for (node, bulletin) in bulletins.iter().enumerate() {
-            if bulletin.sequence() < self.known[node] {
-                let (was, is) = (self.known[node], bulletin.sequence());
-                return Err(format!("{node} knew word {was} and goes back to word {is}"));
-            }
-            self.known[node] = bulletin.sequence();
+        let known: Vec<u32> = spoken.iter().map(|&(number, _)| number).collect();
+        let before = std::mem::replace(&mut self.known, known);
+        let went_back = |(was, is): (&u32, &u32)| was > is;
+        if let Some(node) = before.iter().zip(&self.known).position(went_back) {
+            let (was, is) = (before[node], self.known[node]);
+            return Err(format!("{node} knew word {was} and goes back to word {is}"));
         }
-        let mut spoken: Vec<_> =
-            bulletins.iter().map(|bulletin| (bulletin.sequence(), bulletin.notice())).collect();
         spoken.sort_by_key(|&(number, _)| number);
-        let newest = spoken.last().map(|&(_, notice)| Word::of(notice));
-        let calls = newest == Some(Word::Call) && self.outcome_word() != Word::Call;
+        let last = self.newest_word();
         spoken.into_iter().try_for_each(|(number, notice)| self.hear(number, notice))?;
-        if calls {
+        if self.newest_word() == Word::Call && last != Word::Call {
             let is_bare = |id| protocol.robots(state).all(|other| other.tree_parent() != Some(id));
             let mut robots = protocol.robots(state).enumerate();
             self.has_reserve = robots.any(|(id, r)| r.duty().is_redundant() && is_bare(id));
@@ -153,7 +150,7 @@ impl Mission {
         Ok(())
     }
 
-    fn outcome_word(&self) -> Word {
+    fn newest_word(&self) -> Word {
         self.words.values().next_back().map_or(Word::Quiet, Word::of)
     }
 
@@ -164,13 +161,27 @@ impl Mission {
                 false => Err(format!("two words have number {number}: {known:?} and {notice:?}")),
             };
         }
-        let Some((&last, before)) = self.words.last_key_value() else { return Ok(()) };
-        let (before, word) = (Word::of(before), Word::of(notice));
+        let last = self.words.keys().next_back().copied().unwrap_or_default();
+        let (before, word) = (self.newest_word(), Word::of(notice));
         if number < last || !word.may_follow_after(number - last - 1, before) {
             return Err(format!("{word:?}, word {number}, follows {before:?}, word {last}"));
         }
-        let is_due = match notice {
+        let is_due = self.count(notice, before);
+        self.words.insert(number, notice.clone());
+        match is_due {
+            true => Ok(()),
+            false => Err(format!(
+                "{notice:?} when {} of {} tasks are announced and {} serviced",
+                self.announced, self.tasks, self.serviced
+            )),
+        }
+    }
+
+    /// Counts the tasks; says whether it is time for this notice.
+    fn count(&mut self, notice: &Notice, before: Word) -> bool {
+        match notice {
             Notice::Task { task, .. } => {
+                // After a call in vain the same task is announced to robots of another tree.
                 self.announced += usize::from(before != Word::Call);
                 *task == self.serviced && self.announced == self.serviced + 1
             }
@@ -183,14 +194,6 @@ impl Mission {
                 !reason.is_empty() && *task == Some(self.serviced) && self.serviced < self.tasks
             }
             _ => true,
-        };
-        self.words.insert(number, notice.clone());
-        match is_due {
-            true => Ok(()),
-            false => Err(format!(
-                "{notice:?} when {} of {} tasks are announced and {} serviced",
-                self.announced, self.tasks, self.serviced
-            )),
         }
     }
 
