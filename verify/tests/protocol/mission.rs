@@ -225,8 +225,8 @@ impl Mission {
         }
     }
 
-    /// What is owed at the end: each serviced task is one robot's. Robots are missing only if none
-    /// could come. Where there are no walls and the tree has one root, nobody is in the way.
+    /// What is owed at the end: each serviced task is one robot's. Where the tree has one root,
+    /// robots are missing only if none could come.
     pub fn conclude(&self, protocol: &Protocol, state: &State) -> Result<(), String> {
         let duties = duties(protocol, state);
         let has_one_root = protocol.locals(state).filter(|l| l.robot().is_none()).count() == 1;
@@ -243,8 +243,7 @@ impl Mission {
             Some(Outcome::InsufficientRobots) if has_one_root && self.has_reserve => {
                 Err("robots are missing, and one could have come".into())
             }
-            Some(Outcome::InsufficientRobots) => Ok(()),
-            Some(Outcome::Blocked) if !has_one_root => Ok(()),
+            Some(Outcome::InsufficientRobots | Outcome::Blocked) => Ok(()),
             Some(other) => Err(format!("the mission ends: {}", other.name())),
         }
     }
