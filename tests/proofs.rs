@@ -120,6 +120,77 @@ fn the_properties_name_lemmas_that_exist() {
     }
 }
 
+/// A property test: its file, how many cases it usually draws, and its name.
+type PropertyTest = (String, u32, String);
+
+/// The property tests of a file: those in a `proptest!` block, and those that run a strategy
+/// themselves. `cases::usually` says how many cases; without it, the usual number is drawn.
+fn property_tests(path: &str, source: &str) -> Vec<PropertyTest> {
+    let mut found = Vec::new();
+    let mut name = "";
+    let mut block: Option<(&str, u32)> = None;
+    for line in source.lines() {
+        let code = line.trim_start();
+        let indent = &line[..line.len() - code.len()];
+        if let Some((_, rest)) = code.split_once("cases::usually(")
+            && let Some((_, cases)) = &mut block
+        {
+            *cases = rest.split(')').next().unwrap().parse().unwrap();
+        }
+        if let Some(rest) = code.strip_prefix("fn ") {
+            name = rest.split('(').next().unwrap();
+        }
+        match block {
+            _ if code == "proptest! {" => block = Some((indent, cases::USUAL)),
+            Some((begin, _)) if code == "}" && indent == begin => block = None,
+            Some((_, cases)) if code.starts_with("fn ") => {
+                found.push((path.to_owned(), cases, name.to_owned()));
+            }
+            None if code.contains("TestRunner::new(") => {
+                found.push((path.to_owned(), cases::USUAL, name.to_owned()));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn the_document_names_every_property_test_and_counts_the_cases() {
+    let folders = PACKAGES.iter().flat_map(|package| ["src", "tests"].map(|it| (package, it)));
+    let mut tests = BTreeSet::new();
+    for path in folders.map(|(package, it)| root().join(package).join(it)).filter(|it| it.exists())
+    {
+        for file in files(&path).iter().filter(|file| file.extension().is_some_and(|it| it == "rs"))
+        {
+            let source = fs::read_to_string(file).unwrap();
+            let file = file.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/");
+            // This file only speaks of property tests.
+            if file != "tests/proofs.rs" {
+                tests.extend(property_tests(&file, &source));
+            }
+        }
+    }
+    let document = document();
+    let mut named = BTreeSet::new();
+    for row in rows(&document, "Property tests") {
+        let Some((_, path)) = link(row) else { continue };
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        for name in cells[3].split(", ").map(|name| name.trim_matches('`')) {
+            named.insert((path.clone(), cells[2].parse().unwrap(), name.to_owned()));
+        }
+    }
+    assert!(tests.len() > 70, "the property tests are not where they are looked for");
+    assert_eq!(named, tests);
+    let names: BTreeSet<&str> = tests.iter().map(|(.., name)| name.as_str()).collect();
+    assert_eq!(names.len(), tests.len(), "a name stands for one test");
+    let drawn: u32 = tests.iter().map(|(_, cases, _)| cases).sum();
+    for count in [drawn, 16 * drawn] {
+        let text = format!("{} {:03} cases", count / 1000, count % 1000);
+        assert!(document.contains(&text), "it should say: {text}");
+    }
+}
+
 /// What is planted is in the document, with the engine that catches it, and still applies.
 #[test]
 fn the_document_names_every_fault_and_each_applies() {

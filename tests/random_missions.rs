@@ -67,11 +67,10 @@ fn any_family() -> impl Strategy<Value = Family> {
 
 proptest! {
     #![proptest_config(Config {
-        cases: 200,
         max_shrink_iters: 0,
         rng_seed: RngSeed::Fixed(1),
         failure_persistence: None,
-        ..Config::default()
+        ..cases::usually(200)
     })]
 
     #[test]

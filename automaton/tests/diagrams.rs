@@ -125,7 +125,7 @@ impl Event for Number {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(cases::usually(100))]
 
     #[test]
     fn any_graph_can_be_drawn(targets in prop::collection::btree_map((0..6usize, 0..6usize), 0..6usize, 0..16)) {

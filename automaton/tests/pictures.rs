@@ -143,7 +143,7 @@ impl discrete::Event for Number {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(cases::usually(200))]
 
     #[test]
     fn any_small_graph_is_legible(

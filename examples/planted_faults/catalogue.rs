@@ -35,6 +35,9 @@ pub enum Engine {
     Harness,
     /// Exhaustive exploration.
     Exploration,
+    /// The state machine test of the protocol.
+    #[serde(rename = "state machine")]
+    StateMachine,
     /// An ordinary test.
     Test,
 }
@@ -44,6 +47,7 @@ impl fmt::Display for Engine {
         f.write_str(match self {
             Engine::Harness => "harness",
             Engine::Exploration => "exploration",
+            Engine::StateMachine => "state machine",
             Engine::Test => "test",
         })
     }

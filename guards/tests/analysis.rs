@@ -16,7 +16,7 @@ const NAMES: [&str; 3] = ["x", "y", "δ"];
 type State = [(&'static str, f64); 3];
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1024))]
+    #![proptest_config(cases::usually(1024))]
 
     #[test]
     fn ranges_enclose_values(expression in expressions(), samples in samples()) {

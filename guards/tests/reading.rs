@@ -9,7 +9,7 @@ use pleach_guards::{Expression, ParseError, Predicate, always, constant, never, 
 use proptest::prelude::*;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(cases::usually(1000))]
 
     #[test]
     fn expressions_read_back(expression in odd_expressions()) {

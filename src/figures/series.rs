@@ -92,7 +92,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
+        #![proptest_config(cases::usually(32))]
         #[test]
         fn thinning_keeps_both_extremes(
             values in prop::collection::vec(-1.0..1.0_f64, 1..4000),

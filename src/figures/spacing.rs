@@ -42,7 +42,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(cases::usually(64))]
         #[test]
         fn the_sweep_agrees_with_all_pairs(
             points in prop::collection::vec([-1.0..1.0_f64, -1.0..1.0_f64], 0..40),

@@ -229,8 +229,6 @@ fn searches_are_checked() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
-
     /// A parabola above zero for a share of the time, against its closed form.
     #[test]
     fn parabolas_are_located(top in 0.01..9.99_f64, half_width in 1e-4..5.0_f64, scale in 1e-3..1e3) {

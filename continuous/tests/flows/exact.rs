@@ -107,7 +107,7 @@ fn by_one_exponential(matrix: &DMatrix<f64>, offset: &[f64], start: &[f64], t: f
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
+    #![proptest_config(cases::usually(128))]
 
     #[test]
     fn linear_flows_agree_with_the_exponential(

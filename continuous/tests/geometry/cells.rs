@@ -75,8 +75,6 @@ fn ways_may_touch_corners_of_the_sight_set() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
-
     #[test]
     fn voronoi_half_planes_are_cells_shrunk(
         robots in prop::collection::vec(place(), 2..8),

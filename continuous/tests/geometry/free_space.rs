@@ -118,8 +118,6 @@ fn zero_clearance_is_almost_the_workspace() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
-
     #[test]
     fn free_space_is_where_the_clearance_is_kept(
         environment in environment(),

@@ -95,8 +95,6 @@ fn detour_follows_an_octagon() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
-
     #[test]
     fn geodesics_are_shortest(environment in environment(), a in place(), b in place()) {
         let free_space = &environment.free_space;

@@ -107,8 +107,6 @@ fn errors_name_what_is_wrong() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
-
     #[test]
     fn clearance_agrees_with_trying_every_edge(
         environment in environment(),

@@ -19,7 +19,7 @@ fn to_halves(value: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(cases::usually(300))]
 
     #[test]
     fn robustness_is_what_the_definition_says(

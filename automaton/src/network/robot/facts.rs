@@ -203,7 +203,12 @@ impl Robot {
         facts.first = if self.is_first() { 1.0 } else { 0.0 };
         facts.pending = if self.is_pending() { 1.0 } else { 0.0 };
         if facts.first > 0.0 && facts.slack + facts.pending > 0.0 {
-            facts.stalled = facts.still;
+            // Who has joined from afar hears nothing of the team until it is there; if it never
+            // comes there, nobody else notices.
+            facts.stalled = match self.team {
+                Some(_) => facts.still,
+                None => f64::from(self.still_periods),
+            };
         }
         if self.duty.post().is_some_and(|post| post.is_leading())
             && let Some(task) = self.tasks.last()

@@ -151,8 +151,13 @@ impl Robot {
     }
 
     /// The neighbour that holds `post`.
+    ///
+    /// At the end of an exchange of duties two robots hold it, and the one whose reply stands is
+    /// about to take the other's: who still hung on it then could come to hang below itself.
     pub(super) fn holder(&self, post: PostId) -> Option<&Neighbour> {
-        self.neighbours.iter().find(|n| n.post().is_some_and(|held| held.id == post))
+        let holds = |neighbour: &&Neighbour| neighbour.post().is_some_and(|held| held.id == post);
+        let holders = self.neighbours.iter().filter(holds);
+        holders.min_by_key(|neighbour| neighbour.beacon.reply.is_some())
     }
 
     /// The neighbour that stands for `anchor`.

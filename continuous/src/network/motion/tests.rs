@@ -68,7 +68,7 @@ fn is_optimal(problem: &MotionProblem, target: Point, active_within: f64) -> boo
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(500))]
+    #![proptest_config(cases::usually(500))]
 
     #[test]
     fn the_exact_answer_is_feasible_and_optimal(problem in problems()) {
@@ -94,7 +94,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(cases::usually(200))]
 
     #[test]
     fn the_conic_answer_is_feasible_and_close_to_the_exact_one(problem in problems()) {

@@ -131,7 +131,7 @@ fn sweep(problem: &RoutingProblem, shares: &mut [f64]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(cases::usually(200))]
 
     #[test]
     fn every_method_finds_the_routes_that_clarabel_finds(problem in networks()) {

@@ -1,5 +1,6 @@
 //! How messages go from node to node, and what may become of them on the way.
 
+use pleach_automaton::network::Robot;
 use pleach_discrete::network::NodeId;
 
 use super::node::{BeaconId, NodeError, Stimulus};
@@ -102,7 +103,7 @@ impl Protocol {
                             found.push((Action::Hear { from, to }, next));
                         }
                     }
-                    let heard = self.nodes().local(state.locals[to]).heard.clone();
+                    let heard = self.still_heard_by(state, to);
                     let next = self.one(state, to, Stimulus::Hear(heard))?;
                     found.push((Action::Think(to), next));
                 }
@@ -112,11 +113,25 @@ impl Protocol {
         Ok(found)
     }
 
+    /// What a node hears again that hears nothing new: of who has left without being heard, nothing.
+    pub(super) fn still_heard_by(&self, state: &State, receiver: NodeId) -> Vec<BeaconId> {
+        let local = self.nodes().local(state.locals[receiver]);
+        let is_silent = |sender: NodeId| {
+            let mut known = local.robot().into_iter().flat_map(Robot::audible);
+            known.any(|(node, silent_rounds)| node == sender && silent_rounds > 0)
+        };
+        let stays = |&beacon: &BeaconId| {
+            let sender = self.nodes().beacon(beacon).sender;
+            self.is_in_range(state, sender, receiver) || !is_silent(sender)
+        };
+        local.heard.iter().copied().filter(stays).collect()
+    }
+
     /// Rounds in which one message is lost, late or copied, or a copy arrives.
-    pub(super) fn faulty_rounds(
-        &mut self,
-        state: &State,
-    ) -> Result<Vec<(Action, State)>, NodeError> {
+    ///
+    /// # Errors
+    /// When a node cannot go on.
+    pub fn faulty_rounds(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
         let mut found = Vec::new();
         if state.faults.are_over() && state.copies.is_empty() {
             return Ok(found);

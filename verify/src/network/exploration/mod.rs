@@ -27,4 +27,4 @@ pub use node::{BeaconId, Local, LocalId, Node, NodeError, Nodes, Stimulus};
 pub use places::{Place, Places, PlacesError};
 pub use properties::{ALWAYS, has_ended};
 pub use protocol::{Action, Configuration, Protocol, ProtocolError, State};
-pub use story::story;
+pub use story::{story, tell};

@@ -30,6 +30,7 @@ pub struct Places {
     access_points: usize,
     tasks: Vec<Place>,
     steps: Vec<Vec<usize>>,
+    positions: Vec<Point>,
     /// The length of a step.
     step: f64,
 }
@@ -81,7 +82,9 @@ impl Places {
         if let Some(place) = steps[0].iter().position(|&steps| steps == usize::MAX) {
             return Err(PlacesError::Disconnected { place });
         }
-        let mut places = Places { robots, access_points, tasks: tasks.to_vec(), steps, step: 0.0 };
+        let positions = (0..places).map(|place| on_circle(place, places)).collect();
+        let tasks = tasks.to_vec();
+        let mut places = Places { robots, access_points, tasks, steps, positions, step: 0.0 };
         places.step = STEP * Settings::resolve(&places.scenario()).longest_new_link();
         Ok(places)
     }
@@ -147,15 +150,15 @@ impl Places {
     /// Where a place lies. The places are so close together that all robots would be in range of
     /// each other: what counts is the graph.
     pub fn position(&self, place: Place) -> Point {
-        let angle = TAU * place as f64 / self.steps.len() as f64;
-        let round = |coordinate: f64| (coordinate * 1e3).round() / 1e3;
-        Point::new(round(0.45 * angle.cos()), round(0.45 * angle.sin()))
+        self.positions[place]
     }
 
     /// The place nearest to a position.
     pub fn place_at(&self, position: Point) -> Place {
-        let distance = |&place: &Place| (self.position(place) - position).norm();
-        (0..self.steps.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or_default()
+        let distance = |&place: &Place| (self.positions[place] - position).norm_squared();
+        (0..self.positions.len())
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .unwrap_or_default()
     }
 
     /// Where the tasks are.
@@ -191,6 +194,13 @@ impl Measure for Places {
     fn distance(&self, from: Point, to: Point) -> f64 {
         self.step * self.steps(self.place_at(from), self.place_at(to)) as f64
     }
+}
+
+/// A point of a circle, one of as many as there are places, to three decimals.
+fn on_circle(place: Place, places: usize) -> Point {
+    let angle = TAU * place as f64 / places as f64;
+    let round = |coordinate: f64| (coordinate * 1e3).round() / 1e3;
+    Point::new(round(0.45 * angle.cos()), round(0.45 * angle.sin()))
 }
 
 /// The numbers of steps from `from` to every place; `usize::MAX` where no way leads.

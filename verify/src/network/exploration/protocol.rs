@@ -212,7 +212,7 @@ impl Protocol {
 
     // ---- Messages ----------------------------------------------------------------------------
 
-    fn is_in_range(&self, state: &State, one: NodeId, other: NodeId) -> bool {
+    pub(super) fn is_in_range(&self, state: &State, one: NodeId, other: NodeId) -> bool {
         let (places, robots) = (&self.configuration.places, self.configuration.places.robots());
         let is_wire = one >= robots && other >= robots;
         let linked = || places.are_linked(self.place_of(state, one), self.place_of(state, other));
@@ -239,7 +239,7 @@ impl Protocol {
         to: NodeId,
     ) -> Option<Vec<BeaconId>> {
         let sender_of = |&id: &BeaconId| self.nodes.beacon(id).sender;
-        let mut heard = self.nodes.local(state.locals[to]).heard.clone();
+        let mut heard = self.still_heard_by(state, to);
         let said = self.nodes.local(state.locals[from]).beacon;
         let known = heard.binary_search_by_key(&from, sender_of);
         match (known, self.is_in_range(state, from, to)) {
@@ -377,6 +377,26 @@ impl Protocol {
             false => Ok(None),
         }
     }
+
+    /// Everything that may happen while no message fails.
+    ///
+    /// # Errors
+    /// When a node cannot go on.
+    pub fn faultless_steps(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
+        let mut found = self.messages(state)?;
+        let everything_is_known = found.is_empty();
+        found.extend(self.bodies(state)?);
+        if let Some(next) = self.announcement(state)?.filter(|next| next != state) {
+            found.push((Action::Announce, next));
+        }
+        if everything_is_known {
+            let next = self.period(state)?;
+            if next != *state {
+                found.push((Action::Period, next));
+            }
+        }
+        Ok(found)
+    }
 }
 
 impl Model for Protocol {
@@ -389,19 +409,8 @@ impl Model for Protocol {
     }
 
     fn successors(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
-        let mut found = self.messages(state)?;
-        let everything_is_known = found.is_empty();
-        found.extend(self.bodies(state)?);
+        let mut found = self.faultless_steps(state)?;
         found.extend(self.faulty_rounds(state)?);
-        if let Some(next) = self.announcement(state)?.filter(|next| next != state) {
-            found.push((Action::Announce, next));
-        }
-        if everything_is_known {
-            let next = self.period(state)?;
-            if next != *state {
-                found.push((Action::Period, next));
-            }
-        }
         Ok(found)
     }
 }

@@ -19,14 +19,22 @@ pub fn story(
 ) -> String {
     let (begin, way) = exploration.way_to(state);
     let at = |id: StateId| &exploration.states()[id as usize];
+    tell(protocol, at(begin), way.into_iter().map(|(action, id)| (action, at(id))))
+}
+
+/// What happens from a state on: one line a step, with what it changes.
+pub fn tell<'a>(
+    protocol: &Protocol,
+    begin: &'a State,
+    way: impl Iterator<Item = (Action, &'a State)>,
+) -> String {
     let mut text = String::from("at first\n");
-    let mut before = at(begin);
+    let mut before = begin;
     for node in 0..before.locals.len() {
         let _ = writeln!(text, "      {}", situation(protocol, before, node));
     }
-    for (number, (action, id)) in way.into_iter().enumerate() {
+    for (number, (action, after)) in way.enumerate() {
         let _ = writeln!(text, "{:4}  {action}", number + 1);
-        let after = at(id);
         for node in 0..after.locals.len() {
             let (was, is) = (situation(protocol, before, node), situation(protocol, after, node));
             if was != is {
