@@ -142,6 +142,10 @@ pub const THOROUGH: &[Campaign] = &[
         ..robots(6, Counts { configurations: 336, states: 72_006, transitions: 93_920 })
     },
     Campaign {
+        name: "six robots",
+        ..robots(6, Counts { configurations: 1, states: 0, transitions: 0 })
+    },
+    Campaign {
         name: "six robots in a line",
         graphs: Graphs::Line,
         steps: &[1, 2],
@@ -213,5 +217,40 @@ pub const THOROUGH: &[Campaign] = &[
         name: "three robots, a message late and one copied, moves once a period",
         medium: periods(Faults { losses: 0, delays: 1, duplicates: 1 }),
         ..robots(3, Counts { configurations: 44, states: 855_559, transitions: 2_027_441 })
+    },
+    Campaign {
+        name: "four robots in contact, a message lost, moves once a period",
+        steps: &[1],
+        medium: periods(Faults { losses: 1, ..Faults::NONE }),
+        contacts: 1,
+        ..robots(4, Counts { configurations: 1, states: 0, transitions: 0 })
+    },
+    Campaign {
+        name: "three robots in contact, two messages lost, moves once a period",
+        steps: &[1],
+        medium: periods(Faults { losses: 2, ..Faults::NONE }),
+        contacts: 1,
+        ..robots(3, Counts { configurations: 1, states: 0, transitions: 0 })
+    },
+    Campaign {
+        name: "four robots, two messages lost, moves once a period",
+        steps: &[1],
+        medium: periods(Faults { losses: 2, ..Faults::NONE }),
+        contacts: 0,
+        ..robots(4, Counts { configurations: 1, states: 0, transitions: 0 })
+    },
+    Campaign {
+        name: "four robots, a message late",
+        steps: &[1],
+        medium: rounds(Faults { delays: 1, ..Faults::NONE }),
+        contacts: 1,
+        ..robots(4, Counts { configurations: 1, states: 0, transitions: 0 })
+    },
+    Campaign {
+        name: "five robots, a message lost",
+        steps: &[1],
+        medium: rounds(Faults { losses: 1, ..Faults::NONE }),
+        contacts: 0,
+        ..robots(5, Counts { configurations: 1, states: 0, transitions: 0 })
     },
 ];
