@@ -262,6 +262,14 @@ fn functions_are_undecided_and_have_no_normal_form() {
 }
 
 #[test]
+fn names_are_exchanged_at_once() {
+    let [x, y, delta] = NAMES.map(variable);
+    let exchange = Substitution::renaming([("x", "y"), ("y", "x")]);
+    assert_eq!((&x - &y * &delta).substitute(&exchange), &y - &x * &delta);
+    assert_eq!([exchange.replacement("x"), exchange.replacement("δ")], [Some(&y), None]);
+}
+
+#[test]
 fn negations_of_functions_stay() {
     let near = Predicate::function("near", |state| variable("x").evaluate(state));
     let apart = not(near.clone().and(variable("x").at_most(1.0)));
