@@ -27,11 +27,7 @@ impl Expression {
             Expression::Variable(name) if **name == *variable => constant(1.0),
             Expression::Variable(_) => constant(0.0),
             Expression::Unary(operator, operand) => {
-                let inner = operand.derivative(variable);
-                match operator {
-                    UnaryOperator::Negation => opposite(inner),
-                    _ => product(operator.slope(operand), inner),
-                }
+                operator.derivative(operand, operand.derivative(variable))
             }
             Expression::Binary(operator, left, right) => {
                 let (inner_left, inner_right) =
@@ -52,16 +48,17 @@ impl Expression {
 }
 
 impl UnaryOperator {
-    /// The derivative of the operator at `operand`.
-    fn slope(self, operand: &Expression) -> Expression {
-        match self {
-            UnaryOperator::Negation => constant(-1.0),
+    /// The derivative of the operator on an operand, given with its own derivative.
+    fn derivative(self, operand: &Expression, inner: Expression) -> Expression {
+        let slope = match self {
+            UnaryOperator::Negation => return opposite(inner),
             UnaryOperator::AbsoluteValue => operand / operand.abs(),
             UnaryOperator::Sine => operand.cos(),
             UnaryOperator::Cosine => -operand.sin(),
             UnaryOperator::Exponential => operand.exp(),
             UnaryOperator::Logarithm => 1.0 / operand,
-        }
+        };
+        product(slope, inner)
     }
 }
 

@@ -176,11 +176,8 @@ impl Interval {
     }
 
     /// A function of period 2π that rises and falls between −1 at `valley` and 1 at `peak`: between
-    /// those it is monotone.
+    /// those it is monotone. A full turn meets both, and so may what is infinite.
     fn wave(self, function: fn(f64) -> f64, peak: f64, valley: f64) -> Interval {
-        if self.width() >= TAU || !self.lower.is_finite() {
-            return Interval { lower: -1.0, upper: 1.0 };
-        }
         let (first, last) = (function(self.lower), function(self.upper));
         let between = loose(first.min(last), first.max(last));
         let upper = if self.may_meet(peak) { 1.0 } else { between.upper.min(1.0) };

@@ -56,18 +56,17 @@ impl Expression {
         number: &impl Fn(f64) -> Option<N>,
     ) -> Option<LinearForm<N>> {
         let form = |part: &Expression| part.linear_form_over(number);
-        let (zero, minus_one) = (number(0.0)?, number(-1.0)?);
+        let (zero, minus_one) = (number(0.0)?, LinearForm::of_constant(number(-1.0)?));
+        let opposite = |part: &Expression| form(part)?.times(minus_one.clone());
         let mut form = match self {
             Expression::Variable(name) => LinearForm {
                 coefficients: BTreeMap::from([(name.to_string(), number(1.0)?)]),
                 constant: zero.clone(),
             },
-            Expression::Unary(UnaryOperator::Negation, operand) => {
-                form(operand)?.map(|number| number * minus_one.clone())
-            }
+            Expression::Unary(UnaryOperator::Negation, operand) => opposite(operand)?,
             Expression::Binary(BinaryOperator::Sum, left, right) => form(left)?.plus(form(right)?),
             Expression::Binary(BinaryOperator::Difference, left, right) => {
-                form(left)?.plus(form(right)?.map(|number| number * minus_one.clone()))
+                form(left)?.plus(opposite(right)?)
             }
             Expression::Binary(BinaryOperator::Product, left, right) => {
                 form(left)?.times(form(right)?)?

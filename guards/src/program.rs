@@ -422,4 +422,19 @@ mod tests {
         assert_eq!(program.depth, 2);
         assert_eq!(program.evaluate(&[3.0, 1.0, 2.0]), 600.0);
     }
+    /// The predicate itself is asked for no more than which part has no value.
+    #[test]
+    fn what_has_values_is_judged_without_the_predicate() {
+        let [x, y, z] = NAMES.map(variable);
+        let order = x.ln().at_most(&y) & !y.less_than(z.ln());
+        let guard = order.compile(&NAMES).expect("these are the names");
+        let judge = |values: [f64; 3]| {
+            let value = |place: usize| values.get(place).copied();
+            guard.test.judge(&Listed { names: &guard.names, value })
+        };
+        let verdict = |margin, holds| Some(Verdict { margin, holds });
+        assert_eq!(judge([1.0, 2.5, 1.0]), verdict(2.5, true));
+        assert_eq!(judge([1.0, -2.5, 0.0]), verdict(-2.5, false));
+        assert_eq!([judge([-1.0, 2.5, 1.0]), judge([1.0, 2.5, -1.0])], [None, None]);
+    }
 }

@@ -79,6 +79,25 @@ proptest! {
     }
 
     #[test]
+    fn minima_and_maxima_change_as_the_operand_that_they_are(
+        (one, other) in (expressions(), expressions()),
+        state in states(-3.0..3.0),
+    ) {
+        let slope = |expression: &Expression| expression.derivative("x").evaluate(&state);
+        if let (Ok(value), Ok(beside)) = (one.evaluate(&state), other.evaluate(&state))
+            && let (Ok(least), Ok(most)) = (slope(&one.min(&other)), slope(&one.max(&other)))
+            && let (Ok(first), Ok(second)) = (slope(&one), slope(&other))
+        {
+            let (lower, upper) = if value < beside { (first, second) } else { (second, first) };
+            let near = |found: f64, slope: f64| {
+                (found - slope).abs() <= 1e-12 * (first.abs() + second.abs())
+            };
+            prop_assert!(near(least, lower), "min({one}, {other}): {least}, not {lower}");
+            prop_assert!(near(most, upper), "max({one}, {other}): {most}, not {upper}");
+        }
+    }
+
+    #[test]
     fn substitution_is_evaluation_in_the_changed_state(
         predicate in predicates(),
         (first, last) in (expressions(), expressions()),
@@ -135,6 +154,8 @@ fn arithmetic_on_whole_numbers_is_exact() {
         (2.0 * &x - &y / 2.0, over(-4.0, 3.5)),
         (x.power(2.0), over(0.0, 4.0)),
         (&x * &x, over(0.0, 4.0)),
+        (y.power(2.0), over(1.0, 16.0)),
+        (&y * &y, over(1.0, 16.0)),
         (&x * &y, over(-4.0, 8.0)),
         (y.square_root(), over(1.0, 2.0)),
         (x.square_root(), over(0.0, 2f64.sqrt())),
@@ -208,7 +229,11 @@ fn waves_know_their_crests() {
     assert_eq!(over(-0.5, 0.5).cos().upper(), 1.0);
     assert_eq!(over(99.0, 101.0).cos().upper(), 1.0);
     assert!(over(101.0, 102.0).cos().upper() < 0.9);
-    assert_eq!(over(0.0, 6.5).cos(), over(-1.0, 1.0));
+    let infinity = f64::INFINITY;
+    let long = [over(0.0, 6.5), over(1.0, infinity), over(-infinity, 1.0), over(1e300, 1e300)];
+    for angles in [long.as_slice(), &[Interval::WHOLE, Interval::point(infinity)]].concat() {
+        assert_eq!([angles.sin(), angles.cos()], [over(-1.0, 1.0); 2], "{angles}");
+    }
     assert!((over(1.0, 2.0).sin().lower() - 1f64.sin()).abs() < 1e-12);
     assert!((over(1.0, 2.0).cos().lower() - 2f64.cos()).abs() < 1e-12);
     assert!((over(1.0, 2.0).cos().upper() - 1f64.cos()).abs() < 1e-12);
@@ -234,6 +259,14 @@ fn functions_are_undecided_and_have_no_normal_form() {
     let halved = near.substitute(&Substitution::new([("x", variable("y") / 2.0 - 1.0)]));
     assert_eq!(halved.margin(&[("y", 4.0)]), Ok(1.0));
     assert!(halved.margin(&[("x", 4.0)]).is_err());
+}
+
+#[test]
+fn names_are_exchanged_at_once() {
+    let [x, y, delta] = NAMES.map(variable);
+    let exchange = Substitution::renaming([("x", "y"), ("y", "x")]);
+    assert_eq!((&x - &y * &delta).substitute(&exchange), &y - &x * &delta);
+    assert_eq!([exchange.replacement("x"), exchange.replacement("δ")], [Some(&y), None]);
 }
 
 #[test]

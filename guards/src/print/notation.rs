@@ -109,7 +109,7 @@ impl Notation {
 /// Whole exponents are raised; others follow a caret.
 fn write_raised(out: &mut dyn Write, exponent: f64) -> fmt::Result {
     if exponent.fract() != 0.0 {
-        let (open, close) = if exponent < 0.0 { ("^(", ")") } else { ("^", "") };
+        let (open, close) = if exponent.is_sign_negative() { ("^(", ")") } else { ("^", "") };
         out.write_str(open)?;
         TEXT.write_number(out, exponent)?;
         return out.write_str(close);
