@@ -81,3 +81,13 @@ fn an_exchange_across_a_link_keeps_the_tree() {
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
     assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 1_341);
 }
+
+/// Two robots that hang on a third, which becomes the leader, and hear each other: they look for
+/// another parent at once, and not to each other. The campaign of six robots found it.
+#[test]
+fn robots_that_lose_their_parent_at_once_do_not_hang_on_one_another() {
+    let graph = [(0, 1), (0, 4), (0, 5), (0, 6), (1, 2), (1, 3), (1, 6), (2, 3), (2, 4), (3, 4)];
+    let places = Places::with_branches(6, 1, &graph, &[(1, 1)]).unwrap();
+    let medium = Medium::Rounds { faults: Faults::NONE, period: None };
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 173);
+}

@@ -133,19 +133,18 @@ impl Robot {
         best.map(|(hops, _, anchor)| (hops, anchor))
     }
 
-    /// Whether no robot on the way says otherwise: what it says itself is newer than what others
-    /// tell of it, so that robots that lose their parent at once do not hang on one another.
+    /// Whether no robot on the way says otherwise, by its own way or by bearing redundant robots no
+    /// more: what it says itself is newer than what others tell of it, so that robots that lose
+    /// their parent at once do not hang on one another.
     fn confirms(&self, lineage: &Lineage) -> bool {
         self.neighbours.iter().all(|neighbour| {
             let place = neighbour
                 .post()
                 .and_then(|post| lineage.posts().iter().position(|&passed| passed == post.id));
             place.is_none_or(|place| {
-                neighbour
-                    .beacon
-                    .lineage
-                    .as_ref()
-                    .is_some_and(|own| own.posts() == &lineage.posts()[place..])
+                let way = neighbour.beacon.lineage.as_ref();
+                Self::accepts_redundant(neighbour)
+                    && way.is_some_and(|own| own.posts() == &lineage.posts()[place..])
             })
         })
     }

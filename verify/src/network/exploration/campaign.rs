@@ -6,7 +6,7 @@ use std::fmt;
 use pleach_automaton::network::beacon::Notice;
 use rayon::prelude::*;
 
-use super::graphs::{Graph, graphs, numbered_graphs, trees};
+use super::graphs::{Graph, graphs, numbered_graphs};
 use super::medium::Medium;
 use super::places::{Place, Places, PlacesError};
 use super::properties::{ALWAYS, has_ended};
@@ -24,9 +24,6 @@ pub enum Graphs {
     Numbered,
     /// A line from the access point.
     Line,
-    /// Every tree with the access point as its root, once for all that are the same but for the
-    /// robots' numbers.
-    Trees,
 }
 
 /// All configurations of one kind: on every graph, from every place a branch of every length to
@@ -37,7 +34,7 @@ pub struct Campaign {
     pub name: &'static str,
     /// How many robots there are.
     pub robots: usize,
-    /// How many access points there are; lines and trees have one.
+    /// How many access points there are; lines have one.
     pub access_points: usize,
     /// On which graphs.
     pub graphs: Graphs,
@@ -141,7 +138,6 @@ impl Campaign {
         match self.graphs {
             Graphs::UpToSymmetry => graphs(self.robots, self.access_points),
             Graphs::Numbered => numbered_graphs(self.robots),
-            Graphs::Trees => trees(self.robots),
             Graphs::Line => vec![(0..self.robots).map(|robot| (robot, robot + 1)).collect()],
         }
     }

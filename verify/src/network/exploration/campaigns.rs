@@ -69,7 +69,7 @@ pub const QUICK: &[Campaign] = &[
         tasks: 3,
         steps: &[1, 2],
         in_a_row: true,
-        ..robots(4, Counts { configurations: 40, states: 0, transitions: 0 })
+        ..robots(4, Counts { configurations: 40, states: 29_401, transitions: 38_858 })
     },
     Campaign {
         name: "three robots, a message lost",
@@ -105,20 +105,25 @@ pub const THOROUGH: &[Campaign] = &[
         tasks: 2,
         steps: &[1, 2],
         contacts: 1,
-        ..robots(3, Counts { configurations: 2_432, states: 2_360_587, transitions: 3_132_215 })
+        ..robots(3, Counts { configurations: 2_432, states: 2_360_851, transitions: 3_133_011 })
     },
     Campaign {
         name: "three robots, a task behind the other",
         tasks: 2,
         steps: &[1, 2],
         in_a_row: true,
-        ..robots(3, Counts { configurations: 176, states: 0, transitions: 0 })
+        ..robots(3, Counts { configurations: 176, states: 76_042, transitions: 100_240 })
+    },
+    Campaign {
+        name: "three robots, two access points",
+        access_points: 2,
+        ..robots(3, Counts { configurations: 810, states: 137_200, transitions: 182_302 })
     },
     Campaign {
         name: "four robots",
         steps: &[1, 2],
         contacts: 1,
-        ..robots(4, Counts { configurations: 580, states: 902_755, transitions: 1_198_189 })
+        ..robots(4, Counts { configurations: 580, states: 903_335, transitions: 1_199_087 })
     },
     Campaign {
         name: "four robots, two tasks",
@@ -130,32 +135,22 @@ pub const THOROUGH: &[Campaign] = &[
         tasks: 2,
         steps: &[1, 2],
         in_a_row: true,
-        ..robots(4, Counts { configurations: 1160, states: 0, transitions: 0 })
+        ..robots(4, Counts { configurations: 1_160, states: 888_941, transitions: 1_165_396 })
     },
     Campaign {
         name: "five robots",
-        ..robots(5, Counts { configurations: 2_442, states: 435_652, transitions: 562_652 })
-    },
-    Campaign {
-        name: "six robots on every tree",
-        graphs: Graphs::Trees,
-        ..robots(6, Counts { configurations: 336, states: 72_006, transitions: 93_920 })
+        ..robots(5, Counts { configurations: 2_442, states: 435_649, transitions: 562_650 })
     },
     Campaign {
         name: "six robots",
-        ..robots(6, Counts { configurations: 1, states: 0, transitions: 0 })
+        ..robots(6, Counts { configurations: 30_142, states: 5_509_587, transitions: 7_098_990 })
     },
     Campaign {
         name: "six robots in a line",
         graphs: Graphs::Line,
         steps: &[1, 2],
         contacts: 1,
-        ..robots(6, Counts { configurations: 14, states: 43_803, transitions: 63_857 })
-    },
-    Campaign {
-        name: "three robots, two access points",
-        access_points: 2,
-        ..robots(3, Counts { configurations: 810, states: 137_200, transitions: 182_302 })
+        ..robots(6, Counts { configurations: 14, states: 44_043, transitions: 64_217 })
     },
     Campaign {
         name: "three robots, a message lost, tasks far and near",
@@ -164,20 +159,34 @@ pub const THOROUGH: &[Campaign] = &[
         ..robots(3, Counts { configurations: 88, states: 409_690, transitions: 796_021 })
     },
     Campaign {
-        name: "four robots, a message lost",
-        medium: ONE_LOST,
-        ..robots(4, Counts { configurations: 290, states: 854_608, transitions: 1_690_921 })
-    },
-    Campaign {
         name: "three robots, a message copied",
         medium: ONE_COPIED,
         contacts: 1,
         ..robots(3, Counts { configurations: 44, states: 500_319, transitions: 918_010 })
     },
     Campaign {
+        name: "four robots, a message lost",
+        medium: ONE_LOST,
+        ..robots(4, Counts { configurations: 290, states: 854_592, transitions: 1_690_905 })
+    },
+    Campaign {
+        name: "four robots, a message late",
+        steps: &[1],
+        medium: rounds(Faults { delays: 1, ..Faults::NONE }),
+        contacts: 1,
+        ..robots(4, Counts { configurations: 290, states: 788_793, transitions: 1_386_777 })
+    },
+    Campaign {
         name: "four robots, a message copied",
         medium: ONE_COPIED,
-        ..robots(4, Counts { configurations: 290, states: 2_674_971, transitions: 4_907_833 })
+        ..robots(4, Counts { configurations: 290, states: 2_674_931, transitions: 4_907_757 })
+    },
+    Campaign {
+        name: "five robots, a message lost",
+        steps: &[1],
+        medium: rounds(Faults { losses: 1, ..Faults::NONE }),
+        contacts: 0,
+        ..robots(5, Counts { configurations: 2_442, states: 9_925_001, transitions: 19_886_391 })
     },
     Campaign {
         name: "two robots in contact, two messages lost, moves once a period",
@@ -194,14 +203,30 @@ pub const THOROUGH: &[Campaign] = &[
         ..robots(3, Counts { configurations: 88, states: 433_543, transitions: 787_238 })
     },
     Campaign {
-        name: "three robots, two messages lost, moves once a period",
-        medium: periods(Faults { losses: 2, ..Faults::NONE }),
-        ..robots(3, Counts { configurations: 44, states: 257_822, transitions: 836_024 })
+        name: "four robots in contact, a message lost, moves once a period",
+        steps: &[1],
+        medium: periods(Faults { losses: 1, ..Faults::NONE }),
+        contacts: 1,
+        ..robots(4, Counts { configurations: 290, states: 1_134_576, transitions: 2_117_454 })
     },
     Campaign {
         name: "three robots, two messages late, moves once a period",
         medium: periods(Faults { delays: 2, ..Faults::NONE }),
         ..robots(3, Counts { configurations: 44, states: 103_328, transitions: 216_713 })
+    },
+    Campaign {
+        name: "three robots in contact, two messages lost, moves once a period",
+        steps: &[1],
+        medium: periods(Faults { losses: 2, ..Faults::NONE }),
+        contacts: 1,
+        ..robots(3, Counts { configurations: 44, states: 433_620, transitions: 1_408_640 })
+    },
+    Campaign {
+        name: "four robots, two messages lost, moves once a period",
+        steps: &[1],
+        medium: periods(Faults { losses: 2, ..Faults::NONE }),
+        contacts: 0,
+        ..robots(4, Counts { configurations: 290, states: 3_146_331, transitions: 11_720_217 })
     },
     Campaign {
         name: "three robots, a message lost and one late, moves once a period",
@@ -217,40 +242,5 @@ pub const THOROUGH: &[Campaign] = &[
         name: "three robots, a message late and one copied, moves once a period",
         medium: periods(Faults { losses: 0, delays: 1, duplicates: 1 }),
         ..robots(3, Counts { configurations: 44, states: 855_559, transitions: 2_027_441 })
-    },
-    Campaign {
-        name: "four robots in contact, a message lost, moves once a period",
-        steps: &[1],
-        medium: periods(Faults { losses: 1, ..Faults::NONE }),
-        contacts: 1,
-        ..robots(4, Counts { configurations: 1, states: 0, transitions: 0 })
-    },
-    Campaign {
-        name: "three robots in contact, two messages lost, moves once a period",
-        steps: &[1],
-        medium: periods(Faults { losses: 2, ..Faults::NONE }),
-        contacts: 1,
-        ..robots(3, Counts { configurations: 1, states: 0, transitions: 0 })
-    },
-    Campaign {
-        name: "four robots, two messages lost, moves once a period",
-        steps: &[1],
-        medium: periods(Faults { losses: 2, ..Faults::NONE }),
-        contacts: 0,
-        ..robots(4, Counts { configurations: 1, states: 0, transitions: 0 })
-    },
-    Campaign {
-        name: "four robots, a message late",
-        steps: &[1],
-        medium: rounds(Faults { delays: 1, ..Faults::NONE }),
-        contacts: 1,
-        ..robots(4, Counts { configurations: 1, states: 0, transitions: 0 })
-    },
-    Campaign {
-        name: "five robots, a message lost",
-        steps: &[1],
-        medium: rounds(Faults { losses: 1, ..Faults::NONE }),
-        contacts: 0,
-        ..robots(5, Counts { configurations: 1, states: 0, transitions: 0 })
     },
 ];

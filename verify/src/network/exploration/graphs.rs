@@ -1,7 +1,5 @@
 //! All connected graphs of a few robots and access points.
 
-use std::collections::BTreeMap;
-
 use super::places::Place;
 
 /// A graph on robots 0 … N−1 and the access points from N on, by its edges.
@@ -29,29 +27,6 @@ pub fn numbered_graphs(robots: usize) -> Vec<Graph> {
         .filter(|&mask| is_connected(mask, &pairs, robots + 1))
         .map(|mask| edges(mask, &pairs))
         .collect()
-}
-
-/// Every tree of robots with one access point as its root, once for all that are the same but for
-/// the numbers of the robots: 1, 2, 4, 9, 20, 48 … Numbers grow from the root to the leaves.
-pub fn trees(robots: usize) -> Vec<Graph> {
-    let parents = (0..robots).fold(vec![Vec::new()], |shorter, robot| {
-        let with = |parents: &Vec<Place>, parent| [parents.as_slice(), &[parent]].concat();
-        let longer = |parents: &Vec<Place>| -> Vec<Vec<Place>> {
-            (0..robot).chain([robots]).map(|parent| with(parents, parent)).collect()
-        };
-        shorter.iter().flat_map(longer).collect()
-    });
-    let shapes: BTreeMap<String, Vec<Place>> =
-        parents.into_iter().map(|parents| (shape(&parents, robots), parents)).collect();
-    shapes.into_values().map(|parents| parents.into_iter().enumerate().collect()).collect()
-}
-
-/// The tree below a node, without numbers: a pair of brackets around those of its children, sorted.
-fn shape(parents: &[Place], node: Place) -> String {
-    let children = (0..parents.len()).filter(|&child| parents[child] == node);
-    let mut below: Vec<String> = children.map(|child| shape(parents, child)).collect();
-    below.sort_unstable();
-    format!("({})", below.concat())
 }
 
 fn pairs(nodes: usize) -> Vec<(Place, Place)> {
@@ -122,12 +97,5 @@ mod tests {
         assert_eq!(numbered, [1, 4, 38, 728]);
         let alike: Vec<usize> = (1..=4).map(|robots| graphs(robots, 1).len()).collect();
         assert_eq!(alike, [1, 3, 11, 58]);
-    }
-
-    /// Rooted trees of 2 to 7 nodes (OEIS A000081).
-    #[test]
-    fn there_are_as_many_trees_as_there_should_be() {
-        let shapes: Vec<usize> = (1..=6).map(|robots| trees(robots).len()).collect();
-        assert_eq!(shapes, [1, 2, 4, 9, 20, 48]);
     }
 }

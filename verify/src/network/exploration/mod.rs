@@ -21,7 +21,7 @@ mod story;
 
 pub use campaign::{Campaign, CampaignError, Counts, ENDS, Failure, Findings, Graphs};
 pub use campaigns::{QUICK, THOROUGH};
-pub use graphs::{Graph, graphs, numbered_graphs, trees};
+pub use graphs::{Graph, graphs, numbered_graphs};
 pub use medium::{Faults, LONGEST_ECHO, Medium};
 pub use node::{BeaconId, Local, LocalId, Node, NodeError, Nodes, Stimulus};
 pub use places::{Place, Places, PlacesError};
