@@ -130,6 +130,16 @@ mod tests {
         }
     }
 
+    #[test]
+    fn what_lies_beyond_the_first_word_is_merged_too() {
+        let mut set = IdSet::singleton(1);
+        assert!(set.merge(&IdSet::singleton(200)));
+        assert!(set.iter().eq([1, 200]));
+        assert!(!set.merge(&IdSet::singleton(1)));
+        assert!(set.iter().eq([1, 200]));
+        assert!(IdSet::new().is_empty() && !set.is_empty());
+    }
+
     proptest! {
         #[test]
         fn a_set_of_bits_is_a_set(one in ids(), other in ids(), id in id()) {
