@@ -422,6 +422,7 @@ mod tests {
         assert_eq!(program.depth, 2);
         assert_eq!(program.evaluate(&[3.0, 1.0, 2.0]), 600.0);
     }
+
     /// The predicate itself is asked for no more than which part has no value.
     #[test]
     fn what_has_values_is_judged_without_the_predicate() {
