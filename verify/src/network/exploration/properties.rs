@@ -1,6 +1,6 @@
 //! What is to hold in every state of the protocol, and where every mission is to lead.
 //!
-//! The algebra is that of [`tree`], [`team`] and [`duty`](crate::network::duty); here it is read
+//! The algebra is that of [`tree`], [`team`], [`duty`] and [`election`]; here it is read
 //! off a state. While two robots exchange duties there is a moment at which one has taken over
 //! and the other does not know yet: what counts is the [duty in effect](duties).
 
