@@ -73,7 +73,8 @@ struct Kind {
     contacts: u32,
 }
 
-/// No message fails: any size, in rounds or one node at a time.
+/// No message fails: any size, in rounds or one node at a time. Who hears nothing for any time in
+/// the middle of an exchange of duties may be left behind: then nobody is in another's way.
 fn faultless() -> impl Strategy<Value = Kind> {
     let rounds = |period| Medium::Rounds { faults: Faults::NONE, period };
     let medium = prop_oneof![
@@ -82,11 +83,9 @@ fn faultless() -> impl Strategy<Value = Kind> {
         1 => Just(Medium::NodesInAnyOrder),
     ];
     (2..=MOST_ROBOTS, 1..=MOST_ACCESS_POINTS, medium, 0..=MOST_CONTACTS).prop_map(
-        |(robots, access_points, medium, contacts)| Kind {
-            robots,
-            access_points,
-            medium,
-            contacts,
+        |(robots, access_points, medium, contacts)| {
+            let contacts = if medium == Medium::NodesInAnyOrder { 0 } else { contacts };
+            Kind { robots, access_points, medium, contacts }
         },
     )
 }
