@@ -3,10 +3,8 @@
 
 #![allow(clippy::unwrap_used)] // a test that panics has failed
 
-use pleach_verify::exploration::{Fairness, explore};
 use pleach_verify::network::exploration::{
-    ALWAYS, Campaign, Configuration, ENDS, Faults, Medium, Places, Protocol, QUICK, THOROUGH,
-    has_ended, story,
+    Campaign, Configuration, Faults, Findings, Medium, Places, QUICK, THOROUGH,
 };
 
 /// What fails is told before counts are compared: a fault in the protocol changes both.
@@ -40,17 +38,10 @@ fn everything_holds_in_every_state_of_the_thorough_campaigns() {
 
 /// How many states a network has in all of which everything holds, and which lead to an end.
 fn states_of_sound(configuration: Configuration) -> usize {
-    let mut protocol = Protocol::new(configuration).unwrap();
-    let exploration = explore(&mut protocol, ALWAYS, 1_000_000).unwrap();
-    if let Some(violation) = exploration.violations().first() {
-        let told = story(&protocol, &exploration, violation.state);
-        panic!("“{}” fails\n{told}", violation.property);
-    }
-    let traps = exploration.traps(|state| has_ended(&protocol, state), Fairness::Weak);
-    if let Some(&trap) = traps.first() {
-        panic!("“{ENDS}” fails\n{}", story(&protocol, &exploration, trap));
-    }
-    exploration.states().len()
+    let findings = Findings::of("this network", configuration, 1_000_000).unwrap();
+    let told: Vec<String> = findings.failures.iter().map(ToString::to_string).collect();
+    assert!(told.is_empty(), "{}", told.join("\n"));
+    findings.counts.states
 }
 
 /// Two robots on an access point, a task beside one of them, and single messages in any order.

@@ -165,11 +165,7 @@ impl Campaign {
         let name = format!("graph {graph:?} with branches {branches:?}");
         let places = Places::with_branches(self.robots, self.access_points, graph, branches)?;
         let (medium, contacts) = (self.medium, self.contacts);
-        let mut protocol = Protocol::new(Configuration { places, medium, contacts })?;
-        match explore(&mut protocol, ALWAYS, MOST_STATES) {
-            Ok(exploration) => Ok(Findings::of(&name, &protocol, &exploration)),
-            Err(source) => Err(CampaignError::Exploration { configuration: name, source }),
-        }
+        Findings::of(&name, Configuration { places, medium, contacts }, MOST_STATES)
     }
 
     /// Whether there are as many configurations, states and transitions as expected, and nothing
@@ -180,8 +176,25 @@ impl Campaign {
 }
 
 impl Findings {
-    /// What one configuration has come to.
-    fn of(name: &str, protocol: &Protocol, exploration: &Exploration<State, Action>) -> Self {
+    /// What the exploration of one configuration comes to, which is called `name`.
+    ///
+    /// # Errors
+    /// When the network cannot be made, a robot cannot go on, or there are more than `most_states`.
+    pub fn of(
+        name: &str,
+        configuration: Configuration,
+        most_states: usize,
+    ) -> Result<Self, CampaignError> {
+        let mut protocol = Protocol::new(configuration)?;
+        match explore(&mut protocol, ALWAYS, most_states) {
+            Ok(exploration) => Ok(Findings::told(name, &protocol, &exploration)),
+            Err(source) => {
+                Err(CampaignError::Exploration { configuration: name.to_owned(), source })
+            }
+        }
+    }
+
+    fn told(name: &str, protocol: &Protocol, exploration: &Exploration<State, Action>) -> Self {
         let fail = |property: &'static str, state: StateId| {
             let story = story(protocol, exploration, state);
             Failure { configuration: name.to_owned(), property, story }
