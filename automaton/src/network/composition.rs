@@ -15,17 +15,15 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{MissionStep, NodeId, Phase, Role, RoleEvent};
+use pleach_discrete::network::NodeId;
 
-use crate::automaton::Jump;
 use crate::executor::{Round, System};
 
 use super::access_point::AccessPoint;
-use super::automata::{MissionAutomaton, RoleAutomaton, mission_automaton, role_automaton};
 use super::beacon::{Beacon, Notice};
 use super::medium::{Medium, Radio};
 use super::record::{End, MissionEvent, Outcome};
-use super::robot::Robot;
+use super::robot::{Robot, RobotJump};
 use super::scenario::Scenario;
 use super::site::{Site, SiteError};
 
@@ -53,10 +51,8 @@ pub enum NetworkJump {
     Route,
     /// The moves of the period.
     Move,
-    /// A robot changes its role.
-    Role(Jump<Role, RoleEvent>),
-    /// A robot takes a step of the mission.
-    Mission(Jump<Phase, MissionStep>),
+    /// A robot jumps by itself.
+    Robot(RobotJump),
 }
 
 /// What went wrong inside the simulator.
@@ -65,9 +61,6 @@ pub enum NetworkError {
     /// The floor plan or the radio is not valid.
     #[error(transparent)]
     Site(#[from] SiteError),
-    /// An automaton is not well formed.
-    #[error(transparent)]
-    Build(#[from] crate::BuildError),
     /// A guard speaks of something that robots do not measure.
     #[error(transparent)]
     Guard(#[from] crate::TransitionError),
@@ -95,8 +88,6 @@ pub struct Network<M = Radio> {
     pub(super) step: usize,
     pub(super) events: Vec<MissionEvent>,
     medium: M,
-    roles: RoleAutomaton,
-    mission: MissionAutomaton,
     tasks: Vec<Point>,
     positions: Vec<Point>,
     /// What each node said in the current round.
@@ -143,8 +134,6 @@ impl<M: Medium> Network<M> {
         Ok(Network {
             step: 0,
             events: Vec::new(),
-            roles: role_automaton()?,
-            mission: mission_automaton()?,
             tasks: scenario.task.iter().map(|task| task.position.into()).collect(),
             positions: Vec::with_capacity(nodes),
             beacons: Vec::with_capacity(nodes),
@@ -200,7 +189,7 @@ impl<M: Medium> Network<M> {
     }
 
     /// One round: every node repeats its public state to those that hear it.
-    fn exchange_beacons(&mut self) {
+    fn exchange_beacons(&mut self) -> Result<(), NetworkError> {
         self.beacons.clear();
         self.beacons.extend(self.robots.iter_mut().map(Robot::speak));
         self.beacons.extend(self.access_points.iter_mut().map(AccessPoint::speak));
@@ -215,7 +204,7 @@ impl<M: Medium> Network<M> {
         let (to_robots, to_access_points) = self.inboxes.split_at_mut(self.robots.len());
         for (robot, inbox) in self.robots.iter_mut().zip(to_robots) {
             robot.hear(inbox.drain(..).map(|sender| &self.beacons[sender]));
-            robot.deliberate();
+            robot.deliberate()?;
         }
         for (access_point, inbox) in self.access_points.iter_mut().zip(to_access_points) {
             access_point.hear(inbox.drain(..).map(|sender| &self.beacons[sender]));
@@ -225,6 +214,7 @@ impl<M: Medium> Network<M> {
         {
             first.speak_for_user(&self.tasks);
         }
+        Ok(())
     }
 
     /// The robots that a message of `sender` reaches.
@@ -247,13 +237,8 @@ impl<M: Medium> Network<M> {
             if !robot.measure() {
                 continue;
             }
-            if let Some(jump) = robot.step_mission(&self.mission)? {
-                round.jumped(id, NetworkJump::Mission(jump));
-                jumped = true;
-            } else if let Some(jump) = robot.step_role(&self.roles)? {
-                let (from, to) = (jump.source, jump.target);
-                self.events.push(MissionEvent::RoleChanged { robot: id, from, to });
-                round.jumped(id, NetworkJump::Role(jump));
+            if let Some(jump) = robot.jump()? {
+                round.jumped(id, NetworkJump::Robot(jump));
                 jumped = true;
             }
             self.events.extend(robot.drain_log());
@@ -264,9 +249,9 @@ impl<M: Medium> Network<M> {
         Ok(jumped)
     }
 
-    fn jump_together(&mut self) -> NetworkJump {
+    fn jump_together(&mut self) -> Result<NetworkJump, NetworkError> {
         let begin = Instant::now();
-        match self.stage {
+        Ok(match self.stage {
             Stage::Flow => {
                 self.begin_period();
                 self.times.coordination += begin.elapsed();
@@ -274,9 +259,9 @@ impl<M: Medium> Network<M> {
             }
             Stage::Exchange => {
                 if self.rounds == 0 {
-                    self.robots.iter_mut().for_each(Robot::begin_period);
+                    self.robots.iter_mut().try_for_each(Robot::begin_period)?;
                 }
-                self.exchange_beacons();
+                self.exchange_beacons()?;
                 self.rounds += 1;
                 if self.has_exchanged_enough() {
                     self.stage = Stage::Route;
@@ -295,7 +280,7 @@ impl<M: Medium> Network<M> {
                 self.stage = Stage::Flow;
                 NetworkJump::Move
             }
-        }
+        })
     }
 
     /// A control period has a fixed number of rounds. Before the first one the robots are given as
@@ -349,7 +334,7 @@ impl<M: Medium> System for Network<M> {
         let jumped = self.jump_alone(round)?;
         self.times.coordination += begin.elapsed();
         if !jumped && (self.stage != Stage::Flow || self.is_sample_due()) {
-            let jump = self.jump_together();
+            let jump = self.jump_together()?;
             round.jumped_together(jump);
         }
         Ok(())

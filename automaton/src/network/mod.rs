@@ -13,8 +13,8 @@ pub mod scenario;
 pub mod shared;
 pub mod site;
 
-pub use automata::{mission_automaton, role_automaton};
+pub use automata::{Automata, mission_automaton};
 pub use composition::{KernelTimes, Network, NetworkError, NetworkJump};
 pub use medium::{Medium, Radio};
-pub use robot::Robot;
+pub use robot::{Robot, duty_automaton};
 pub use site::{Site, SiteError};

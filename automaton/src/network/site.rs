@@ -7,6 +7,7 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
 use pleach_continuous::network::reliability::{CubicReliability, ReliabilityError};
 
+use super::automata::Automata;
 use super::scenario::{Scenario, Settings};
 
 /// Common knowledge of the robots; it does not change during a mission.
@@ -22,6 +23,8 @@ pub struct Site {
     pub link: CubicReliability,
     /// The control settings, every default filled in.
     pub settings: Settings,
+    /// The automata that every robot runs.
+    pub automata: Automata,
     /// Number of robots.
     pub robots: usize,
     /// d_build: the geodesic length up to which a link of the tree may be made.
@@ -48,6 +51,9 @@ pub enum SiteError {
     /// The robots have no free space.
     #[error(transparent)]
     FreeSpace(#[from] FreeSpaceError),
+    /// An automaton is not well formed.
+    #[error(transparent)]
+    Build(#[from] crate::BuildError),
     /// The radio's ranges make no sense.
     #[error(transparent)]
     Range(#[from] ReliabilityError),
@@ -68,6 +74,7 @@ impl Site {
             free_space,
             access_points: scenario.access_point.iter().map(|ap| ap.position.into()).collect(),
             link,
+            automata: Automata::new()?,
             robots: scenario.robot.len(),
             build_length: settings.longest_new_link(),
             hard_length: settings.longest_tree_link(),

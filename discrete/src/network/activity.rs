@@ -253,6 +253,8 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         row(Waiting, On::RelayKept, Relay),
         row(Waiting, On::LeafKept, Leaf),
         row(AwaitingRelease, On::BoundKept, Bound),
+        row(AwaitingRelease, On::RelayResumed, Relay),
+        row(AwaitingRelease, On::LeafResumed, Leaf),
         row(Waiting, On::TeamJoined, Following),
         row(AwaitingRelease, On::Released, Leading),
         row(Shifting, On::StandbyReached, Standby),

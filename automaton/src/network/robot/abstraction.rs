@@ -10,6 +10,8 @@ use std::fmt::Write;
 use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Election, NodeId, Phase, Subgroup};
 
+use crate::TransitionError;
+
 use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Path};
 use super::Robot;
@@ -32,10 +34,14 @@ impl Robot {
     }
 
     /// In place of a round of messages: thinks over what it knows, without counting a round.
-    pub fn think(&mut self) {
-        self.reflect();
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn think(&mut self) -> Result<(), TransitionError> {
+        self.reflect()?;
         self.stir();
         self.is_quiet = false;
+        Ok(())
     }
 
     /// What the robot would tell its neighbours now.
@@ -101,18 +107,11 @@ impl Robot {
             account,
             "{:?}",
             (
-                (self.id, self.position, self.still_periods, self.role, self.phase),
-                (self.duty, self.left_post, &self.dealings, &self.answered, self.last_partner),
+                (self.id, self.position, self.still_periods, self.phase),
+                (self.duty(), &self.dealings, &self.answered, self.last_partner),
                 (self.parent, &self.lineage, &self.below),
                 (self.can_detach, self.barren_periods, &self.bulletin, &self.tasks, &self.roster),
-                (
-                    &self.eligible,
-                    &self.election,
-                    self.bid,
-                    waited,
-                    &self.route,
-                    self.awaits_release
-                ),
+                (&self.eligible, &self.election, self.bid, waited, &self.route),
                 (&self.path, &self.agreement, &self.subgroups, self.subgroup, self.team),
                 self.audible().map(|(_, silent)| silent).collect::<Vec<_>>(),
             )

@@ -10,6 +10,7 @@
 
 mod abstraction;
 mod attachment;
+mod duties;
 mod exchange;
 mod facts;
 mod hearing;
@@ -30,23 +31,25 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Bid, Bulletin, Dealings, Election, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
-    PostId, Role, RoleEvent, Subgroup,
+    Activity, Agreement, Anchor, Bid, Bulletin, Dealings, DutyEvent, Election, IdSet, Lineage,
+    MissionStep, NodeId, Phase, Post, PostId, Role, Subgroup,
 };
 
-pub use facts::{Facts, VARIABLES};
+pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
+pub use facts::{Facts, GLOSSARY, PROPOSITIONS, VARIABLES};
 pub use links::TreeLink;
 pub use motion::{Objection, Proposal};
 pub use routing::{FlowReport, RouteLink};
 
 use crate::automaton::{Jump, TransitionError};
+use crate::located::Current;
 
-use super::automata::{MissionAutomaton, RoleAutomaton};
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
-use super::duty::{Duty, Hop, Path, Station};
+use super::duty::{Duty, Held, Hop, Path, Standby, Station};
 use super::record::MissionEvent;
 use super::shared::Shared;
 use super::site::Site;
+use duties::Label;
 use hearing::Neighbour;
 
 /// A robot of the network.
@@ -62,8 +65,9 @@ pub struct Robot {
     velocity: Vector,
     clock: f64,
 
-    // Where it is in its two automata.
-    role: Role,
+    // Where it is in its automata, and what the duty automaton jumps together with.
+    duty: Current<Duty>,
+    label: Label,
     phase: Phase,
     facts: Facts,
     is_quiet: bool,
@@ -74,9 +78,7 @@ pub struct Robot {
     is_unmeasured: bool,
     voice: Voice,
 
-    // Its duty, and the exchange of duties that it is engaged in.
-    duty: Duty,
-    left_post: Option<PostId>,
+    // The exchange of duties that it is engaged in.
     dealings: Dealings<Duty>,
     last_partner: Option<NodeId>,
     /// The number of the offer answered last, by the robot that made it.
@@ -87,6 +89,10 @@ pub struct Robot {
     parent: Option<NodeId>,
     lineage: Option<Arc<Lineage>>,
     below: Arc<IdSet>,
+    /// The parent in the tree that it has found to be best, none if it has looked for none.
+    desired_parent: Option<Option<Anchor>>,
+    /// The node that p₁ finds to be a better parent.
+    reattaches_to: Option<NodeId>,
     can_detach: bool,
     barren_periods: u32,
 
@@ -100,7 +106,6 @@ pub struct Robot {
     bid: Option<Bid>,
     waited_rounds: usize,
     route: Option<(u32, Shared<Vec<Hop>>)>,
-    awaits_release: bool,
     path: Option<Arc<Path>>,
     agreement: Option<Agreement>,
     subgroups: Vec<Subgroup>,
@@ -128,6 +133,15 @@ pub struct Robot {
     log: Vec<MissionEvent>,
 }
 
+/// A jump of one of a robot's automata.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RobotJump {
+    /// A step of the mission, with the duty if that has a transition for it.
+    Mission(Jump<Phase, MissionStep>),
+    /// A change of its duty.
+    Duty(Jump<Activity, DutyEvent>),
+}
+
 /// A task that this robot has heard of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TaskNotice {
@@ -141,13 +155,15 @@ impl Robot {
     /// A robot at the start of a mission: redundant, alone, at rest.
     pub fn new(id: NodeId, position: Point, rate: f64, site: Arc<Site>) -> Self {
         let post = Post::redundant(PostId(id as u32));
+        let station = Station { post, reference: position };
         Robot {
             id,
             rate,
             position,
             velocity: Vector::zeros(),
             clock: site.settings.period,
-            role: Role::Redundant,
+            duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
+            label: Label::Alone,
             phase: Phase::Idle,
             facts: Facts::default(),
             is_quiet: false,
@@ -155,8 +171,6 @@ impl Robot {
             is_unspoken: true,
             is_unmeasured: true,
             voice: Voice::default(),
-            duty: Duty::Hold(Station { post, reference: position }),
-            left_post: None,
             dealings: Dealings::new(),
             last_partner: None,
             answered: BTreeMap::new(),
@@ -164,6 +178,8 @@ impl Robot {
             parent: None,
             lineage: None,
             below: Arc::new(IdSet::singleton(id)),
+            desired_parent: None,
+            reattaches_to: None,
             can_detach: false,
             barren_periods: 0,
             bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
@@ -174,7 +190,6 @@ impl Robot {
             bid: None,
             waited_rounds: 0,
             route: None,
-            awaits_release: false,
             path: None,
             agreement: None,
             subgroups: Vec::new(),
@@ -223,7 +238,7 @@ impl Robot {
             lineage: self.lineage.clone(),
             parent: self.parent,
             below: Arc::clone(&self.below),
-            duty: Some(self.duty),
+            duty: Some(*self.duty),
             parked: self.is_parked(),
             way: self.way_asked_for(),
             can_detach: self.can_detach,
@@ -254,9 +269,9 @@ impl Robot {
         self.position
     }
 
-    /// The role, a location of the role automaton.
-    pub const fn role(&self) -> Role {
-        self.role
+    /// The role that its duty gives it.
+    pub fn role(&self) -> Role {
+        self.duty.role()
     }
 
     /// The phase, a location of the mission automaton.
@@ -265,7 +280,7 @@ impl Robot {
     }
 
     /// What it does.
-    pub const fn duty(&self) -> &Duty {
+    pub fn duty(&self) -> &Duty {
         &self.duty
     }
 
@@ -290,67 +305,72 @@ impl Robot {
     }
 
     /// A control period begins: what is looked at once a period.
-    pub fn begin_period(&mut self) {
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn begin_period(&mut self) -> Result<(), TransitionError> {
         self.stir();
-        self.retire_if_barren();
+        self.count_barren_periods();
         self.consider_exchange();
+        Ok(())
     }
 
     /// After each round of messages: the robot puts together what it has heard.
     ///
     /// What comes of it depends on nothing but what the robot hears and its own state. Where
     /// neither has changed, and no wait is over, there is nothing to do.
-    pub fn deliberate(&mut self) {
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn deliberate(&mut self) -> Result<(), TransitionError> {
         let is_due = self.count_round();
         if !std::mem::take(&mut self.has_news) && !is_due {
-            return;
+            return Ok(());
         }
-        self.reflect();
+        self.reflect()
     }
 
     /// The robot puts together what it has heard, whether or not there is news in it.
-    fn reflect(&mut self) {
+    fn reflect(&mut self) -> Result<(), TransitionError> {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
-        self.handle_exchange();
+        self.handle_exchange()?;
         self.keep_place();
         self.hear_word();
         self.remember_parent();
+        Ok(())
     }
 
-    /// Takes at most one transition of the mission automaton.
+    /// Takes at most one transition of the mission automaton, together with the duty automaton if
+    /// that has a transition for it, or else one of the duty automaton alone.
     ///
     /// # Errors
-    /// When a guard cannot be evaluated.
-    pub fn step_mission(
-        &mut self,
-        automaton: &MissionAutomaton,
-    ) -> Result<Option<Jump<Phase, MissionStep>>, TransitionError> {
-        let mut phase = self.phase;
-        let Some(step) = automaton.enabled(phase, self)? else { return Ok(None) };
-        let jump = step.jump();
-        self.phase = jump.target;
-        step.fire(&mut phase, self)?;
-        self.is_quiet = false;
-        self.stir();
-        Ok(Some(jump))
-    }
-
-    /// Takes at most one transition of the role automaton.
-    ///
-    /// # Errors
-    /// When a guard cannot be evaluated.
-    pub fn step_role(
-        &mut self,
-        automaton: &RoleAutomaton,
-    ) -> Result<Option<Jump<Role, RoleEvent>>, TransitionError> {
-        let mut role = self.role;
-        let jump = automaton.step(&mut role, self)?;
-        self.role = role;
+    /// When a guard or a reset cannot be evaluated.
+    pub fn jump(&mut self) -> Result<Option<RobotJump>, TransitionError> {
+        let role = self.role();
+        let jump = match self.jump_mission()? {
+            Some(jump) => Some(RobotJump::Mission(jump)),
+            None => self.jump_duty(Label::Alone)?.map(RobotJump::Duty),
+        };
         if jump.is_some() {
             self.is_quiet = false;
             self.stir();
         }
+        if role != self.role() {
+            let event = MissionEvent::RoleChanged { robot: self.id, from: role, to: self.role() };
+            self.report(event);
+        }
         Ok(jump)
+    }
+
+    fn jump_mission(&mut self) -> Result<Option<Jump<Phase, MissionStep>>, TransitionError> {
+        let site = Arc::clone(&self.site);
+        let mut phase = self.phase;
+        let Some(step) = site.automata.mission.enabled(phase, self)? else { return Ok(None) };
+        let jump = step.jump();
+        self.jump_duty(Label::Mission(jump.event))?;
+        self.phase = jump.target;
+        step.fire(&mut phase, self)?;
+        Ok(Some(jump))
     }
 
     /// Takes what it has told observers since the last call.

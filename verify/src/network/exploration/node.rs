@@ -6,9 +6,8 @@ use std::sync::Arc;
 use pleach_automaton::BuildError;
 use pleach_automaton::TransitionError;
 use pleach_automaton::network::access_point::AccessPoint;
-use pleach_automaton::network::automata::{MissionAutomaton, RoleAutomaton};
 use pleach_automaton::network::beacon::{Beacon, Notice};
-use pleach_automaton::network::{Robot, mission_automaton, role_automaton};
+use pleach_automaton::network::Robot;
 use pleach_continuous::Point;
 
 /// The number of a beacon among all those ever said.
@@ -97,8 +96,6 @@ const MOST_JUMPS: usize = 32;
 /// lists of numbers.
 #[derive(Debug)]
 pub struct Nodes {
-    roles: RoleAutomaton,
-    mission: MissionAutomaton,
     tasks: Vec<Point>,
     positions: Vec<Point>,
     beacons: Vec<Arc<Beacon>>,
@@ -115,8 +112,6 @@ impl Nodes {
     /// When an automaton is not well formed.
     pub fn new(positions: Vec<Point>, tasks: Vec<Point>) -> Result<Self, NodeError> {
         Ok(Nodes {
-            roles: role_automaton()?,
-            mission: mission_automaton()?,
             tasks,
             positions,
             beacons: Vec::new(),
@@ -205,13 +200,13 @@ impl Nodes {
         match stimulus {
             Stimulus::Hear(beacons) => {
                 heard = self.listen(&mut robot, &heard, beacons);
-                robot.think();
+                robot.think()?;
             }
             Stimulus::Round(beacons) => {
                 heard = self.listen(&mut robot, &heard, beacons);
                 let (position, still) = (robot.position(), robot.still_periods());
                 robot.stand_at(position, still);
-                robot.deliberate();
+                robot.deliberate()?;
             }
             Stimulus::Move(place) => {
                 robot.stand_at(self.positions[*place], 0);
@@ -220,8 +215,8 @@ impl Nodes {
             Stimulus::Period(still) => {
                 let position = robot.position();
                 robot.stand_at(position, *still);
-                robot.begin_period();
-                robot.deliberate();
+                robot.begin_period()?;
+                robot.deliberate()?;
             }
             Stimulus::Announce => {}
         }
@@ -244,9 +239,7 @@ impl Nodes {
     fn jump(&self, robot: &mut Robot) -> Result<(), NodeError> {
         for _ in 0..MOST_JUMPS {
             robot.measure();
-            if robot.step_mission(&self.mission)?.is_none()
-                && robot.step_role(&self.roles)?.is_none()
-            {
+            if robot.jump()?.is_none() {
                 return Ok(());
             }
         }
