@@ -32,12 +32,12 @@ pub fn path_joined() -> Guard {
 
 /// Another task is announced, and its post services none.
 pub fn relay_resumed() -> Guard {
-    named("relay resumed", proposition("dissolved").and(!proposition("serves")))
+    named("relay resumed", proposition("superseded").and(!proposition("serves")))
 }
 
 /// Another task is announced, and its post services one.
 pub fn leaf_resumed() -> Guard {
-    named("leaf resumed", proposition("dissolved").and(proposition("serves")))
+    named("leaf resumed", proposition("superseded").and(proposition("serves")))
 }
 
 fn called_off(name: &str, predicate: Predicate) -> Guard {
@@ -61,7 +61,7 @@ pub fn leaf_kept() -> Guard {
 
 /// Σ is given up although the leader has not been released.
 pub fn bound_kept() -> Guard {
-    called_off("bound kept", !proposition("dissolved"))
+    called_off("bound kept", !proposition("superseded"))
 }
 
 /// It is the last robot that Σ relieves, and joins the team.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use pleach_discrete::Location as _;
 use pleach_discrete::network::{
-    Activity, Anchor, DUTIES, DutyEvent, MissionStep, NodeId, Post, PostId, PostKind,
+    Activity, Anchor, DUTIES, DutyEvent, MissionStep, NodeId, Post, PostId, PostKind, Role,
 };
 use pleach_guards::Guard;
 use pleach_guards::network::duty as guards;
@@ -96,6 +96,26 @@ impl Robot {
         jump
     }
 
+    /// Takes over the duty of `partner` (Algorithm 4 without the walk).
+    pub(super) fn exchange_duty(
+        &mut self,
+        duty: Duty,
+        partner: NodeId,
+    ) -> Result<(), TransitionError> {
+        let role = self.role();
+        self.jump_duty(Label::Exchange(duty, partner))?;
+        self.report_role_after(role);
+        Ok(())
+    }
+
+    /// Tells observers if the role is not `before` any more.
+    pub(super) fn report_role_after(&mut self, before: Role) {
+        let now = self.role();
+        if now != before {
+            self.report(MissionEvent::RoleChanged { robot: self.id, from: before, to: now });
+        }
+    }
+
     // ---- What the guards ask -------------------------------------------------------------------
 
     pub(super) fn takes_step(&self, step: MissionStep) -> bool {
@@ -139,6 +159,11 @@ impl Robot {
     pub(super) fn is_called_off(&self) -> bool {
         use MissionStep::{Announced, Ended, Resumed, Serviced};
         [Announced, Ended, Resumed, Serviced].into_iter().any(|step| self.takes_step(step))
+    }
+
+    /// Whether another task is announced.
+    pub(super) fn is_superseded(&self) -> bool {
+        self.takes_step(MissionStep::Announced)
     }
 
     /// Whether the primary team is dissolved.

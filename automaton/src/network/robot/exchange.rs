@@ -17,7 +17,6 @@ use crate::TransitionError;
 use super::super::duty::{Duty, Shifting};
 use super::super::record::MissionEvent;
 use super::Robot;
-use super::duties::Label;
 use super::hearing::Neighbour;
 
 /// Two robots touch when they are this many ρ apart; they never come closer than 2ρ.
@@ -127,7 +126,7 @@ impl Robot {
         let heard = self.neighbour(partner).and_then(|parked| parked.beacon.reply.clone());
         let Some(reply) = heard else { return Ok(()) };
         let Some(duty) = self.dealings.hear(self.id, &reply) else { return Ok(()) };
-        self.jump_duty(Label::Exchange(duty, partner))?;
+        self.exchange_duty(duty, partner)?;
         self.report(MissionEvent::DutiesExchanged { mover: self.id, parked: partner });
         Ok(())
     }
@@ -139,7 +138,7 @@ impl Robot {
         let Some(mover) = self.neighbour(to) else { return Ok(()) };
         let (offer, offers_made) = (mover.beacon.offer.clone(), mover.beacon.offers_made);
         if let Some(duty) = self.dealings.conclude(offer.as_ref(), offers_made) {
-            self.jump_duty(Label::Exchange(duty, to))?;
+            self.exchange_duty(duty, to)?;
         }
         Ok(())
     }

@@ -163,6 +163,8 @@ facts! {
             on_coming_path: robot.is_on_coming_path(),
             /// It learns now that Σ is given up or done.
             called_off: robot.is_called_off(),
+            /// It learns now that another task is announced.
+            superseded: robot.is_superseded(),
             /// It learns now that the primary team is dissolved.
             dissolved: robot.is_dissolved(),
             /// It is relieved now of the last post of Σ.

@@ -355,10 +355,7 @@ impl Robot {
             self.is_quiet = false;
             self.stir();
         }
-        if role != self.role() {
-            let event = MissionEvent::RoleChanged { robot: self.id, from: role, to: self.role() };
-            self.report(event);
-        }
+        self.report_role_after(role);
         Ok(jump)
     }
 
