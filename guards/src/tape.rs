@@ -105,10 +105,9 @@ impl Tape {
         let given = self.variables.min(values.len());
         places[..given].copy_from_slice(&values[..given]);
         places[given..self.variables].fill(f64::NAN);
-        let mut next = self.variables + self.constants.len();
-        for instruction in &self.instructions {
-            places[next] = instruction.apply(places, &self.tables);
-            next += 1;
+        let first = self.variables + self.constants.len();
+        for (place, instruction) in (first..).zip(&self.instructions) {
+            places[place] = instruction.apply(places, &self.tables);
         }
         for (result, &place) in results.iter_mut().zip(&self.results) {
             *result = places[place as usize];
