@@ -109,7 +109,7 @@ pub use interval::{EmptyInterval, Interval};
 pub use linear::LinearForm;
 pub use normal_form::NoDisjunctiveForm;
 pub use parse::ParseError;
-pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
+pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not, proposition};
 pub use program::{CompiledPredicate, Program};
 pub use range::{Ranges, Truth};
 pub use substitution::Substitution;

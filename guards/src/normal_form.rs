@@ -40,8 +40,10 @@ impl Predicate {
             Predicate::All(conjuncts) => Predicate::any(parts(conjuncts)),
             Predicate::Any(disjuncts) if affirmed => Predicate::any(parts(disjuncts)),
             Predicate::Any(disjuncts) => Predicate::all(parts(disjuncts)),
-            Predicate::Function(_) if affirmed => self.clone(),
-            Predicate::Function(_) => Predicate::Not(Arc::new(self.clone())),
+            Predicate::Proposition(_) | Predicate::Function(_) if affirmed => self.clone(),
+            Predicate::Proposition(_) | Predicate::Function(_) => {
+                Predicate::Not(Arc::new(self.clone()))
+            }
         }
     }
 
@@ -102,7 +104,7 @@ impl Predicate {
             Predicate::Not(inner) => Predicate::Not(Arc::new(inner.by_cases(limit)?)),
             Predicate::All(conjuncts) => Predicate::All(parts(conjuncts)?),
             Predicate::Any(disjuncts) => Predicate::Any(parts(disjuncts)?),
-            Predicate::Function(_) => self.clone(),
+            Predicate::Proposition(_) | Predicate::Function(_) => self.clone(),
         })
     }
 }
@@ -129,6 +131,9 @@ fn disjuncts(
             Ok(sum)
         })?,
         Predicate::Not(inner) => return disjuncts(inner, limit),
+        Predicate::Proposition(name) => {
+            return Err(NoDisjunctiveForm::Proposition { name: name.to_string() });
+        }
         Predicate::Function(function) => {
             return Err(NoDisjunctiveForm::Function { name: function.name().to_string() });
         }
@@ -262,6 +267,11 @@ pub enum NoDisjunctiveForm {
         /// Its name.
         name: String,
     },
+    /// A proposition is not made of comparisons.
+    Proposition {
+        /// Its name.
+        name: String,
+    },
     /// There would be more parts than were allowed.
     TooLarge {
         /// How many were allowed.
@@ -274,6 +284,9 @@ impl fmt::Display for NoDisjunctiveForm {
         match self {
             Self::Function { name } => {
                 write!(formatter, "the function `{name}` is not made of comparisons")
+            }
+            Self::Proposition { name } => {
+                write!(formatter, "the proposition `{name}` is not made of comparisons")
             }
             Self::TooLarge { limit } => {
                 write!(formatter, "the normal form has more than the {limit} parts allowed")

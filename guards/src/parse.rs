@@ -57,7 +57,7 @@ use std::borrow::Cow;
 use std::str::FromStr;
 
 use crate::expression::Expression;
-use crate::predicate::{Comparison, Predicate, Relation, always, never, not};
+use crate::predicate::{Comparison, Predicate, Relation, always, never, not, proposition};
 pub use error::ParseError;
 use tokens::{Located, Token, tokens};
 
@@ -66,7 +66,7 @@ use tokens::{Located, Token, tokens};
 const NESTING_LIMIT: usize = 100;
 
 const RELATION: &str = "`≤`, `<`, `≥` or `>` (for equality, compare |a − b| with a tolerance)";
-const STATEMENT: &str = "`(`, `¬`, `always` or `never`";
+const STATEMENT: &str = "`(`, `¬`, `always`, `never` or the name of a proposition";
 const TRAILER: &str = "an operator or the end";
 
 impl FromStr for Expression {
@@ -125,6 +125,7 @@ impl Reader<'_> {
         let begins_statement = match self.token() {
             Token::Not | Token::Always | Token::Never => true,
             Token::Open => self.encloses_predicate(),
+            Token::Word(_) | Token::Quoted(_) => self.is_proposition(),
             _ => false,
         };
         if begins_statement { self.statement() } else { self.comparison() }
@@ -137,6 +138,12 @@ impl Reader<'_> {
             Ok(never())
         } else if self.take(Token::Not) {
             self.nested(Self::statement).map(not)
+        } else if let Token::Word(name) | Token::Quoted(name) = self.token()
+            && self.is_proposition()
+        {
+            let named = proposition(name);
+            self.position += 1;
+            Ok(named)
         } else {
             self.expect(Token::Open, STATEMENT)?;
             let inner = self.nested(Self::disjunction)?;
@@ -173,6 +180,13 @@ impl Reader<'_> {
             self.position += 2;
         }
         is_bars || self.take(Token::Or)
+    }
+
+    /// Whether the name here is a statement by itself: what follows ends it.
+    fn is_proposition(&self) -> bool {
+        let ends = [Token::And, Token::Or, Token::Close, Token::End];
+        self.follow(1, &[Token::Bar, Token::Bar])
+            || self.tokens.get(self.position + 1).is_some_and(|next| ends.contains(&next.token))
     }
 
     /// Whether anything up to the matching parenthesis belongs to a predicate.

@@ -73,7 +73,7 @@ impl Binding {
             Predicate::All(parts) | Predicate::Any(parts) if parts.is_empty() => Binding::Atom,
             Predicate::All(_) => Binding::Conjunction,
             Predicate::Any(_) => Binding::Disjunction,
-            Predicate::Function(_) => Binding::Atom,
+            Predicate::Proposition(_) | Predicate::Function(_) => Binding::Atom,
         }
     }
 }
@@ -95,6 +95,7 @@ impl Printer<'_> {
             Predicate::Any(parts) if parts.is_empty() => self.out.write_str(self.notation.never),
             Predicate::All(parts) => self.joined(parts, self.notation.and, Binding::Comparison),
             Predicate::Any(parts) => self.joined(parts, self.notation.or, Binding::Conjunction),
+            Predicate::Proposition(name) => (self.notation.write_name)(self.out, name),
             Predicate::Function(function) => {
                 (self.notation.write_name)(self.out, function.name())?;
                 self.enclosed(self.notation.parentheses, |printer| {

@@ -298,7 +298,8 @@ impl Predicate {
     ///
     /// # Errors
     ///
-    /// [`EvaluationError::UnknownVariable`] if a variable of the predicate is not listed.
+    /// [`EvaluationError::UnknownVariable`] if a variable of the predicate is not listed, and
+    /// [`EvaluationError::UnknownProposition`] if there is a proposition: a slice holds numbers.
     pub fn compile(
         &self,
         variables: &[impl AsRef<str>],
@@ -385,6 +386,9 @@ impl Test {
             Predicate::Not(inner) => Test::Not(Box::new(Test::of(inner, names)?)),
             Predicate::All(parts) => Test::All(all(parts)?),
             Predicate::Any(parts) => Test::Any(all(parts)?),
+            Predicate::Proposition(name) => {
+                return Err(EvaluationError::UnknownProposition { proposition: name.to_string() });
+            }
             Predicate::Function(function) => Test::Function(function.clone()),
         })
     }

@@ -160,7 +160,8 @@ impl BinaryOperator {
 }
 
 impl Predicate {
-    /// What is known about the predicate everywhere in the box. A named function is undecided.
+    /// What is known about the predicate everywhere in the box. Propositions and named functions are
+    /// undecided.
     ///
     /// # Errors
     ///
@@ -176,7 +177,7 @@ impl Predicate {
             Predicate::Any(parts) => {
                 parts.iter().try_fold(Truth::Never, |truth, part| Ok(truth.or(part.truth(states)?)))
             }
-            Predicate::Function(_) => Ok(Truth::Undecided),
+            Predicate::Proposition(_) | Predicate::Function(_) => Ok(Truth::Undecided),
         }
     }
 }

@@ -83,6 +83,7 @@ impl Predicate {
             Predicate::Not(inner) => Predicate::Not(Arc::new(inner.substitute(substitution))),
             Predicate::All(parts) => Predicate::All(replaced(parts)),
             Predicate::Any(parts) => Predicate::Any(replaced(parts)),
+            Predicate::Proposition(_) => self.clone(),
             Predicate::Function(function) => {
                 Predicate::Function(replace_in(function, substitution))
             }
