@@ -113,8 +113,8 @@ pub fn maximum(operands: impl IntoIterator<Item = Expression>) -> Expression {
 /// # Ok::<(), pleach_guards::EvaluationError>(())
 /// ```
 ///
-/// Returns `None` if a condition rests on a [function](Predicate::function), which no formula can
-/// contain.
+/// Returns `None` if a condition rests on a [function](Predicate::function) or a proposition, which
+/// no formula can contain.
 pub fn piecewise(
     cases: impl IntoIterator<Item = (Predicate, Expression), IntoIter: DoubleEndedIterator>,
     otherwise: impl Into<Expression>,
@@ -141,7 +141,7 @@ impl Expression {
                 .iter()
                 .rev()
                 .try_fold(otherwise, |rest, part| Expression::chosen(part, then.clone(), rest))?,
-            Predicate::Function(_) => return None,
+            Predicate::Function(_) | Predicate::Proposition(_) => return None,
         })
     }
 

@@ -141,7 +141,7 @@ fn errors_say_where_and_what() {
             "sec(x) ≤ 1",
             1,
             "a function: abs, sqrt, sin, cos, tan, tanh, atan2, exp, ln, sign, floor, min, max, if, linear or steps",
-            "tan",
+            "sec",
         ),
         ("min(x) ≤ 1", 6, "an operator or `,`", ")"),
         ("`x ≤ 1", 1, "a closing backtick", "`x ≤ 1"),
