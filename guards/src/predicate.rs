@@ -59,7 +59,7 @@ pub struct Comparison {
 }
 
 /// An order between two numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Relation {
     /// a ≤ b
     AtMost,

@@ -137,7 +137,12 @@ fn errors_say_where_and_what() {
         ("x^y ≤ 1", 3, "a number as the exponent", "y"),
         ("x^(2 ≤ 1", 6, "`)` after the exponent", "≤"),
         ("√x² ≤ 1", 3, "parentheses that say which is first, root or power", "²"),
-        ("tan(x) ≤ 1", 1, "a function: abs, sqrt, sin, cos, exp, ln, min or max", "tan"),
+        (
+            "sec(x) ≤ 1",
+            1,
+            "a function: abs, sqrt, sin, cos, tan, tanh, atan2, exp, ln, sign, floor, min, max, if, linear or steps",
+            "sec",
+        ),
         ("min(x) ≤ 1", 6, "an operator or `,`", ")"),
         ("`x ≤ 1", 1, "a closing backtick", "`x ≤ 1"),
         ("(x = 3)", 4, relation, "="),
