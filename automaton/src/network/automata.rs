@@ -92,7 +92,11 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
             Reset::new("announce that the team advances", Robot::announce_advance),
         )
         .on(Step::Resumed, mission::resumed(), Reset::new("resume", Robot::resume))
-        .on(Step::Reached, mission::reached(), Reset::new("announce the service", Robot::service_task))
+        .on(
+            Step::Reached,
+            mission::reached(),
+            Reset::new("announce the service", Robot::service_task),
+        )
         .on(Step::Serviced, mission::serviced(), Reset::identity())
         .build()
 }

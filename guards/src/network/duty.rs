@@ -138,7 +138,7 @@ pub fn merged() -> Guard {
 /// For some periods no branch has depended on it.
 pub fn retired() -> Guard {
     let barren = variable("barren").at_least(variable("barren_patience"));
-    disengaged("retired", barren)
+    disengaged("retired", barren & variable("branches").less_than(1.0))
 }
 
 /// It takes over a duty called `name` in an exchange.

@@ -44,7 +44,10 @@ pub mod mission {
     pub fn trapped() -> Guard {
         let at_rest = variable("still").at_least(variable("window"));
         let stuck = !proposition("slack").and(!proposition("pending"));
-        disengaged("trapped", proposition("first").and(at_rest).and(stuck).and(!proposition("bound")))
+        disengaged(
+            "trapped",
+            proposition("first").and(at_rest).and(stuck).and(!proposition("bound")),
+        )
     }
 
     /// The team, or a robot on Σ, has not moved for long, and no recruit could help.
@@ -98,7 +101,8 @@ pub mod mission {
     pub fn reached() -> Guard {
         let near = variable("distance").at_most(variable("reach"));
         let stuck = variable("still").at_least(variable("window"));
-        let within = variable("distance").at_most(variable("radius")).and(stuck).and(proposition("slack"));
+        let within =
+            variable("distance").at_most(variable("radius")).and(stuck).and(proposition("slack"));
         disengaged("reached", proposition("leads").and(!proposition("bound")).and(near.or(within)))
     }
 

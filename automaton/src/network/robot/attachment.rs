@@ -38,9 +38,17 @@ impl Robot {
             Activity::Following | Activity::Leading => self.reattach(),
             _ => None,
         };
+        self.look_after_place();
+    }
+
+    /// What follows from its duty and what it hears: its way to the access point, what is attached
+    /// to it, and its parent.
+    pub(super) fn look_after_place(&mut self) {
         self.trace_lineage();
-        self.can_detach = self.duty.is_redundant() && self.finds_other_parent();
+        self.can_detach =
+            !self.is_engaged() && self.duty.is_redundant() && self.finds_other_parent();
         self.collect_below();
+        self.remember_parent();
     }
 
     /// Once a period: for how long no branch has depended on the post, Remark 5.6 (ii).

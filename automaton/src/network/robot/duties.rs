@@ -6,20 +6,20 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::Location as _;
 use pleach_discrete::network::{
     Activity, Anchor, DUTIES, DutyEvent, MissionStep, NodeId, Post, PostId, PostKind, Role,
 };
-use pleach_guards::Guard;
+use pleach_discrete::{Event as _, Location as _};
 use pleach_guards::network::duty as guards;
+use pleach_guards::{EvaluationError, Guard};
 
 use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Jump, Transfer, TransitionError};
 
 use super::super::beacon::Notice;
 use super::super::duty::{
-    AwaitingRelease, Bound, Duty, Following, Held, Holder, Junction, Leading, Leaf, Relay, Shifting,
-    Standby, Station, Waiting,
+    AwaitingRelease, Bound, Duty, Following, Held, Holder, Junction, Leading, Leaf, Relay,
+    Shifting, Standby, Station, Waiting,
 };
 use super::super::record::MissionEvent;
 use super::Robot;
@@ -65,7 +65,8 @@ impl Holds<Duty> for Robot {
     }
 
     fn carry_out(&mut self, effects: Effects) {
-        self.desired_parent = None;
+        (self.desired_parent, self.reattaches_to) = (None, None);
+        self.barren_periods = 0;
         for effect in effects {
             match effect {
                 DutyEffect::Report(event) => self.report(event),
@@ -90,8 +91,9 @@ impl Robot {
         let jump = site.automata.duty.step_in_place::<Duty>(self);
         self.label = Label::Alone;
         if matches!(jump, Ok(Some(_))) {
+            self.is_quiet = false;
             self.stir();
-            self.remember_parent();
+            self.look_after_place();
         }
         jump
     }
@@ -103,9 +105,19 @@ impl Robot {
         partner: NodeId,
     ) -> Result<(), TransitionError> {
         let role = self.role();
-        self.jump_duty(Label::Exchange(duty, partner))?;
+        let location = self.duty.location().name();
+        let taken = self.jump_duty(Label::Exchange(duty, partner))?;
         self.report_role_after(role);
-        Ok(())
+        match taken {
+            Some(_) => Ok(()),
+            // Half an exchange would leave one duty to two robots, or to none.
+            None => Err(TransitionError {
+                location,
+                event: duty.location().taken_over().name(),
+                part: "table".into(),
+                source: EvaluationError::MissingData { location: duty.location().name() },
+            }),
+        }
     }
 
     /// Tells observers if the role is not `before` any more.
@@ -176,9 +188,9 @@ impl Robot {
     pub(super) fn takes_post_ahead(&self) -> bool {
         let in_active_subgroup = || {
             let active = self.subgroups.get(self.subgroup);
-            self.duty.place().is_some_and(|place| {
-                active.is_some_and(|active| active.places().contains(&place))
-            })
+            self.duty
+                .place()
+                .is_some_and(|place| active.is_some_and(|active| active.places().contains(&place)))
         };
         self.next_hop().is_some()
             && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
@@ -196,9 +208,7 @@ impl Robot {
         let Duty::Waiting(Waiting { held, place, .. }) = *self.duty else { return false };
         self.subgroups.get(self.subgroup).is_some_and(|active| {
             active.places().contains(&place)
-                && (place == 0
-                    || place > active.first
-                    || self.is_relieved_of(held.station.post.id))
+                && (place == 0 || place > active.first || self.is_relieved_of(held.station.post.id))
         })
     }
 
@@ -374,7 +384,12 @@ macro_rules! exchanges {
 fn exchange<A: DataOf<Duty>, B: DataOf<Duty> + Copy>() -> Row {
     let activity = B::LOCATION;
     let name = "take over the partner's duty";
-    Transfer::where_known(activity.taken_over(), guards::takes(activity.name()), name, take_over::<A, B>)
+    Transfer::where_known(
+        activity.taken_over(),
+        guards::takes(activity.name()),
+        name,
+        take_over::<A, B>,
+    )
 }
 
 fn bound<A: DataOf<Duty> + Holder>() -> Row {
@@ -398,7 +413,12 @@ fn settled<A: DataOf<Duty> + Holder>() -> Row {
 }
 
 fn attached<A: DataOf<Duty> + Holder + From<Held>>() -> Row {
-    Transfer::new(DutyEvent::Attached, guards::attached(), "attach to the better parent", attach::<A>)
+    Transfer::new(
+        DutyEvent::Attached,
+        guards::attached(),
+        "attach to the better parent",
+        attach::<A>,
+    )
 }
 
 /// The duty automaton (Algorithms 3 and 4, Remark 5.6).
@@ -492,11 +512,17 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             "keep the post",
             keep::<Relay, Junction>,
         ))
-        .carried_out(Transfer::new(On::Merged, guards::merged(), "keep the post", keep::<Junction, Relay>))
+        .carried_out(Transfer::new(
+            On::Merged,
+            guards::merged(),
+            "keep the post",
+            keep::<Junction, Relay>,
+        ))
         .carried_out(Transfer::new(On::Retired, guards::retired(), "give the post up", retire));
+    let automaton = automaton.carried_out(exchange::<Following, Following>());
     exchanges!(automaton,
-        Shifting: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease],
-        Following: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease],
+        Shifting: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Following, Leading],
+        Following: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Leading],
         Leading: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease])
     .build()
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use pleach_automaton::BuildError;
 use pleach_automaton::TransitionError;
+use pleach_automaton::network::Robot;
 use pleach_automaton::network::access_point::AccessPoint;
 use pleach_automaton::network::beacon::{Beacon, Notice};
-use pleach_automaton::network::Robot;
 use pleach_continuous::Point;
 
 /// The number of a beacon among all those ever said.
