@@ -30,6 +30,7 @@ pub mod executor;
 pub mod flow;
 #[cfg(feature = "network")]
 pub mod network;
+pub mod node;
 pub mod reset;
 pub mod time;
 pub mod trace;
