@@ -6,7 +6,7 @@ use pleach_discrete::network::NodeId;
 
 use super::message::Message;
 use super::site::Site;
-use crate::node::{Delivery, Destination, Envelope, Inboxes, Medium};
+use crate::node::{Delivery, Destination, Envelope, Medium};
 
 /// A synchronous medium in memory: every message arrives at once, over links with R_ij > 0, over
 /// the wire between access points and over that from the user to the first of them.
@@ -18,7 +18,7 @@ pub struct Radio {
     robots: usize,
     access_points: usize,
     audiences: Vec<Vec<NodeId>>,
-    inboxes: Inboxes<Message>,
+    sent: Vec<Envelope<Message>>,
     delivered: u64,
 }
 
@@ -30,7 +30,7 @@ impl Radio {
             robots: site.robots,
             access_points: site.access_points.len(),
             audiences: Vec::new(),
-            inboxes: Inboxes::new(),
+            sent: Vec::new(),
             delivered: 0,
         }
     }
@@ -60,7 +60,6 @@ impl Radio {
 
 impl Medium<Message, Point> for Radio {
     fn update(&mut self, bodies: &[Point]) {
-        self.inboxes.resize(bodies.len());
         self.audiences.resize_with(bodies.len(), Vec::new);
         let user = self.robots + self.access_points;
         let with_radio = &bodies[..user.min(bodies.len())];
@@ -82,19 +81,12 @@ impl Medium<Message, Point> for Radio {
         }
     }
 
-    fn send(&mut self, Envelope { from, to, message }: Envelope<Message>) {
-        let Some(audience) = self.audiences.get(from) else { return };
-        match to {
-            Destination::Everyone => self.inboxes.put(from, audience.iter().copied(), message),
-            Destination::One(node) => {
-                let heard = audience.binary_search(&node).is_ok().then_some(node);
-                self.inboxes.put(from, heard, message);
-            }
-        }
+    fn send(&mut self, envelope: Envelope<Message>) {
+        self.sent.push(envelope);
     }
 
     fn time_to_arrival(&self) -> Option<f64> {
-        (!self.inboxes.are_empty()).then_some(0.0)
+        (!self.sent.is_empty()).then_some(0.0)
     }
 
     fn flow(&mut self, _: f64) {}
@@ -103,10 +95,20 @@ impl Medium<Message, Point> for Radio {
         &mut self,
         mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let Radio { inboxes, delivered, .. } = self;
-        inboxes.deliver(|delivery| {
-            *delivered += 1;
-            hand_over(delivery)
+        let Radio { audiences, sent, delivered, .. } = self;
+        sent.drain(..).try_for_each(|Envelope { from, to, message }| {
+            let audience = audiences.get(from).map_or(&[][..], Vec::as_slice);
+            let receivers = match to {
+                Destination::Everyone => audience,
+                Destination::One(node) => match audience.binary_search(&node) {
+                    Ok(at) => &audience[at..=at],
+                    Err(_) => &[],
+                },
+            };
+            *delivered += receivers.len() as u64;
+            receivers
+                .iter()
+                .try_for_each(|&to| hand_over(Delivery { from, to, message: &message }))
         })
     }
 }

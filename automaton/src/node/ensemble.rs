@@ -6,8 +6,8 @@
 //! on its way or the medium has lost them, it is the tick
 //! of every node whose clock is due, in ascending order. Messages that are sent in a round are
 //! given to the medium at its end. So a message that takes no time is heard, and all that is said
-//! in answer, before any clock ticks again. Steps of one round do not see each other: the ticks of
-//! a round are one joint jump, and so are its deliveries.
+//! in answer, before any clock ticks again. Steps of different nodes in one round do not see each
+//! other: the ticks of a round are one joint jump, and so are its deliveries.
 
 use std::convert::Infallible;
 
@@ -34,7 +34,8 @@ pub struct Ensemble<N: Node, M> {
     outputs: Outputs<N::Message, N::Report>,
     bodies: Vec<N::Body>,
     has_moved: bool,
-    participants: Vec<NodeId>,
+    /// Who takes part in the current jump.
+    takes_part: Vec<bool>,
 }
 
 impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
@@ -42,7 +43,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     pub fn new(nodes: Vec<N>, medium: M) -> Self {
         Ensemble {
             bodies: Vec::with_capacity(nodes.len()),
-            participants: Vec::with_capacity(nodes.len()),
+            takes_part: vec![false; nodes.len()],
             outputs: Outputs::of(0),
             has_moved: true,
             nodes,
@@ -100,35 +101,40 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         }
     }
 
-    fn deliver(&mut self) -> Result<(), N::Error> {
-        let Ensemble { nodes, medium, outputs, participants, .. } = self;
+    /// Says whether anything was heard.
+    fn deliver(&mut self) -> Result<bool, N::Error> {
+        let Ensemble { nodes, medium, outputs, takes_part, .. } = self;
+        let mut is_heard = false;
         medium.deliver(|delivery| {
             let Some(node) = nodes.get_mut(delivery.to) else { return Ok(()) };
-            if participants.last() != Some(&delivery.to) {
-                participants.push(delivery.to);
-            }
+            is_heard = true;
+            takes_part[delivery.to] = true;
             let input = Input::Heard { from: delivery.from, message: delivery.message };
             node.step(input, outputs.now_of(delivery.to))
-        })
+        })?;
+        Ok(is_heard)
     }
 
-    fn tick(&mut self) -> Result<(), N::Error> {
+    /// Says whether any clock was due.
+    fn tick(&mut self) -> Result<bool, N::Error> {
+        let mut was_due = false;
         for (id, node) in self.nodes.iter_mut().enumerate() {
             if node.time_to_tick().is_some_and(|wait| wait <= 0.0) {
                 node.step(Input::Tick, self.outputs.now_of(id))?;
-                self.participants.push(id);
+                (was_due, self.takes_part[id]) = (true, true);
             }
         }
-        Ok(())
+        Ok(was_due)
     }
 
     fn record(&mut self, round: &mut Round<'_, NodeJump>, jump: NodeJump) {
-        match self.participants.len() {
-            0 => {}
-            all if all == self.nodes.len() => round.jumped_together(jump),
-            _ => round.jumped_some(self.participants.as_slice().into(), jump),
+        if self.takes_part.iter().all(|&takes_part| takes_part) {
+            round.jumped_together(jump);
+        } else {
+            let took_part = |&id: &NodeId| self.takes_part[id];
+            round.jumped_some((0..self.nodes.len()).filter(took_part).collect(), jump);
         }
-        self.participants.clear();
+        self.takes_part.fill(false);
     }
 }
 
@@ -155,16 +161,14 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
 
     fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), N::Error> {
         self.look_round();
-        let mut jump = NodeJump::Heard;
-        if self.medium.time_to_arrival().is_some_and(|wait| wait <= 0.0) {
-            self.deliver()?;
+        let arrives = self.medium.time_to_arrival().is_some_and(|wait| wait <= 0.0);
+        if arrives && self.deliver()? {
+            self.send();
+            self.record(round, NodeJump::Heard);
+        } else if self.tick()? {
+            self.send();
+            self.record(round, NodeJump::Ticked);
         }
-        if self.participants.is_empty() {
-            jump = NodeJump::Ticked;
-            self.tick()?;
-        }
-        self.send();
-        self.record(round, jump);
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! The medium: what becomes of messages between their senders and their receivers.
 
-use super::{Destination, Envelope, Inboxes, NodeId};
+use super::{Destination, Envelope, NodeId};
 
 /// A message that arrives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub trait Medium<M, B> {
     fn flow(&mut self, duration: f64);
 
     /// Hands over every message that arrives now, in an order that depends on nothing but what
-    /// was sent: receivers ascending, and for each its messages as they were sent.
+    /// was sent: messages as they were sent, each to its receivers in ascending order.
     ///
     /// # Errors
     ///
@@ -42,43 +42,52 @@ pub trait Medium<M, B> {
 }
 
 /// A medium in which every message arrives at once, at every node that it is for.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct FullMesh<M> {
-    inboxes: Inboxes<M>,
+    nodes: usize,
+    sent: Vec<Envelope<M>>,
 }
 
 impl<M> FullMesh<M> {
     /// No message is on its way.
-    pub fn new() -> Self {
-        FullMesh { inboxes: Inboxes::new() }
+    pub const fn new() -> Self {
+        FullMesh { nodes: 0, sent: Vec::new() }
+    }
+}
+
+impl<M> Default for FullMesh<M> {
+    fn default() -> Self {
+        FullMesh::new()
     }
 }
 
 impl<M, B> Medium<M, B> for FullMesh<M> {
     fn update(&mut self, bodies: &[B]) {
-        self.inboxes.resize(bodies.len());
+        self.nodes = bodies.len();
     }
 
-    fn send(&mut self, Envelope { from, to, message }: Envelope<M>) {
-        match to {
-            Destination::Everyone => {
-                let others = (0..self.inboxes.len()).filter(|&node| node != from);
-                self.inboxes.put(from, others, message);
-            }
-            Destination::One(node) => self.inboxes.put(from, [node], message),
-        }
+    fn send(&mut self, envelope: Envelope<M>) {
+        self.sent.push(envelope);
     }
 
     fn time_to_arrival(&self) -> Option<f64> {
-        (!self.inboxes.are_empty()).then_some(0.0)
+        (!self.sent.is_empty()).then_some(0.0)
     }
 
     fn flow(&mut self, _: f64) {}
 
     fn deliver<E>(
         &mut self,
-        hand_over: impl FnMut(Delivery<'_, M>) -> Result<(), E>,
+        mut hand_over: impl FnMut(Delivery<'_, M>) -> Result<(), E>,
     ) -> Result<(), E> {
-        self.inboxes.deliver(hand_over)
+        self.sent.drain(..).try_for_each(|Envelope { from, to, message }| {
+            let receivers = match to {
+                Destination::Everyone => 0..self.nodes,
+                Destination::One(node) => node..node + 1,
+            };
+            receivers
+                .filter(|&to| to != from)
+                .try_for_each(|to| hand_over(Delivery { from, to, message: &message }))
+        })
     }
 }

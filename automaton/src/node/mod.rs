@@ -16,12 +16,10 @@
 //! [view](Observed), and nodes cannot ask each other for it.
 
 mod ensemble;
-mod inboxes;
 mod medium;
 mod outputs;
 
 pub use ensemble::{Ensemble, NodeJump};
-pub use inboxes::Inboxes;
 pub use medium::{Delivery, FullMesh, Medium};
 pub use outputs::{Destination, Envelope, Outputs};
 

@@ -19,6 +19,7 @@ use std::sync::Mutex;
 
 use mission::Mission;
 use plan::{Plan, Reference, Step};
+use pleach_automaton::network::robot::RobotError;
 use pleach_verify::exploration::Model;
 use pleach_verify::network::exploration::{
     ALWAYS, Action, ENDS, Protocol, State, has_ended, tell,

@@ -75,12 +75,22 @@ impl Neighbour {
 impl Robot {
     /// Takes in a beacon. One that is overtaken by a newer one of its sender says nothing.
     pub(super) fn hear_beacon(&mut self, beacon: &Arc<Beacon>) {
-        // Beacons of a round mostly come in the order of their senders.
-        let expected = self.neighbours.get(self.heard_up_to);
-        let known = match expected.is_some_and(|known| known.id() == beacon.sender) {
-            true => Ok(self.heard_up_to),
-            false => self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id),
-        };
+        // Beacons of a round mostly come in the order of their senders, and say nothing new.
+        let expected = self.neighbours.get_mut(self.heard_up_to);
+        if let Some(known) = expected
+            && Arc::ptr_eq(&known.beacon, beacon)
+            && known.measured.0 == self.position
+        {
+            (known.is_heard, known.silent_rounds) = (true, 0);
+            self.heard_up_to += 1;
+        } else {
+            self.hear_news(beacon);
+        }
+    }
+
+    #[inline(never)]
+    fn hear_news(&mut self, beacon: &Arc<Beacon>) {
+        let known = self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id);
         match known {
             Ok(at) => self.renew(at, beacon),
             Err(at) => {

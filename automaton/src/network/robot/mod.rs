@@ -118,6 +118,8 @@ pub struct Robot {
     // Communication variables.
     routing: routing::RoutingState,
     links: Vec<RouteLink>,
+    /// The link whose other end is expected to tell its multiplier next.
+    expected_link: usize,
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
     /// The robots that send their demand here in a sweep, ascending, each with what has been heard
@@ -127,6 +129,8 @@ pub struct Robot {
     has_swept: bool,
     is_frugal: bool,
     has_shortage_news: bool,
+    has_untold_flows: bool,
+    is_unsettled: bool,
 
     // Motion.
     destination: Option<Destination>,
@@ -199,6 +203,7 @@ impl Robot {
             team: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
+            expected_link: 0,
             inflow: 0.0,
             inflows: Vec::new(),
             demands: Vec::new(),
@@ -206,6 +211,8 @@ impl Robot {
             has_swept: false,
             is_frugal: false,
             has_shortage_news: false,
+            has_untold_flows: false,
+            is_unsettled: true,
             destination: None,
             waypoint: None,
             proposal: None,

@@ -83,6 +83,7 @@ impl Robot {
     /// Finds the links over which the robot may send from here, keeping what it knows of them.
     pub(super) fn survey_links(&mut self) {
         (self.is_frugal, self.has_shortage_news) = (false, false);
+        (self.has_untold_flows, self.is_unsettled) = (true, true);
         let old = std::mem::take(&mut self.links);
         let tree = self.tree_links();
         let aversion = self.site.settings.slope_aversion;
@@ -148,8 +149,15 @@ impl Robot {
         report: NeighbourReport,
         parent: Option<NodeId>,
     ) {
-        if let Ok(at) = self.links.binary_search_by_key(&from, |link| link.to) {
-            self.links[at].report = Some(report);
+        // Multipliers of an iteration mostly come in the order of their senders.
+        if self.links.get(self.expected_link).is_none_or(|link| link.to != from) {
+            self.expected_link = self.links.partition_point(|link| link.to < from);
+        }
+        if let Some(link) = self.links.get_mut(self.expected_link)
+            && link.to == from
+        {
+            link.report = Some(report);
+            self.expected_link += 1;
         }
         if parent == Some(self.id)
             && let Err(at) = self.demands.binary_search_by_key(&from, |&(child, _)| child)
@@ -170,6 +178,7 @@ impl Robot {
             }
             link.iterate = link.share;
         }
+        self.has_untold_flows = true;
     }
 
     /// The shares that minimise the local Lagrangian, eq. (13).
@@ -216,6 +225,10 @@ impl Robot {
 
     /// Tells its flows to their receivers, where they have changed.
     pub(super) fn tell_flows(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if !std::mem::take(&mut self.has_untold_flows) {
+            return;
+        }
+        self.is_unsettled = true;
         let robots = self.site.robots;
         for link in self.links.iter_mut().filter(|link| link.to < robots) {
             let flow = link.flow();
@@ -228,6 +241,7 @@ impl Robot {
 
     /// A neighbour tells the flow that it sends to this robot.
     pub(super) fn hear_flow(&mut self, from: NodeId, flow: f64) {
+        self.is_unsettled = true;
         match self.inflows.binary_search_by_key(&from, |&(sender, _)| sender) {
             Ok(at) if flow > 0.0 => self.inflows[at].1 = flow,
             Ok(at) => {
@@ -339,6 +353,9 @@ impl Robot {
 
     /// A further sweep begins where shortages have changed something.
     pub(super) fn sweep_again(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if !self.has_shortage_news && !self.is_unsettled {
+            return;
+        }
         let before = self.inflow;
         self.add_up_inflow();
         if std::mem::take(&mut self.has_shortage_news) || self.inflow != before {
@@ -362,7 +379,10 @@ impl Robot {
             self.links.iter_mut().for_each(|link| link.share *= demand / outflow);
         } else if demand - outflow > RESIDUAL_ROUNDING {
             self.raise_outflow(demand, tree_link);
+        } else {
+            return 0.0;
         }
+        self.has_untold_flows = true;
         self.links[tree_link].flow() - before
     }
 
@@ -396,7 +416,9 @@ impl Robot {
         if self.tree_parent() == Some(overloaded) {
             self.economise(outputs);
         } else if let Ok(at) = self.links.binary_search_by_key(&overloaded, |link| link.to) {
-            self.has_shortage_news |= self.links[at].share > 0.0;
+            let had_share = self.links[at].share > 0.0;
+            self.has_shortage_news |= had_share;
+            self.has_untold_flows |= had_share;
             self.links[at].share = 0.0;
         }
     }
@@ -420,8 +442,10 @@ impl Robot {
 
     /// All flows are known: eq. (5).
     pub(super) fn settle_residual(&mut self) {
-        self.add_up_inflow();
-        self.residual = self.balance();
+        if std::mem::take(&mut self.is_unsettled) {
+            self.add_up_inflow();
+            self.residual = self.balance();
+        }
     }
 
     /// The routes of the period stand.

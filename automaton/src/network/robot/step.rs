@@ -94,7 +94,9 @@ impl Node for Robot {
             Input::Sensed(Sense::Tasks(_)) => {}
             Input::Tick => self.tick(outputs)?,
         }
-        self.log.drain(..).for_each(|event| outputs.report(event));
+        if !self.log.is_empty() {
+            self.log.drain(..).for_each(|event| outputs.report(event));
+        }
         Ok(())
     }
 
@@ -131,20 +133,30 @@ impl Robot {
         (self.site.settings.period - self.clock).max(0.0)
     }
 
+    /// Most messages are beacons and multipliers, and say nothing new.
+    #[inline]
     fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
         match message {
             Message::Beacon(beacon) => self.hear_beacon(beacon),
             Message::Multiplier { report, parent } => self.hear_multiplier(from, *report, *parent),
+            _ => self.hear_of_routes_or_moves(from, message, outputs),
+        }
+    }
+
+    #[inline(never)]
+    fn hear_of_routes_or_moves(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
+        match message {
             Message::Flow(flow) => self.hear_flow(from, *flow),
             Message::Demand(more) => self.hear_demand(from, *more, outputs),
             Message::Shortage => self.hear_shortage(from, outputs),
             Message::Proposal(segment) => self.hear_proposal(from, *segment),
             Message::Objection => self.yield_to_objection(),
-            Message::Request(_) | Message::News(_) => {}
+            _ => {}
         }
     }
 
     /// The stages of a control period, in their order.
+    #[inline(never)]
     fn tick(&mut self, outputs: &mut Out) -> Result<(), RobotError> {
         self.stage = match self.stage {
             Stage::Sample => {

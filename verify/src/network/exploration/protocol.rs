@@ -166,7 +166,9 @@ impl Protocol {
         for mut node in robots.chain(access_points) {
             // The first control period begins, and has no end until the explorer says so.
             node.step(Input::Tick)?;
-            node.step(Input::Heard { from: user, message: &request })?;
+            if locals.len() == scenario.robot.len() {
+                node.step(Input::Heard { from: user, message: &request })?;
+            }
             locals.push(nodes.take_up(node, Vec::new()));
         }
         let locals = locals.into();
