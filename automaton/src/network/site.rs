@@ -9,6 +9,7 @@ use pleach_continuous::network::reliability::{CubicReliability, ReliabilityError
 
 use super::automata::Automata;
 use super::scenario::{Scenario, Settings};
+use crate::builder::BuildError;
 
 /// Common knowledge of the robots; it does not change during a mission.
 #[derive(Debug)]
@@ -23,14 +24,14 @@ pub struct Site {
     pub link: CubicReliability,
     /// The control settings, every default filled in.
     pub settings: Settings,
-    /// The automata that every robot runs.
-    pub automata: Automata,
     /// Number of robots.
     pub robots: usize,
     /// d_build: the geodesic length up to which a link of the tree may be made.
     pub build_length: f64,
     /// d_hard: the geodesic length that no link of the tree exceeds.
     pub hard_length: f64,
+    /// The automata that every robot runs.
+    pub automata: Automata,
     /// How ways are measured where they are not those of the floor plan.
     measure: Option<Box<dyn Measure>>,
 }
@@ -51,12 +52,12 @@ pub enum SiteError {
     /// The robots have no free space.
     #[error(transparent)]
     FreeSpace(#[from] FreeSpaceError),
-    /// An automaton is not well formed.
-    #[error(transparent)]
-    Build(#[from] crate::BuildError),
     /// The radio's ranges make no sense.
     #[error(transparent)]
     Range(#[from] ReliabilityError),
+    /// An automaton is not well formed.
+    #[error(transparent)]
+    Build(#[from] BuildError),
 }
 
 impl Site {
@@ -74,11 +75,11 @@ impl Site {
             free_space,
             access_points: scenario.access_point.iter().map(|ap| ap.position.into()).collect(),
             link,
-            automata: Automata::new()?,
             robots: scenario.robot.len(),
             build_length: settings.longest_new_link(),
             hard_length: settings.longest_tree_link(),
             settings,
+            automata: Automata::new()?,
             measure: None,
         })
     }
@@ -87,6 +88,12 @@ impl Site {
     #[must_use]
     pub fn measured_by(self, measure: impl Measure + 'static) -> Self {
         Site { measure: Some(Box::new(measure)), ..self }
+    }
+
+    /// Rounds of messages in which news surely crosses the network and comes back: no message is
+    /// longer under way than there are nodes to pass it on.
+    pub fn rounds_there_and_back(&self) -> usize {
+        2 * (self.robots + self.access_points.len())
     }
 
     /// The length of the shortest way in 𝒲_f; infinite if there is none.

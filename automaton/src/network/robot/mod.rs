@@ -1,8 +1,9 @@
 //! One robot: its own state, and what it makes of the messages it hears.
 //!
 //! Everything here is local. A robot knows its own position and duty, what every robot knows
-//! from the beginning ([`Site`]), and the beacons of the neighbours that it hears. The chapters
-//! follow the day of a robot: it listens (`hearing`), keeps its place in the tree (`attachment`,
+//! from the beginning ([`Site`]), and the messages of the neighbours that it hears. It is a
+//! [`Node`](crate::node::Node): `step` says what it does with each input, stage by stage of a
+//! control period. The chapters follow that period: it listens (`hearing`), keeps its place in the tree (`attachment`,
 //! `links`), takes part in the mission (`mission`,
 //! `leader`, `recruit`, `path`, `team`), exchanges duties with a robot in its way
 //! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
@@ -21,6 +22,7 @@ mod motion;
 mod path;
 mod recruit;
 mod routing;
+mod step;
 mod team;
 mod yielding;
 
@@ -31,17 +33,17 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Activity, Agreement, Anchor, Bid, Bulletin, Dealings, DutyEvent, Election, IdSet, Lineage,
-    MissionStep, NodeId, Phase, Post, PostId, Role, Subgroup,
+    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Phase, Post, PostId,
+    Role, Subgroup,
 };
 
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
 pub use facts::{Facts, GLOSSARY, PROPOSITIONS, VARIABLES};
 pub use links::TreeLink;
-pub use motion::{Objection, Proposal};
-pub use routing::{FlowReport, RouteLink};
+pub use routing::RouteLink;
+pub use step::{RobotError, Stage};
 
-use crate::automaton::{Jump, TransitionError};
+use crate::automaton::TransitionError;
 use crate::located::Current;
 
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
@@ -59,6 +61,10 @@ pub struct Robot {
     id: NodeId,
     rate: f64,
     site: Arc<Site>,
+
+    // Where it stands in its control period, and whether that is its first.
+    stage: Stage,
+    is_new: bool,
 
     // Its continuous state: x, u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
     position: Point,
@@ -86,6 +92,8 @@ pub struct Robot {
 
     // What it hears and where it hangs.
     neighbours: Vec<Neighbour>,
+    /// Where in the table of neighbours the next beacon is expected.
+    heard_up_to: usize,
     parent: Option<NodeId>,
     lineage: Option<Arc<Lineage>>,
     below: Arc<IdSet>,
@@ -115,31 +123,32 @@ pub struct Robot {
     // Communication variables.
     routing: routing::RoutingState,
     links: Vec<RouteLink>,
+    /// The link whose other end is expected to tell its multiplier next.
+    expected_link: usize,
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
+    /// The robots that send their demand here in a sweep, ascending, each with what has been heard
+    /// of it.
+    demands: Vec<(NodeId, Option<f64>)>,
     residual: f64,
+    has_swept: bool,
     is_frugal: bool,
+    has_shortage_news: bool,
+    has_untold_flows: bool,
+    is_unsettled: bool,
 
     // Motion.
     destination: Option<Destination>,
     waypoint: Option<Point>,
-    proposal: Option<Proposal>,
+    proposal: Option<Segment>,
     heard_moves: Vec<(NodeId, Segment)>,
+    must_judge_moves: bool,
     arrival: Point,
     resting_place: Point,
     still_periods: u32,
 
     // What it tells observers; no robot reads it.
     log: Vec<MissionEvent>,
-}
-
-/// A jump of one of a robot's automata.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RobotJump {
-    /// A step of the mission, with the duty if that has a transition for it.
-    Mission(Jump<Phase, MissionStep>),
-    /// A change of its duty.
-    Duty(Jump<Activity, DutyEvent>),
 }
 
 /// A task that this robot has heard of.
@@ -159,6 +168,8 @@ impl Robot {
         Robot {
             id,
             rate,
+            stage: Stage::Sample,
+            is_new: true,
             position,
             velocity: Vector::zeros(),
             clock: site.settings.period,
@@ -175,6 +186,7 @@ impl Robot {
             last_partner: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
+            heard_up_to: 0,
             parent: None,
             lineage: None,
             below: Arc::new(IdSet::singleton(id)),
@@ -197,14 +209,21 @@ impl Robot {
             team: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
+            expected_link: 0,
             inflow: 0.0,
             inflows: Vec::new(),
+            demands: Vec::new(),
             residual: 0.0,
+            has_swept: false,
             is_frugal: false,
+            has_shortage_news: false,
+            has_untold_flows: false,
+            is_unsettled: true,
             destination: None,
             waypoint: None,
             proposal: None,
             heard_moves: Vec::new(),
+            must_judge_moves: false,
             arrival: position,
             resting_place: position,
             still_periods: 0,
@@ -215,7 +234,7 @@ impl Robot {
 
     /// What the robot tells its neighbours now: the very same beacon as before unless something
     /// in it has changed.
-    pub fn speak(&mut self) -> Arc<Beacon> {
+    fn next_beacon(&mut self) -> Arc<Beacon> {
         if !std::mem::take(&mut self.is_unspoken)
             && let Some(beacon) = self.voice.last()
         {
@@ -247,21 +266,6 @@ impl Robot {
             reply: self.dealings.reply().cloned(),
             team: self.team,
         }
-    }
-
-    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; at the sample the robot is where
-    /// its certified move ends, to the last bit.
-    pub fn flow(&mut self, duration: f64) {
-        self.clock += duration;
-        self.position = match self.time_to_sample() > 0.0 {
-            true => self.position + self.velocity * duration,
-            false => self.arrival,
-        };
-    }
-
-    /// Time until the clock calls for the next sample.
-    pub fn time_to_sample(&self) -> f64 {
-        (self.site.settings.period - self.clock).max(0.0)
     }
 
     /// x_i.
@@ -305,24 +309,17 @@ impl Robot {
     }
 
     /// A control period begins: what is looked at once a period.
-    ///
-    /// # Errors
-    /// When a guard cannot be evaluated.
-    pub fn begin_period(&mut self) -> Result<(), TransitionError> {
+    fn begin_period(&mut self) {
         self.stir();
         self.count_barren_periods();
         self.consider_exchange();
-        Ok(())
     }
 
     /// After each round of messages: the robot puts together what it has heard.
     ///
     /// What comes of it depends on nothing but what the robot hears and its own state. Where
     /// neither has changed, and no wait is over, there is nothing to do.
-    ///
-    /// # Errors
-    /// When a guard cannot be evaluated.
-    pub fn deliberate(&mut self) -> Result<(), TransitionError> {
+    fn deliberate(&mut self) -> Result<(), TransitionError> {
         let is_due = self.count_round();
         if !std::mem::take(&mut self.has_news) && !is_due {
             return Ok(());
@@ -341,38 +338,27 @@ impl Robot {
     }
 
     /// Takes at most one transition of the mission automaton, together with the duty automaton if
-    /// that has a transition for it, or else one of the duty automaton alone.
-    ///
-    /// # Errors
-    /// When a guard or a reset cannot be evaluated.
-    pub fn jump(&mut self) -> Result<Option<RobotJump>, TransitionError> {
+    /// that has a transition for it, or else one of the duty automaton alone; says whether it did.
+    fn jump_once(&mut self) -> Result<bool, TransitionError> {
         let role = self.role();
-        let jump = match self.jump_mission()? {
-            Some(jump) => Some(RobotJump::Mission(jump)),
-            None => self.jump_duty(Label::Alone)?.map(RobotJump::Duty),
-        };
-        if jump.is_some() {
+        let jumped = self.jump_mission()? || self.jump_duty(Label::Alone)?.is_some();
+        if jumped {
             self.is_quiet = false;
             self.stir();
         }
         self.report_role_after(role);
-        Ok(jump)
+        Ok(jumped)
     }
 
-    fn jump_mission(&mut self) -> Result<Option<Jump<Phase, MissionStep>>, TransitionError> {
+    fn jump_mission(&mut self) -> Result<bool, TransitionError> {
         let site = Arc::clone(&self.site);
         let mut phase = self.phase;
-        let Some(step) = site.automata.mission.enabled(phase, self)? else { return Ok(None) };
+        let Some(step) = site.automata.mission.enabled(phase, self)? else { return Ok(false) };
         let jump = step.jump();
         self.jump_duty(Label::Mission(jump.event))?;
         self.phase = jump.target;
         step.fire(&mut phase, self)?;
-        Ok(Some(jump))
-    }
-
-    /// Takes what it has told observers since the last call.
-    pub fn drain_log(&mut self) -> std::vec::Drain<'_, MissionEvent> {
-        self.log.drain(..)
+        Ok(true)
     }
 
     /// The robot's state has changed: it has something to think over, to say and to measure.
