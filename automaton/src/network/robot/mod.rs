@@ -33,8 +33,8 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Phase, Post, PostId,
-    Role, Subgroup,
+    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Phase, Post,
+    PostId, Role, Subgroup,
 };
 
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
