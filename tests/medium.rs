@@ -133,8 +133,7 @@ impl<F: Fn(Arrival) -> bool> Medium<Message, Point> for Lossy<F> {
         radio.deliver(|delivery| {
             let (number, period) = (*messages, *periods - 1);
             *messages += 1;
-            let arrival =
-                Arrival { number, period, sender: delivery.from, receiver: delivery.to };
+            let arrival = Arrival { number, period, sender: delivery.from, receiver: delivery.to };
             if loses(arrival) { Ok(()) } else { hand_over(delivery) }
         })
     }

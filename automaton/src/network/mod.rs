@@ -16,8 +16,8 @@ pub mod shared;
 pub mod site;
 pub mod user;
 
-pub use automata::{mission_automaton, role_automaton};
 pub use access_point::AccessPoint;
+pub use automata::{mission_automaton, role_automaton};
 pub use composition::{KernelTimes, Network, NetworkError};
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};

@@ -21,9 +21,7 @@ use mission::Mission;
 use plan::{Plan, Reference, Step};
 use pleach_automaton::network::robot::RobotError;
 use pleach_verify::exploration::Model;
-use pleach_verify::network::exploration::{
-    ALWAYS, Action, ENDS, Protocol, State, has_ended, tell,
-};
+use pleach_verify::network::exploration::{ALWAYS, Action, ENDS, Protocol, State, has_ended, tell};
 use proptest::test_runner::{Config, TestRunner};
 use proptest_state_machine::{ReferenceStateMachine, StateMachineTest};
 
