@@ -1,7 +1,5 @@
 //! How long each kernel of a control period takes, on a moment of Study I.
 
-mod support;
-
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -14,7 +12,7 @@ use pleach::continuous::network::routing::local::{LinkOffer, local_minimiser, we
 use pleach::continuous::network::routing::repair::{Share, meet_demand};
 use pleach::continuous::network::routing::rounds::{Method, Rounds};
 use pleach::discrete::network::{Bid, Election};
-use support::scene::{Crowd, Scene};
+use pleach_benches::scene::{Crowd, Scene};
 
 /// Discs that detours keep out of are this many ρ wide.
 const KEEP_OUT: f64 = 2.1;
@@ -152,7 +150,7 @@ fn coordination(criterion: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    config = support::quick();
+    config = pleach_benches::quick();
     targets = communication, motion, coordination
 }
 criterion_main!(benches);

@@ -1,7 +1,5 @@
 //! The layering that `docs/architecture.md` describes, read off manifests and sources.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,5 @@
 //! `docs/proofs.md` names every harness, every property and every lemma, and nothing else.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
 #[path = "../examples/planted_faults/catalogue.rs"]
 mod catalogue;
 

@@ -1,0 +1,10 @@
+//! The tests of the package, in one program.
+
+mod common;
+
+mod analysis;
+mod margins;
+mod printing;
+mod programs;
+mod reading;
+mod serialization;
