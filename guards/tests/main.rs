@@ -3,6 +3,8 @@
 mod common;
 
 mod analysis;
+mod depth;
+mod functions;
 mod margins;
 mod printing;
 mod programs;
