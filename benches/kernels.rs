@@ -21,7 +21,7 @@ const ROUNDS_UNTIL_SETTLED: usize = 20;
 
 /// Links and routes.
 fn communication(criterion: &mut Criterion) {
-    let scene = Scene::new();
+    let scene = Scene::of_study_1();
     let (robot, site) = (scene.busiest(), &scene.site);
     let distances: Vec<f64> =
         scene.others(robot).iter().map(|other| (other - scene.position(robot)).norm()).collect();
@@ -71,7 +71,7 @@ fn communication(criterion: &mut Criterion) {
 
 /// Ways, cells and moves.
 fn motion(criterion: &mut Criterion) {
-    let scene = Scene::new();
+    let scene = Scene::of_study_1();
     let (leader, site) = (scene.leader(), &scene.site);
     let (from, goal) = (scene.position(leader), scene.goal());
     let destination = site.free_space.destination(goal);
@@ -116,7 +116,7 @@ fn motion(criterion: &mut Criterion) {
 
 /// What the robots tell each other; one round of all of them.
 fn coordination(criterion: &mut Criterion) {
-    let scene = Scene::new();
+    let scene = Scene::of_study_1();
     let mut crowd = Crowd::new(&scene);
     (0..ROUNDS_UNTIL_SETTLED).for_each(|_| crowd.exchange_beacons());
     criterion.bench_function("beacon_round_with_news", |bencher| {

@@ -31,7 +31,7 @@ pub struct Scene {
 
 impl Scene {
     /// Lets Study I run up to the moment.
-    pub fn new() -> Self {
+    pub fn of_study_1() -> Self {
         let scenario = crate::study_1();
         let mut course = Course::new(&scenario);
         course.reach_advance(TEAM);
