@@ -153,6 +153,7 @@
 
 pub mod figures;
 pub mod mission;
+pub mod page;
 pub mod prelude;
 pub mod scenario_file;
 pub mod story;
