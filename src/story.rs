@@ -105,10 +105,7 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             ),
         ),
         MissionEvent::Stationary { robot, team } => (
-            format!(
-                "the primary team {} is at a stationary point, robot {robot} last",
-                list(team)
-            ),
+            format!("the primary team {} is at a stationary point, robot {robot} last", list(team)),
             moment(
                 Moment::Stationary,
                 robot,

@@ -88,7 +88,7 @@ impl Failure {
         match self {
             Failure::Scenario(_) | Failure::Trace { .. } | Failure::Creation { .. } => {
                 Status::BadInput
-            },
+            }
             Failure::Output(_) | Failure::Mission(_) | Failure::Internal(_) => Status::Failed,
         }
     }

@@ -210,9 +210,10 @@ impl Album {
             )
         };
         let residuals = Chart {
-            subtitle: "what a robot can send beyond what it must, eq. (5): no curve falls below the \
+            subtitle:
+                "what a robot can send beyond what it must, eq. (5): no curve falls below the \
                        dashed line while the network carries all traffic"
-                .to_owned(),
+                    .to_owned(),
             curves: robot_curves(&self.residuals),
             limits: vec![Limit { value: -tolerance, label: limit_name(tolerance) }],
             ..self.chart("Residuals cᵢ of all robots", "cᵢ (share of the radio's rate)")
@@ -224,8 +225,12 @@ impl Album {
             limits: Vec::new(),
             ..self.chart("Lagrange multipliers λᵢ of all robots", "λᵢ")
         };
-        [("distances.svg", distances), ("residuals.svg", residuals), ("multipliers.svg", multipliers)]
-            .map(|(name, chart)| (name, chart.render()))
+        [
+            ("distances.svg", distances),
+            ("residuals.svg", residuals),
+            ("multipliers.svg", multipliers),
+        ]
+        .map(|(name, chart)| (name, chart.render()))
     }
 
     fn chart<'a>(&'a self, title: &'a str, axis: &'a str) -> Chart<'a> {

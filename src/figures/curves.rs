@@ -3,9 +3,9 @@
 use svg::node::element::{Group, Polyline};
 
 use super::canvas::{Spot, corners, layer, quantity, rectangle, sheet, stroke, text, text_width};
+use super::marks::draw_moment;
 use super::palette;
 use super::plan::round_length;
-use super::marks::draw_moment;
 use crate::story::Moment;
 
 /// Upper left corner of the plot.

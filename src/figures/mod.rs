@@ -22,10 +22,10 @@ mod curves;
 mod labels;
 mod legend;
 mod marks;
-mod screen;
 pub(crate) mod palette;
 mod plan;
 mod scene;
+mod screen;
 mod series;
 mod spacing;
 #[cfg(test)]

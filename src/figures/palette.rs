@@ -75,9 +75,8 @@ const SCREEN: [(&str, &str, &str); 22] = [
 /// everything is light.
 pub(crate) fn style_sheet() -> String {
     let declared = |dark: bool| {
-        let screen = SCREEN.map(|(name, light, dim)| {
-            format!("--{name}: {};", if dark { dim } else { light })
-        });
+        let screen = SCREEN
+            .map(|(name, light, dim)| format!("--{name}: {};", if dark { dim } else { light }));
         let curves = CURVES.iter().zip(DARK_CURVES).enumerate().map(|(number, (light, dim))| {
             format!("--curve-{number}: {};", if dark { dim } else { light })
         });

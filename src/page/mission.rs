@@ -96,9 +96,30 @@ impl MissionPage {
             "tasks": TaskState::ALL.map(TaskState::name),
             "link": figures::link_data(),
             "steps": self.steps,
-            "events": self.events,
+            "events": self.told_events(),
             "ended": self.end.is_some(),
         })
+    }
+}
+
+/// What the page says in words.
+impl MissionPage {
+    /// The events, a violated property among them, and last how the mission ended.
+    fn told_events(&self) -> Vec<Value> {
+        let mut events = self.events.clone();
+        let last = self.steps.count().saturating_sub(1);
+        if let Some(violation) = &self.violation {
+            let at = violation.step.min(last);
+            let text = violation.to_string();
+            let place = events.partition_point(|event| event["at"].as_u64() <= Some(at as u64));
+            let told = json!({ "event": "violated", "at": at, "text": text, "telling": true });
+            events.insert(place, told);
+        }
+        if let Some(end) = &self.end {
+            let text = format!("the mission ends: {}", end.outcome.name().replace('_', " "));
+            events.push(json!({ "event": "end", "at": last, "text": text, "telling": true }));
+        }
+        events
     }
 }
 
@@ -125,9 +146,8 @@ impl Watcher for MissionPage {
 /// What a step shows beside its line in the trace.
 impl MissionPage {
     fn derived(&self, snapshot: &Snapshot) -> Map<String, Value> {
-        let marks: Vec<&str> = (0..snapshot.positions.len())
-            .map(|robot| Mark::of(snapshot, robot).key())
-            .collect();
+        let marks: Vec<&str> =
+            (0..snapshot.positions.len()).map(|robot| Mark::of(snapshot, robot).key()).collect();
         let tasks: Vec<&str> = (0..self.scenario.task.len())
             .map(|task| TaskState::of(snapshot, task).name())
             .collect();
@@ -153,7 +173,7 @@ impl MissionPage {
     }
 }
 
-/// What the page says in words.
+/// The summary.
 impl MissionPage {
     fn outcome(&self) -> Shown {
         let serviced = self.summary.tasks().iter().filter(|task| task.serviced.is_some()).count();
@@ -181,16 +201,19 @@ impl MissionPage {
     }
 
     fn rows(&self) -> Vec<Row> {
-        let mut rows: Vec<Row> = (0..).zip(self.summary.tasks()).map(|(number, task)| {
-            let [x, y] = task.position;
-            let name = format!("task {number} at ({x}, {y})");
-            match task.serviced {
-                Some((step, robot)) => {
-                    Row::at(name, format!("serviced by robot {robot}"), step)
+        let mut rows: Vec<Row> = (0..)
+            .zip(self.summary.tasks())
+            .map(|(number, task)| {
+                let [x, y] = task.position;
+                let name = format!("task {number} at ({x}, {y})");
+                match task.serviced {
+                    Some((step, robot)) => {
+                        Row::at(name, format!("serviced by robot {robot}"), step)
+                    }
+                    None => Row::new(name, "not serviced".to_owned()),
                 }
-                None => Row::new(name, "not serviced".to_owned()),
-            }
-        }).collect();
+            })
+            .collect();
         rows.push(Row::new("recruits elected", self.summary.recruits().to_string()));
         rows.push(Row::new("stationary points", self.summary.stationary_points().to_string()));
         let extremes = self.monitor.extremes();
@@ -209,9 +232,11 @@ impl MissionPage {
             let text = format!("{value:.5} ({noun} {}); {symbol} {bound}", robots.join(" and "));
             Some(Row::at(name, text, instant.step))
         }));
-        rows.extend(self.violation.as_ref().map(|violation| {
-            Row::at("violated", violation.to_string(), violation.step)
-        }));
+        rows.extend(
+            self.violation
+                .as_ref()
+                .map(|violation| Row::at("violated", violation.to_string(), violation.step)),
+        );
         rows
     }
 }

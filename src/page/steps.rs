@@ -69,7 +69,11 @@ impl Steps {
     }
 
     /// Adds the line of a trace for a step, and `more` fields that only the page has.
-    pub fn push(&mut self, line: Map<String, Value>, more: impl IntoIterator<Item = (String, Value)>) {
+    pub fn push(
+        &mut self,
+        line: Map<String, Value>,
+        more: impl IntoIterator<Item = (String, Value)>,
+    ) {
         for (name, value) in line.into_iter().chain(more) {
             if let Some(table) = self.numbers.get_mut(&*name) {
                 table.push(numbers(&value));

@@ -113,9 +113,9 @@ mod tests {
 
     /// Reads a column as the script does.
     fn read(text: &str, steps: usize) -> Vec<f64> {
-        let mut digits = text.bytes().map(|byte| {
-            DIGITS.iter().position(|digit| *digit == byte).expect("a digit") as u64
-        });
+        let mut digits = text
+            .bytes()
+            .map(|byte| DIGITS.iter().position(|digit| *digit == byte).expect("a digit") as u64);
         let mut number = || {
             let (mut bits, mut shift) = (0, 0);
             loop {
@@ -151,7 +151,10 @@ mod tests {
             write(number, &mut text);
             text
         };
-        assert_eq!([0, 1, -1, 15, 16, -123, 1_000_000].map(written), ["A", "C", "D", "e", "gB", "3H", "gkh9B"]);
+        assert_eq!(
+            [0, 1, -1, 15, 16, -123, 1_000_000].map(written),
+            ["A", "C", "D", "e", "gB", "3H", "gkh9B"]
+        );
     }
 
     #[test]

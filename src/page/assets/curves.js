@@ -2,6 +2,8 @@
 
 const CHART_HEIGHT = 190;
 const CHART_MARGIN = { left: 58, right: 12, top: 18, bottom: 24 };
+/** Up to so many curves all are read out, and named below the panel. */
+const FEW_CURVES = 3;
 /** Up to so many curves each has a colour of its own. */
 const DISTINCT_CURVES = 24;
 
@@ -45,6 +47,18 @@ function seekOn(canvas, player) {
   canvas.addEventListener("pointermove", event => { if (event.buttons & 1) seek(event); });
 }
 
+/** What colours stand for. */
+function legendOf(entries) {
+  const samples = entries.map(({ name, colour }) => {
+    const sample = element("i");
+    const paint = () => { sample.style.background = colour(); };
+    theme.listeners.push(paint);
+    paint();
+    return element("span", {}, sample, name);
+  });
+  return element("p", { class: "key" }, ...samples);
+}
+
 /** The line at the current instant. */
 function drawCursor(context, x, top, bottom) {
   context.strokeStyle = colours.get("ink");
@@ -66,7 +80,7 @@ class Chart {
     this.plot = element("div", { class: "plot" });
     parent.append(element("figure", { class: "chart" },
       element("figcaption", {}, element("h3", {}, title), note && element("p", {}, note), this.reading),
-      this.plot));
+      this.plot, curves.length <= FEW_CURVES ? legendOf(curves) : null));
     this.range = this.measure();
     this.base = new Surface(this.plot, CHART_HEIGHT, (context, size) => this.drawBase(context, size));
     this.top = new Surface(this.plot, CHART_HEIGHT, (context, size) => this.drawTop(context, size));
@@ -153,12 +167,21 @@ class Chart {
     context.strokeStyle = context.fillStyle = colours.get("limit");
     context.setLineDash([6, 4]);
     context.textAlign = "right";
+    let end = right - 2;
     for (const { value, name } of this.limits) {
       context.beginPath();
       context.moveTo(x(0), y(value));
       context.lineTo(right, y(value));
       context.stroke();
-      context.fillText(name, right - 2, y(value) - 4);
+      // Side by side, since limits may lie close together.
+      context.save();
+      context.setLineDash([]);
+      context.strokeStyle = colours.get("paper");
+      context.lineWidth = 3;
+      context.strokeText(name, end, y(value) - 4);
+      context.restore();
+      context.fillText(name, end, y(value) - 4);
+      end -= context.measureText(name).width + 14;
     }
     context.restore();
   }
@@ -167,7 +190,7 @@ class Chart {
     const scale = this.scale(size), x = scale.x(this.player.at);
     drawCursor(context, x, scale.head, scale.foot);
     const chosen = this.selection.shown;
-    const shown = this.curves.filter(curve => this.curves.length <= 3 || curve.number === chosen);
+    const shown = this.curves.filter(curve => this.curves.length <= FEW_CURVES || curve.number === chosen);
     for (const curve of shown) {
       const value = curve.at(this.player.at);
       if (!Number.isFinite(value)) continue;
@@ -182,7 +205,7 @@ class Chart {
     this.top.paint();
     const { at } = this.player;
     const chosen = this.curves.find(curve => curve.number !== undefined && curve.number === this.selection.shown);
-    if (chosen || this.curves.length <= 3) {
+    if (chosen || this.curves.length <= FEW_CURVES) {
       const curves = chosen ? [chosen] : this.curves;
       this.reading.textContent = curves.map(curve => `${curve.name} ${written(curve.at(at))}`).join(" · ");
     } else {

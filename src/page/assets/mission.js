@@ -269,8 +269,9 @@ function showMission(data) {
   new Facts(part("facts"), mission, player, selection);
   layerPanel(part("layers"), mission, plan);
   new Transport(part("transport"), player, {
-    bands, clock, unit: "periods", isTelling: event => Boolean(event.moment),
-    glyph: event => momentGlyph(moments.get(event.moment).strokes),
+    bands, clock, unit: "periods", isTelling: event => Boolean(event.moment) || event.event === "violated",
+    glyph: event => event.moment ? momentGlyph(moments.get(event.moment).strokes)
+      : element("span", { class: "alarm" }, "!"),
   });
   new Story(part("story"), player, { clock, isTelling: event => event.telling, hasDetails: true });
   if (mission.count) missionCharts(part("charts"), mission, player, selection, bands);
@@ -302,7 +303,7 @@ function missionCharts(parent, mission, player, selection, bands) {
         from: span.from, to: span.to, name: mission.markKeys.get(span.value).name, colour: () => colours.get(stripColour(span.value)),
       })),
     })),
-    legend: mission.marks.slice(1).map(mark => ({ name: mark.name, colour: `var(--${stripColour(mark.key)})` })),
+    legend: mission.marks.slice(1).map(mark => ({ name: mark.name, colour: () => colours.get(stripColour(mark.key)) })),
   });
   new Chart(parent, player, selection, {
     ...common, title: "Smallest distances",

@@ -48,7 +48,7 @@ class Plan {
   /** As high as the workspace asks for at this width, and no higher than the window allows. */
   heightFor(width) {
     const [w, h] = this.box.size;
-    const room = Math.max(260, window.innerHeight - 210);
+    const room = Math.max(260, window.innerHeight - 205);
     return Math.min(room, (width - 2 * PLAN_MARGIN) * h / w + 2 * PLAN_MARGIN);
   }
 

@@ -10,11 +10,9 @@ class Strips {
     this.row = Math.min(20, Math.max(7, 260 / Math.max(rows.length, 1)));
     this.reading = element("span", { class: "reading" });
     this.plot = element("div", { class: "plot" });
-    const key = element("p", { class: "key" }, ...legend.map(({ name, colour }) =>
-      element("span", {}, element("i", { style: `background: ${colour}` }), name)));
     parent.append(element("figure", { class: "chart" },
       element("figcaption", {}, element("h3", {}, title), note && element("p", {}, note), this.reading),
-      this.plot, legend.length ? key : null));
+      this.plot, legend.length ? legendOf(legend) : null));
     const height = this.row * rows.length + 4;
     this.base = new Surface(this.plot, height, (context, size) => this.drawBase(context, size));
     this.top = new Surface(this.plot, height, (context, size) => this.drawTop(context, size));
@@ -34,7 +32,7 @@ class Strips {
 
   drawBase(context, [width]) {
     const { x } = timeScale(this.player, width), shown = this.selection.shown;
-    context.font = `${Math.min(11, this.row)}px ${colours.get("font")}`;
+    context.font = `${Math.min(11, Math.max(9, this.row))}px ${colours.get("font")}`;
     context.textBaseline = "middle";
     this.rows.forEach((row, index) => {
       const top = index * this.row, middle = top + this.row / 2;

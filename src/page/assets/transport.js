@@ -11,6 +11,9 @@ const KEYS = [
   ["d", "light or dark"],
 ];
 
+/** The share of the time line that the mark of an event takes. */
+const MARK_SHARE = 0.016;
+
 /** The signs of the buttons, in a box of 16 by 16. */
 const ICONS = {
   play: "M4 2v12l10-6z",
@@ -61,8 +64,9 @@ class Transport {
     const share = at => `${(100 * at / Math.max(player.end, 1e-12)).toFixed(4)}%`;
     this.thumb = element("div", { class: "thumb" });
     this.fill = element("div", { class: "fill" });
+    const isUpper = this.rows();
     const marks = player.events.map((event, index) => this.isTelling(event) && element("button", {
-      type: "button", class: "event", tabindex: "-1", style: `left: ${share(event.at)}`,
+      type: "button", class: isUpper.has(index) ? "event upper" : "event", tabindex: "-1", style: `left: ${share(event.at)}`,
       title: `${this.clock(event.at)}: ${event.text}`, "data-event": index,
       onclick: () => player.seekEvent(index),
       onpointerdown: press => press.stopPropagation(),
@@ -86,6 +90,17 @@ class Transport {
     });
     this.line.addEventListener("pointermove", event => { if (event.buttons & 1) seek(event); });
     return this.line;
+  }
+
+  /** The events whose marks stand in the upper row, since the lower one is taken. */
+  rows() {
+    const { events, end } = this.player, upper = new Set();
+    let taken = -Infinity;
+    events.forEach((event, index) => {
+      if (!this.isTelling(event)) return;
+      if (event.at - taken < MARK_SHARE * end) upper.add(index); else taken = event.at;
+    });
+    return upper;
   }
 
   show() {
@@ -152,17 +167,16 @@ class Story {
   }
 
   show() {
-    const current = this.player.passed - 1;
-    if (current === this.current) return;
+    let current = this.player.passed - 1;
     this.entries.forEach((entry, index) => entry.classList.toggle("past", index <= current));
+    while (current >= 0 && !this.entries[current].offsetParent) current--;
+    if (current === this.current) return;
     this.entries[this.current]?.removeAttribute("aria-current");
     this.current = current;
     const entry = this.entries[current];
     if (!entry) { this.list.scrollTop = 0; return; }
     entry.setAttribute("aria-current", "true");
-    if (entry.offsetParent) {
-      this.list.scrollTop = entry.offsetTop - this.list.offsetTop - this.list.clientHeight / 2;
-    }
+    this.list.scrollTop = entry.offsetTop - this.entries[0].offsetTop - this.list.clientHeight / 2;
   }
 }
 
