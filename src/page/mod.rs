@@ -9,7 +9,7 @@
 //! | `assets/tables.js` | reads the numbers |
 //! | `assets/player.js`, `assets/transport.js` | where the run stands; play, pause, speed, the time line, keys |
 //! | `assets/canvas.js` | drawing surfaces, axes, colours |
-//! | `assets/plan.js` | the plan of a mission and its layers |
+//! | `assets/plan.js`, `assets/marks.js` | the plan of a mission, its layers, marks and labels |
 //! | `assets/curves.js`, `assets/strips.js` | numbers and locations over time |
 //! | `assets/mission.js` | what is told of a mission, its robots and links |
 

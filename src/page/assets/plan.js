@@ -4,9 +4,6 @@
 const TRAIL_STEPS = 60;
 /** White around the workspace, in pixels. */
 const PLAN_MARGIN = 14;
-/** Directions in which labels stand, in eighths of a turn from the right, the best first. */
-const LABEL_DIRECTIONS = [1, 7, 0, 2, 3, 5, 4, 6];
-
 const LAYERS = [
   { key: "links", name: "links", about: "communication links in use, thickness ∝ T·R", on: true },
   { key: "tree", name: "tree", about: "edges of the tree network", on: true },
@@ -25,7 +22,7 @@ class Plan {
   constructor(parent, mission, player, selection) {
     Object.assign(this, { mission, player, selection });
     this.layers = new Map(LAYERS.map(layer => [layer.key, layer.on]));
-    this.directions = new Map();
+    this.places = new LabelPlaces();
     this.box = bounds(mission.scenario.workspace.boundary);
     this.frame = element("div", { class: "plan" });
     parent.append(this.frame);
@@ -94,7 +91,7 @@ class Plan {
     this.drawTasks(scene);
     this.drawPosts(scene);
     this.drawNodes(scene, has("discs"));
-    if (has("labels")) this.drawLabels(scene);
+    if (has("labels")) this.places.draw(context, this.labels(scene), this.floor, radius);
   }
 
   outline(loops, { spot }) {
@@ -312,98 +309,16 @@ class Plan {
     context.restore();
   }
 
-  /** Each label in the first free direction; it keeps its direction while that costs little. */
-  drawLabels({ context, view, step, spots, radius }) {
+  /** What is written beside nodes and tasks. */
+  labels({ view, spots, radius }) {
     const { mission } = this;
-    const labels = spots.map((spot, node) => ({
+    const nodes = spots.map((spot, node) => ({
       key: node, spot, colour: node < mission.robots ? "ink" : "access-point",
       text: node < mission.robots ? String(node) : `AP ${node}`, reach: radius * 1.5,
     }));
-    mission.scenario.task.forEach((task, number) => labels.push({
-      key: `task ${number}`, spot: view.spot(task.position), colour: "task", text: `task ${number}`, reach: radius * 2.1,
+    const tasks = mission.scenario.task.map(({ position }, number) => ({
+      key: `task ${number}`, spot: view.spot(position), colour: "task", text: `task ${number}`, reach: radius * 2.1,
     }));
-    const taken = labels.map(({ spot: [x, y] }) => [x - radius, y - radius, x + radius, y + radius]);
-    const size = spots.length > 30 ? 9.5 : 11;
-    context.save();
-    context.font = `600 ${size}px ${colours.get("font")}`;
-    context.textAlign = "center";
-    context.textBaseline = "middle";
-    context.lineJoin = "round";
-    context.lineWidth = 3;
-    context.strokeStyle = colours.get("floor");
-    for (const { key, spot: [x, y], colour, text, reach } of labels.reverse()) {
-      const half = [context.measureText(text).width / 2 + 1, size * 0.45];
-      const cost = direction => {
-        const angle = direction * Math.PI / 4;
-        const cx = x + Math.cos(angle) * (reach + half[0]), cy = y - Math.sin(angle) * (reach + half[1]);
-        const box = [cx - half[0], cy - half[1], cx + half[0], cy + half[1]];
-        const covered = taken.reduce((sum, other) => sum + overlap(box, other), 0);
-        const rank = LABEL_DIRECTIONS.indexOf(direction);
-        const loyalty = this.directions.get(key) === direction ? -12 : 0;
-        const wall = context.isPointInPath(this.floor, cx * devicePixelRatio, cy * devicePixelRatio, "evenodd") ? 0 : 30;
-        return { box, direction, centre: [cx, cy], price: covered + rank + loyalty + wall };
-      };
-      const best = LABEL_DIRECTIONS.map(cost).reduce((one, other) => other.price < one.price ? other : one);
-      this.directions.set(key, best.direction);
-      taken.push(best.box);
-      context.strokeText(text, ...best.centre);
-      context.fillStyle = colours.get(colour);
-      context.fillText(text, ...best.centre);
-    }
-    context.restore();
+    return [...tasks, ...nodes];
   }
-}
-
-/** The mark of a role, as large as a dot of a radius. */
-function drawMark(context, { key, shape }, [x, y], radius) {
-  context.beginPath();
-  if (shape.polygon) {
-    shape.polygon.forEach(([dx, dy], index) => context[index ? "lineTo" : "moveTo"](x + radius * dx, y + radius * dy));
-    context.closePath();
-  } else {
-    context.arc(x, y, radius * shape.disc.radius, 0, 2 * Math.PI);
-  }
-  context.fillStyle = colours.get(key);
-  context.fill();
-  context.strokeStyle = colours.get("outline");
-  context.lineWidth = Math.min(1.1, Math.max(0.6, 0.14 * radius));
-  context.stroke();
-  if (shape.disc?.heart) {
-    context.beginPath();
-    context.arc(x, y, radius * shape.disc.heart, 0, 2 * Math.PI);
-    context.fillStyle = colours.get("floor");
-    context.fill();
-  }
-}
-
-function strokeThrough(context, spots) {
-  context.beginPath();
-  spots.forEach((spot, index) => context[index ? "lineTo" : "moveTo"](...spot));
-  context.stroke();
-}
-
-function bounds(points) {
-  const low = [0, 1].map(axis => Math.min(...points.map(point => point[axis])));
-  const high = [0, 1].map(axis => Math.max(...points.map(point => point[axis])));
-  return { low, size: [0, 1].map(axis => high[axis] - low[axis] || 1) };
-}
-
-function overlap(one, other) {
-  const along = axis => Math.max(0, Math.min(one[axis + 2], other[axis + 2]) - Math.max(one[axis], other[axis]));
-  return along(0) * along(1);
-}
-
-/** The part of a polygon on the own side of the bisector with another robot, `clearance` from it. */
-function cutAtBisector(polygon, own, other, clearance) {
-  const way = [other[0] - own[0], other[1] - own[1]], length = Math.hypot(...way);
-  if (length === 0) return polygon;
-  const room = Math.max(0, length / 2 - clearance);
-  const depth = ([x, y]) => ((x - own[0]) * way[0] + (y - own[1]) * way[1]) / length - room;
-  return polygon.flatMap((corner, index) => {
-    const next = polygon[(index + 1) % polygon.length], [here, there] = [depth(corner), depth(next)];
-    const kept = here <= 0 ? [corner] : [];
-    if (here <= 0 === there <= 0) return kept;
-    const share = here / (here - there);
-    return [...kept, [0, 1].map(axis => corner[axis] + share * (next[axis] - corner[axis]))];
-  });
 }
