@@ -10,7 +10,8 @@ use std::path::Path;
 /// Makes the page of a trace.
 pub fn write(arguments: &PageArguments) -> Result<Status, Failure> {
     let path = &arguments.trace;
-    let unreadable = |error: PageError| Failure::Trace { path: path.clone(), error };
+    let unreadable =
+        |error: PageError| Failure::Trace { path: path.clone(), error: Box::new(error) };
     let file = File::open(path).map_err(|error| unreadable(PageError::Unreadable(error)))?;
     let page = page::of_trace(BufReader::new(file)).map_err(unreadable)?;
     let output = arguments.output.clone().unwrap_or_else(|| path.with_extension("html"));

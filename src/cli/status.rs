@@ -55,7 +55,7 @@ pub enum Failure {
         /// The trace.
         path: PathBuf,
         /// What is wrong with it.
-        error: PageError,
+        error: Box<PageError>,
     },
     /// A file cannot be created.
     #[error("{}: cannot be created: {source}; choose a path that may be written", path.display())]

@@ -140,7 +140,8 @@ fn study_one_is_played_with_pointer_and_keys() {
     page.click(".line .event:nth-of-type(5)", None);
     let at = "pleach.player.events[document.querySelectorAll('.line .event')[4].dataset.event].at";
     assert_eq!(page.value("pleach.player.at"), page.value(at));
-    let third = page.number("pleach.player.events.findIndex(event => event.event === 'stationary')");
+    let third =
+        page.number("pleach.player.events.findIndex(event => event.event === 'stationary')");
     page.click(&format!("#story .told[data-event='{third}']"), None);
     let at = format!("pleach.player.events[{third}].at");
     assert_eq!(page.value("pleach.player.at"), page.value(&at));
@@ -208,7 +209,10 @@ fn pages_are_small_and_seek_in_time() {
         );
         let times: Vec<f64> = serde_json::from_value(times).unwrap();
         let (median, worst) = (times[times.len() / 2], times[times.len() - 1]);
-        println!("{name}: {} bytes, a seek takes {median:.1} ms, at most {worst:.1} ms", text.len());
+        println!(
+            "{name}: {} bytes, a seek takes {median:.1} ms, at most {worst:.1} ms",
+            text.len()
+        );
         assert!(median < 50.0, "{name}: a seek takes {median} ms");
         for snapshot in run.snapshots().iter().step_by(400) {
             assert_numbers(&mut page, snapshot);
