@@ -157,8 +157,7 @@ const END_OF_RUN: &str = "<!-- end of the run -->";
 
 fn album(scenario: &Scenario) -> Album {
     let site = Site::new(scenario).unwrap();
-    let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-    Album::new(scenario, site.free_space.outline().iter().map(corners).collect())
+    Album::new(scenario, &site).unwrap()
 }
 
 /// Copies the picture that is number `which` of those whose name contains `word`.
