@@ -1,10 +1,6 @@
 //! Distributed means distributed: what robots do is decided by the messages that reach them.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod missions;
-
-use missions::{Mission, Period, network_over, run, run_over, run_unmonitored, shipped};
+use crate::missions::{Mission, Period, network_over, run, run_over, run_unmonitored, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
 use pleach::automaton::network::scenario::{RobotStart, Scenario};
 use pleach::automaton::network::{Message, Radio, Site};
@@ -133,8 +129,7 @@ impl<F: Fn(Arrival) -> bool> Medium<Message, Point> for Lossy<F> {
         radio.deliver(|delivery| {
             let (number, period) = (*messages, *periods - 1);
             *messages += 1;
-            let arrival =
-                Arrival { number, period, sender: delivery.from, receiver: delivery.to };
+            let arrival = Arrival { number, period, sender: delivery.from, receiver: delivery.to };
             if loses(arrival) { Ok(()) } else { hand_over(delivery) }
         })
     }

@@ -58,7 +58,10 @@ pub fn run_over<M: Medium<Message, Point>>(
 }
 
 /// The network of a scenario over a medium of the test's own.
-pub fn network_over<M: Medium<Message, Point>>(scenario: &Scenario, medium: impl FnOnce(&Site) -> M) -> Network<M> {
+pub fn network_over<M: Medium<Message, Point>>(
+    scenario: &Scenario,
+    medium: impl FnOnce(&Site) -> M,
+) -> Network<M> {
     let site = Arc::new(Site::new(scenario).expect("a valid site"));
     let medium = medium(&site);
     Network::with_medium(scenario, site, medium).expect("a network")

@@ -106,9 +106,7 @@ impl Medium<Message, Point> for Radio {
                 },
             };
             *delivered += receivers.len() as u64;
-            receivers
-                .iter()
-                .try_for_each(|&to| hand_over(Delivery { from, to, message: &message }))
+            receivers.iter().try_for_each(|&to| hand_over(Delivery { from, to, message: &message }))
         })
     }
 }

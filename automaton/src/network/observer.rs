@@ -39,8 +39,8 @@ impl<M> Network<M> {
     pub fn events(&self) -> Vec<MissionEvent> {
         let mut events = self.events.clone();
         for event in &mut events {
-            if let MissionEvent::Stationary { team, .. } | MissionEvent::JoinedPrimary { team, .. } =
-                event
+            if let MissionEvent::Stationary { team, .. }
+            | MissionEvent::JoinedPrimary { team, .. } = event
             {
                 *team = self.primary_team();
             }
@@ -78,7 +78,10 @@ impl Overview<'_> {
     }
 
     fn newest(&self) -> Option<&Robot> {
-        self.robots.iter().copied().max_by_key(|robot| (robot.word_number(), robot.subgroups_done()))
+        self.robots
+            .iter()
+            .copied()
+            .max_by_key(|robot| (robot.word_number(), robot.subgroups_done()))
     }
 
     fn task(&self) -> Option<usize> {
@@ -93,7 +96,9 @@ impl Overview<'_> {
 
     fn primary_team(&self) -> Vec<NodeId> {
         let member = |robot: &Robot| robot.duty().post().filter(|post| post.is_primary()).copied();
-        let Some(leader) = self.robots.iter().position(|robot| robot.leads()) else { return Vec::new() };
+        let Some(leader) = self.robots.iter().position(|robot| robot.leads()) else {
+            return Vec::new();
+        };
         let mut team = vec![leader];
         let mut ahead = member(self.robots[leader]);
         while let Some(post) = ahead {
@@ -156,7 +161,8 @@ impl Overview<'_> {
     }
 
     fn serviced(&self) -> Vec<(usize, NodeId)> {
-        let mut serviced: Vec<(usize, NodeId)> = self.robots
+        let mut serviced: Vec<(usize, NodeId)> = self
+            .robots
             .iter()
             .copied()
             .enumerate()

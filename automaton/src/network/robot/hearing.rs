@@ -1,7 +1,6 @@
 //! Listening: the table of neighbours and what each of them last said.
 
-use std::cell::OnceCell;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use pleach_continuous::Point;
 use pleach_continuous::network::reliability::LinkReliability;
@@ -18,7 +17,7 @@ pub(super) struct Neighbour {
     pub beacon: Arc<Beacon>,
     pub distance: f64,
     pub reliability: f64,
-    walk: OnceCell<f64>,
+    walk: OnceLock<f64>,
     measured: (Point, Point),
     /// Whether it has been heard in this round.
     is_heard: bool,
@@ -38,7 +37,7 @@ impl Neighbour {
             beacon: Arc::clone(beacon),
             distance,
             reliability: site.link.reliability(distance),
-            walk: OnceCell::new(),
+            walk: OnceLock::new(),
             measured: (own, beacon.position),
             is_heard: true,
             silent_rounds: 0,

@@ -7,13 +7,13 @@ use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::robot::RobotError;
 use rayon::prelude::*;
 
+use super::Action;
 use super::graphs::{Graph, graphs, numbered_graphs};
 use super::medium::Medium;
 use super::places::{Place, Places, PlacesError};
 use super::properties::{ALWAYS, has_ended};
 use super::protocol::{Configuration, Protocol, ProtocolError, State};
 use super::story::story;
-use super::Action;
 use crate::exploration::{Exploration, ExplorationError, Fairness, StateId, explore};
 
 /// Which graphs of a number of robots and access points are explored.
