@@ -286,7 +286,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Event, Location};
+    use crate::Event;
 
     #[test]
     fn the_table_is_deterministic_and_every_location_is_reached() {
