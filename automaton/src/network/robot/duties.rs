@@ -241,10 +241,7 @@ fn keep<A: Holder, B: From<Held>>(duty: &A, _: &Robot, _: &mut Effects) -> B {
     B::from(*duty.held())
 }
 
-fn join_path<A: Holder + Copy>(duty: &A, robot: &Robot, _: &mut Effects) -> Waiting
-where
-    A: DataOf<Duty>,
-{
+fn join_path<A: Holder + Copy + DataOf<Duty>>(duty: &A, robot: &Robot, _: &mut Effects) -> Waiting {
     let place = robot.coming_place().unwrap_or_default();
     Waiting { held: *duty.held(), place, role: duty.into_place().role() }
 }
