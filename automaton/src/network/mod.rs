@@ -17,11 +17,11 @@ pub mod site;
 pub mod user;
 
 pub use access_point::AccessPoint;
-pub use automata::{mission_automaton, role_automaton};
+pub use automata::{Automata, mission_automaton};
 pub use composition::{KernelTimes, Network, NetworkError};
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
-pub use robot::Robot;
+pub use robot::{Robot, duty_automaton};
 pub use site::{Site, SiteError};
 pub use user::User;

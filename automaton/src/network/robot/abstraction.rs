@@ -38,7 +38,7 @@ impl Robot {
     /// When a guard cannot be evaluated, or transitions do not come to an end.
     pub fn think(&mut self) -> Result<(), RobotError> {
         self.end_round();
-        self.reflect();
+        self.reflect()?;
         self.stir();
         self.is_quiet = false;
         self.jump()
@@ -52,7 +52,7 @@ impl Robot {
     pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
         self.stand_at(self.position, still_periods);
         self.begin_period();
-        self.deliberate();
+        self.deliberate()?;
         self.jump()
     }
 
@@ -119,18 +119,11 @@ impl Robot {
             account,
             "{:?}",
             (
-                (self.id, self.position, self.still_periods, self.role, self.phase),
-                (self.duty, self.left_post, &self.dealings, &self.answered, self.last_partner),
+                (self.id, self.position, self.still_periods, self.phase),
+                (self.duty(), &self.dealings, &self.answered, self.last_partner),
                 (self.parent, &self.lineage, &self.below),
                 (self.can_detach, self.barren_periods, &self.bulletin, &self.tasks, &self.roster),
-                (
-                    &self.eligible,
-                    &self.election,
-                    self.bid,
-                    waited,
-                    &self.route,
-                    self.awaits_release
-                ),
+                (&self.eligible, &self.election, self.bid, waited, &self.route),
                 (&self.path, &self.agreement, &self.subgroups, self.subgroup, self.team),
                 self.audible().map(|(_, silent)| silent).collect::<Vec<_>>(),
             )
