@@ -32,6 +32,7 @@ pub mod located;
 #[cfg(feature = "network")]
 pub mod network;
 pub mod node;
+pub mod observed;
 pub mod reset;
 pub mod time;
 pub mod trace;
@@ -51,6 +52,7 @@ pub use edge::{Edge, from};
 pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
 pub use flow::{Flow, Rate};
 pub use located::{Current, DataOf, Holds, Place, Transfer};
+pub use observed::Observed;
 pub use reset::{Assignment, Reset};
 pub use time::HybridTime;
 
