@@ -75,10 +75,13 @@
 //! predicates over whole boxes of states by [`interval`] arithmetic; [`linear`] reads off the
 //! coefficients of affine expressions, [`derivative`] differentiates, [`substitution`] renames
 //! variables and applies resets, and [`normal_form`] resolves negations and lists alternatives.
-//! [`program`] compiles all of it for hot loops.
+//! [`program`] compiles all of it for hot loops, and [`course`] follows predicates over time, with
+//! [`enclosure`]s of moving quantities.
 
+pub mod course;
 pub mod crossing;
 pub mod derivative;
+pub mod enclosure;
 pub mod expression;
 pub mod function;
 pub mod guard;
@@ -97,7 +100,9 @@ pub mod serialization;
 pub mod substitution;
 pub mod valuation;
 
+pub use course::{Affine, Course, Tracked, Tracker};
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
+pub use enclosure::Enclosure;
 pub use expression::{Expression, constant, norm, variable};
 pub use function::NamedFunction;
 pub use guard::Guard;
