@@ -28,6 +28,7 @@ pub mod diagram;
 pub mod edge;
 pub mod executor;
 pub mod flow;
+pub mod moment;
 #[cfg(feature = "network")]
 pub mod network;
 pub mod reset;
@@ -46,8 +47,9 @@ pub use composition::{
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};
 pub use edge::{Edge, from};
-pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
+pub use executor::{Ending, Executor, InvalidLimit, Limit, Observer, Reason, Round, System};
 pub use flow::{Flow, Rate};
+pub use moment::Moment;
 pub use reset::{Assignment, Reset};
 pub use time::HybridTime;
 
