@@ -8,9 +8,11 @@
 
 use crate::enclosure::{Definedness, Enclosure};
 use crate::expression::{BinaryOperator, Expression, UnaryOperator};
+use crate::fold::Operands;
 use crate::interval::Interval;
 use crate::predicate::{Comparison, Predicate, Relation};
 use crate::range::Truth;
+use crate::table::Table;
 use crate::valuation::EvaluationError;
 
 /// What a predicate does during a span of time.
@@ -28,7 +30,7 @@ pub enum Course {
     Open,
     /// It may change several times, and rounding alone says so: a shorter span tells no more.
     Blurred,
-    /// A named function decides, of which nothing is known.
+    /// A proposition or a named function decides, of which nothing is known.
     Opaque,
 }
 
@@ -172,7 +174,7 @@ impl Tracker {
         &self.comparisons
     }
 
-    /// Whether a named function occurs.
+    /// Whether a proposition or a named function occurs.
     pub fn is_opaque(&self) -> bool {
         self.root.is_opaque()
     }
@@ -245,7 +247,7 @@ impl Node {
             (Predicate::Not(inner), _) => Node::of(inner, !is_negated, variables, comparisons)?,
             (Predicate::All(all), false) | (Predicate::Any(all), true) => Node::All(parts(all)?),
             (Predicate::Any(any), false) | (Predicate::All(any), true) => Node::Any(parts(any)?),
-            (Predicate::Function(_), _) => Node::Function,
+            (Predicate::Proposition(_) | Predicate::Function(_), _) => Node::Function,
         })
     }
 
@@ -313,13 +315,17 @@ impl Tracked {
 #[derive(Clone, Debug, PartialEq)]
 struct Tape(Box<[Operation]>);
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Operation {
     Constant(f64),
     Variable(usize),
     Unary(UnaryOperator, usize),
     Binary(BinaryOperator, usize, usize),
     Power(usize, f64),
+    /// With the table of the slopes.
+    Lookup(Table, Table, usize),
+    /// Both sides of the condition, then what is chosen from.
+    Choice(Relation, [usize; 4]),
 }
 
 /// What operations are computed in.
@@ -333,73 +339,113 @@ struct Context<'a> {
 /// Results that fit on the stack of the thread; longer expressions allocate.
 const SHORT: usize = 16;
 
+/// What is known about a part, and whether it has a value.
+type Known = (Enclosure, Definedness);
+
+const UNKNOWN: Known = (Enclosure::UNKNOWN, Definedness::Everywhere);
+
 impl Tape {
     fn of(expression: &Expression, variables: &[impl AsRef<str>]) -> Result<Tape, EvaluationError> {
-        let mut operations = Vec::new();
-        record(expression, variables, &mut operations)?;
+        let mut operations: Vec<Operation> = Vec::new();
+        expression.fold(&mut |part, operands| {
+            operations.push(Operation::of(part, operands, variables)?);
+            Ok(operations.len() - 1)
+        })?;
         Ok(Tape(operations.into()))
     }
 
-    fn run(&self, context: &Context<'_>) -> (Enclosure, Definedness) {
+    fn run(&self, context: &Context<'_>) -> Known {
         if self.0.len() <= SHORT {
-            self.run_on(context, &mut [Enclosure::UNKNOWN; SHORT])
+            self.run_on(context, &mut [UNKNOWN; SHORT])
         } else {
-            self.run_on(context, &mut vec![Enclosure::UNKNOWN; self.0.len()])
+            self.run_on(context, &mut vec![UNKNOWN; self.0.len()])
         }
     }
 
-    fn run_on(&self, context: &Context<'_>, results: &mut [Enclosure]) -> (Enclosure, Definedness) {
-        let mut definedness = Definedness::Everywhere;
+    fn run_on(&self, context: &Context<'_>, results: &mut [Known]) -> Known {
         for (place, operation) in self.0.iter().enumerate() {
-            let (result, is_defined) = match *operation {
-                Operation::Constant(value) => (Enclosure::constant(value), Definedness::Everywhere),
-                Operation::Variable(variable) => {
-                    let slot = context.slots.get(variable);
-                    let state = slot.and_then(|&slot| context.states.get(slot));
-                    (state.copied().unwrap_or(Enclosure::UNKNOWN), Definedness::Everywhere)
-                }
-                Operation::Unary(operator, operand) => operator.enclose(&results[operand]),
-                Operation::Binary(operator, left, right) => {
-                    operator.enclose(&results[left], &results[right])
-                }
-                Operation::Power(base, exponent) => results[base].raised(exponent),
-            };
-            let is_leaf = matches!(operation, Operation::Constant(_) | Operation::Variable(_));
-            results[place] = if is_leaf { result } else { result.sharpened(context.half_width) };
-            definedness = definedness.and(is_defined);
+            results[place] = operation.run(context, results);
         }
         let last = self.0.len().saturating_sub(1);
-        (results.get(last).copied().unwrap_or(Enclosure::UNKNOWN), definedness)
+        results.get(last).copied().unwrap_or(UNKNOWN)
     }
 }
 
-/// Appends the operations of the expression; returns the place of its value.
-fn record(
-    expression: &Expression,
-    variables: &[impl AsRef<str>],
-    operations: &mut Vec<Operation>,
-) -> Result<usize, EvaluationError> {
-    let operation = match expression {
-        Expression::Constant(value) => Operation::Constant(*value),
-        Expression::Variable(name) => {
-            let place = variables.iter().position(|listed| *listed.as_ref() == **name);
-            let unknown = || EvaluationError::UnknownVariable { variable: name.to_string() };
-            Operation::Variable(place.ok_or_else(unknown)?)
-        }
-        Expression::Unary(operator, operand) => {
-            Operation::Unary(*operator, record(operand, variables, operations)?)
-        }
-        Expression::Binary(BinaryOperator::Product, left, right) if left == right => {
-            Operation::Power(record(left, variables, operations)?, 2.0)
-        }
-        Expression::Binary(operator, left, right) => {
-            let left = record(left, variables, operations)?;
-            Operation::Binary(*operator, left, record(right, variables, operations)?)
-        }
-        Expression::Power(base, exponent) => {
-            Operation::Power(record(base, variables, operations)?, *exponent)
-        }
-    };
-    operations.push(operation);
-    Ok(operations.len() - 1)
+impl Operation {
+    fn of(
+        part: &Expression,
+        operands: Operands<usize>,
+        variables: &[impl AsRef<str>],
+    ) -> Result<Operation, EvaluationError> {
+        Ok(match (part, operands) {
+            (Expression::Constant(value), _) => Operation::Constant(*value),
+            (Expression::Variable(name), _) => {
+                let place = variables.iter().position(|listed| *listed.as_ref() == **name);
+                let unknown = || EvaluationError::UnknownVariable { variable: name.to_string() };
+                Operation::Variable(place.ok_or_else(unknown)?)
+            }
+            (Expression::Unary(operator, _), Operands::One(operand)) => {
+                Operation::Unary(*operator, operand)
+            }
+            (Expression::Binary(BinaryOperator::Product, left, right), Operands::Two(one, _))
+                if left == right =>
+            {
+                Operation::Power(one, 2.0)
+            }
+            (Expression::Binary(operator, ..), Operands::Two(left, right)) => {
+                Operation::Binary(*operator, left, right)
+            }
+            (Expression::Power(_, exponent), Operands::One(base)) => {
+                Operation::Power(base, *exponent)
+            }
+            (Expression::Lookup(table, _), Operands::One(place)) => {
+                Operation::Lookup(table.clone(), table.derivative(), place)
+            }
+            (Expression::Choice(choice), Operands::Four(parts)) => {
+                Operation::Choice(choice.condition.relation, parts)
+            }
+            _ => Operation::Constant(f64::NAN),
+        })
+    }
+
+    fn run(&self, context: &Context<'_>, results: &[Known]) -> Known {
+        let defined = |places: &[usize]| {
+            let parts = places.iter().map(|&place| results[place].1);
+            parts.fold(Definedness::Everywhere, Definedness::and)
+        };
+        let ((result, own), inner) = match self {
+            Operation::Constant(value) => return (Enclosure::constant(*value), defined(&[])),
+            Operation::Variable(variable) => {
+                let slot = context.slots.get(*variable);
+                let state = slot.and_then(|&slot| context.states.get(slot));
+                return (state.copied().unwrap_or(Enclosure::UNKNOWN), defined(&[]));
+            }
+            Operation::Unary(operator, operand) => {
+                (operator.enclose(&results[*operand].0), defined(&[*operand]))
+            }
+            Operation::Binary(operator, left, right) => {
+                let result = operator.enclose(&results[*left].0, &results[*right].0);
+                (result, defined(&[*left, *right]))
+            }
+            Operation::Power(base, exponent) => {
+                (results[*base].0.raised(*exponent), defined(&[*base]))
+            }
+            Operation::Lookup(table, slopes, place) => {
+                let found = results[*place].0.looked_up(table, slopes);
+                ((found, Definedness::Everywhere), defined(&[*place]))
+            }
+            Operation::Choice(relation, [left, right, then, otherwise]) => {
+                let sides = [results[*left].0, results[*right].0];
+                let [one, other] = [results[*then], results[*otherwise]];
+                let truth = relation.truth(sides[0].range, sides[1].range);
+                let chosen = match truth {
+                    Truth::Always => one,
+                    Truth::Never => other,
+                    Truth::Undecided => (one.0.or(&other.0), one.1.and(other.1)),
+                };
+                (chosen, defined(&[*left, *right]))
+            }
+        };
+        (result.sharpened(context.half_width), own.and(inner))
+    }
 }

@@ -14,6 +14,7 @@
 
 use crate::expression::{BinaryOperator, UnaryOperator};
 use crate::interval::Interval;
+use crate::table::Table;
 
 /// Bounds on a quantity during a span of time.
 ///
@@ -146,7 +147,7 @@ impl Enclosure {
         Enclosure {
             middle: self.middle.min(other.middle),
             range: self.range.min(other.range),
-            rate: hull(self.rate, other.rate),
+            rate: self.rate.hull(other.rate),
         }
     }
 
@@ -162,6 +163,38 @@ impl Enclosure {
             middle: or_unknown(value(self.middle)),
             range: or_unknown(value(self.range)),
             rate: scaled(self.rate, slope),
+        }
+    }
+
+    /// One of the two, from instant to instant.
+    pub(crate) fn or(&self, other: &Enclosure) -> Self {
+        Enclosure {
+            middle: self.middle.hull(other.middle),
+            range: self.range.hull(other.range),
+            rate: Interval::WHOLE,
+        }
+    }
+
+    /// The value of the table at this place, given the table of its slopes.
+    pub(crate) fn looked_up(&self, table: &Table, slopes: &Table) -> Self {
+        // Slopes are rounded: a few units in the last place of their factors.
+        let nearly_one = span(1.0 - 4.0 * f64::EPSILON, 1.0 + 4.0 * f64::EPSILON);
+        let slope = |places| Some(slopes.range(places) * nearly_one);
+        self.mapped(|places| Some(table.range(places)), slope)
+    }
+
+    /// The angle of the point (x, self).
+    fn angle(&self, x: &Enclosure) -> Self {
+        let range = self.range.atan2(x.range);
+        let squares = x.range.power(2.0).zip(self.range.power(2.0));
+        let distance = squares.map_or(Interval::WHOLE, |(one, other)| one + other);
+        // On the left the angle jumps from π to −π.
+        let jumps = self.range.contains(0.0) && x.range.lower() <= 0.0;
+        let turn = scaled(self.rate, x.range) - scaled(x.rate, self.range);
+        Enclosure {
+            middle: self.middle.atan2(x.middle),
+            range,
+            rate: if jumps { Interval::WHOLE } else { turn / distance },
         }
     }
 
@@ -207,6 +240,20 @@ impl UnaryOperator {
             UnaryOperator::Cosine => {
                 everywhere(operand.mapped(|x| Some(x.cos()), |x| Some(-x.sin())))
             }
+            UnaryOperator::Tangent => {
+                let slope = |x: Interval| Some(Interval::point(1.0) + x.tan().power(2.0)?);
+                everywhere(operand.mapped(|x| Some(x.tan()), slope))
+            }
+            UnaryOperator::HyperbolicTangent => {
+                let slope = |x: Interval| Some(Interval::point(1.0) - x.tanh().power(2.0)?);
+                everywhere(operand.mapped(|x| Some(x.tanh()), slope))
+            }
+            UnaryOperator::Sign => {
+                everywhere(operand.mapped(|x| Some(x.sign()), |x| steps(x.sign())))
+            }
+            UnaryOperator::Floor => {
+                everywhere(operand.mapped(|x| Some(x.floor()), |x| steps(x.floor())))
+            }
             UnaryOperator::Exponential => {
                 everywhere(operand.mapped(|x| Some(x.exp()), |x| Some(x.exp())))
             }
@@ -230,6 +277,7 @@ impl BinaryOperator {
             BinaryOperator::Maximum => {
                 everywhere(left.opposite().smaller(&right.opposite()).opposite())
             }
+            BinaryOperator::Angle => everywhere(left.angle(right)),
             BinaryOperator::Quotient => {
                 // 0 ÷ 0 has no value.
                 let met = |one: Interval, other: Interval| one.contains(0.0) && other.contains(0.0);
@@ -246,10 +294,11 @@ fn scaled(rate: Interval, factor: Interval) -> Interval {
     if rate.lower() == 0.0 && rate.upper() == 0.0 { rate } else { rate * factor }
 }
 
-fn span(lower: f64, upper: f64) -> Interval {
-    Interval::new(lower, upper).unwrap_or(Interval::WHOLE)
+/// The slope of a function of steps, given the steps met.
+fn steps(met: Interval) -> Option<Interval> {
+    (met.width() == 0.0).then(|| Interval::point(0.0))
 }
 
-fn hull(one: Interval, other: Interval) -> Interval {
-    span(one.lower().min(other.lower()), one.upper().max(other.upper()))
+fn span(lower: f64, upper: f64) -> Interval {
+    Interval::new(lower, upper).unwrap_or(Interval::WHOLE)
 }
