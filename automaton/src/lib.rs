@@ -42,8 +42,8 @@ pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
 pub use check::{Finding, Report};
 pub use composition::{
-    Composition, CompositionBuilder, CompositionError, Exploration, ExplorationError, Failure,
-    Policy, ReplayError, Settings, Simulation, SimulationError,
+    Accumulation, Composition, CompositionBuilder, CompositionError, Exploration, ExplorationError,
+    Failure, Halt, Policy, ReplayError, Settings, Simulation, SimulationError,
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};
@@ -56,7 +56,7 @@ pub use reset::{Assignment, Reset};
 pub use time::HybridTime;
 
 pub use trace::{Participants, Trace, TraceEntry};
-pub use trajectory::Trajectory;
+pub use trajectory::{Doubt, Trajectory, Why};
 pub use zeno::Zeno;
 
 // For the macros.

@@ -34,6 +34,7 @@
 //! ```
 
 mod bend;
+mod chebyshev;
 mod constant;
 mod controller;
 mod dormand_prince;

@@ -1,6 +1,7 @@
 //! Pieces of curves as polynomials in time.
 
 use pleach_guards::{Enclosure, Interval};
+use serde::{Deserialize, Serialize};
 
 use super::Curve;
 
@@ -19,7 +20,7 @@ use super::Curve;
 /// assert_eq!((piece.start(), piece.end()), (0.0, 10.0));
 /// # Ok::<(), pleach_continuous::flow::InvalidFlow>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Piece {
     start: f64,
     end: f64,
@@ -87,6 +88,20 @@ impl Piece {
         self.start = self.start.max(from);
         self.end = self.end.min(to).max(self.start);
         self
+    }
+
+    /// The highest power with a coefficient.
+    pub fn degree(&self) -> usize {
+        let components = 0..self.ends.len();
+        let lengths = components.map(|component| self.coefficients(component).len());
+        lengths.max().unwrap_or(0).saturating_sub(1)
+    }
+
+    /// Whether it is made as it should, after it was read from a file.
+    pub fn is_consistent(&self) -> bool {
+        let is_whole = self.ends.last().copied().unwrap_or(0) == self.coefficients.len();
+        let is_ordered = self.start <= self.end && self.scale != 0.0;
+        is_whole && is_ordered && self.ends.is_sorted() && self.errors.len() <= self.ends.len()
     }
 
     /// How many numbers it holds.

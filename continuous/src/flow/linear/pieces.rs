@@ -5,8 +5,8 @@
 //! with a proven bound on the rest: with |M| the matrix of magnitudes and a the magnitudes of the
 //! next term, if |M| a ≤ λ a in every component, the terms that follow shrink at least as those of
 //! a geometric series. Where a mode is so fast that it has faded but rules the series, as in stiff
-//! systems, the piece is instead the polynomial through the solution at Chebyshev's nodes, with an
-//! estimate of its error by its last terms.
+//! systems, the piece is instead a polynomial [through](Piece::through) the solution, with an
+//! estimate of its error.
 
 use nalgebra::DVector;
 
@@ -21,8 +21,6 @@ const MOST_TERMS: usize = 32;
 const NEGLIGIBLE: f64 = 1e-17;
 /// How often a piece may be halved before interpolation is tried.
 const HALVINGS: u32 = 4;
-/// Nodes of interpolation. Over two radians their polynomial is off by less than 10⁻¹⁸.
-const NODES: usize = 17;
 
 impl LinearFlow {
     pub(super) fn piece_from(&self, time: f64) -> Piece {
@@ -51,56 +49,8 @@ impl LinearFlow {
             }
             length *= 0.5;
         }
-        self.interpolated(start, wanted)
+        Piece::through(start, wanted, self.dimension, |time, state| self.state_at(time, state))
     }
-
-    /// The polynomial through the solution at Chebyshev's nodes.
-    fn interpolated(&self, start: f64, length: f64) -> Piece {
-        let radius = 0.5 * length;
-        let origin = start + radius;
-        let angle = |node: usize| std::f64::consts::PI * (node as f64 + 0.5) / NODES as f64;
-        let states: Vec<Vec<f64>> = (0..NODES)
-            .map(|node| {
-                let mut state = vec![0.0; self.dimension];
-                self.state_at(origin + radius * angle(node).cos(), &mut state);
-                state
-            })
-            .collect();
-        let mut piece = Piece::new(start, start + length, origin, radius);
-        for component in 0..self.dimension {
-            let weights: Vec<f64> = (0..NODES)
-                .map(|degree| {
-                    let wave = |node: usize| (degree as f64 * angle(node)).cos();
-                    let sum: f64 =
-                        (0..NODES).map(|node| states[node][component] * wave(node)).sum();
-                    if degree == 0 { sum / NODES as f64 } else { 2.0 * sum / NODES as f64 }
-                })
-                .collect();
-            let size: f64 = weights.iter().map(|weight| weight.abs()).sum();
-            let last: f64 = weights[NODES - 2..].iter().map(|weight| weight.abs()).sum();
-            piece.push(powers(&weights), 2.0 * last + 64.0 * f64::EPSILON * size);
-        }
-        piece
-    }
-}
-
-/// A sum of Chebyshev polynomials by its powers.
-fn powers(weights: &[f64]) -> Vec<f64> {
-    let mut sum = vec![0.0; weights.len()];
-    // Tₙ₊₁ = 2 s Tₙ − Tₙ₋₁, beginning with T₋₁ = T₁ = s and T₀ = 1.
-    let (mut before, mut now) = (vec![0.0; weights.len() + 1], vec![0.0; weights.len() + 1]);
-    now[0] = 1.0;
-    for (degree, weight) in weights.iter().enumerate() {
-        for (total, power) in sum.iter_mut().zip(&now) {
-            *total += weight * power;
-        }
-        let factor = if degree == 0 { 1.0 } else { 2.0 };
-        let next: Vec<f64> = (0..now.len())
-            .map(|power| if power == 0 { 0.0 } else { factor * now[power - 1] } - before[power])
-            .collect();
-        before = std::mem::replace(&mut now, next);
-    }
-    sum
 }
 
 impl Exponential {
