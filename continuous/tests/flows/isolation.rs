@@ -10,7 +10,7 @@ use pleach_guards::{
 };
 use proptest::prelude::*;
 
-use crate::support::state;
+use super::support::state;
 
 /// A predicate over states whose components go by these names.
 struct Formula {
