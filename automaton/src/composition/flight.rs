@@ -4,10 +4,10 @@
 use pleach_continuous::flow::{Curve, Doubt, Finding, Lost, Onset, Piece, Uncertainty, isolate};
 use pleach_guards::Course;
 
-use super::field::Field;
+use super::field::{Field, Row};
 use super::group::Group;
 use super::jumps::Standing;
-use super::settings::Settings;
+use super::settings::{Policy, Settings};
 use super::simulation::{Failure, Halt};
 use super::solver::Solver;
 use super::tension::{Conditions, Readiness, Tension};
@@ -36,6 +36,8 @@ pub(super) struct Plan<'a> {
     pub(super) group: &'a Group,
     pub(super) standing: Standing<'a>,
     pub(super) settings: &'a Settings,
+    /// When transitions are taken that only may be.
+    pub(super) policy: Policy,
     pub(super) allowance: f64,
     /// When it begins.
     pub(super) since: Moment,
@@ -64,10 +66,10 @@ struct Stop {
 impl Plan<'_> {
     /// The flow up to an event; `steps` is how many pieces and spans may still be looked at.
     pub(super) fn fly(self, steps: &mut u64) -> Result<Flight, Halt> {
-        let Plan { group, standing, settings, allowance, since, start, limit } = self;
+        let Plan { group, standing, settings, policy, allowance, since, start, limit } = self;
         let composition = standing.composition;
         let field = Field::of(composition, group, standing.locations, start);
-        let conditions = Conditions { standing, group, policy: settings.policy, allowance };
+        let conditions = Conditions { standing, group, policy, allowance };
         let rests = |duration| Flight {
             since,
             duration,
@@ -390,6 +392,26 @@ impl Flight {
             piece.state_at(time, &mut state);
         }
         state
+    }
+
+    /// The flight for `duration` seconds in which lines go on and everything else rests.
+    pub(super) fn of_lines(since: Moment, duration: f64, field: &Field<'_>) -> Flight {
+        let mut piece = Piece::new(0.0, duration, 0.0, 1.0);
+        for (first, row) in field.start.iter().zip(&field.rows) {
+            let rate = if let Row::Line(rate) = row { *rate } else { 0.0 };
+            piece.push([*first, rate], 0.0);
+        }
+        let mut landing = field.start.clone();
+        piece.state_at(duration, &mut landing);
+        Flight {
+            since,
+            duration: Moment::from(duration),
+            pieces: vec![piece],
+            landing,
+            doubts: Vec::new(),
+            is_fitted: false,
+            halt: None,
+        }
     }
 
     /// The flight up to `time` seconds after the start, at which nothing happens.
