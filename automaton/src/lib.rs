@@ -32,6 +32,7 @@ pub mod located;
 pub mod moment;
 #[cfg(feature = "network")]
 pub mod network;
+pub mod node;
 pub mod reset;
 pub mod time;
 pub mod trace;

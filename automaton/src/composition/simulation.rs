@@ -264,8 +264,18 @@ impl<'a> Simulation<'a> {
     ) -> Result<Self, SimulationError> {
         settings.check()?;
         let initial = composition.components.iter().map(|component| component.blueprint.initial);
-        let group =
-            || GroupState { flight: None, allowance: 0.0, zeno: ZenoDetector::new(horizon) };
+        let seed = match settings.policy {
+            Policy::Random { seed } => seed,
+            Policy::Late | Policy::Early => 0,
+        };
+        let group = |number: usize| GroupState {
+            flight: None,
+            is_eager: false,
+            chance: Chance::new(seed, number),
+            compelled: None,
+            allowance: 0.0,
+            zeno: ZenoDetector::new(horizon),
+        };
         Ok(Simulation {
             composition,
             settings,
