@@ -429,10 +429,6 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         parts
     }
 
-    fn table(&self) -> TransitionTable<'_, L, E> {
-        TransitionTable::new(&self.rows)
-    }
-
     fn transition_of(
         &self,
         number: usize,

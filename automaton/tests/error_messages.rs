@@ -67,7 +67,7 @@ fn automata_say_what_does_not_fit() {
             "the initial location `broken` occurs in no row of the table".into(),
         ),
         (
-            lamp().transition(from(Lamp::Off).on(Press::Push).to(Lamp::Broken).may(always())),
+            table(&[off_push, row(Lamp::Off, Press::Push, Lamp::Broken)], Lamp::Off),
             "two rows of the table leave location `off` on event `push`: keep one".into(),
         ),
         (

@@ -14,6 +14,10 @@ use super::tension::{Conditions, Readiness, Tension};
 use crate::executor::Limit;
 use crate::moment::Moment;
 
+/// An invariant that ends so many spacings of the numbers around the present time after the start
+/// of a flow ends at its start.
+const SPACINGS: f64 = 4.0;
+
 /// A flow that has been looked at in advance. Its times count from its start, in seconds.
 pub(super) struct Flight {
     /// When it began.
@@ -196,9 +200,8 @@ impl<'a> Search<'a, '_> {
     fn right_after(&mut self, from: Moment, to: Moment) -> Result<Option<Onset>, Stop> {
         let start = from.seconds();
         let mut before = start;
-        let spacing = (self.since + from).seconds().abs() * f64::EPSILON;
-        let mut step = start.next_up() - start;
-        step = step.max(spacing * f64::EPSILON).max(f64::MIN_POSITIVE);
+        let least = self.spacing().max(f64::MIN_POSITIVE);
+        let mut step = (start.next_up() - start).max(least);
         let mut after = loop {
             let time = start + step;
             if time >= to.seconds() {
@@ -212,7 +215,7 @@ impl<'a> Search<'a, '_> {
         };
         loop {
             let middle = before + 0.5 * (after - before);
-            if middle <= before || middle >= after {
+            if after - before <= 2.0 * least || middle <= before || middle >= after {
                 return Ok(Some(Onset { before, time: after }));
             }
             if self.holds_at(middle)? { after = middle } else { before = middle }
@@ -309,12 +312,16 @@ impl<'a> Search<'a, '_> {
         let duration = match end {
             End::Never => Moment::from(limit),
             End::At(time) if self.can_jump(time, &failed)? => time,
-            End::At(time) => Moment::from(self.just_before(time.seconds(), &failed)?),
+            End::At(time) => {
+                let before = self.just_before(time.seconds(), &failed)?;
+                self.unless_nothing(before, &failed)?
+            }
             End::Onset(Onset { before, time }) => {
                 let can_jump = self.can_jump(Moment::from(time), &failed)?;
-                Moment::from(if can_jump { time } else { before })
+                if can_jump { Moment::from(time) } else { self.unless_nothing(before, &failed)? }
             }
         };
+        let duration = self.noticeable(duration);
         let landing = self.solver.state_at(duration).map_err(|reason| failed(reason.into()))?;
         let is_fitted = self.solver.is_fitted();
         let pieces = self.solver.into_pieces(duration.seconds());
@@ -327,6 +334,31 @@ impl<'a> Search<'a, '_> {
             doubts: self.doubts,
             halt: None,
         })
+    }
+
+    /// The duration, or none if nothing changes in it but for rounding: at the very start of a flow
+    /// there is nothing before the end of an invariant.
+    fn unless_nothing(
+        &mut self,
+        duration: f64,
+        failed: &impl Fn(Fault) -> Halt,
+    ) -> Result<Moment, Halt> {
+        let moved = self.solver.state_at(Moment::from(duration));
+        let moved = moved.map_err(|reason| failed(reason.into()))?;
+        let is_rounding = duration <= SPACINGS * f64::EPSILON * self.since.seconds().abs();
+        let is_nothing = is_rounding || moved == self.solver.start();
+        Ok(if is_nothing { Moment::default() } else { Moment::from(duration) })
+    }
+
+    /// A duration that changes the time, if it is more than none.
+    fn noticeable(&self, duration: Moment) -> Moment {
+        let least = Moment::from(2.0 * self.spacing());
+        if duration > Moment::default() && duration < least { least } else { duration }
+    }
+
+    /// The smallest change of the time that its two numbers can hold.
+    fn spacing(&self) -> f64 {
+        self.since.seconds().abs() * f64::EPSILON * f64::EPSILON
     }
 
     fn can_jump(&mut self, time: Moment, failed: &impl Fn(Fault) -> Halt) -> Result<bool, Halt> {

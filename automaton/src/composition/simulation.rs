@@ -443,6 +443,7 @@ impl<'a> Simulation<'a> {
             self.jumped[one.component] = self.round;
         }
         self.jumps += 1;
+        self.latest = [self.latest[1], taken.moves.first().copied()];
         let group = self.composition.components[taken.moves[0].component].group;
         // What was planned was planned for other locations.
         self.ground(group);
