@@ -167,7 +167,7 @@ fn what_is_a_function_is_said() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(cases::usually(64))]
 
     /// sin(a x + b x²) ≥ c on a line, on a parabola by a linear flow and on an integrated flow: the
     /// first root is that of a quadratic equation.
