@@ -5,4 +5,5 @@
 mod events;
 mod exact;
 mod integration;
+mod stiff;
 mod support;
