@@ -29,15 +29,17 @@ pub mod edge;
 pub mod executor;
 pub mod flow;
 pub mod located;
+pub mod named;
 #[cfg(feature = "network")]
 pub mod network;
 pub mod reset;
+mod sweep;
 pub mod time;
 pub mod trace;
 pub mod trajectory;
 pub mod zeno;
 
-pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
+pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError, UnknownParameter};
 pub use builder::{BuildError, Builder};
 pub use check::{Finding, Report};
 pub use composition::{
@@ -48,9 +50,11 @@ pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};
 pub use edge::{Edge, from};
 pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
-pub use flow::{Flow, Rate};
+pub use flow::{Flow, InvalidMatrix, Rate};
 pub use located::{Current, DataOf, Holds, Place, Transfer};
+pub use named::{Name, Record, RepeatedName};
 pub use reset::{Assignment, Reset};
+pub use sweep::sweep;
 pub use time::HybridTime;
 
 pub use trace::{Participants, Trace, TraceEntry};

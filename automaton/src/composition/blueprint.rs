@@ -16,7 +16,7 @@ use crate::reset::Reset;
 pub(crate) struct Blueprint {
     pub(crate) places: Vec<Place>,
     pub(crate) events: Vec<&'static str>,
-    pub(crate) coordinates: &'static [&'static str],
+    pub(crate) coordinates: Vec<&'static str>,
     pub(crate) initial: usize,
     /// For pictures.
     pub(crate) sketch: Sketch,
@@ -69,31 +69,37 @@ impl Blueprint {
     pub(crate) fn of<L: Location, E: Event, S: Coordinates>(
         automaton: &Automaton<L, E, S>,
     ) -> Result<Blueprint, EvaluationError> {
-        let graph = automaton.graph();
-        let mut places = Vec::with_capacity(L::ALL.len());
-        for (node, (&location, mode)) in L::ALL.iter().zip(&automaton.modes).enumerate() {
+        let sketch = Sketch::of(automaton);
+        let automaton = &automaton.with_numbers();
+        let (graph, names) = (automaton.graph(), automaton.names());
+        let shape = automaton.initial_state();
+        let mut places = Vec::with_capacity(automaton.locations().len());
+        let locations = automaton.locations().iter();
+        for (node, (&location, mode)) in locations.zip(&automaton.modes).enumerate() {
             let leaving = automaton.leaving[node].iter().map(|&edge| {
                 let transition = &graph[edge];
                 let (_, target) = graph.edge_endpoints(edge).unwrap_or_default();
                 Ok(Leaving {
-                    event: position(E::ALL, transition.event),
+                    event: position(automaton.events(), transition.event),
                     target: target.index(),
                     urgency: transition.urgency,
-                    guard: transition.guard.predicate().compile(S::NAMES)?,
-                    change: change(&transition.reset)?,
+                    guard: transition.guard.predicate().compile(names)?,
+                    change: change(&transition.reset, names, shape)?,
                 })
             });
             places.push(Place {
                 name: location.name(),
-                motion: mode.flow.as_ref().map_or(Ok(PlaceMotion::Rates(Vec::new())), motion)?,
-                invariant: mode.invariant.as_ref().map(|it| it.compile(S::NAMES)).transpose()?,
+                motion: match &mode.flow {
+                    Some(flow) => motion(flow, names, shape)?,
+                    None => PlaceMotion::Rates(Vec::new()),
+                },
+                invariant: mode.invariant.as_ref().map(|it| it.compile(names)).transpose()?,
                 leaving: leaving.collect::<Result<_, EvaluationError>>()?,
             });
         }
-        let events = E::ALL.iter().map(|event| event.name()).collect();
-        let initial = position(L::ALL, automaton.initial());
-        let sketch = Sketch::of(automaton);
-        Ok(Blueprint { places, events, coordinates: S::NAMES, initial, sketch })
+        let events = automaton.events().iter().map(|event| event.name()).collect();
+        let initial = position(automaton.locations(), automaton.initial());
+        Ok(Blueprint { places, events, coordinates: names.to_vec(), initial, sketch })
     }
 }
 
@@ -102,25 +108,35 @@ fn position<T: PartialEq>(all: &[T], one: T) -> usize {
     all.iter().position(|listed| *listed == one).unwrap_or_default()
 }
 
-fn motion<S: Coordinates>(flow: &Flow<S>) -> Result<PlaceMotion, EvaluationError> {
+/// A state of the automaton with these coordinates.
+fn state_of<S: Coordinates>(shape: Option<&S>, values: &[f64]) -> S {
+    shape.map_or_else(|| S::from_values(values), |shape| shape.like(values))
+}
+
+fn motion<S: Coordinates>(
+    flow: &Flow<S>,
+    names: &[&'static str],
+    shape: Option<&S>,
+) -> Result<PlaceMotion, EvaluationError> {
+    let shape = shape.cloned();
     Ok(match flow.motion() {
         Motion::Rates(rates) => {
             let compile = |rate: &crate::flow::Rate<S>| {
-                let coordinate = place_of::<S>(rate.coordinate())?;
-                Ok((coordinate, rate.rate().compile(S::NAMES)?, rate.rate().linear_form()))
+                let coordinate = place_of(names, rate.coordinate())?;
+                Ok((coordinate, rate.rate().compile(names)?, rate.rate().linear_form()))
             };
             PlaceMotion::Rates(rates.iter().map(compile).collect::<Result<_, EvaluationError>>()?)
         }
         Motion::Field(_, field) => {
             let field = field.clone();
             PlaceMotion::Field(Arc::new(move |values: &[f64], rates: &mut [f64]| {
-                field(&S::from_values(values)).write(rates);
+                field(&state_of(shape.as_ref(), values)).write(rates);
             }))
         }
         Motion::Exact(_, advance) => {
             let advance = advance.clone();
             PlaceMotion::Exact(Arc::new(move |values: &mut [f64], duration: f64| {
-                let mut state = S::from_values(values);
+                let mut state = state_of(shape.as_ref(), values);
                 advance(&mut state, duration);
                 state.write(values);
             }))
@@ -128,24 +144,28 @@ fn motion<S: Coordinates>(flow: &Flow<S>) -> Result<PlaceMotion, EvaluationError
     })
 }
 
-fn change<S: Coordinates>(reset: &Reset<S>) -> Result<Change, EvaluationError> {
+fn change<S: Coordinates>(
+    reset: &Reset<S>,
+    names: &[&'static str],
+    shape: Option<&S>,
+) -> Result<Change, EvaluationError> {
     if let Some(assignments) = reset.assignments() {
         let compile = |assignment: &crate::reset::Assignment<S>| {
-            let value = assignment.value().compile(S::NAMES)?;
-            Ok((place_of::<S>(assignment.coordinate())?, value))
+            let value = assignment.value().compile(names)?;
+            Ok((place_of(names, assignment.coordinate())?, value))
         };
         return Ok(Change::Assignments(assignments.iter().map(compile).collect::<Result<_, _>>()?));
     }
-    let reset = reset.clone();
+    let (reset, shape) = (reset.clone(), shape.cloned());
     Ok(Change::Function(Arc::new(move |values: &mut [f64]| {
-        let mut state = S::from_values(values);
+        let mut state = state_of(shape.as_ref(), values);
         reset.apply(&mut state)?;
         state.write(values);
         Ok(())
     })))
 }
 
-fn place_of<S: Coordinates>(name: &str) -> Result<usize, EvaluationError> {
+fn place_of(names: &[&'static str], name: &str) -> Result<usize, EvaluationError> {
     let unknown = || EvaluationError::UnknownVariable { variable: name.to_owned() };
-    S::NAMES.iter().position(|listed| *listed == name).ok_or_else(unknown)
+    names.iter().position(|listed| *listed == name).ok_or_else(unknown)
 }
