@@ -12,8 +12,10 @@ use thiserror::Error;
 
 use crate::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::Scenario;
-use crate::automaton::network::{KernelTimes, Medium, Network, NetworkError};
+use crate::automaton::network::{KernelTimes, Message, Network, NetworkError};
+use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
+use crate::continuous::Point;
 use crate::discrete::network::ROLES;
 use crate::verify::network::{Extremes, LimitError, Monitor};
 
@@ -77,7 +79,7 @@ pub fn run(
 ///
 /// # Errors
 /// When no mission can start from the scenario, or a watcher fails.
-pub fn run_network<M: Medium>(
+pub fn run_network<M: Medium<Message, Point>>(
     scenario: &Scenario,
     network: &mut Network<M>,
     watchers: &mut [&mut dyn Watcher],
@@ -136,7 +138,7 @@ impl Gallery<'_, '_> {
     }
 }
 
-impl<M: Medium> Observer<Network<M>> for Gallery<'_, '_> {
+impl<M: Medium<Message, Point>> Observer<Network<M>> for Gallery<'_, '_> {
     fn flows(&mut self, network: &Network<M>, _: HybridTime, _: f64) -> ControlFlow<End> {
         let (snapshot, events) = (network.snapshot(), network.events());
         if let Err(error) = self.show(&snapshot, &events) {

@@ -32,6 +32,7 @@ pub mod located;
 pub mod named;
 #[cfg(feature = "network")]
 pub mod network;
+pub mod node;
 pub mod reset;
 mod sweep;
 pub mod time;

@@ -6,7 +6,7 @@ use pleach_continuous::flow::{
     Curve, IntegrationFailure, Integrator, Method, Tolerances, VectorField,
 };
 
-use crate::support::{compare, distance, state, tolerances};
+use super::support::{compare, distance, state, tolerances};
 
 /// ẍ = −x
 fn oscillator(_time: f64, state: &[f64], rates: &mut [f64]) {

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use pleach_continuous::flow::{Curve, Integrator, Method, Step, Tolerances, VectorField};
 
-use crate::support::{compare_by, state, tolerances};
+use super::support::{compare_by, state, tolerances};
 
 /// ẋ = −10⁶ (x − cos t) − sin t, which is cos t after an instant.
 fn follower(time: f64, x: &[f64], rates: &mut [f64]) {

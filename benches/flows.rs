@@ -14,10 +14,10 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::dmatrix;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Dopri5, SVector, System};
-use pleach_continuous::flow::{
+use pleach::continuous::flow::{
     Curve, EventSearch, Integrator, LinearFlow, Tolerances, VectorField, first_instant,
 };
-use pleach_guards::{EvaluationError, Expression, Tape, Verdict, variable};
+use pleach::guards::{EvaluationError, Expression, Tape, Verdict, variable};
 
 /// A problem with its true answer.
 struct Problem<const N: usize> {
