@@ -193,6 +193,7 @@ impl CompositionBuilder {
             labels: Vec::new(),
             variables: Vec::new(),
             initial: Vec::new(),
+            groups: Vec::new(),
         };
         let slots = self.lay_out(&sources, &mut composition);
         let labels = self.labels()?;
@@ -210,11 +211,14 @@ impl CompositionBuilder {
                 labels: (0..part.blueprint.events.len()).map(own_label).collect(),
                 blueprint: part.blueprint,
                 model: part.model,
+                group: 0,
+                places: Vec::new(),
             };
             component.check_inputs()?;
             composition.components.push(component);
         }
         composition.labels = labels;
+        composition.form_groups();
         Ok(composition)
     }
 
@@ -350,9 +354,7 @@ impl Component {
     fn check_inputs(&self) -> Result<(), CompositionError> {
         for place in &self.blueprint.places {
             let moved: Vec<usize> = match &place.motion {
-                PlaceMotion::Rates(rates) => {
-                    rates.iter().map(|(coordinate, ..)| *coordinate).collect()
-                }
+                PlaceMotion::Rates(rates) => rates.iter().map(|rate| rate.coordinate).collect(),
                 PlaceMotion::Field(_) | PlaceMotion::Exact(_) => Vec::new(),
             };
             let set = place.leaving.iter().flat_map(|leaving| match &leaving.change {

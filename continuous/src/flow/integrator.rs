@@ -278,6 +278,7 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
             rates: [&self.past.rates, &self.present.rates],
             stages,
             inside: &self.inside,
+            tolerances: self.tolerances,
         }
     }
 

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use super::explicit::Explicit;
 use super::implicit::Implicit;
-use super::{Curve, VectorField};
+use super::{Curve, Piece, Tolerances, VectorField};
 
 /// One step of an [`Integrator`](super::Integrator): a curve that joins the steps beside it, of
 /// which the explicit ones have a continuous first derivative there, too.
@@ -25,6 +25,7 @@ pub struct Step<'a, F: ?Sized> {
     pub(super) rates: [&'a [f64]; 2],
     pub(super) stages: Stages<'a>,
     pub(super) inside: &'a RefCell<Inside>,
+    pub(super) tolerances: Tolerances,
 }
 
 /// What the method has computed.
@@ -51,6 +52,9 @@ pub(super) struct Inside {
 }
 
 const MOST_TERMS: usize = 7;
+/// By how much the error inside a step may be larger than what the tolerances allow at its end: on
+/// the flows of the tests it stays well below.
+const INSIDE: f64 = 10.0;
 /// So many terms make the cubic with states and rates of both ends.
 const CUBIC_TERMS: usize = 3;
 
@@ -123,6 +127,20 @@ impl<F: VectorField + ?Sized> Curve for Step<'_, F> {
                 *x = self.first[component] + inside.value(component, fraction);
             }
         }
+    }
+
+    /// The whole step. Its error is that which the tolerances allow at the ends.
+    fn piece(&self, _time: f64) -> Option<Piece> {
+        let mut inside = self.inside.borrow_mut();
+        self.explore(&mut inside);
+        let mut piece = Piece::new(self.start, self.end, self.start, self.end - self.start);
+        for (component, (first, last)) in self.first.iter().zip(self.last).enumerate() {
+            let mut powers = inside.powers(component);
+            powers[0] += first;
+            let error = INSIDE * self.tolerances.allowed(first.abs().max(last.abs()));
+            piece.push(powers, error);
+        }
+        Some(piece)
     }
 }
 

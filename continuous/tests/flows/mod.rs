@@ -3,5 +3,6 @@
 mod events;
 mod exact;
 mod integration;
+mod isolation;
 mod stiff;
 mod support;
