@@ -16,7 +16,7 @@ use crate::automaton::network::{KernelTimes, Message, Network, NetworkError};
 use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use crate::continuous::Point;
-use crate::discrete::network::ROLES;
+use crate::discrete::network::activity::may_follow;
 use crate::verify::network::{Extremes, LimitError, Monitor};
 
 /// Somebody who watches a mission.
@@ -84,9 +84,8 @@ pub fn run_network<M: Medium<Message, Point>>(
     network: &mut Network<M>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    let is_transition = |from, to| ROLES.enabled(from).any(|row| row.target == to);
     let mut gallery =
-        Gallery { monitor: Monitor::new(scenario, is_transition)?, watchers, failure: None };
+        Gallery { monitor: Monitor::new(scenario, may_follow)?, watchers, failure: None };
     let settings = network.site().settings;
     let horizon = settings.period * (settings.max_steps as f64 + 1.0);
     let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
