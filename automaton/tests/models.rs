@@ -47,7 +47,7 @@ fn ball() -> Automaton<Motion, Contact, Ball> {
 #[test]
 fn parameters_are_names_in_texts_and_numbers_in_runs() {
     let ball = ball();
-    assert!(mermaid(&ball).contains("v := (−e) · v"), "{}", mermaid(&ball));
+    assert!(mermaid(&ball).contains("(−e) · v"), "{}", mermaid(&ball));
     assert!(latex(&ball).contains("-g"), "{}", latex(&ball));
     assert!(ball.parameters().eq([("g", 9.81), ("e", 0.8)]));
     for gravity in [9.81, 1.62, 24.79] {
@@ -149,7 +149,8 @@ fn time_is_a_coordinate_that_moves_throughout() {
         .build()
         .unwrap();
     let trajectory = room.run(5.0).unwrap();
-    assert!((trajectory.value("T", 5.0).unwrap() - 21.0).abs() < 1e-7);
+    let end = trajectory.value("T", 5.0).unwrap();
+    assert!((end - 21.0).abs() < 1e-6, "{end}");
     assert_eq!(trajectory.value("t", 5.0), Some(5.0));
     let function = Flow::field("drift", |room: &Room| *room);
     let error = Automaton::<Motion, Contact, Room>::starting_in(Falling)
