@@ -218,10 +218,27 @@ pub enum Reason<F> {
     /// More rounds of jumps at one instant than allowed, or at instants only a few spacings of the
     /// numbers apart.
     JumpLimit,
+    /// As for a jump limit, in a composition of which it is known why: the flows of two locations
+    /// lead to the boundary between them, so that neither can be followed.
+    Sliding(Sliding),
     /// The run is as long or as large as the settings allow.
     Limit(Limit),
     /// Jumps come ever faster and add up at an instant before the horizon.
     Zeno(Zeno),
+}
+
+/// Two locations of a component whose flows both lead to the boundary between them. A solution in
+/// the sense of Filippov (1988, doi:10.1007/978-94-015-7793-9) would slide along the boundary by a
+/// mixture of the two flows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sliding {
+    /// The component.
+    pub component: usize,
+    /// The locations, as numbers.
+    pub locations: [usize; 2],
+    /// The share of the second location's flow in the mixture that stays on the boundary, between 0
+    /// and 1.
+    pub share: f64,
 }
 
 /// What a run was allowed to use up, and has.
@@ -247,6 +264,7 @@ impl Reason<Infallible> {
             Reason::Horizon => Reason::Horizon,
             Reason::Blocked => Reason::Blocked,
             Reason::JumpLimit => Reason::JumpLimit,
+            Reason::Sliding(sliding) => Reason::Sliding(sliding),
             Reason::Limit(limit) => Reason::Limit(limit),
             Reason::Zeno(zeno) => Reason::Zeno(zeno),
         }

@@ -51,7 +51,9 @@ pub use composition::{
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};
 pub use edge::{Edge, from};
-pub use executor::{Ending, Executor, InvalidLimit, Limit, Observer, Reason, Round, System};
+pub use executor::{
+    Ending, Executor, InvalidLimit, Limit, Observer, Reason, Round, Sliding, System,
+};
 pub use flow::{Flow, InvalidMatrix, Rate};
 pub use located::{Current, DataOf, Holds, Place, Transfer};
 pub use moment::Moment;

@@ -4,15 +4,19 @@
 use pleach_continuous::flow::{Curve, Doubt, Finding, Lost, Onset, Piece, Uncertainty, isolate};
 use pleach_guards::Course;
 
-use super::field::Field;
+use super::field::{Field, Row};
 use super::group::Group;
 use super::jumps::Standing;
-use super::settings::Settings;
+use super::settings::{Policy, Settings};
 use super::simulation::{Failure, Halt};
 use super::solver::Solver;
 use super::tension::{Conditions, Readiness, Tension};
 use crate::executor::Limit;
 use crate::moment::Moment;
+
+/// An invariant that ends so many spacings of the numbers around the present time after the start
+/// of a flow ends at its start.
+const SPACINGS: f64 = 4.0;
 
 /// A flow that has been looked at in advance. Its times count from its start, in seconds.
 pub(super) struct Flight {
@@ -36,6 +40,8 @@ pub(super) struct Plan<'a> {
     pub(super) group: &'a Group,
     pub(super) standing: Standing<'a>,
     pub(super) settings: &'a Settings,
+    /// When transitions are taken that only may be.
+    pub(super) policy: Policy,
     pub(super) allowance: f64,
     /// When it begins.
     pub(super) since: Moment,
@@ -64,10 +70,10 @@ struct Stop {
 impl Plan<'_> {
     /// The flow up to an event; `steps` is how many pieces and spans may still be looked at.
     pub(super) fn fly(self, steps: &mut u64) -> Result<Flight, Halt> {
-        let Plan { group, standing, settings, allowance, since, start, limit } = self;
+        let Plan { group, standing, settings, policy, allowance, since, start, limit } = self;
         let composition = standing.composition;
         let field = Field::of(composition, group, standing.locations, start);
-        let conditions = Conditions { standing, group, policy: settings.policy, allowance };
+        let conditions = Conditions { standing, group, policy, allowance };
         let rests = |duration| Flight {
             since,
             duration,
@@ -194,9 +200,8 @@ impl<'a> Search<'a, '_> {
     fn right_after(&mut self, from: Moment, to: Moment) -> Result<Option<Onset>, Stop> {
         let start = from.seconds();
         let mut before = start;
-        let spacing = (self.since + from).seconds().abs() * f64::EPSILON;
-        let mut step = start.next_up() - start;
-        step = step.max(spacing * f64::EPSILON).max(f64::MIN_POSITIVE);
+        let least = self.spacing().max(f64::MIN_POSITIVE);
+        let mut step = (start.next_up() - start).max(least);
         let mut after = loop {
             let time = start + step;
             if time >= to.seconds() {
@@ -210,7 +215,7 @@ impl<'a> Search<'a, '_> {
         };
         loop {
             let middle = before + 0.5 * (after - before);
-            if middle <= before || middle >= after {
+            if after - before <= 2.0 * least || middle <= before || middle >= after {
                 return Ok(Some(Onset { before, time: after }));
             }
             if self.holds_at(middle)? { after = middle } else { before = middle }
@@ -307,12 +312,16 @@ impl<'a> Search<'a, '_> {
         let duration = match end {
             End::Never => Moment::from(limit),
             End::At(time) if self.can_jump(time, &failed)? => time,
-            End::At(time) => Moment::from(self.just_before(time.seconds(), &failed)?),
+            End::At(time) => {
+                let before = self.just_before(time.seconds(), &failed)?;
+                self.unless_nothing(before, &failed)?
+            }
             End::Onset(Onset { before, time }) => {
                 let can_jump = self.can_jump(Moment::from(time), &failed)?;
-                Moment::from(if can_jump { time } else { before })
+                if can_jump { Moment::from(time) } else { self.unless_nothing(before, &failed)? }
             }
         };
+        let duration = self.noticeable(duration);
         let landing = self.solver.state_at(duration).map_err(|reason| failed(reason.into()))?;
         let is_fitted = self.solver.is_fitted();
         let pieces = self.solver.into_pieces(duration.seconds());
@@ -325,6 +334,31 @@ impl<'a> Search<'a, '_> {
             doubts: self.doubts,
             halt: None,
         })
+    }
+
+    /// The duration, or none if nothing changes in it but for rounding: at the very start of a flow
+    /// there is nothing before the end of an invariant.
+    fn unless_nothing(
+        &mut self,
+        duration: f64,
+        failed: &impl Fn(Fault) -> Halt,
+    ) -> Result<Moment, Halt> {
+        let moved = self.solver.state_at(Moment::from(duration));
+        let moved = moved.map_err(|reason| failed(reason.into()))?;
+        let is_rounding = duration <= SPACINGS * f64::EPSILON * self.since.seconds().abs();
+        let is_nothing = is_rounding || moved == self.solver.start();
+        Ok(if is_nothing { Moment::default() } else { Moment::from(duration) })
+    }
+
+    /// A duration that changes the time, if it is more than none.
+    fn noticeable(&self, duration: Moment) -> Moment {
+        let least = Moment::from(2.0 * self.spacing());
+        if duration > Moment::default() && duration < least { least } else { duration }
+    }
+
+    /// The smallest change of the time that its two numbers can hold.
+    fn spacing(&self) -> f64 {
+        self.since.seconds().abs() * f64::EPSILON * f64::EPSILON
     }
 
     fn can_jump(&mut self, time: Moment, failed: &impl Fn(Fault) -> Halt) -> Result<bool, Halt> {
@@ -390,6 +424,26 @@ impl Flight {
             piece.state_at(time, &mut state);
         }
         state
+    }
+
+    /// The flight for `duration` seconds in which lines go on and everything else rests.
+    pub(super) fn of_lines(since: Moment, duration: f64, field: &Field<'_>) -> Flight {
+        let mut piece = Piece::new(0.0, duration, 0.0, 1.0);
+        for (first, row) in field.start.iter().zip(&field.rows) {
+            let rate = if let Row::Line(rate) = row { *rate } else { 0.0 };
+            piece.push([*first, rate], 0.0);
+        }
+        let mut landing = field.start.clone();
+        piece.state_at(duration, &mut landing);
+        Flight {
+            since,
+            duration: Moment::from(duration),
+            pieces: vec![piece],
+            landing,
+            doubts: Vec::new(),
+            is_fitted: false,
+            halt: None,
+        }
     }
 
     /// The flight up to `time` seconds after the start, at which nothing happens.

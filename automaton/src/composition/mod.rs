@@ -64,6 +64,7 @@
 
 pub(crate) mod blueprint;
 mod builder;
+mod chance;
 mod exploration;
 mod field;
 mod flight;
@@ -122,6 +123,10 @@ pub(crate) struct Component {
     group: usize,
     /// By coordinate: where its value is among those of the group.
     places: Vec<usize>,
+    /// What happens where its jumps accumulate, if it says so itself.
+    accumulation: Option<Accumulation>,
+    /// The event that is taken beyond an accumulation of its jumps.
+    continuation: Option<usize>,
 }
 
 #[derive(Clone)]

@@ -33,7 +33,9 @@ pub struct Settings {
 }
 
 /// What happens where infinitely many jumps of a group would happen before an instant that time
-/// never reaches.
+/// never reaches. A composition can say it for [each
+/// component](crate::CompositionBuilder::at_accumulation), and [how to go
+/// on](crate::CompositionBuilder::past_accumulation) beyond that instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Accumulation {
     /// The run ends, with an estimate of the instant.
@@ -50,6 +52,14 @@ pub enum Policy {
     Late,
     /// As soon as its guard holds.
     Early,
+    /// At an instant drawn evenly from those between the first at which a guard holds and the last
+    /// at which time can pass, or as soon after it as a guard holds again; of the transitions that
+    /// can be taken one is drawn, each as likely as the others. Equal seeds give equal runs, and what one
+    /// group draws is no matter to another.
+    Random {
+        /// Where the sequence of draws begins.
+        seed: u64,
+    },
 }
 
 impl Default for Settings {

@@ -2,19 +2,23 @@
 
 use std::collections::BTreeSet;
 
+use pleach_continuous::flow::VectorField;
 use pleach_discrete::{Event, Location};
+use pleach_guards::{Enclosure, Interval};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::chance::Chance;
+use super::field::Field;
 use super::flight::{Flight, Plan};
 use super::jumps::{Joint, Standing};
 use super::record::Record;
-use super::settings::{Accumulation, Settings};
+use super::settings::{Accumulation, Policy, Settings};
 use super::tension::{Conditions, Readiness};
 use super::{Composition, CompositionError};
 use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
-use crate::executor::{Ending, Executor, InvalidLimit, Limit, Reason, Round, System};
+use crate::executor::{Ending, Executor, InvalidLimit, Limit, Reason, Round, Sliding, System};
 use crate::moment::Moment;
 use crate::time::HybridTime;
 use crate::trajectory::Trajectory;
@@ -131,6 +135,8 @@ pub struct Simulation<'a> {
     /// By component: the number of the round in which it has jumped last.
     jumped: Vec<u64>,
     round: u64,
+    /// What was done in the last two jumps, by the first who took part.
+    latest: [Option<Move>; 2],
     /// How many more pieces and spans may be looked at.
     steps: u64,
     record: Option<Record>,
@@ -138,6 +144,11 @@ pub struct Simulation<'a> {
 
 struct GroupState {
     flight: Option<Flight>,
+    /// Whether what may be taken is waited for no longer; only by the policy of chance.
+    is_eager: bool,
+    chance: Chance,
+    /// What has to be taken now, whatever its guard says: a component and an event.
+    compelled: Option<(usize, usize)>,
     /// How far, in the margin of a guard, the last flow has landed beyond the boundary: the state
     /// may be outside an invariant by as much. It is a rounding error of the instant of the event.
     allowance: f64,
@@ -227,7 +238,13 @@ impl Composition {
         let mut simulation = Simulation::new(self, settings, horizon)?;
         simulation.record = Some(Record::of(self));
         let ending = match executor.run(&mut simulation, &mut ()) {
-            Ok(Ending { at, reason }) => Ending { at, reason: reason.without_finish() },
+            Ok(Ending { at, reason }) => {
+                let reason = match (reason.without_finish(), simulation.sliding()) {
+                    (Reason::JumpLimit, Some(sliding)) => Reason::Sliding(sliding),
+                    (reason, _) => reason,
+                };
+                Ending { at, reason }
+            }
             Err(halt) => Ending { at: simulation.hybrid_time(), reason: halt.into() },
         };
         Ok(simulation.into_trajectory(ending))
@@ -247,8 +264,18 @@ impl<'a> Simulation<'a> {
     ) -> Result<Self, SimulationError> {
         settings.check()?;
         let initial = composition.components.iter().map(|component| component.blueprint.initial);
-        let group =
-            || GroupState { flight: None, allowance: 0.0, zeno: ZenoDetector::new(horizon) };
+        let seed = match settings.policy {
+            Policy::Random { seed } => seed,
+            Policy::Late | Policy::Early => 0,
+        };
+        let group = |number: usize| GroupState {
+            flight: None,
+            is_eager: false,
+            chance: Chance::new(seed, number),
+            compelled: None,
+            allowance: 0.0,
+            zeno: ZenoDetector::new(horizon),
+        };
         Ok(Simulation {
             composition,
             settings,
@@ -257,11 +284,12 @@ impl<'a> Simulation<'a> {
             jumps: 0,
             locations: initial.collect(),
             values: composition.initial.clone(),
-            groups: composition.groups.iter().map(|_| group()).collect(),
+            groups: (0..composition.groups.len()).map(group).collect(),
             queue: BTreeSet::new(),
             awake: (0..composition.groups.len()).collect(),
             jumped: vec![0; composition.components.len()],
             round: 0,
+            latest: [None; 2],
             steps: settings.step_limit,
             record: None,
         })
@@ -332,8 +360,45 @@ impl<'a> Simulation<'a> {
     }
 
     /// The first jump in total order that `component` can take part in.
-    fn next_of(&self, component: usize, readiness: Readiness) -> Result<Option<Joint>, Failure> {
+    fn next_of(
+        &mut self,
+        component: usize,
+        readiness: Readiness,
+    ) -> Result<Option<Joint>, Failure> {
+        let group = self.composition.components[component].group;
+        if let Some(joint) = self.compelled(group, component) {
+            return Ok(Some(joint));
+        }
+        if !matches!(self.settings.policy, Policy::Random { .. }) {
+            return Ok(self.candidates(component, readiness, 1)?.pop());
+        }
+        let mut candidates = self.candidates(component, readiness, usize::MAX)?;
+        if candidates.is_empty() {
+            return Ok(None);
+        }
+        let drawn = self.groups[group].chance.below(candidates.len());
+        Ok(Some(candidates.swap_remove(drawn)))
+    }
+
+    /// The jump that a component is made to take beyond an accumulation of jumps.
+    fn compelled(&mut self, group: usize, component: usize) -> Option<Joint> {
+        let compelled = self.groups[group].compelled;
+        let (_, event) = compelled.filter(|(compelled, _)| *compelled == component)?;
+        self.groups[group].compelled = None;
+        let mut leaving = self.standing().leaving(component).iter();
+        let transition = leaving.position(|leaving| leaving.event == event)?;
+        Some(Joint { label: None, parts: vec![(component, transition)] })
+    }
+
+    /// The first jumps in total order that `component` can take part in, `most` of them.
+    fn candidates(
+        &self,
+        component: usize,
+        readiness: Readiness,
+        most: usize,
+    ) -> Result<Vec<Joint>, Failure> {
         let conditions = self.conditions(self.composition.components[component].group);
+        let mut candidates = Vec::new();
         for (transition, leaving) in self.standing().leaving(component).iter().enumerate() {
             let label = self.composition.components[component].labels[leaving.event];
             let joint = match label {
@@ -341,11 +406,12 @@ impl<'a> Simulation<'a> {
                 None => self.standing().alone(component, transition, &self.values)?,
                 Some(label) => self.joint(label, &conditions, readiness)?,
             };
-            if joint.is_some() {
-                return Ok(joint);
+            candidates.extend(joint);
+            if candidates.len() >= most {
+                break;
             }
         }
-        Ok(None)
+        Ok(candidates)
     }
 
     /// The jump that all participants of a label take together, if they can and one of them wants.
@@ -377,9 +443,11 @@ impl<'a> Simulation<'a> {
             self.jumped[one.component] = self.round;
         }
         self.jumps += 1;
+        self.latest = [self.latest[1], taken.moves.first().copied()];
         let group = self.composition.components[taken.moves[0].component].group;
         // What was planned was planned for other locations.
         self.ground(group);
+        self.groups[group].is_eager = false;
         if let Some(record) = &mut self.record {
             record.jumped(
                 round.now(),
@@ -410,8 +478,17 @@ impl<'a> Simulation<'a> {
         Conditions {
             standing: self.standing(),
             group: &self.composition.groups[group],
-            policy: self.settings.policy,
+            policy: self.policy_of(group),
             allowance: self.groups[group].allowance,
+        }
+    }
+
+    /// Whether what may be taken is taken as soon as it can be, or as late.
+    fn policy_of(&self, group: usize) -> Policy {
+        match self.settings.policy {
+            Policy::Random { .. } if self.groups[group].is_eager => Policy::Early,
+            Policy::Random { .. } => Policy::Late,
+            policy => policy,
         }
     }
 
@@ -422,12 +499,32 @@ impl<'a> Simulation<'a> {
         if self.groups[group].flight.is_some() {
             return Ok(());
         }
+        let policy = self.policy_of(group);
+        let mut flight = self.fly(group, policy)?;
+        let draws = matches!(self.settings.policy, Policy::Random { .. });
+        if draws && policy == Policy::Late && flight.halt.is_none() {
+            let first = self.fly(group, Policy::Early)?.duration.seconds();
+            let last = flight.duration.seconds();
+            if first < last {
+                let share = self.groups[group].chance.share();
+                flight = flight.cut(first + share * (last - first));
+                self.groups[group].is_eager = true;
+            }
+        }
+        self.queue.insert(Due { at: flight.due(), group });
+        self.groups[group].flight = Some(flight);
+        Ok(())
+    }
+
+    /// The flow of a group from here on.
+    fn fly(&mut self, group: usize, policy: Policy) -> Result<Flight, Halt> {
         let parts = &self.composition.groups[group];
         let left = Moment::from(self.horizon) - self.now;
         let plan = Plan {
             group: parts,
             standing: Standing { is_local: true, ..self.standing() },
             settings: &self.settings,
+            policy,
             allowance: self.groups[group].allowance,
             since: self.now,
             start: parts.slots.iter().map(|&slot| self.values[slot]).collect(),
@@ -437,10 +534,7 @@ impl<'a> Simulation<'a> {
         let mut steps = self.steps;
         let flight = plan.fly(&mut steps);
         self.steps = steps;
-        let flight = flight?;
-        self.queue.insert(Due { at: flight.due(), group });
-        self.groups[group].flight = Some(flight);
-        Ok(())
+        flight
     }
 
     /// Forgets the flight that is planned.
@@ -467,11 +561,81 @@ impl<'a> Simulation<'a> {
         if let Some(halt) = halt {
             return Err(halt);
         }
-        let zeno = self.groups[group].zeno.after_flow(self.now.seconds(), duration);
-        match zeno.filter(|_| self.settings.accumulation == Accumulation::End) {
-            Some(zeno) => Err(Halt::Zeno(zeno)),
+        match self.groups[group].zeno.after_flow(self.now.seconds(), duration) {
+            Some(zeno) => self.accumulate(group, zeno),
             None => Ok(()),
         }
+    }
+
+    /// Does what the model or the settings say where jumps of a group accumulate.
+    fn accumulate(&mut self, group: usize, zeno: Zeno) -> Result<(), Halt> {
+        let components = &self.composition.components;
+        let members = || self.composition.groups[group].components.iter();
+        let going_on = members().find_map(|&one| Some((one, components[one].continuation?)));
+        let own = members().find_map(|&one| components[one].accumulation);
+        match (going_on, own.unwrap_or(self.settings.accumulation)) {
+            (Some(continuation), _) => self.pass_limit(group, zeno, continuation),
+            (None, Accumulation::End) => return Err(Halt::Zeno(zeno)),
+            (None, Accumulation::Off) => {}
+        }
+        Ok(())
+    }
+
+    /// Lets time go on to the limit point of the group's jumps, where it takes what it is made to.
+    fn pass_limit(&mut self, group: usize, zeno: Zeno, continuation: (usize, usize)) {
+        let field = self.field(group, &self.locations);
+        let rest = zeno.accumulation - self.now.seconds();
+        self.groups[group].zeno = ZenoDetector::new(self.horizon);
+        self.groups[group].compelled = Some(continuation);
+        if rest > 0.0 {
+            let flight = Flight::of_lines(self.now, rest, &field);
+            self.awake.remove(&group);
+            self.queue.insert(Due { at: flight.due(), group });
+            self.groups[group].flight = Some(flight);
+        }
+    }
+
+    /// The flows of a group in these locations, from the present state on.
+    fn field(&self, group: usize, locations: &[usize]) -> Field<'a> {
+        let parts = &self.composition.groups[group];
+        let start = parts.slots.iter().map(|&slot| self.values[slot]).collect();
+        Field::of(self.composition, parts, locations, start)
+    }
+
+    /// Whether the last two jumps go back and forth over a boundary to which the flows of both
+    /// sides lead.
+    fn sliding(&self) -> Option<Sliding> {
+        let [Some(there), Some(back)] = self.latest else { return None };
+        let returns = (there.source, there.target) == (back.target, back.source);
+        if there.component != back.component || !returns || there.source == there.target {
+            return None;
+        }
+        let component = &self.composition.components[there.component];
+        let guard = &component.place(there.source).leaving[there.transition].guard;
+        let margins = |location: usize| -> Vec<f64> {
+            let mut locations = self.locations.clone();
+            locations[there.component] = location;
+            let field = self.field(component.group, &locations);
+            let mut rates = vec![0.0; field.start.len()];
+            field.rates(0.0, &field.start, &mut rates);
+            let point = |(value, rate): (&f64, &f64)| {
+                let value = Interval::point(*value);
+                Enclosure { middle: value, range: value, rate: Interval::point(*rate) }
+            };
+            let states: Vec<Enclosure> = field.start.iter().zip(&rates).map(point).collect();
+            let comparisons = guard.tracker.comparisons().iter();
+            comparisons
+                .map(|one| one.margin(&states, &component.places, 0.0).rate.midpoint())
+                .collect()
+        };
+        let sides = margins(there.source).into_iter().zip(margins(there.target));
+        let (here, beyond) =
+            sides.into_iter().find(|(here, beyond)| *here > 0.0 && *beyond < 0.0)?;
+        Some(Sliding {
+            component: there.component,
+            locations: [there.source, there.target],
+            share: here / (here - beyond),
+        })
     }
 
     /// How far beyond the boundary of its guard a flow has landed, as far as that is rounding.

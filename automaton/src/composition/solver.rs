@@ -74,6 +74,11 @@ impl<'a> Solver<'a> {
         self.field.has_solutions()
     }
 
+    /// The state at the start.
+    pub(super) fn start(&self) -> &[f64] {
+        &self.field.start
+    }
+
     /// How far the flow is solved.
     pub(super) fn reached(&self) -> f64 {
         self.reached
