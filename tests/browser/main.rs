@@ -5,4 +5,12 @@
 #![allow(clippy::unwrap_used)] // a test that panics has failed
 
 mod chromium;
+mod classics;
 mod missions;
+
+#[allow(dead_code)] // its program
+#[path = "../../examples/heater_and_controller.rs"]
+mod heater_and_controller;
+#[allow(dead_code)] // its program
+#[path = "../../examples/bouncing_ball.rs"]
+mod bouncing_ball;

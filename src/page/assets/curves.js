@@ -80,7 +80,7 @@ class Chart {
     this.plot = element("div", { class: "plot" });
     parent.append(element("figure", { class: "chart" },
       element("figcaption", {}, element("h3", {}, title), note && element("p", {}, note), this.reading),
-      this.plot, curves.length <= FEW_CURVES ? legendOf(curves) : null));
+      this.plot, curves.length > 1 && curves.length <= FEW_CURVES ? legendOf(curves) : null));
     this.range = this.measure();
     this.base = new Surface(this.plot, CHART_HEIGHT, (context, size) => this.drawBase(context, size));
     this.top = new Surface(this.plot, CHART_HEIGHT, (context, size) => this.drawTop(context, size));

@@ -13,6 +13,8 @@ const KEYS = [
 
 /** The share of the time line that the mark of an event takes. */
 const MARK_SHARE = 0.016;
+/** From so many events on, marks on top of each other are left out; the story has them all. */
+const MOST_MARKS = 200;
 
 /** The signs of the buttons, in a box of 16 by 16. */
 const ICONS = {
@@ -64,8 +66,8 @@ class Transport {
     const share = at => `${(100 * at / Math.max(player.end, 1e-12)).toFixed(4)}%`;
     this.thumb = element("div", { class: "thumb" });
     this.fill = element("div", { class: "fill" });
-    const isUpper = this.rows();
-    const marks = player.events.map((event, index) => this.isTelling(event) && element("button", {
+    const isUpper = this.rows(), isCovered = this.covered();
+    const marks = player.events.map((event, index) => this.isTelling(event) && !isCovered.has(index) && element("button", {
       type: "button", class: isUpper.has(index) ? "event upper" : "event", tabindex: "-1", style: `left: ${share(event.at)}`,
       title: `${this.clock(event.at)}: ${event.text}`, "data-event": index,
       onclick: () => player.seekEvent(index),
@@ -90,6 +92,17 @@ class Transport {
     });
     this.line.addEventListener("pointermove", event => { if (event.buttons & 1) seek(event); });
     return this.line;
+  }
+
+  /** The events whose marks would lie on the mark of the event before. */
+  covered() {
+    const { events, end } = this.player, covered = new Set();
+    let last = -Infinity;
+    events.forEach((event, index) => {
+      if (!this.isTelling(event)) return;
+      if (events.length > MOST_MARKS && event.at - last < 0.1 * MARK_SHARE * end) covered.add(index); else last = event.at;
+    });
+    return covered;
   }
 
   /** The events whose marks stand in the upper row, since the lower one is taken. */
