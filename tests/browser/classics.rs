@@ -2,7 +2,7 @@
 
 use super::chromium::Page;
 use super::missions::kept;
-use crate::{bouncing_ball, heater_and_controller};
+use crate::book::{bouncing_ball, heater_and_controller};
 use pleach::automaton::{Automaton, Trajectory};
 use pleach::page::TrajectoryPage;
 use pleach::prelude::*;
@@ -79,11 +79,9 @@ fn a_trajectory_says_what_was_computed_and_lights_its_location() {
 #[test]
 #[ignore = "needs Chromium: tests/browser/check"]
 fn classics_play() {
-    for (name, exhibit) in [
-        ("heater", heater_and_controller::exhibit().unwrap()),
-        ("bouncing-ball", bouncing_ball::exhibit().unwrap()),
-    ] {
-        let (_, text) = exhibit.pages().next().unwrap();
+    let (_, heater) = heater_and_controller::exhibit().unwrap().pages().next().unwrap();
+    let (_, ball) = bouncing_ball::exhibit().unwrap().pages().next().unwrap();
+    for (name, text) in [("heater", heater), ("bouncing-ball", ball)] {
         let mut page = Page::open(&kept(name, &text), [1360, 900]);
         page.value("pleach.player.seek(pleach.player.end * 0.3)");
         for scheme in ["light", "dark"] {
