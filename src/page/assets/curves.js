@@ -74,8 +74,8 @@ function drawCursor(context, x, top, bottom) {
  * and `number`: what is selected when it is. Limits are dashed lines.
  */
 class Chart {
-  constructor(parent, player, selection, { title, note, curves, limits = [], bands = [], instants = "" }) {
-    Object.assign(this, { player, selection, curves, limits, bands, instants });
+  constructor(parent, player, selection, { title, note, curves, limits = [], bands = [], instants = "", isTight = false }) {
+    Object.assign(this, { player, selection, curves, limits, bands, instants, isTight });
     this.reading = element("span", { class: "reading" });
     this.plot = element("div", { class: "plot" });
     parent.append(element("figure", { class: "chart" },
@@ -92,8 +92,9 @@ class Chart {
     this.show();
   }
 
+  /** The values that the panel shows: from 0 on, unless it is tight around the curves. */
   measure() {
-    let low = 0, high = 0;
+    let [low, high] = this.isTight ? [Infinity, -Infinity] : [0, 0];
     const widen = value => {
       if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
     };
@@ -101,8 +102,9 @@ class Chart {
     this.curves.forEach(curve => {
       for (const [, value] of curve.points()) widen(value);
     });
+    if (low > high) [low, high] = [0, 0];
     const room = high > low ? 0.06 * (high - low) : 1;
-    return [low < 0 ? low - room : low, high + room];
+    return [low < 0 || this.isTight ? low - room : low, high + room];
   }
 
   scale([width, height]) {

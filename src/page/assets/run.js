@@ -1,7 +1,7 @@
 // ---- Run: a trajectory of an automaton or a composition ------------------------------------------
 
 /** Points on a curve between two samples. */
-const POINTS_BETWEEN_SAMPLES = 8;
+const POINTS_BETWEEN_SAMPLES = 24;
 
 /** A trajectory as the page's data hold it. */
 class Run {
@@ -90,6 +90,7 @@ class Drawings {
     parent.append(this.frame);
     player.onChange(() => this.show());
     selection.onChange(() => this.show());
+    theme.listeners.push(() => this.show());
     this.show();
   }
 
@@ -143,9 +144,10 @@ function showRun(data) {
   const part = id => document.getElementById(id);
   new Drawings(part("stage"), run, player, selection);
   new RunFacts(part("facts"), run, player);
-  new Transport(part("transport"), player, { clock, unit: "s" });
+  new Transport(part("transport"), player, { clock, unit: speed => `× ${speed}` });
   new Story(part("story"), player, { clock });
   part("layers").remove();
+  document.body.classList.add("run");
   const charts = part("charts");
   new Strips(charts, player, selection, {
     title: "Locations over time",
@@ -157,7 +159,7 @@ function showRun(data) {
     })),
   });
   run.variables.forEach((name, variable) => new Chart(charts, player, new Selection(), {
-    title: name, instants: "t / s",
+    title: name, instants: "t / s", isTight: true,
     curves: [{
       name, colour: () => colours.curve(variable), points: () => run.points(variable),
       at: at => run.state(run.phase(player.passed), variable, at).value,

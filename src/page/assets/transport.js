@@ -34,9 +34,9 @@ function icon(sign) {
 
 /** The buttons, the time line with its events, and the keys. */
 class Transport {
-  /** `bands`: stretches of the run `{from, to, name}`; `clock` tells the instant in words. */
-  constructor(parent, player, { bands = [], clock, unit, isTelling = () => true, glyph = () => null }) {
-    Object.assign(this, { player, clock, unit, isTelling });
+  /** `bands`: stretches of the run `{from, to, name}`; `clock` tells the instant in words, `unit` a speed. */
+  constructor(parent, player, { bands = [], clock, unit, isTelling = () => true, glyph }) {
+    Object.assign(this, { player, clock, isTelling, hasGlyphs: Boolean(glyph) });
     const button = (sign, title, act) =>
       element("button", { type: "button", title, "aria-label": title, onclick: act }, icon(sign));
     this.toggle = button("play", "Play (space)", () => player.toggle());
@@ -46,7 +46,7 @@ class Transport {
       player.speed = Number(event.target.value);
       player.announce();
     } }, ...SPEEDS.map(speed =>
-      element("option", { value: speed }, `${written(speed * player.rate, 3)} ${unit}/s`)));
+      element("option", { value: speed }, unit(written(speed * player.rate, 3)))));
     parent.append(
       element("div", { class: "buttons" },
         button("previous", "Previous event (↑)", () => player.jump(-1, isTelling)),
@@ -72,7 +72,7 @@ class Transport {
       title: `${this.clock(event.at)}: ${event.text}`, "data-event": index,
       onclick: () => player.seekEvent(index),
       onpointerdown: press => press.stopPropagation(),
-    }, glyph(event))).filter(Boolean);
+    }, glyph ? glyph(event) : null)).filter(Boolean);
     this.line = element("div", {
       id: "scrubber", class: "line", role: "slider", tabindex: "0", "aria-label": "Instant",
       "aria-valuemin": "0", "aria-valuemax": player.end,
@@ -111,7 +111,7 @@ class Transport {
     let taken = -Infinity;
     events.forEach((event, index) => {
       if (!this.isTelling(event)) return;
-      if (event.at - taken < MARK_SHARE * end) upper.add(index); else taken = event.at;
+      if (this.hasGlyphs && event.at - taken < MARK_SHARE * end) upper.add(index); else taken = event.at;
     });
     return upper;
   }
