@@ -139,7 +139,7 @@ impl<'a> TrajectoryPage<'a> {
                 "locations": component.locations,
                 "drawing": drawing(component),
             })).collect::<Vec<_>>(),
-            "phases": run.phases().iter().map(phase_data).collect::<Vec<_>>(),
+            "phases": run.phases().map(|phase| phase_data(&phase)).collect::<Vec<_>>(),
             "events": run.jumps().iter().map(|jump| self.jump_data(jump)).collect::<Vec<_>>(),
             "end": rounded(run.ending().at.t),
             "drawings": self.drawings.iter().map(|drawing| &drawing.svg).collect::<Vec<_>>(),
