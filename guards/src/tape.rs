@@ -161,11 +161,10 @@ impl Tape {
 
     #[inline]
     fn each(&self, run: Range<usize>, places: &mut [f64], result: impl Fn([f64; 4]) -> f64) {
-        let mut place = self.variables + self.constants.len() + run.start;
-        for instruction in &self.instructions[run] {
+        let first = self.variables + self.constants.len() + run.start;
+        for (place, instruction) in (first..).zip(&self.instructions[run]) {
             let operands = instruction.places.map(|operand| places[operand as usize]);
             places[place] = result(operands);
-            place += 1;
         }
     }
 }

@@ -154,20 +154,20 @@ impl Implicit {
         let Origin { time, state, rates } = origin;
         if !field.jacobian(*time, state, &mut self.jacobian) {
             self.probe.copy_from_slice(state);
-            for column in 0..n {
-                self.probe[column] = state[column] + difference(state[column].abs().max(matters));
-                let apart = self.probe[column] - state[column];
+            for (column, &x) in state.iter().enumerate() {
+                self.probe[column] = x + difference(x.abs().max(matters));
+                let apart = self.probe[column] - x;
                 field.rates(*time, &self.probe, &mut self.probed);
-                self.probe[column] = state[column];
-                for row in 0..n {
-                    self.jacobian[row * n + column] = (self.probed[row] - rates[row]) / apart;
+                self.probe[column] = x;
+                for (row, rate) in rates.iter().enumerate() {
+                    self.jacobian[row * n + column] = (self.probed[row] - rate) / apart;
                 }
             }
         }
         let later = (time + difference(time.abs().max(end - time))).min(end);
         field.rates(later, state, &mut self.probed);
-        for row in 0..n {
-            self.by_time[row] = (self.probed[row] - rates[row]) / (later - time);
+        for (row, rate) in rates.iter().enumerate() {
+            self.by_time[row] = (self.probed[row] - rate) / (later - time);
         }
         self.is_known = true;
     }
