@@ -60,6 +60,9 @@ pub struct RunArguments {
     /// Write no figures
     #[arg(long)]
     pub no_figures: bool,
+    /// Write figures without titles, for papers with captions of their own
+    #[arg(long)]
+    pub plain: bool,
     /// Show no progress, only the summary
     #[arg(long, short)]
     pub quiet: bool,

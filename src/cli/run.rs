@@ -26,7 +26,7 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
     if let Some(folder) = &folder {
         create_folder(folder)?;
     }
-    let mut album = folder.as_ref().map(|_| open_album(&scenario)).transpose()?;
+    let mut album = folder.as_ref().map(|_| open_album(&scenario, arguments.plain)).transpose()?;
 
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, &mut progress];
     watchers.extend(trace.as_mut().map(|trace| trace as &mut dyn Watcher));
@@ -49,9 +49,10 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
     Ok(end.outcome.into())
 }
 
-fn open_album(scenario: &Scenario) -> Result<Album, Failure> {
+fn open_album(scenario: &Scenario, plain: bool) -> Result<Album, Failure> {
     let site = Site::new(scenario).map_err(|error| Failure::Internal(error.to_string()))?;
-    Ok(Album::new(scenario, &site).map_err(MissionError::from)?)
+    let album = Album::new(scenario, &site).map_err(MissionError::from)?;
+    Ok(if plain { album.plain() } else { album })
 }
 
 fn start_trace(path: &Path, scenario: &Scenario) -> Result<TraceWriter<BufWriter<File>>, Failure> {
