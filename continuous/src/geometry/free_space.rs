@@ -14,7 +14,8 @@ use thiserror::Error;
 
 use super::edge_tree::EdgeTree;
 use super::erosion::{Region, erode};
-use super::visibility::VisibilityGraph;
+use super::triangulation::Seen;
+use super::visibility::{Corner, Link, VisibilityGraph};
 use super::workspace::{COORDINATE_LIMIT, edges_of};
 use super::{Segment, Workspace};
 use crate::Point;
@@ -111,7 +112,8 @@ impl FreeSpace {
         if planning.rings.is_empty() {
             return Err(FreeSpaceError::Empty { clearance, extent });
         }
-        let graph = VisibilityGraph::new(&planning.rings, &sight.tree, tolerance);
+        let walls: Vec<Segment> = sight.edges().collect();
+        let graph = VisibilityGraph::new(&planning.rings, &walls, tolerance);
         let reach = REACH * (clearance + tolerance);
         let free_space = FreeSpace { clearance, tolerance, reach, planning, sight, graph };
         free_space.certify(workspace)?;
@@ -179,8 +181,23 @@ impl FreeSpace {
         !self.sight.tree.is_crossed_by(path)
     }
 
-    pub(super) fn graph(&self) -> &VisibilityGraph {
-        &self.graph
+    pub(super) fn corners(&self) -> &[Corner] {
+        self.graph.corners()
+    }
+
+    /// The corners that shortest paths may go to from a corner.
+    pub(super) fn links(&self, corner: usize) -> &[Link] {
+        self.graph.links(corner, &self.sight.tree)
+    }
+
+    /// The corners that a robot at a point of the sight set sees, ascending, with the distances.
+    pub(super) fn corners_seen_from(&self, point: Point) -> impl Iterator<Item = (usize, f64)> {
+        let seen =
+            self.sight.tree.nearest(point).map(|(wall, _)| self.graph.seen_from(point, wall));
+        seen.into_iter().flatten().filter_map(move |Seen { place, may_touch }| {
+            let path = Segment::new(point, self.corners()[place].at);
+            (!may_touch || self.is_clear(&path)).then(|| (place, path.length()))
+        })
     }
 
     /// Visits the edges of the sight set within `radius` of `center`.
@@ -194,26 +211,30 @@ impl FreeSpace {
     }
 
     /// Checks that both outlines keep the clearance and that the planning set lies within the
-    /// sight set. An outline that keeps the clearance encloses no part of ∂W unless it encloses
-    /// a whole polygon of it, which is checked by one vertex of each.
+    /// sight set. What keeps away from ∂W lies wholly inside or outside W, ring by ring, so one
+    /// vertex of each tells. An outline that keeps the clearance encloses no part of ∂W unless it
+    /// encloses a whole polygon of it, which is checked by one vertex of each, too.
     fn certify(&self, workspace: &Workspace) -> Result<(), FreeSpaceError> {
-        let failed = |at: Point| FreeSpaceError::Uncertified { at, tolerance: self.tolerance };
-        for edge in self.sight.edges().chain(self.planning.edges()) {
-            if workspace.segment_clearance(edge.from, edge.to) < self.clearance {
-                return Err(failed(edge.from));
+        let failed = |at: Point| Err(FreeSpaceError::Uncertified { at, tolerance: self.tolerance });
+        for outline in [&self.sight, &self.planning] {
+            if let Some(edge) = outline.edges().find(|edge| workspace.is_near(edge, self.clearance))
+            {
+                return failed(edge.from);
+            }
+            if let Some(ring) = outline.rings.iter().find(|ring| !workspace.contains(ring[0])) {
+                return failed(ring[0]);
             }
         }
-        for edge in self.planning.edges() {
-            if !(self.contains(edge.from) && self.is_clear(&edge)) {
-                return Err(failed(edge.from));
-            }
+        let strays = |edge: &Segment| !self.is_clear(edge);
+        if let Some(edge) = self.planning.edges().find(strays) {
+            return failed(edge.from);
         }
-        for ring in workspace.polygons() {
-            if self.contains(ring[0]) {
-                return Err(failed(ring[0]));
-            }
+        let enclosed = |ring: &&Vec<Point>| self.contains(ring[0]);
+        let not_enclosed = self.planning.rings.iter().find(|ring| !enclosed(ring));
+        match not_enclosed.or_else(|| workspace.polygons().iter().find(enclosed)) {
+            Some(ring) => failed(ring[0]),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 

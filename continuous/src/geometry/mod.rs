@@ -50,6 +50,7 @@ pub mod reentry;
 mod search;
 pub mod segment;
 pub mod shape;
+mod triangulation;
 mod visibility;
 pub mod workspace;
 

@@ -1,5 +1,6 @@
 //! The workspace W: a polygon with polygonal holes (Sec. II).
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use thiserror::Error;
@@ -213,6 +214,11 @@ impl Workspace {
         }
     }
 
+    /// Whether a segment meets ∂W or comes closer to it than `distance`.
+    pub(super) fn is_near(&self, path: &Segment, distance: f64) -> bool {
+        self.tree.is_near(path, distance)
+    }
+
     /// The larger side of the box around W.
     pub fn extent(&self) -> f64 {
         self.extent
@@ -299,16 +305,28 @@ fn wrongly_meets(first: &Segment, second: &Segment) -> bool {
     }
 }
 
+/// Where the holes lie, told by their first vertices: polygons that do not meet are apart or one
+/// inside the other. A vertex lies inside those that a ray from it crosses an odd number of times.
 fn check_nesting(polygons: &[Vec<Point>]) -> Result<(), WorkspaceError> {
-    let trees: Vec<EdgeTree> =
-        polygons.iter().map(|vertices| EdgeTree::new(edges_of(vertices))).collect();
+    let edges = || polygons.iter().flat_map(|vertices| edges_of(vertices));
+    let tree = EdgeTree::new(edges());
+    let polygon_of_edge: Vec<usize> = (polygons.iter().enumerate())
+        .flat_map(|(polygon, vertices)| std::iter::repeat_n(polygon, vertices.len()))
+        .collect();
     for (hole, vertices) in polygons[1..].iter().enumerate() {
-        if !trees[0].encloses(vertices[0]) {
+        let mut around = BTreeSet::new();
+        tree.for_each_right_of(vertices[0], |edge| {
+            let polygon = polygon_of_edge[edge];
+            if !around.remove(&polygon) {
+                around.insert(polygon);
+            }
+        });
+        if !around.contains(&0) {
             return Err(WorkspaceError::HoleOutside { hole, at: vertices[0] });
         }
-        let around = |outer: &usize| *outer != hole && trees[outer + 1].encloses(vertices[0]);
-        if let Some(outer) = (0..polygons.len() - 1).find(around) {
-            return Err(WorkspaceError::NestedHoles { inner: hole, outer });
+        if let Some(outer) = around.into_iter().find(|&polygon| polygon != 0 && polygon != hole + 1)
+        {
+            return Err(WorkspaceError::NestedHoles { inner: hole, outer: outer - 1 });
         }
     }
     Ok(())
