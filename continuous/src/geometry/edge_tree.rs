@@ -56,8 +56,18 @@ impl EdgeTree {
     /// points on an edge either answer may come.
     pub(super) fn encloses(&self, point: Point) -> bool {
         let mut inside = false;
-        self.for_each_right_of(point, |_| inside = !inside);
+        if self.surrounds(point) {
+            self.for_each_right_of(point, |_| inside = !inside);
+        }
         inside
+    }
+
+    /// Whether `point` lies in the box around all edges.
+    pub(super) fn surrounds(&self, point: Point) -> bool {
+        let holds = |bounds: &Bounds| {
+            (0..2).all(|axis| bounds.low[axis] <= point[axis] && point[axis] <= bounds.high[axis])
+        };
+        self.nodes.first().is_some_and(|root| holds(&root.bounds))
     }
 
     /// Visits every edge that a ray from `point` to the right crosses, by its index. Exact, but for

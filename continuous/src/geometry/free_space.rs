@@ -25,6 +25,9 @@ use crate::Point;
 /// notice.
 const RELATIVE_TOLERANCE: f64 = 1e-6;
 
+/// The fractions that may be asked for: rounding takes what is smaller.
+const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-12..=1e-3;
+
 /// As a fraction of τ: the deviation from a straight line below which a vertex of the outline is
 /// left out. Small, so that the sight set stays around the planning set.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -56,6 +59,15 @@ pub enum FreeSpaceError {
     InvalidClearance {
         /// The clearance asked for.
         clearance: f64,
+    },
+    /// The tolerance is too small or too large a part of the workspace.
+    #[error(
+        "the tolerance is {fraction} of the extent; it is at least {} and at most {}",
+        TOLERANCES.start(), TOLERANCES.end()
+    )]
+    InvalidTolerance {
+        /// The fraction asked for.
+        fraction: f64,
     },
     /// No room for a robot anywhere.
     #[error(
@@ -101,11 +113,36 @@ impl FreeSpace {
     ///
     /// If the clearance is not a length, if no place keeps it, or if rounding spoils the result.
     pub fn new(workspace: &Workspace, clearance: f64) -> Result<FreeSpace, FreeSpaceError> {
+        FreeSpace::with_tolerance(workspace, clearance, RELATIVE_TOLERANCE)
+    }
+
+    /// As [`FreeSpace::new`], with the tolerance τ as a fraction of the extent of the workspace
+    /// instead of a millionth: between 1e-12 and 1e-3.
+    ///
+    /// A shortest path is longer than the one that keeps ρ alone, or shorter, by at most a few τ
+    /// for each of its corners. With 1e-12, geodesics are exact to about 1e-11 of the extent for
+    /// each corner. That is for computing; robots, whose places are rounded, are better off with
+    /// room between the two nested sets.
+    ///
+    /// # Errors
+    ///
+    /// As [`FreeSpace::new`], and if the fraction is out of its range.
+    pub fn with_tolerance(
+        workspace: &Workspace,
+        clearance: f64,
+        fraction: f64,
+    ) -> Result<FreeSpace, FreeSpaceError> {
         if !(clearance.is_finite() && clearance >= 0.0) {
             return Err(FreeSpaceError::InvalidClearance { clearance });
         }
+        if !TOLERANCES.contains(&fraction) {
+            return Err(FreeSpaceError::InvalidTolerance { fraction });
+        }
         let extent = workspace.extent();
-        let tolerance = RELATIVE_TOLERANCE * extent;
+        if clearance > extent {
+            return Err(FreeSpaceError::Empty { clearance, extent });
+        }
+        let tolerance = fraction * extent;
         let outline =
             |slack: f64| Outline::new(erode(workspace, clearance + slack, NEGLIGIBLE * tolerance));
         let (planning, sight) = (outline(tolerance), outline(tolerance / 2.0));
@@ -170,7 +207,7 @@ impl FreeSpace {
     /// out](super::reentry).
     pub fn sees(&self, from: Point, to: Point) -> bool {
         if self.contains(from) {
-            return self.is_clear(&Segment::new(from, to));
+            return self.sight.tree.surrounds(to) && self.is_clear(&Segment::new(from, to));
         }
         let (Some(entry), Some(exit)) = (self.entry(from), self.entry(to)) else { return false };
         (to - exit).norm() <= (from - entry).norm() && self.is_clear(&Segment::new(entry, exit))

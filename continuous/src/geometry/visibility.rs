@@ -137,3 +137,58 @@ fn reflex_corners(ring: &[Point]) -> impl Iterator<Item = Corner> {
         })
         .filter(|corner| side(corner.before, corner.at, corner.after) < 0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{FreeSpace, Workspace};
+
+    /// A hall with square pillars, each turned by its number times `turn`, and free places between.
+    fn hall(pillars: usize, turn: f64) -> (FreeSpace, Vec<Point>) {
+        let side = (pillars as f64).sqrt().ceil();
+        let middle = |index: usize| {
+            Point::new((index as f64 % side).floor() + 0.5, (index as f64 / side).floor() + 0.5)
+        };
+        let square = |center: Point, turn: f64, radius: f64| -> Vec<Point> {
+            let angle = |corner: i32| (f64::from(corner) + turn) * std::f64::consts::FRAC_PI_2;
+            let corner = |at: i32| center + Vector::new(angle(at).cos(), angle(at).sin()) * radius;
+            (0..4).map(corner).collect()
+        };
+        let center = Point::new(side / 2.0, side / 2.0);
+        let boundary = square(center, 0.5, side);
+        let holes = (0..pillars).map(|index| square(middle(index), 0.5 + turn * index as f64, 0.3));
+        let workspace = Workspace::new(boundary, holes.collect()).unwrap();
+        let places = (0..pillars).map(|index| middle(index) + Vector::new(0.0, 0.5)).collect();
+        (FreeSpace::new(&workspace, 0.05).unwrap(), places)
+    }
+
+    /// Corners in rows see each other along the rows, past all between: everything is on the edge
+    /// of being hidden.
+    #[test]
+    fn links_and_sight_are_those_of_trying_every_pair() {
+        for turn in [0.0, 0.25, 0.03, 0.5] {
+            let (space, places) = hall(20, turn);
+            let (corners, tolerance) = (space.corners(), space.tolerance());
+            let is_taut = |path: &Segment, one: usize, other: usize| {
+                [one, other].iter().all(|&end| corners[end].is_touched_by(path, tolerance))
+            };
+            for (index, corner) in corners.iter().enumerate() {
+                let tried: Vec<usize> = (0..corners.len())
+                    .filter(|&other| {
+                        let path = Segment::new(corner.at, corners[other].at);
+                        other != index && is_taut(&path, index, other) && space.is_clear(&path)
+                    })
+                    .collect();
+                let found: Vec<usize> = space.links(index).iter().map(|link| link.corner).collect();
+                assert_eq!(found, tried, "from corner {index}, turned by {turn}");
+            }
+            for from in places.into_iter().chain(corners.iter().map(|corner| corner.at)) {
+                let found: Vec<usize> =
+                    space.corners_seen_from(from).map(|(seen, _)| seen).collect();
+                let sees = |&other: &usize| space.is_clear(&Segment::new(from, corners[other].at));
+                let tried: Vec<usize> = (0..corners.len()).filter(sees).collect();
+                assert_eq!(found, tried, "from {from}, turned by {turn}");
+            }
+        }
+    }
+}

@@ -33,6 +33,13 @@ pub enum Polygon {
     Hole(usize),
 }
 
+impl Polygon {
+    /// The polygons of a workspace, in the order that they are listed in.
+    pub(super) fn all() -> impl Iterator<Item = Polygon> {
+        (0..).map(name_of)
+    }
+}
+
 impl fmt::Display for Polygon {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -146,6 +153,19 @@ pub enum WorkspaceError {
     },
 }
 
+impl WorkspaceError {
+    /// Whether coordinates are none to compute with.
+    pub(super) fn is_about_numbers(&self) -> bool {
+        matches!(self, WorkspaceError::NotFinite { .. })
+    }
+
+    /// Whether polygons meet themselves or each other where they must not.
+    pub(super) fn is_about_contact(&self) -> bool {
+        use WorkspaceError::{PolygonsMeet, RepeatedVertex, SelfIntersecting};
+        matches!(self, RepeatedVertex { .. } | SelfIntersecting { .. } | PolygonsMeet { .. })
+    }
+}
+
 impl Workspace {
     /// The workspace within `boundary` and outside every one of `holes`. Vertices are listed in
     /// order, clockwise or counter-clockwise; vertices on a straight line with their neighbours
@@ -155,6 +175,7 @@ impl Workspace {
     ///
     /// Unless every polygon is simple and encloses an area, and the holes lie strictly inside the
     /// boundary and apart from each other. Decided exactly, without tolerances.
+    /// [`Workspace::repaired`] also takes polygons that touch.
     pub fn new(boundary: Vec<Point>, holes: Vec<Vec<Point>>) -> Result<Workspace, WorkspaceError> {
         let mut polygons = vec![boundary];
         polygons.extend(holes);
@@ -168,9 +189,14 @@ impl Workspace {
                 vertices.reverse();
             }
         }
+        Ok(Workspace::of_rings(polygons))
+    }
+
+    /// The workspace that rings bound, the outer one first, with W on their left.
+    pub(super) fn of_rings(polygons: Vec<Vec<Point>>) -> Workspace {
         let tree = EdgeTree::new(polygons.iter().flat_map(|vertices| edges_of(vertices)));
         let extent = extent_of(&polygons[0]);
-        Ok(Workspace { polygons, tree, extent })
+        Workspace { polygons, tree, extent }
     }
 
     /// Vertices of the outer boundary, counter-clockwise.
@@ -259,34 +285,36 @@ fn check_vertices(polygon: Polygon, vertices: &[Point]) -> Result<(), WorkspaceE
 }
 
 fn check_edges(polygons: &[Vec<Point>]) -> Result<(), WorkspaceError> {
+    match contacts(polygons).next() {
+        None => Ok(()),
+        Some((first, second)) if first.polygon == second.polygon => {
+            Err(WorkspaceError::SelfIntersecting { first, second })
+        }
+        Some((first, second)) => Err(WorkspaceError::PolygonsMeet { first, second }),
+    }
+}
+
+/// The edges that meet others where they must not, each with the first one after it that it meets.
+pub(super) fn contacts(polygons: &[Vec<Point>]) -> impl Iterator<Item = (NamedEdge, NamedEdge)> {
     let named: Vec<NamedEdge> = polygons
         .iter()
-        .enumerate()
-        .flat_map(|(polygon, vertices)| {
-            edges_of(vertices).enumerate().map(move |(index, segment)| NamedEdge {
-                polygon: name_of(polygon),
-                index,
-                segment,
-            })
+        .zip(Polygon::all())
+        .flat_map(|(vertices, polygon)| {
+            let edges = edges_of(vertices).enumerate();
+            edges.map(move |(index, segment)| NamedEdge { polygon, index, segment })
         })
         .collect();
     let tree = EdgeTree::new(named.iter().map(|edge| edge.segment));
-    for (index, first) in named.iter().enumerate() {
+    (0..named.len()).filter_map(move |index| {
+        let first = named[index];
         let mut met: Option<usize> = None;
         tree.for_each_overlapping(&first.segment, |other, edge| {
             if other > index && wrongly_meets(&first.segment, edge) {
                 met = Some(met.map_or(other, |found| found.min(other)));
             }
         });
-        if let Some(second) = met.map(|other| named[other]) {
-            return Err(if first.polygon == second.polygon {
-                WorkspaceError::SelfIntersecting { first: *first, second }
-            } else {
-                WorkspaceError::PolygonsMeet { first: *first, second }
-            });
-        }
-    }
-    Ok(())
+        Some((first, named[met?]))
+    })
 }
 
 /// Whether two edges have a point in common other than a vertex that joins one to the next.
