@@ -264,7 +264,7 @@ fn following(side: u32) -> u32 {
 
 /// The side of the same triangle before a side.
 fn preceding(side: u32) -> u32 {
-    if side % 3 == 0 { side + 2 } else { side - 1 }
+    if side.is_multiple_of(3) { side + 2 } else { side - 1 }
 }
 
 fn sides_of(delaunay: &ConstrainedDelaunayTriangulation<Point2<f64>>) -> Vec<Side> {
