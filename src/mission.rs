@@ -12,9 +12,11 @@ use thiserror::Error;
 
 use crate::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::Scenario;
-use crate::automaton::network::{KernelTimes, Medium, Network, NetworkError};
+use crate::automaton::network::{KernelTimes, Message, Network, NetworkError};
+use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
-use crate::discrete::network::ROLES;
+use crate::continuous::Point;
+use crate::discrete::network::activity::may_follow;
 use crate::verify::network::{Extremes, LimitError, Monitor};
 
 /// Somebody who watches a mission.
@@ -77,14 +79,13 @@ pub fn run(
 ///
 /// # Errors
 /// When no mission can start from the scenario, or a watcher fails.
-pub fn run_network<M: Medium>(
+pub fn run_network<M: Medium<Message, Point>>(
     scenario: &Scenario,
     network: &mut Network<M>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    let is_transition = |from, to| ROLES.enabled(from).any(|row| row.target == to);
     let mut gallery =
-        Gallery { monitor: Monitor::new(scenario, is_transition)?, watchers, failure: None };
+        Gallery { monitor: Monitor::new(scenario, may_follow)?, watchers, failure: None };
     let settings = network.site().settings;
     let horizon = settings.period * (settings.max_steps as f64 + 1.0);
     let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
@@ -136,7 +137,7 @@ impl Gallery<'_, '_> {
     }
 }
 
-impl<M: Medium> Observer<Network<M>> for Gallery<'_, '_> {
+impl<M: Medium<Message, Point>> Observer<Network<M>> for Gallery<'_, '_> {
     fn flows(&mut self, network: &Network<M>, _: HybridTime, _: f64) -> ControlFlow<End> {
         let (snapshot, events) = (network.snapshot(), network.events());
         if let Err(error) = self.show(&snapshot, &events) {

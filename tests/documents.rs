@@ -1,20 +1,17 @@
 //! The documents say what the code says: drawings are regenerated and compared, and what tables
 //! name exists.
 //!
-//! `PLEACH_UPDATE_DOCS=1 cargo test --test documents` writes the generated documents anew.
-
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod generated;
+//! `PLEACH_UPDATE_DOCS=1 cargo test --test it documents` writes the generated documents anew.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use std::{fs, io};
 
-use generated::{is_update, read, root};
+use crate::generated::{is_update, read, root};
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
+use pleach::automaton::network::robot::GLOSSARY;
 use pleach::automaton::network::scenario::{Control, Scenario};
-use pleach::automaton::network::{Site, mission_automaton, role_automaton};
+use pleach::automaton::network::{Site, duty_automaton, mission_automaton};
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::figures::Album;
@@ -37,14 +34,14 @@ const WRITTEN: [&str; 9] = [
 ];
 
 fn keep_up_to_date(path: &str, document: &str) {
-    generated::keep_up_to_date(path, document, "documents");
+    crate::generated::keep_up_to_date(path, document, "documents");
 }
 
 // ---- The automata ------------------------------------------------------------------------------
 
 #[test]
-fn the_drawing_of_the_role_automaton_is_up_to_date() {
-    keep_up_to_date("docs/pictures/role.svg", &diagram::svg(&role_automaton().unwrap()));
+fn the_drawing_of_the_duty_automaton_is_up_to_date() {
+    keep_up_to_date("docs/pictures/duty.svg", &diagram::svg(&duty_automaton().unwrap()));
 }
 
 #[test]
@@ -54,31 +51,33 @@ fn the_drawing_of_the_mission_automaton_is_up_to_date() {
 
 #[test]
 fn the_page_on_the_automata_is_up_to_date() {
-    let (role, mission) = (role_automaton().unwrap(), mission_automaton().unwrap());
+    let (duty, mission) = (duty_automaton().unwrap(), mission_automaton().unwrap());
     let page = format!(
-        "{INTRODUCTION}\n{}\n{}",
-        chapter("The role of a robot", "role", ROLE, &role),
+        "{INTRODUCTION}\n{}\n{}\n{}",
+        chapter("The duty of a robot", "duty", DUTY, &duty),
         chapter("The mission as one robot sees it", "mission", MISSION, &mission),
+        glossary(),
     );
     keep_up_to_date("docs/automata.md", &page);
 }
 
 const INTRODUCTION: &str = "\
-<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test documents -->
+<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it documents -->
 
-# The two automata of a robot
+# The automata of a robot
 
-Every robot runs two automata over its own state. This page is written by the library from the
+Every robot runs these automata over its own state. This page is written by the library from the
 transition tables, guards and resets that the robots run. A transition reads `event [guard] /
 reset (urgency, priority)`; all of them are taken *at once*, and where several could be, the
-smaller priority goes first. The words in the guards are the facts that a robot measures of
-itself; yes-or-no facts are 0 or 1. They are explained where they are measured, in
-[`facts.rs`](../automaton/src/network/robot/facts.rs).
+smaller priority goes first. The names in the guards are quantities and propositions that a robot
+measures of itself; the last section lists them.
 ";
 
-const ROLE: &str = "\
-The role says what a robot is for the network. It is read off the robot's duty, so that its
-transitions reset nothing.
+const DUTY: &str = "\
+The duty says what a robot does for the network. Each location owns the data that it needs, and a
+reset is a function from the data of one location to that of the next. The paper's role follows from
+the duty: a robot on standby is *redundant*; a relay, a follower and a robot that shifts along Σ are
+*nodes*, the first of Σ the *recruit*; junction, leaf and leader are called as they are.
 ";
 
 const MISSION: &str = "\
@@ -86,6 +85,12 @@ The phase says where the mission stands for this robot. Transitions of priority 
 word that the robot has heard; those of priority 1 are what it finds out itself, and their resets
 issue the next word. Robots are in different phases while a word spreads.
 ";
+
+fn glossary() -> String {
+    let rows = GLOSSARY.iter().map(|(name, text)| format!("| `{name}` | {} |\n", text.trim()));
+    let rows: String = rows.collect();
+    format!("## What the guards speak of\n\n| name | meaning |\n| --- | --- |\n{rows}")
+}
 
 fn chapter<L: Location, E: Event, S: Valuation>(
     title: &str,
@@ -156,13 +161,12 @@ fn the_run_in_the_readme_is_up_to_date() {
 }
 
 const BEGIN_OF_RUN: &str =
-    "<!-- begin of the run: PLEACH_UPDATE_DOCS=1 cargo test --test documents -->";
+    "<!-- begin of the run: PLEACH_UPDATE_DOCS=1 cargo test --test it documents -->";
 const END_OF_RUN: &str = "<!-- end of the run -->";
 
 fn album(scenario: &Scenario) -> Album {
     let site = Site::new(scenario).unwrap();
-    let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-    Album::new(scenario, site.free_space.outline().iter().map(corners).collect())
+    Album::new(scenario, &site).unwrap()
 }
 
 /// Copies the picture that is number `which` of those whose name contains `word`.

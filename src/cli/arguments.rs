@@ -37,6 +37,12 @@ pub enum Command {
     ///
     /// The drawing is made from the transition table that the robots run, and printed.
     Diagram(DiagramArguments),
+    /// Make the page on which a mission plays from its trace
+    ///
+    /// The page is one HTML file that needs no other: the plan with robots, links and tree at every
+    /// control period, curves, the story and a summary. It shows as much as there is of a trace
+    /// that was cut off.
+    Page(PageArguments),
 }
 
 /// The arguments of `pleach run`.
@@ -59,6 +65,16 @@ pub struct RunArguments {
     pub quiet: bool,
 }
 
+/// The arguments of `pleach page`.
+#[derive(Debug, Args)]
+pub struct PageArguments {
+    /// The trace, a file of JSON lines
+    pub trace: PathBuf,
+    /// Write the page to FILE [default: the trace with the ending .html]
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
 /// The arguments of `pleach diagram`.
 #[derive(Debug, Args)]
 pub struct DiagramArguments {
@@ -72,8 +88,8 @@ pub struct DiagramArguments {
 /// The automata that can be drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Automaton {
-    /// What a robot is for the network: redundant, recruit, node, junction, leaf, leader
-    Role,
+    /// What a robot does for the network, with the roles of the paper
+    Duty,
     /// Where the mission stands: elections, advance, shifts of the secondary team
     Mission,
 }

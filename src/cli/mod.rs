@@ -2,6 +2,7 @@
 
 mod arguments;
 mod diagram;
+mod page;
 mod progress;
 mod run;
 mod status;
@@ -16,6 +17,7 @@ pub fn carry_out(arguments: Arguments) -> ExitCode {
     let result = match arguments.command {
         Command::Run(run) => run::run(&run),
         Command::Diagram(diagram) => diagram::print(&diagram),
+        Command::Page(page) => page::write(&page),
     };
     let status = result.unwrap_or_else(|failure| {
         eprintln!("error: {failure}");

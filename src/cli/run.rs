@@ -6,7 +6,7 @@ use super::status::{Failure, Status};
 use pleach::automaton::network::Site;
 use pleach::automaton::network::scenario::Scenario;
 use pleach::figures::Album;
-use pleach::mission::{self, Watcher};
+use pleach::mission::{self, MissionError, Watcher};
 use pleach::scenario_file;
 use pleach::summary::Summary;
 use pleach::trace::TraceWriter;
@@ -51,9 +51,7 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
 
 fn open_album(scenario: &Scenario) -> Result<Album, Failure> {
     let site = Site::new(scenario).map_err(|error| Failure::Internal(error.to_string()))?;
-    let corners =
-        |outline: &Vec<_>| outline.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-    Ok(Album::new(scenario, site.free_space.outline().iter().map(corners).collect()))
+    Ok(Album::new(scenario, &site).map_err(MissionError::from)?)
 }
 
 fn start_trace(path: &Path, scenario: &Scenario) -> Result<TraceWriter<BufWriter<File>>, Failure> {

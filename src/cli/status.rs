@@ -2,6 +2,7 @@
 
 use pleach::automaton::network::record::Outcome;
 use pleach::mission::MissionError;
+use pleach::page::PageError;
 use pleach::scenario_file::ScenarioError;
 use std::io;
 use std::path::PathBuf;
@@ -48,6 +49,14 @@ pub enum Failure {
     /// No mission can start from the scenario.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
+    /// No page can be made of a trace.
+    #[error("{}: {error}", path.display())]
+    Trace {
+        /// The trace.
+        path: PathBuf,
+        /// What is wrong with it.
+        error: Box<PageError>,
+    },
     /// A file cannot be created.
     #[error("{}: cannot be created: {source}; choose a path that may be written", path.display())]
     Creation {
@@ -77,7 +86,9 @@ impl Failure {
     /// The exit status that tells this failure.
     pub fn status(&self) -> Status {
         match self {
-            Failure::Scenario(_) | Failure::Creation { .. } => Status::BadInput,
+            Failure::Scenario(_) | Failure::Trace { .. } | Failure::Creation { .. } => {
+                Status::BadInput
+            }
             Failure::Output(_) | Failure::Mission(_) | Failure::Internal(_) => Status::Failed,
         }
     }

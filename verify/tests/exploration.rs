@@ -1,8 +1,6 @@
 //! The protocol, explored exhaustively: how many states there are, and that everything holds in
 //! each of them.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
 use pleach_verify::network::exploration::{
     Campaign, Configuration, Faults, Findings, Medium, Places, QUICK, THOROUGH,
 };
@@ -31,7 +29,7 @@ fn everything_holds_in_every_state_of_the_quick_campaigns() {
 }
 
 #[test]
-#[ignore = "takes minutes: cargo test --release -p pleach-verify --test exploration -- --ignored"]
+#[ignore = "takes minutes: cargo test --release -p pleach-verify --test it exploration -- --ignored"]
 fn everything_holds_in_every_state_of_the_thorough_campaigns() {
     assert_all_met(THOROUGH);
 }
@@ -50,7 +48,7 @@ fn everything_holds_in_every_order_of_single_messages() {
     let places = Places::with_branches(2, 1, &[(0, 2), (1, 2)], &[(1, 1)]).unwrap();
     let medium = Medium::MessagesInAnyOrder;
     let states = states_of_sound(Configuration { places, medium, contacts: 0 });
-    assert_eq!(states, 208_278);
+    assert_eq!(states, 149_710);
 }
 
 /// Two access points, a leader that hangs on one of them and a recruit that hangs on the other and
@@ -60,7 +58,7 @@ fn who_joins_from_another_tree_and_does_not_get_there_says_why_not() {
     let graph = [(0, 1), (0, 3), (1, 2), (2, 3), (2, 4)];
     let places = Places::with_branches(3, 2, &graph, &[(4, 2)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
-    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 557);
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 522);
 }
 
 /// p₁ exchanges duties with a robot of a lower number, on whose post the one hangs that p₁ hangs
@@ -70,7 +68,7 @@ fn an_exchange_across_a_link_keeps_the_tree() {
     let graph = [(0, 1), (0, 3), (1, 4), (2, 3), (3, 4)];
     let places = Places::with_branches(4, 1, &graph, &[(1, 1)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
-    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 1_341);
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 1_332);
 }
 
 /// Two robots that hang on a third, which becomes the leader, and hear each other: they look for

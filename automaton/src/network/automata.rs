@@ -1,33 +1,33 @@
-//! The two automata of a robot, its role and its view of the mission, both over the state of
-//! [`Robot`]: the tables of the discrete layer with guards and resets on their events.
+//! The automata that a robot runs, over the state of [`Robot`]: the tables of the discrete layer
+//! with guards and resets.
 
-use pleach_discrete::network::{MISSION, MissionStep, Phase, ROLES, Role, RoleEvent};
-use pleach_guards::network::{mission, role};
+use pleach_discrete::network::{MISSION, MissionStep, Phase};
+use pleach_guards::network::mission;
 
 use crate::{Automaton, BuildError, Reset};
 
-use super::robot::Robot;
+use super::robot::{DutyAutomaton, PROPOSITIONS, Robot, VARIABLES, duty_automaton};
 
-/// The automaton of a robot's role.
-pub type RoleAutomaton = Automaton<Role, RoleEvent, Robot>;
 /// The automaton of the mission as one robot sees it.
 pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
 
-/// The role automaton. A role is read off the robot's duty, so that its transitions reset
-/// nothing.
-///
-/// # Errors
-/// Never with the tables and guards of this crate; they are checked all the same.
-pub fn role_automaton() -> Result<RoleAutomaton, BuildError> {
-    Automaton::builder(ROLES, Role::Redundant)
-        .on(RoleEvent::Elected, role::elected(), Reset::identity())
-        .on(RoleEvent::Recruited, role::recruited(), Reset::identity())
-        .on(RoleEvent::Entrusted, role::entrusted(), Reset::identity())
-        .on(RoleEvent::Parted, role::parted(), Reset::identity())
-        .on(RoleEvent::Posted, role::posted(), Reset::identity())
-        .on(RoleEvent::Relieved, role::relieved(), Reset::identity())
-        .on(RoleEvent::Retired, role::retired(), Reset::identity())
-        .build()
+/// The automata of a robot; all robots run the same.
+#[derive(Clone, Debug)]
+pub struct Automata {
+    /// What the robot does.
+    pub duty: DutyAutomaton,
+    /// The mission as the robot knows it.
+    pub mission: MissionAutomaton,
+}
+
+impl Automata {
+    /// The automata of a robot.
+    ///
+    /// # Errors
+    /// Never with the tables and guards of this crate; they are checked all the same.
+    pub fn new() -> Result<Self, BuildError> {
+        Ok(Automata { duty: duty_automaton()?, mission: mission_automaton()? })
+    }
 }
 
 /// The mission automaton (Algorithms 1 to 5).
@@ -37,7 +37,8 @@ pub fn role_automaton() -> Result<RoleAutomaton, BuildError> {
 pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
     Automaton::builder(MISSION, Phase::Idle)
-        .on(Step::Ended, mission::ended(), Reset::new("stop", Robot::leave_team))
+        .observing(VARIABLES, PROPOSITIONS)
+        .on(Step::Ended, mission::ended(), Reset::identity())
         .on(
             Step::Announced,
             mission::announced(),
@@ -83,15 +84,19 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         .on(
             Step::SubgroupArrived,
             mission::subgroup_arrived(),
-            Reset::new("take the posts ahead", Robot::take_posts),
+            Reset::new("the next subgroup is active", Robot::next_subgroup),
         )
         .on(
             Step::Relieved,
             mission::relieved(),
-            Reset::new("join the primary team", Robot::join_team),
+            Reset::new("announce that the team advances", Robot::announce_advance),
         )
         .on(Step::Resumed, mission::resumed(), Reset::new("resume", Robot::resume))
-        .on(Step::Reached, mission::reached(), Reset::new("service the task", Robot::service_task))
-        .on(Step::Serviced, mission::serviced(), Reset::new("leave the team", Robot::leave_team))
+        .on(
+            Step::Reached,
+            mission::reached(),
+            Reset::new("announce the service", Robot::service_task),
+        )
+        .on(Step::Serviced, mission::serviced(), Reset::identity())
         .build()
 }

@@ -7,7 +7,9 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
 use pleach_continuous::network::reliability::{CubicReliability, ReliabilityError};
 
+use super::automata::Automata;
 use super::scenario::{Scenario, Settings};
+use crate::builder::BuildError;
 
 /// Common knowledge of the robots; it does not change during a mission.
 #[derive(Debug)]
@@ -28,6 +30,8 @@ pub struct Site {
     pub build_length: f64,
     /// d_hard: the geodesic length that no link of the tree exceeds.
     pub hard_length: f64,
+    /// The automata that every robot runs.
+    pub automata: Automata,
     /// How ways are measured where they are not those of the floor plan.
     measure: Option<Box<dyn Measure>>,
 }
@@ -51,6 +55,9 @@ pub enum SiteError {
     /// The radio's ranges make no sense.
     #[error(transparent)]
     Range(#[from] ReliabilityError),
+    /// An automaton is not well formed.
+    #[error(transparent)]
+    Build(#[from] BuildError),
 }
 
 impl Site {
@@ -72,6 +79,7 @@ impl Site {
             build_length: settings.longest_new_link(),
             hard_length: settings.longest_tree_link(),
             settings,
+            automata: Automata::new()?,
             measure: None,
         })
     }
@@ -80,6 +88,12 @@ impl Site {
     #[must_use]
     pub fn measured_by(self, measure: impl Measure + 'static) -> Self {
         Site { measure: Some(Box::new(measure)), ..self }
+    }
+
+    /// Rounds of messages in which news surely crosses the network and comes back: no message is
+    /// longer under way than there are nodes to pass it on.
+    pub fn rounds_there_and_back(&self) -> usize {
+        2 * (self.robots + self.access_points.len())
     }
 
     /// The length of the shortest way in 𝒲_f; infinite if there is none.

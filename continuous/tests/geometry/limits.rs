@@ -6,7 +6,7 @@ use pleach_continuous::geometry::{
 };
 use proptest::prelude::*;
 
-use crate::environments::{environment, place, ring};
+use super::environments::{environment, place, ring};
 
 fn absurd() -> impl Strategy<Value = f64> {
     prop_oneof![

@@ -9,7 +9,7 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{Capsule, Neighbours, Segment, Workspace};
 use proptest::prelude::*;
 
-use crate::environments::{environment, place};
+use super::environments::{environment, place};
 
 /// The accuracy of parry for the distance of two shapes; that of a point is exact to rounding.
 const ACCURACY: f64 = 1e-6;

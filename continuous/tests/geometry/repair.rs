@@ -4,8 +4,8 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, Repair, Workspace, WorkspaceError};
 use proptest::prelude::*;
 
-use crate::environments::{environment, place, ring};
-use crate::plain;
+use super::environments::{environment, place, ring};
+use super::plain;
 
 fn room() -> Vec<Point> {
     ring(&[(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)])

@@ -23,7 +23,7 @@ pub use lineage::Lineage;
 pub use path::{Hop, Path, Subgroup};
 pub use post::{Anchor, Post, PostId, PostKind};
 pub use role::{Phase, Role};
-pub use tables::{MISSION, MissionStep, ROLES, RoleEvent};
+pub use tables::{MISSION, MissionStep};
 
 /// A node of the network: robots are numbered first, from 0, then access points.
 pub type NodeId = usize;

@@ -10,9 +10,11 @@
 //!
 //! [`Dealings`]: pleach_discrete::network::Dealings
 
-use pleach_discrete::network::{NodeId, Phase, PostKind};
+use pleach_discrete::network::{Phase, PostKind};
 
-use super::super::duty::Duty;
+use crate::TransitionError;
+
+use super::super::duty::{Duty, Shifting};
 use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
@@ -50,19 +52,19 @@ impl Robot {
             }
         }
         if let Some(to) = partner {
-            self.dealings.make_offer(to, self.duty);
+            self.dealings.make_offer(to, *self.duty);
         }
     }
 
     /// Whether this robot is on a way that another could go on with.
     fn may_hand_over(&self) -> bool {
-        match self.duty {
-            Duty::Shift { place } => {
+        match *self.duty {
+            Duty::Shifting(Shifting { place, .. }) => {
                 let active = self.active_subgroup();
                 active.is_some_and(|active| active.places().contains(&place)) && !self.has_arrived()
             }
-            Duty::Hold(_) => self.duty.is_primary() && self.phase == Phase::Advance,
-            Duty::Wait { .. } => false,
+            Duty::Following(_) | Duty::Leading(_) => self.phase == Phase::Advance,
+            _ => false,
         }
     }
 
@@ -112,32 +114,33 @@ impl Robot {
     }
 
     /// One round of the protocol: answer offers, complete exchanges.
-    pub fn handle_exchange(&mut self) {
-        self.complete_own_offer();
-        self.conclude_reply();
+    pub(super) fn handle_exchange(&mut self) -> Result<(), TransitionError> {
+        self.complete_own_offer()?;
+        self.conclude_reply()?;
         self.answer_offer();
+        Ok(())
     }
 
-    fn complete_own_offer(&mut self) {
-        let Some(partner) = self.dealings.offer().map(|offer| offer.to) else { return };
+    fn complete_own_offer(&mut self) -> Result<(), TransitionError> {
+        let Some(partner) = self.dealings.offer().map(|offer| offer.to) else { return Ok(()) };
         let heard = self.neighbour(partner).and_then(|parked| parked.beacon.reply.clone());
-        let Some(reply) = heard else { return };
-        let Some(duty) = self.dealings.hear(self.id, &reply) else { return };
-        self.left_post = self.duty.post().map(|post| post.id);
-        self.take_over(duty, partner);
+        let Some(reply) = heard else { return Ok(()) };
+        let Some(duty) = self.dealings.hear(self.id, &reply) else { return Ok(()) };
+        self.exchange_duty(duty, partner)?;
         self.report(MissionEvent::DutiesExchanged { mover: self.id, parked: partner });
+        Ok(())
     }
 
     /// The reply stands until the mover's offer is gone: then it has taken the post, and this
     /// robot takes the duty.
-    fn conclude_reply(&mut self) {
-        let Some(to) = self.dealings.reply().map(|reply| reply.to) else { return };
-        let Some(mover) = self.neighbour(to) else { return };
+    fn conclude_reply(&mut self) -> Result<(), TransitionError> {
+        let Some(to) = self.dealings.reply().map(|reply| reply.to) else { return Ok(()) };
+        let Some(mover) = self.neighbour(to) else { return Ok(()) };
         let (offer, offers_made) = (mover.beacon.offer.clone(), mover.beacon.offers_made);
         if let Some(duty) = self.dealings.conclude(offer.as_ref(), offers_made) {
-            self.left_post = self.duty.post().map(|post| post.id);
-            self.take_over(duty, to);
+            self.exchange_duty(duty, to)?;
         }
+        Ok(())
     }
 
     fn answer_offer(&mut self) {
@@ -150,29 +153,14 @@ impl Robot {
             offer.asks(self.id, answered).then(|| (neighbour.id(), offer.clone()))
         });
         let Some((mover, offer)) = offered else { return };
-        let given = self.may_be_relieved().then_some(self.duty);
+        let given = self.may_be_relieved().then_some(*self.duty);
         self.answered.insert(mover, offer.number);
         self.dealings.answer(mover, &offer, given);
-    }
-
-    fn take_over(&mut self, duty: Duty, partner: NodeId) {
-        self.duty = duty;
-        self.awaits_release = self.waits_as_leader();
-        self.last_partner = Some(partner);
-        self.lineage = None;
-        self.still_periods = 0;
     }
 
     /// Whether this robot may leave its post to a mover.
     fn may_be_relieved(&self) -> bool {
         self.is_parked() && self.dealings.offer().is_none() && self.duty.station().is_some()
-    }
-
-    /// Whether its duty is that of the leader who is to be released: the last place of Σ.
-    fn waits_as_leader(&self) -> bool {
-        let last =
-            self.path.as_ref().filter(|path| path.releases_leader).map(|path| path.len() - 1);
-        matches!(self.duty, Duty::Wait { place, .. } if Some(place) == last)
     }
 
     /// Whether an exchange is under way. The robot then stands still, and what it does stays what

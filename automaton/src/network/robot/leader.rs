@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Bid, Election, NodeId, PostKind};
+use pleach_discrete::network::{Bid, Election, NodeId};
 
 use super::super::beacon::Notice;
 use super::super::record::MissionEvent;
@@ -17,11 +17,8 @@ const BESIDE: f64 = 2.1;
 impl Robot {
     /// A task is announced: place a bid for it (Remark 5.3).
     pub fn begin_leader_election(&mut self) {
-        // A released leader may service its task at once: the others then hear of the next task
-        // before they have heard that the team advances.
-        self.resume();
-        self.leave_team();
-        self.awaits_release = false;
+        self.subgroups.clear();
+        self.still_periods = 0;
         self.path = None;
         self.agreement = None;
         self.route = None;
@@ -71,20 +68,10 @@ impl Robot {
         if self.winner() != Some(self.id) {
             return;
         }
-        let conflict =
-            !self.duty.is_redundant() || self.children().any(|child| !child.beacon.can_detach);
-        if let Some(station) = self.duty.station_mut() {
-            match (conflict, station.post.kind) {
-                (false, _) => station.post.kind = PostKind::Primary { follows: None },
-                (true, PostKind::Redundant) => station.post.kind = PostKind::Fixed,
-                (true, _) => {}
-            }
-        }
+        let conflict = self.duty.is_bound();
         if let Some(task) = self.tasks.last().map(|task| task.number) {
             self.report(MissionEvent::LeaderElected { task, robot: self.id, conflict });
         }
-        self.awaits_release = conflict;
-        self.still_periods = 0;
         if !conflict {
             self.issue(Notice::Advance { joined: None });
         }

@@ -34,7 +34,7 @@ impl Robot {
         }
         match self.phase {
             Phase::RecruitElection => self.answer_call(),
-            Phase::Shift => self.walk_path(),
+            Phase::Shift => self.report_arrival(),
             _ => {}
         }
         self.review_team();

@@ -1,8 +1,9 @@
 //! One robot: its own state, and what it makes of the messages it hears.
 //!
 //! Everything here is local. A robot knows its own position and duty, what every robot knows
-//! from the beginning ([`Site`]), and the beacons of the neighbours that it hears. The chapters
-//! follow the day of a robot: it listens (`hearing`), keeps its place in the tree (`attachment`,
+//! from the beginning ([`Site`]), and the messages of the neighbours that it hears. It is a
+//! [`Node`](crate::node::Node): `step` says what it does with each input, stage by stage of a
+//! control period. The chapters follow that period: it listens (`hearing`), keeps its place in the tree (`attachment`,
 //! `links`), takes part in the mission (`mission`,
 //! `leader`, `recruit`, `path`, `team`), exchanges duties with a robot in its way
 //! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
@@ -10,6 +11,7 @@
 
 mod abstraction;
 mod attachment;
+mod duties;
 mod exchange;
 mod facts;
 mod hearing;
@@ -20,6 +22,7 @@ mod motion;
 mod path;
 mod recruit;
 mod routing;
+mod step;
 mod team;
 mod yielding;
 
@@ -30,23 +33,25 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Bid, Bulletin, Dealings, Election, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
-    PostId, Role, RoleEvent, Subgroup,
+    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Phase, Post,
+    PostId, Role, Subgroup,
 };
 
-pub use facts::{Facts, VARIABLES};
+pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
+pub use facts::{Facts, GLOSSARY, PROPOSITIONS, VARIABLES};
 pub use links::TreeLink;
-pub use motion::{Objection, Proposal};
-pub use routing::{FlowReport, RouteLink};
+pub use routing::RouteLink;
+pub use step::{RobotError, Stage};
 
-use crate::automaton::{Jump, TransitionError};
+use crate::automaton::TransitionError;
+use crate::located::Current;
 
-use super::automata::{MissionAutomaton, RoleAutomaton};
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
-use super::duty::{Duty, Hop, Path, Station};
+use super::duty::{Duty, Held, Hop, Path, Standby, Station};
 use super::record::MissionEvent;
 use super::shared::Shared;
 use super::site::Site;
+use duties::Label;
 use hearing::Neighbour;
 
 /// A robot of the network.
@@ -57,13 +62,18 @@ pub struct Robot {
     rate: f64,
     site: Arc<Site>,
 
+    // Where it stands in its control period, and whether that is its first.
+    stage: Stage,
+    is_new: bool,
+
     // Its continuous state: x, u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
     position: Point,
     velocity: Vector,
     clock: f64,
 
-    // Where it is in its two automata.
-    role: Role,
+    // Where it is in its automata, and what the duty automaton jumps together with.
+    duty: Current<Duty>,
+    label: Label,
     phase: Phase,
     facts: Facts,
     is_quiet: bool,
@@ -74,9 +84,7 @@ pub struct Robot {
     is_unmeasured: bool,
     voice: Voice,
 
-    // Its duty, and the exchange of duties that it is engaged in.
-    duty: Duty,
-    left_post: Option<PostId>,
+    // The exchange of duties that it is engaged in.
     dealings: Dealings<Duty>,
     last_partner: Option<NodeId>,
     /// The number of the offer answered last, by the robot that made it.
@@ -84,9 +92,15 @@ pub struct Robot {
 
     // What it hears and where it hangs.
     neighbours: Vec<Neighbour>,
+    /// Where in the table of neighbours the next beacon is expected.
+    heard_up_to: usize,
     parent: Option<NodeId>,
     lineage: Option<Arc<Lineage>>,
     below: Arc<IdSet>,
+    /// The parent in the tree that it has found to be best, none if it has looked for none.
+    desired_parent: Option<Option<Anchor>>,
+    /// The node that p₁ finds to be a better parent.
+    reattaches_to: Option<NodeId>,
     can_detach: bool,
     barren_periods: u32,
 
@@ -100,7 +114,6 @@ pub struct Robot {
     bid: Option<Bid>,
     waited_rounds: usize,
     route: Option<(u32, Shared<Vec<Hop>>)>,
-    awaits_release: bool,
     path: Option<Arc<Path>>,
     agreement: Option<Agreement>,
     subgroups: Vec<Subgroup>,
@@ -110,16 +123,26 @@ pub struct Robot {
     // Communication variables.
     routing: routing::RoutingState,
     links: Vec<RouteLink>,
+    /// The link whose other end is expected to tell its multiplier next.
+    expected_link: usize,
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
+    /// The robots that send their demand here in a sweep, ascending, each with what has been heard
+    /// of it.
+    demands: Vec<(NodeId, Option<f64>)>,
     residual: f64,
+    has_swept: bool,
     is_frugal: bool,
+    has_shortage_news: bool,
+    has_untold_flows: bool,
+    is_unsettled: bool,
 
     // Motion.
     destination: Option<Destination>,
     waypoint: Option<Point>,
-    proposal: Option<Proposal>,
+    proposal: Option<Segment>,
     heard_moves: Vec<(NodeId, Segment)>,
+    must_judge_moves: bool,
     arrival: Point,
     resting_place: Point,
     still_periods: u32,
@@ -141,13 +164,17 @@ impl Robot {
     /// A robot at the start of a mission: redundant, alone, at rest.
     pub fn new(id: NodeId, position: Point, rate: f64, site: Arc<Site>) -> Self {
         let post = Post::redundant(PostId(id as u32));
+        let station = Station { post, reference: position };
         Robot {
             id,
             rate,
+            stage: Stage::Sample,
+            is_new: true,
             position,
             velocity: Vector::zeros(),
             clock: site.settings.period,
-            role: Role::Redundant,
+            duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
+            label: Label::Alone,
             phase: Phase::Idle,
             facts: Facts::default(),
             is_quiet: false,
@@ -155,15 +182,16 @@ impl Robot {
             is_unspoken: true,
             is_unmeasured: true,
             voice: Voice::default(),
-            duty: Duty::Hold(Station { post, reference: position }),
-            left_post: None,
             dealings: Dealings::new(),
             last_partner: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
+            heard_up_to: 0,
             parent: None,
             lineage: None,
             below: Arc::new(IdSet::singleton(id)),
+            desired_parent: None,
+            reattaches_to: None,
             can_detach: false,
             barren_periods: 0,
             bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
@@ -174,7 +202,6 @@ impl Robot {
             bid: None,
             waited_rounds: 0,
             route: None,
-            awaits_release: false,
             path: None,
             agreement: None,
             subgroups: Vec::new(),
@@ -182,14 +209,21 @@ impl Robot {
             team: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
+            expected_link: 0,
             inflow: 0.0,
             inflows: Vec::new(),
+            demands: Vec::new(),
             residual: 0.0,
+            has_swept: false,
             is_frugal: false,
+            has_shortage_news: false,
+            has_untold_flows: false,
+            is_unsettled: true,
             destination: None,
             waypoint: None,
             proposal: None,
             heard_moves: Vec::new(),
+            must_judge_moves: false,
             arrival: position,
             resting_place: position,
             still_periods: 0,
@@ -200,7 +234,7 @@ impl Robot {
 
     /// What the robot tells its neighbours now: the very same beacon as before unless something
     /// in it has changed.
-    pub fn speak(&mut self) -> Arc<Beacon> {
+    fn next_beacon(&mut self) -> Arc<Beacon> {
         if !std::mem::take(&mut self.is_unspoken)
             && let Some(beacon) = self.voice.last()
         {
@@ -223,7 +257,7 @@ impl Robot {
             lineage: self.lineage.clone(),
             parent: self.parent,
             below: Arc::clone(&self.below),
-            duty: Some(self.duty),
+            duty: Some(*self.duty),
             parked: self.is_parked(),
             way: self.way_asked_for(),
             can_detach: self.can_detach,
@@ -234,29 +268,14 @@ impl Robot {
         }
     }
 
-    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; at the sample the robot is where
-    /// its certified move ends, to the last bit.
-    pub fn flow(&mut self, duration: f64) {
-        self.clock += duration;
-        self.position = match self.time_to_sample() > 0.0 {
-            true => self.position + self.velocity * duration,
-            false => self.arrival,
-        };
-    }
-
-    /// Time until the clock calls for the next sample.
-    pub fn time_to_sample(&self) -> f64 {
-        (self.site.settings.period - self.clock).max(0.0)
-    }
-
     /// x_i.
     pub const fn position(&self) -> Point {
         self.position
     }
 
-    /// The role, a location of the role automaton.
-    pub const fn role(&self) -> Role {
-        self.role
+    /// The role that its duty gives it.
+    pub fn role(&self) -> Role {
+        self.duty.role()
     }
 
     /// The phase, a location of the mission automaton.
@@ -265,7 +284,7 @@ impl Robot {
     }
 
     /// What it does.
-    pub const fn duty(&self) -> &Duty {
+    pub fn duty(&self) -> &Duty {
         &self.duty
     }
 
@@ -290,9 +309,9 @@ impl Robot {
     }
 
     /// A control period begins: what is looked at once a period.
-    pub fn begin_period(&mut self) {
+    fn begin_period(&mut self) {
         self.stir();
-        self.retire_if_barren();
+        self.count_barren_periods();
         self.consider_exchange();
     }
 
@@ -300,62 +319,46 @@ impl Robot {
     ///
     /// What comes of it depends on nothing but what the robot hears and its own state. Where
     /// neither has changed, and no wait is over, there is nothing to do.
-    pub fn deliberate(&mut self) {
+    fn deliberate(&mut self) -> Result<(), TransitionError> {
         let is_due = self.count_round();
         if !std::mem::take(&mut self.has_news) && !is_due {
-            return;
+            return Ok(());
         }
-        self.reflect();
+        self.reflect()
     }
 
     /// The robot puts together what it has heard, whether or not there is news in it.
-    fn reflect(&mut self) {
+    fn reflect(&mut self) -> Result<(), TransitionError> {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
-        self.handle_exchange();
+        self.handle_exchange()?;
         self.keep_place();
         self.hear_word();
         self.remember_parent();
+        Ok(())
     }
 
-    /// Takes at most one transition of the mission automaton.
-    ///
-    /// # Errors
-    /// When a guard cannot be evaluated.
-    pub fn step_mission(
-        &mut self,
-        automaton: &MissionAutomaton,
-    ) -> Result<Option<Jump<Phase, MissionStep>>, TransitionError> {
-        let mut phase = self.phase;
-        let Some(step) = automaton.enabled(phase, self)? else { return Ok(None) };
-        let jump = step.jump();
-        self.phase = jump.target;
-        step.fire(&mut phase, self)?;
-        self.is_quiet = false;
-        self.stir();
-        Ok(Some(jump))
-    }
-
-    /// Takes at most one transition of the role automaton.
-    ///
-    /// # Errors
-    /// When a guard cannot be evaluated.
-    pub fn step_role(
-        &mut self,
-        automaton: &RoleAutomaton,
-    ) -> Result<Option<Jump<Role, RoleEvent>>, TransitionError> {
-        let mut role = self.role;
-        let jump = automaton.step(&mut role, self)?;
-        self.role = role;
-        if jump.is_some() {
+    /// Takes at most one transition of the mission automaton, together with the duty automaton if
+    /// that has a transition for it, or else one of the duty automaton alone; says whether it did.
+    fn jump_once(&mut self) -> Result<bool, TransitionError> {
+        let role = self.role();
+        let jumped = self.jump_mission()? || self.jump_duty(Label::Alone)?.is_some();
+        if jumped {
             self.is_quiet = false;
             self.stir();
         }
-        Ok(jump)
+        self.report_role_after(role);
+        Ok(jumped)
     }
 
-    /// Takes what it has told observers since the last call.
-    pub fn drain_log(&mut self) -> std::vec::Drain<'_, MissionEvent> {
-        self.log.drain(..)
+    fn jump_mission(&mut self) -> Result<bool, TransitionError> {
+        let site = Arc::clone(&self.site);
+        let mut phase = self.phase;
+        let Some(step) = site.automata.mission.enabled(phase, self)? else { return Ok(false) };
+        let jump = step.jump();
+        self.jump_duty(Label::Mission(jump.event))?;
+        self.phase = jump.target;
+        step.fire(&mut phase, self)?;
+        Ok(true)
     }
 
     /// The robot's state has changed: it has something to think over, to say and to measure.

@@ -3,12 +3,10 @@
 use std::sync::Arc;
 
 use pleach_discrete::network::path::{Ties, subgroups};
-use pleach_discrete::network::{
-    Agreement, Anchor, NodeId, Phase, Post, PostId, PostKind, Subgroup,
-};
+use pleach_discrete::network::{Agreement, NodeId, Phase, Post, PostId, PostKind, Subgroup};
 
 use super::super::beacon::Notice;
-use super::super::duty::{Duty, Hop, Path, Station};
+use super::super::duty::{Duty, Hop, Path, Shifting, Waiting};
 use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
@@ -29,9 +27,6 @@ impl Robot {
                 bears_others: self.has_ties_off(&path),
             };
             agreement.vote(place, path.is_break_point(place, ties));
-            if place <= path.last_break_point() {
-                self.duty = Duty::Wait { station, place };
-            }
         }
         self.agreement = Some(agreement);
         self.path = Some(path);
@@ -56,7 +51,7 @@ impl Robot {
         let Some(points) = self.break_points() else { return };
         self.subgroups = subgroups(&points).collect();
         self.subgroup = 0;
-        if let (Duty::Wait { place: 0, .. }, Some(path)) = (&self.duty, &self.path) {
+        if let (Duty::Waiting(Waiting { place: 0, .. }), Some(path)) = (&*self.duty, &self.path) {
             let robots: Vec<_> = path.hops.iter().map(|hop| hop.robot).collect();
             let break_points = points.iter().map(|&place| robots[place]).collect();
             self.report(MissionEvent::RecruitElected {
@@ -65,7 +60,6 @@ impl Robot {
                 break_points,
             });
         }
-        self.walk_path();
     }
 
     /// How many subgroups of the path have arrived, as far as it knows.
@@ -78,26 +72,11 @@ impl Robot {
         (self.phase == Phase::Shift).then(|| self.subgroups.get(self.subgroup).copied())?
     }
 
-    /// Sets out when it is this robot's turn, and says so when it has arrived.
-    pub(super) fn walk_path(&mut self) {
-        let Some(active) = self.subgroups.get(self.subgroup).copied() else { return };
-        if self.is_engaged() {
-            return;
-        }
-        if let Duty::Wait { station, place } = self.duty
-            && active.places().contains(&place)
-            && (place == 0 || place > active.first || self.is_relieved_of(station.post.id))
-        {
-            if place == active.first {
-                let robots = self.robots_at(active);
-                self.report(MissionEvent::SubgroupStarted { subgroup: self.subgroup, robots });
-            }
-            // The recruit's own place is given up; every other is taken over by the robot behind.
-            self.left_post = (place > 0).then_some(station.post.id);
-            self.duty = Duty::Shift { place };
-            self.still_periods = 0;
-        }
-        if let Duty::Shift { place } = self.duty
+    /// Says so when it has arrived at the next place of Σ.
+    pub(super) fn report_arrival(&mut self) {
+        if let Duty::Shifting(Shifting { place, .. }) = *self.duty
+            && self.subgroups.get(self.subgroup).is_some()
+            && !self.is_engaged()
             && self.has_arrived()
             && let Some(agreement) = &mut self.agreement
         {
@@ -106,7 +85,7 @@ impl Robot {
     }
 
     /// The robots that stood at the places of a subgroup when Σ was announced.
-    fn robots_at(&self, subgroup: Subgroup) -> Vec<NodeId> {
+    pub(super) fn robots_at(&self, subgroup: Subgroup) -> Vec<NodeId> {
         let hops = self.path.as_ref().and_then(|path| path.hops.get(subgroup.places()));
         hops.into_iter().flatten().map(|hop| hop.robot).collect()
     }
@@ -123,76 +102,29 @@ impl Robot {
 
     /// The place that this robot goes to along Σ.
     pub(super) fn next_hop(&self) -> Option<&Hop> {
-        match self.duty {
-            Duty::Shift { place } => self.path.as_ref()?.hops.get(place + 1),
+        match *self.duty {
+            Duty::Shifting(Shifting { place, .. }) => self.path.as_ref()?.hops.get(place + 1),
             _ => None,
         }
     }
 
-    /// Every member of the active subgroup has arrived: each takes the post it has come to.
-    pub fn take_posts(&mut self) {
-        let Some(active) = self.subgroups.get(self.subgroup).copied() else { return };
-        if let Duty::Shift { place } = self.duty
-            && active.places().contains(&place)
-        {
-            if place == active.first {
-                let robots = self.robots_at(active);
-                self.report(MissionEvent::SubgroupArrived { subgroup: self.subgroup, robots });
-            }
-            self.take_post_ahead();
-        }
+    /// Every member of the active subgroup has arrived: the next one is the active team.
+    pub fn next_subgroup(&mut self) {
         self.subgroup += 1;
-        self.walk_path();
     }
 
-    fn take_post_ahead(&mut self) {
-        if let Some(hop) = self.next_hop() {
-            // A plain node that queues behind the next member makes its place where it stands.
-            let place = hop.place.reference;
-            let radius = self.site.settings.service_radius;
-            let queues = (self.position - place).norm() > radius;
-            let reference = if queues { self.position } else { place };
-            let station = Station { post: hop.post, reference };
-            self.duty = Duty::Hold(station);
-            self.left_post = None;
-            self.remember_parent();
-        }
-    }
-
-    /// The last robot that Σ relieves joins the primary team, or leads it.
-    pub fn join_team(&mut self) {
-        let (Some(path), Some(&station)) = (self.path.clone(), self.duty.station()) else { return };
-        let follows = match path.hops.last() {
-            Some(last) if !path.releases_leader => Some(last.post.id),
+    /// The last robot that Σ relieves has joined the primary team, or leads it.
+    pub fn announce_advance(&mut self) {
+        let joined = self.duty.post().and_then(|post| match post.kind {
+            PostKind::Primary { follows: Some(follows) } => Some((post.id, follows)),
             _ => None,
-        };
-        let parent = match self.subgroups.is_empty() {
-            true => station.post.parent,
-            false => Some(Anchor::Post(station.post.id)),
-        };
-        let id = PostId((self.site.robots as u32) + self.bulletin.sequence());
-        let mut post = Post::redundant(id);
-        post.kind = PostKind::Primary { follows };
-        post.parent = parent;
-        self.left_post = (!self.subgroups.is_empty()).then_some(station.post.id);
-        self.duty = Duty::Hold(Station { post, reference: self.position });
-        self.still_periods = 0;
-        self.awaits_release = false;
-        self.report(match follows {
-            Some(_) => MissionEvent::JoinedPrimary { robot: self.id, team: Vec::new() },
-            None => MissionEvent::Released { robot: self.id },
         });
-        self.issue(Notice::Advance { joined: follows.map(|follows| (id, follows)) });
+        self.issue(Notice::Advance { joined });
         self.resume();
     }
 
     /// The primary team is the active team again.
     pub fn resume(&mut self) {
-        match self.duty {
-            Duty::Shift { .. } => self.take_post_ahead(),
-            Duty::Wait { station, .. } => self.duty = Duty::Hold(station),
-            Duty::Hold(_) => {}
-        }
         self.subgroups.clear();
         self.still_periods = 0;
     }

@@ -18,10 +18,10 @@ const RESIDUAL_RESOLUTION: f64 = 1e-3;
 impl Robot {
     /// p₁ is stuck, or the leader has past duties: call for a recruit.
     pub fn call_for_recruit(&mut self) {
-        if !self.awaits_release {
+        if !self.duty.is_bound() {
             self.report(MissionEvent::Stationary { robot: self.id, team: Vec::new() });
         }
-        self.issue(Notice::Call { caller: self.id, releases_leader: self.awaits_release });
+        self.issue(Notice::Call { caller: self.id, releases_leader: self.duty.is_bound() });
         self.begin_recruit_election();
     }
 

@@ -4,7 +4,6 @@ use pleach_continuous::Point;
 use pleach_discrete::network::{Phase, PostId, PostKind};
 
 use super::super::beacon::{Notice, TeamReport};
-use super::super::duty::Duty;
 use super::super::record::{MissionEvent, Outcome};
 use super::Robot;
 
@@ -18,9 +17,9 @@ const BUNCHED: f64 = 2.6;
 const SLACK: f64 = 0.95;
 
 impl Robot {
-    /// Whether this robot heads the network's effort, released or not.
+    /// Whether this robot is the elected leader, released or not.
     pub fn leads(&self) -> bool {
-        self.awaits_release || self.duty.post().is_some_and(|post| post.is_leading())
+        self.duty.leads()
     }
 
     /// Whether this robot is p₁: nobody of the team follows it.
@@ -107,26 +106,8 @@ impl Robot {
     /// The leader is within reach of its task.
     pub fn service_task(&mut self) {
         let Some(task) = self.tasks.last().map(|task| task.number) else { return };
-        self.leave_team();
-        if let Some(station) = self.duty.station_mut() {
-            station.post.task = Some(task);
-        }
         self.report(MissionEvent::TaskServiced { task, robot: self.id });
         self.issue(Notice::Serviced { task });
-    }
-
-    /// The team is dissolved: its posts become fixed where they are.
-    pub fn leave_team(&mut self) {
-        let position = self.position;
-        if let Some(station) = self.duty.station_mut()
-            && station.post.is_primary()
-        {
-            station.post.kind = PostKind::Fixed;
-            station.reference = position;
-        }
-        if let Duty::Wait { station, .. } = self.duty {
-            self.duty = Duty::Hold(station);
-        }
     }
 
     /// The active team cannot go on, and a recruit would not help.

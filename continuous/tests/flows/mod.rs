@@ -1,0 +1,6 @@
+//! Flows against closed forms and against the exponential of nalgebra.
+
+mod events;
+mod exact;
+mod integration;
+mod support;
