@@ -64,7 +64,7 @@ impl Robot {
 
     /// While a path Σ is being sought or walked, nobody changes its parent.
     pub(super) fn tree_is_frozen(&self) -> bool {
-        matches!(self.phase, Phase::RecruitElection | Phase::PathAgreement | Phase::Shift)
+        matches!(self.phase(), Phase::RecruitElection | Phase::PathAgreement | Phase::Shift)
     }
 
     /// Whether a fixed post or one of the primary team hangs on this robot's post.
@@ -217,7 +217,7 @@ impl Robot {
     /// Remark 5.6: p₁ hangs itself on a fixed or redundant robot or an access point that is
     /// nearer to its target, if there is one within d_build.
     fn reattach(&mut self) -> Option<Option<Anchor>> {
-        if self.phase != Phase::Advance || !self.is_first() && self.awaited_parent().is_none() {
+        if self.phase() != Phase::Advance || !self.is_first() && self.awaited_parent().is_none() {
             return None;
         }
         if let Some(awaited) = self.awaited_parent()

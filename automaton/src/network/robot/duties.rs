@@ -187,7 +187,7 @@ impl Robot {
     /// Whether it takes the post ahead now: its subgroup has arrived, or the mission goes on.
     pub(super) fn takes_post_ahead(&self) -> bool {
         let in_active_subgroup = || {
-            let active = self.subgroups.get(self.subgroup);
+            let active = self.active_subgroup();
             self.duty
                 .place()
                 .is_some_and(|place| active.is_some_and(|active| active.places().contains(&place)))
@@ -206,7 +206,7 @@ impl Robot {
     /// the robot behind unless the whole subgroup sets out, or it is the recruit.
     pub(super) fn may_set_out(&self) -> bool {
         let Duty::Waiting(Waiting { held, place, .. }) = *self.duty else { return false };
-        self.subgroups.get(self.subgroup).is_some_and(|active| {
+        self.active_subgroup().is_some_and(|active| {
             active.places().contains(&place)
                 && (place == 0 || place > active.first || self.is_relieved_of(held.station.post.id))
         })
@@ -263,10 +263,8 @@ fn stop_awaiting<B: From<Held>>(waiting: &AwaitingRelease, _: &Robot, effects: &
 /// The recruit's own place is given up; every other is taken over by the robot behind.
 fn set_out(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Shifting {
     let place = waiting.place;
-    if let Some(&active) =
-        robot.subgroups.get(robot.subgroup).filter(|active| active.first == place)
-    {
-        let (subgroup, robots) = (robot.subgroup, robot.robots_at(active));
+    if let Some(active) = robot.active_subgroup().filter(|active| active.first == place) {
+        let (subgroup, robots) = (robot.subgroups_done(), robot.robots_at(active));
         effects.push(DutyEffect::Report(MissionEvent::SubgroupStarted { subgroup, robots }));
     }
     effects.push(DutyEffect::Restart);
@@ -283,10 +281,10 @@ fn take_post_ahead<B: From<Held>>(
     let hop = robot.next_hop()?;
     if !robot.takes_step(MissionStep::SubgroupArrived) {
         effects.push(DutyEffect::Restart);
-    } else if let Some(&active) =
-        robot.subgroups.get(robot.subgroup).filter(|active| active.first == shifting.place)
+    } else if let Some(active) =
+        robot.active_subgroup().filter(|active| active.first == shifting.place)
     {
-        let (subgroup, robots) = (robot.subgroup, robot.robots_at(active));
+        let (subgroup, robots) = (robot.subgroups_done(), robot.robots_at(active));
         effects.push(DutyEffect::Report(MissionEvent::SubgroupArrived { subgroup, robots }));
     }
     let place = hop.place.reference;
@@ -297,7 +295,7 @@ fn take_post_ahead<B: From<Held>>(
 
 /// The post that the last robot of Σ gets in the primary team.
 fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
-    let joins_at_once = robot.subgroups.is_empty();
+    let joins_at_once = robot.mission.shift().is_none_or(|shift| shift.subgroups.is_empty());
     let before = held.station.post;
     let parent = if joins_at_once { before.parent } else { Some(Anchor::Post(before.id)) };
     let id = PostId((robot.site.robots as u32) + robot.bulletin.sequence());
@@ -309,7 +307,7 @@ fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
 fn join_team(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Following {
     let event = MissionEvent::JoinedPrimary { robot: robot.id, team: Vec::new() };
     effects.extend([DutyEffect::Report(event), DutyEffect::Restart]);
-    let follows = robot.path.as_ref().and_then(|path| path.hops.last()).map(|hop| hop.post.id);
+    let follows = robot.mission.path().and_then(|path| path.hops.last()).map(|hop| hop.post.id);
     Following(team_post(&waiting.held, robot, follows))
 }
 

@@ -63,7 +63,7 @@ impl Robot {
                 let active = self.active_subgroup();
                 active.is_some_and(|active| active.places().contains(&place)) && !self.has_arrived()
             }
-            Duty::Following(_) | Duty::Leading(_) => self.phase == Phase::Advance,
+            Duty::Following(_) | Duty::Leading(_) => self.phase() == Phase::Advance,
             _ => false,
         }
     }

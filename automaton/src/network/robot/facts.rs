@@ -209,7 +209,7 @@ impl Robot {
         let over =
             self.election.as_ref().is_some_and(|election| election.is_complete(&self.roster));
         facts.election_over = over;
-        match self.phase {
+        match self.phase() {
             Phase::RecruitElection => {
                 facts.won = over && won;
                 let aided = best.is_some_and(|(bid, _)| bid.rank > 0);
@@ -247,8 +247,9 @@ impl Robot {
     }
 
     fn measure_shift(&self, facts: &mut Facts) {
-        match (self.subgroups.get(self.subgroup), &*self.duty, &self.path) {
-            (Some(active), duty, _) => {
+        let Some(shift) = self.mission.shift() else { return };
+        match (shift.active(), &*self.duty) {
+            (Some(active), duty) => {
                 if matches!(duty, Duty::Shifting(_)) && !self.has_arrived() {
                     facts.stalled = f64::from(self.still_periods);
                 }
@@ -261,10 +262,9 @@ impl Robot {
                 None,
                 Duty::Waiting(Waiting { held, place, .. })
                 | Duty::AwaitingRelease(AwaitingRelease { held, place }),
-                Some(path),
             ) => {
-                facts.relieved = *place == path.last_break_point()
-                    && (self.subgroups.is_empty() || self.is_relieved_of(held.station.post.id));
+                facts.relieved = *place == shift.path.last_break_point()
+                    && (shift.subgroups.is_empty() || self.is_relieved_of(held.station.post.id));
             }
             _ => {}
         }

@@ -155,6 +155,11 @@ impl Robot {
         self.neighbours.iter().map(|neighbour| (neighbour.id(), neighbour.silent_rounds))
     }
 
+    /// The beacon that the robot goes by of each of its neighbours, ascending.
+    pub fn held_beacons(&self) -> impl Iterator<Item = &Arc<Beacon>> {
+        self.neighbours.iter().map(|neighbour| &neighbour.beacon)
+    }
+
     /// What the robot hears has changed.
     fn receive_news(&mut self) {
         (self.has_news, self.is_unmeasured) = (true, true);

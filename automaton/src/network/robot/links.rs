@@ -77,8 +77,8 @@ impl Robot {
 
     /// The parent of the robot that has left `place`.
     fn parent_under_way(&self, place: usize) -> Option<NodeId> {
-        let path = self.path.as_ref()?;
-        let active = self.subgroups.get(self.subgroup)?;
+        let shift = self.mission.shift()?;
+        let (path, active) = (&shift.path, shift.active()?);
         let hop = path.hops.get(place)?;
         if path.descends(active.first) {
             return match place == active.first {
@@ -100,8 +100,8 @@ impl Robot {
 
     /// The robot of the chain that stands for a post whose holder has left it.
     fn stand_in_for(&self, post: pleach_discrete::network::PostId) -> Option<NodeId> {
-        let path = self.path.as_ref()?;
-        let active = self.subgroups.get(self.subgroup)?;
+        let shift = self.mission.shift()?;
+        let (path, active) = (&shift.path, shift.active()?);
         let place = path.place_of(post)?;
         match path.descends(active.first) {
             true => self.robot_at(place),

@@ -33,13 +33,14 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Phase, Post,
-    PostId, Role, Subgroup,
+    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Post, PostId,
+    Role,
 };
 
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
 pub use facts::{Facts, GLOSSARY, PROPOSITIONS, VARIABLES};
 pub use links::TreeLink;
+pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
 pub use routing::RouteLink;
 pub use step::{RobotError, Stage};
 
@@ -47,7 +48,8 @@ use crate::automaton::TransitionError;
 use crate::located::Current;
 
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
-use super::duty::{Duty, Held, Hop, Path, Standby, Station};
+use super::duty::{Duty, Held, Hop, Standby, Station};
+use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
 use super::shared::Shared;
 use super::site::Site;
@@ -74,7 +76,7 @@ pub struct Robot {
     // Where it is in its automata, and what the duty automaton jumps together with.
     duty: Current<Duty>,
     label: Label,
-    phase: Phase,
+    mission: Current<Mission>,
     facts: Facts,
     is_quiet: bool,
 
@@ -114,10 +116,7 @@ pub struct Robot {
     bid: Option<Bid>,
     waited_rounds: usize,
     route: Option<(u32, Shared<Vec<Hop>>)>,
-    path: Option<Arc<Path>>,
     agreement: Option<Agreement>,
-    subgroups: Vec<Subgroup>,
-    subgroup: usize,
     team: Option<TeamReport>,
 
     // Communication variables.
@@ -153,11 +152,13 @@ pub struct Robot {
 
 /// A task that this robot has heard of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct TaskNotice {
-    number: usize,
-    position: Point,
+pub struct TaskNotice {
+    /// Its number.
+    pub number: usize,
+    /// q_v.
+    pub position: Point,
     /// The point of 𝒲_f nearest to it, where the leader goes.
-    target: Point,
+    pub target: Point,
 }
 
 impl Robot {
@@ -175,7 +176,7 @@ impl Robot {
             clock: site.settings.period,
             duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
             label: Label::Alone,
-            phase: Phase::Idle,
+            mission: Current::new(Mission::Idle(Idle)),
             facts: Facts::default(),
             is_quiet: false,
             has_news: true,
@@ -202,10 +203,7 @@ impl Robot {
             bid: None,
             waited_rounds: 0,
             route: None,
-            path: None,
             agreement: None,
-            subgroups: Vec::new(),
-            subgroup: 0,
             team: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
@@ -278,11 +276,6 @@ impl Robot {
         self.duty.role()
     }
 
-    /// The phase, a location of the mission automaton.
-    pub const fn phase(&self) -> Phase {
-        self.phase
-    }
-
     /// What it does.
     pub fn duty(&self) -> &Duty {
         &self.duty
@@ -332,7 +325,7 @@ impl Robot {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
         self.handle_exchange()?;
         self.keep_place();
-        self.hear_word();
+        self.hear_notices();
         self.remember_parent();
         Ok(())
     }
@@ -348,17 +341,6 @@ impl Robot {
         }
         self.report_role_after(role);
         Ok(jumped)
-    }
-
-    fn jump_mission(&mut self) -> Result<bool, TransitionError> {
-        let site = Arc::clone(&self.site);
-        let mut phase = self.phase;
-        let Some(step) = site.automata.mission.enabled(phase, self)? else { return Ok(false) };
-        let jump = step.jump();
-        self.jump_duty(Label::Mission(jump.event))?;
-        self.phase = jump.target;
-        step.fire(&mut phase, self)?;
-        Ok(true)
     }
 
     /// The robot's state has changed: it has something to think over, to say and to measure.

@@ -55,14 +55,14 @@ impl Robot {
     pub fn is_parked(&self) -> bool {
         match *self.duty {
             Duty::Shifting(_) => self.active_subgroup().is_none(),
-            Duty::Following(_) | Duty::Leading(_) => self.phase != Phase::Advance,
+            Duty::Following(_) | Duty::Leading(_) => self.phase() != Phase::Advance,
             _ => true,
         }
     }
 
     /// ψ_i: where the robot goes now (Algorithm 2), if it goes anywhere.
     pub fn goal(&self) -> Option<Point> {
-        if self.is_engaged() || self.phase == Phase::Ended || self.is_held_by_old_news() {
+        if self.is_engaged() || self.phase() == Phase::Ended || self.is_held_by_old_news() {
             return None;
         }
         if let Duty::Shifting(_) = *self.duty {
@@ -70,7 +70,7 @@ impl Robot {
             return self.next_hop().map(|hop| hop.place.reference).filter(|&p| self.is_off(p));
         }
         if self.duty.is_primary() {
-            let waits = self.phase != Phase::Advance
+            let waits = self.phase() != Phase::Advance
                 || self.leads() && (self.facts.distance <= self.reach() || self.bears_others());
             return if waits { None } else { self.team_goal() };
         }
