@@ -11,7 +11,7 @@ use crate::generated::{is_update, read, root};
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::robot::GLOSSARY;
 use pleach::automaton::network::scenario::{Control, Scenario};
-use pleach::automaton::network::{Site, duty_automaton, mission_automaton};
+use pleach::automaton::network::{Site, dealing_automaton, duty_automaton, mission_automaton};
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::figures::Album;
@@ -50,12 +50,19 @@ fn the_drawing_of_the_mission_automaton_is_up_to_date() {
 }
 
 #[test]
+fn the_drawing_of_the_exchange_automaton_is_up_to_date() {
+    keep_up_to_date("docs/pictures/exchange.svg", &diagram::svg(&dealing_automaton().unwrap()));
+}
+
+#[test]
 fn the_page_on_the_automata_is_up_to_date() {
     let (duty, mission) = (duty_automaton().unwrap(), mission_automaton().unwrap());
+    let dealing = dealing_automaton().unwrap();
     let page = format!(
-        "{INTRODUCTION}\n{}\n{}\n{}",
+        "{INTRODUCTION}\n{}\n{}\n{}\n{}",
         chapter("The duty of a robot", "duty", DUTY, &duty),
         chapter("The mission as one robot sees it", "mission", MISSION, &mission),
+        chapter("The exchange of duties", "exchange", EXCHANGE, &dealing),
         glossary(),
     );
     keep_up_to_date("docs/automata.md", &page);
@@ -78,6 +85,10 @@ The duty says what a robot does for the network. Each location owns the data tha
 reset is a function from the data of one location to that of the next. The paper's role follows from
 the duty: a robot on standby is *redundant*; a relay, a follower and a robot that shifts along Σ are
 *nodes*, the first of Σ the *recruit*; junction, leaf and leader are called as they are.
+";
+
+const EXCHANGE: &str = "\
+A mover that cannot pass a parked robot exchanges duties with it: it offers its own, the parked robot\ngives its duty in return, the mover takes that, and the parked robot takes the one offered. From the\noffer to the end neither takes a step of the mission. Where a transition takes a duty, the duty\nautomaton jumps with it.
 ";
 
 const MISSION: &str = "\

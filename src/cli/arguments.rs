@@ -90,6 +90,8 @@ pub struct DiagramArguments {
 pub enum Automaton {
     /// What a robot does for the network, with the roles of the paper
     Duty,
+    /// Where a robot stands in the exchange of duties with a robot in its way
+    Exchange,
     /// Where the mission stands: elections, advance, shifts of the secondary team
     Mission,
 }

@@ -3,7 +3,10 @@
 
 use crate::BuildError;
 
-use super::robot::{DutyAutomaton, MissionAutomaton, duty_automaton, mission_automaton};
+use super::robot::{
+    DealingAutomaton, DutyAutomaton, MissionAutomaton, dealing_automaton, duty_automaton,
+    mission_automaton,
+};
 
 /// The automata of a robot; all robots run the same.
 #[derive(Clone, Debug)]
@@ -12,6 +15,8 @@ pub struct Automata {
     pub duty: DutyAutomaton,
     /// The mission as the robot knows it.
     pub mission: MissionAutomaton,
+    /// Where the robot stands in the exchange of duties.
+    pub dealing: DealingAutomaton,
 }
 
 impl Automata {
@@ -20,6 +25,10 @@ impl Automata {
     /// # Errors
     /// Never with the tables and guards of this crate; they are checked all the same.
     pub fn new() -> Result<Self, BuildError> {
-        Ok(Automata { duty: duty_automaton()?, mission: mission_automaton()? })
+        Ok(Automata {
+            duty: duty_automaton()?,
+            mission: mission_automaton()?,
+            dealing: dealing_automaton()?,
+        })
     }
 }

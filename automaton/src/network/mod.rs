@@ -23,6 +23,6 @@ pub use composition::{KernelTimes, Network, NetworkError};
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
-pub use robot::{Robot, duty_automaton, mission_automaton};
+pub use robot::{Robot, dealing_automaton, duty_automaton, mission_automaton};
 pub use site::{Site, SiteError};
 pub use user::User;

@@ -4,6 +4,7 @@
 pub mod activity;
 pub mod agreement;
 pub mod bulletin;
+pub mod dealing;
 pub mod election;
 pub mod exchange;
 pub mod id_set;
@@ -16,6 +17,7 @@ pub mod tables;
 pub use activity::{Activity, DUTIES, DutyEvent};
 pub use agreement::Agreement;
 pub use bulletin::Bulletin;
+pub use dealing::{DEALINGS, Dealing, DealingEvent};
 pub use election::{Bid, Election};
 pub use exchange::{Dealings, Exchange, Reply};
 pub use id_set::IdSet;

@@ -49,7 +49,7 @@ impl Robot {
     /// When a guard cannot be evaluated, or transitions do not come to an end.
     pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
         self.stand_at(self.position, still_periods);
-        self.begin_period();
+        self.begin_period()?;
         self.deliberate()?;
         self.jump()
     }
@@ -60,8 +60,8 @@ impl Robot {
     }
 
     /// The duty that it takes over once the mover that offered it has taken its own.
-    pub const fn taking(&self) -> Option<&Duty> {
-        self.dealings.taking()
+    pub fn taking(&self) -> Option<&Duty> {
+        self.dealings().taking()
     }
 
     /// The path Σ that it was told of last.
@@ -117,7 +117,7 @@ impl Robot {
             still_periods,
             duty,
             mission,
-            dealings,
+            deal,
             last_partner,
             answered,
             parent,
@@ -152,6 +152,8 @@ impl Robot {
             heard_up_to: _,
             desired_parent: _,
             reattaches_to: _,
+            partner: _,
+            taking_over: _,
             log: _,
             // Routes and motion.
             velocity: _,
@@ -185,7 +187,7 @@ impl Robot {
             "{:?}",
             (
                 (id, position, still_periods, &**duty, &**mission, barren_periods),
-                (dealings, answered, last_partner, parent, lineage, below, can_detach),
+                (&**deal, answered, last_partner, parent, lineage, below, can_detach),
                 (bulletin, tasks, roster, eligible, election, bid, waited, route),
                 (agreement, team, silences),
             )

@@ -175,6 +175,18 @@ facts! {
             ahead_is_free: robot.post_ahead().as_ref().is_some_and(Post::is_redundant),
             /// A task is serviced from the post ahead.
             ahead_serves: robot.post_ahead().is_some_and(|post| post.task.is_some()),
+            /// It has found a robot in its way with which to exchange duties.
+            finds_partner: robot.partner.is_some(),
+            /// The partner has answered its offer.
+            offer_answered: robot.answer_to_offer().is_some(),
+            /// The partner has accepted its offer.
+            offer_accepted: robot.answer_to_offer().is_some_and(|reply| reply.accepted.is_some()),
+            /// Another robot has made it an offer that it has not answered.
+            asked: robot.offer_to_answer().is_some(),
+            /// It may leave its post to a mover.
+            may_give: robot.may_be_relieved(),
+            /// The mover has heard its reply.
+            reply_heard: robot.is_reply_heard(),
             /// It finds now that it has reached its task.
             reaches_task: robot.takes_step(MissionStep::Reached),
         }

@@ -11,6 +11,7 @@
 
 mod abstraction;
 mod attachment;
+mod dealing;
 mod duties;
 mod exchange;
 mod facts;
@@ -37,6 +38,7 @@ use pleach_discrete::network::{
     Role,
 };
 
+pub use dealing::{Deal, DealingAutomaton, DealingEffect, dealing_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
 pub use facts::{Facts, GLOSSARY, PROPOSITIONS, VARIABLES};
 pub use links::TreeLink;
@@ -87,7 +89,11 @@ pub struct Robot {
     voice: Voice,
 
     // The exchange of duties that it is engaged in.
-    dealings: Dealings<Duty>,
+    deal: Current<Deal>,
+    /// The robot in its way with which it could exchange duties.
+    partner: Option<NodeId>,
+    /// The duty that it takes over in this jump, and from which robot.
+    taking_over: Option<(Duty, NodeId)>,
     last_partner: Option<NodeId>,
     /// The number of the offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, u32>,
@@ -183,7 +189,9 @@ impl Robot {
             is_unspoken: true,
             is_unmeasured: true,
             voice: Voice::default(),
-            dealings: Dealings::new(),
+            deal: Current::new(Deal::Free(dealing::Free(Dealings::new()))),
+            partner: None,
+            taking_over: None,
             last_partner: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
@@ -259,9 +267,9 @@ impl Robot {
             parked: self.is_parked(),
             way: self.way_asked_for(),
             can_detach: self.can_detach,
-            offer: self.dealings.offer().cloned(),
-            offers_made: self.dealings.offers_made(),
-            reply: self.dealings.reply().cloned(),
+            offer: self.dealings().offer().cloned(),
+            offers_made: self.dealings().offers_made(),
+            reply: self.dealings().reply().cloned(),
             team: self.team,
         }
     }
@@ -302,10 +310,11 @@ impl Robot {
     }
 
     /// A control period begins: what is looked at once a period.
-    fn begin_period(&mut self) {
+    fn begin_period(&mut self) -> Result<(), TransitionError> {
         self.stir();
         self.count_barren_periods();
         self.consider_exchange();
+        self.deal()
     }
 
     /// After each round of messages: the robot puts together what it has heard.
@@ -323,7 +332,7 @@ impl Robot {
     /// The robot puts together what it has heard, whether or not there is news in it.
     fn reflect(&mut self) -> Result<(), TransitionError> {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
-        self.handle_exchange()?;
+        self.deal()?;
         self.keep_place();
         self.hear_notices();
         self.remember_parent();

@@ -160,7 +160,7 @@ impl Robot {
             Stage::Sample => {
                 self.restart_clock();
                 self.jump()?;
-                self.begin_period();
+                self.begin_period()?;
                 self.speak(outputs);
                 Stage::Beacons(1)
             }
