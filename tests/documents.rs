@@ -21,7 +21,7 @@ use pleach::summary::Summary;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 9] = [
+const WRITTEN: [&str; 10] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
@@ -29,6 +29,7 @@ const WRITTEN: [&str; 9] = [
     "docs/model.md",
     "docs/semantics.md",
     "docs/automata.md",
+    "docs/robot.md",
     "docs/proofs.md",
     "docs/exploration.md",
 ];

@@ -11,6 +11,7 @@ use crate::builder::Builder;
 use crate::coordinates::Coordinates;
 use crate::flow::Flow;
 use crate::located::{Holds, Place};
+use crate::observed::Watch;
 use crate::reset::Reset;
 
 /// A hybrid automaton over locations `L`, events `E` and a state `S`.
@@ -82,6 +83,8 @@ pub struct Transition<E, S> {
     pub event: E,
     /// When it may be taken.
     pub guard: Guard,
+    /// The same by numbers, where the state has them.
+    pub(crate) watch: Option<Watch<S>>,
     /// What it does to the state.
     pub reset: Reset<S>,
     /// Whether it has to be taken.
@@ -338,6 +341,9 @@ pub struct UnknownParameter {
 
 impl<E: Event, S: Valuation> Transition<E, S> {
     fn allows<L: Location>(&self, location: L, state: &S) -> Result<bool, TransitionError> {
+        if let Some(holds) = self.watch.as_ref().and_then(|watch| watch.holds(state)) {
+            return Ok(holds);
+        }
         let part = || format!("guard `{}`", self.guard.name());
         self.guard.holds(state).map_err(|source| self.error(location, part(), source))
     }

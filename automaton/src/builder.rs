@@ -12,6 +12,7 @@ use crate::coordinates::{Coordinate, Coordinates};
 use crate::edge::Edge;
 use crate::flow::{Flow, Rate};
 use crate::located::Transfer;
+use crate::observed::{Observed, Watch};
 use crate::reset::Reset;
 
 /// An [`Automaton`] that is being put together.
@@ -40,6 +41,8 @@ pub struct Builder<L, E, S> {
     throughout: Vec<Rate<S>>,
     /// The names of all variables and propositions, where the state is not its coordinates.
     observed: Option<Names>,
+    /// How a guard is looked up by numbers, where the state has them.
+    watch: fn(&Predicate) -> Option<Watch<S>>,
     transfers: Vec<Transfer<L, E, S>>,
 }
 
@@ -208,6 +211,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             parameters: Vec::new(),
             throughout: Vec::new(),
             observed: None,
+            watch: |_| None,
             transfers: Vec::new(),
         }
     }
@@ -215,17 +219,6 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     /// What the row from one location on one event carries over, and when.
     pub fn carried_out(mut self, transfer: Transfer<L, E, S>) -> Self {
         self.transfers.push(transfer);
-        self
-    }
-
-    /// These are the variables and the propositions that the state has: no formula may name
-    /// another.
-    pub fn observing(
-        mut self,
-        variables: &'static [&'static str],
-        propositions: &'static [&'static str],
-    ) -> Self {
-        self.observed = Some((variables, propositions));
         self
     }
 
@@ -542,6 +535,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         Ok(Transition {
             event: row.event,
             guard: guard.clone(),
+            watch: (self.watch)(guard.predicate()),
             reset: reset.clone(),
             urgency: row.urgency,
             priority: row.priority,
@@ -564,6 +558,16 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             flow: flow.map(|(_, flow)| flow.clone()),
             invariant: invariant.map(|(_, invariant)| invariant.clone()),
         }
+    }
+}
+
+impl<L: Location, E: Event, S: Observed> Builder<L, E, S> {
+    /// No formula may name anything but the quantities and propositions of the state, and guards
+    /// are evaluated by their numbers.
+    pub fn observing(mut self) -> Self {
+        self.observed = Some((S::VARIABLES, S::PROPOSITIONS));
+        self.watch = Watch::of;
+        self
     }
 }
 

@@ -34,6 +34,7 @@ pub mod named;
 #[cfg(feature = "network")]
 pub mod network;
 pub mod node;
+pub mod observed;
 pub mod reset;
 mod sweep;
 pub mod time;
@@ -58,6 +59,7 @@ pub use flow::{Flow, InvalidMatrix, Rate};
 pub use located::{Current, DataOf, Holds, Place, Transfer};
 pub use moment::Moment;
 pub use named::{Name, Record, RepeatedName};
+pub use observed::Observed;
 pub use reset::{Assignment, Reset};
 pub use sweep::sweep;
 pub use time::HybridTime;

@@ -23,7 +23,6 @@ use super::super::mission::{
 use super::super::record::MissionEvent;
 use super::super::shared::Shared;
 use super::duties::Label;
-use super::facts::{PROPOSITIONS, VARIABLES};
 use super::{Robot, TaskNotice, leader, path, recruit, team};
 
 /// The automaton of the mission as one robot sees it.
@@ -166,7 +165,7 @@ fn resumed<A: DataOf<Mission> + KnowsPath>() -> Row {
 pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
     Automaton::builder(MISSION, Phase::Idle)
-        .observing(VARIABLES, PROPOSITIONS)
+        .observing()
         .carried_out(ended::<Idle>())
         .carried_out(ended::<LeaderElection>())
         .carried_out(ended::<Advance>())
