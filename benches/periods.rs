@@ -3,7 +3,7 @@
 mod support;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::ValidScenario;
 use support::course::Course;
 use support::hall::hall;
 
@@ -15,11 +15,12 @@ const TASKS: usize = 3;
 const TEAM: usize = 1;
 
 /// Every scenario by its number of robots, with its tasks or without any.
-fn scenarios(with_tasks: bool) -> Vec<Scenario> {
-    let mut study = support::study_1();
+fn scenarios(with_tasks: bool) -> Vec<ValidScenario> {
+    let mut study = support::study_1().into_scenario();
     if !with_tasks {
         study.task.clear();
     }
+    let study = ValidScenario::new(study).expect("Study I is a valid scenario");
     let halls = SIZES.map(|robots| hall(robots, if with_tasks { TASKS } else { 0 }));
     std::iter::once(study).chain(halls).collect()
 }

@@ -3,7 +3,8 @@
 //! [`run`] hands the network of a scenario to the executor. Every control period it takes the
 //! observers' view of the network, holds it against the properties of [`crate::verify`], and
 //! shows it to the [`Watcher`]s: the trace writer, the progress display, the summary, the
-//! figures. None of them can influence the robots; a violated property ends the run.
+//! figures. None of them can influence the robots; a violated property ends the run, and so does
+//! a watcher that asks for it.
 
 use std::io;
 use std::ops::ControlFlow;
@@ -11,19 +12,25 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 use crate::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use crate::automaton::network::scenario::Scenario;
+use crate::automaton::network::scenario::ValidScenario;
 use crate::automaton::network::{KernelTimes, Medium, Network, NetworkError};
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use crate::discrete::network::ROLES;
-use crate::verify::network::{Extremes, LimitError, Monitor};
+use crate::verify::network::{Extremes, Monitor};
 
-/// Somebody who watches a mission.
+/// Something that watches a mission.
 pub trait Watcher {
     /// The robots are about to move; `events` is what has happened in this control period.
     ///
     /// # Errors
     /// The watcher cannot write what it has to.
     fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()>;
+
+    /// Why the mission is to end now, if it is: asked after each period has been observed. The
+    /// mission then ends in order, with the outcome [`Outcome::Interrupted`] and this reason.
+    fn interruption(&self) -> Option<String> {
+        None
+    }
 
     /// The mission has ended.
     ///
@@ -37,15 +44,20 @@ pub trait Watcher {
 /// Why a mission could not be run to an end.
 #[derive(Debug, Error)]
 pub enum MissionError {
-    /// No mission can start from the scenario.
-    #[error(transparent)]
-    Scenario(#[from] LimitError),
     /// The network cannot be set up, or a guard cannot be evaluated.
     #[error(transparent)]
     Network(#[from] NetworkError),
     /// The settings leave no time for the mission.
     #[error(transparent)]
     Limit(#[from] InvalidLimit),
+    /// The network came to a state in which it could not go on.
+    #[error("the executor stops at t = {time} s: {reason}; this is a fault of the program")]
+    Stopped {
+        /// t in seconds.
+        time: f64,
+        /// How the executor names it.
+        reason: String,
+    },
     /// A watcher cannot write what it has to.
     #[error("cannot write what the mission shows: {0}")]
     Watcher(#[from] io::Error),
@@ -65,9 +77,9 @@ pub struct Completed {
 /// Runs the mission of `scenario` to its end.
 ///
 /// # Errors
-/// When no mission can start from the scenario, or a watcher fails.
+/// When a watcher fails.
 pub fn run(
-    scenario: &Scenario,
+    scenario: &ValidScenario,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     run_network(scenario, &mut Network::new(scenario)?, watchers)
@@ -76,15 +88,15 @@ pub fn run(
 /// Runs `network`, which is the network of `scenario` over any medium, to its end.
 ///
 /// # Errors
-/// When no mission can start from the scenario, or a watcher fails.
+/// When a watcher fails.
 pub fn run_network<M: Medium>(
-    scenario: &Scenario,
+    scenario: &ValidScenario,
     network: &mut Network<M>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     let is_transition = |from, to| ROLES.enabled(from).any(|row| row.target == to);
     let mut gallery =
-        Gallery { monitor: Monitor::new(scenario, is_transition)?, watchers, failure: None };
+        Gallery { monitor: Monitor::new(scenario, is_transition), watchers, failure: None };
     let settings = network.site().settings;
     let horizon = settings.period * (settings.max_steps as f64 + 1.0);
     let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
@@ -93,11 +105,9 @@ pub fn run_network<M: Medium>(
     }
     let end = match ending.reason {
         Reason::Finished(end) | Reason::Interrupted(end) => end,
-        other => End {
-            outcome: Outcome::StepLimit,
-            reason: format!("the executor stops at t = {} s: {other:?}", ending.at.t),
-            task: None,
-        },
+        other => {
+            return Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") });
+        }
     };
     for watcher in gallery.watchers.iter_mut() {
         watcher.end(&end)?;
@@ -124,6 +134,12 @@ impl Gallery<'_, '_> {
         Ok(())
     }
 
+    /// The end that a watcher asks for.
+    fn interruption(&self, task: Option<usize>) -> Option<End> {
+        let reason = self.watchers.iter().find_map(|watcher| watcher.interruption())?;
+        Some(End { outcome: Outcome::Interrupted, reason, task })
+    }
+
     fn check(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Result<(), End> {
         self.monitor
             .observe(snapshot)
@@ -144,9 +160,10 @@ impl<M: Medium> Observer<Network<M>> for Gallery<'_, '_> {
             self.failure = Some(error);
             return ControlFlow::Break(End { outcome: Outcome::Blocked, reason, task: None });
         }
-        match self.check(&snapshot, &events) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(end) => ControlFlow::Break(end),
+        let end = self.check(&snapshot, &events).err();
+        match end.or_else(|| self.interruption(snapshot.task)) {
+            None => ControlFlow::Continue(()),
+            Some(end) => ControlFlow::Break(end),
         }
     }
 }

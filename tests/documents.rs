@@ -13,8 +13,8 @@ use std::{fs, io};
 
 use generated::{is_update, read, root};
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
-use pleach::automaton::network::scenario::{Control, Scenario};
-use pleach::automaton::network::{Site, mission_automaton, role_automaton};
+use pleach::automaton::network::scenario::{Control, Scenario, ValidScenario};
+use pleach::automaton::network::{mission_automaton, role_automaton};
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::figures::Album;
@@ -159,10 +159,9 @@ const BEGIN_OF_RUN: &str =
     "<!-- begin of the run: PLEACH_UPDATE_DOCS=1 cargo test --test documents -->";
 const END_OF_RUN: &str = "<!-- end of the run -->";
 
-fn album(scenario: &Scenario) -> Album {
-    let site = Site::new(scenario).unwrap();
+fn album(scenario: &ValidScenario) -> Album {
     let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-    Album::new(scenario, site.free_space.outline().iter().map(corners).collect())
+    Album::new(scenario, scenario.site().free_space.outline().iter().map(corners).collect())
 }
 
 /// Copies the picture that is number `which` of those whose name contains `word`.
@@ -171,7 +170,7 @@ fn keep_picture(figures: &[PathBuf], word: &str, which: usize, name: &str) {
     fs::copy(named.nth(which).unwrap(), root().join("docs/pictures").join(name)).unwrap();
 }
 
-fn study() -> Scenario {
+fn study() -> ValidScenario {
     scenario_file::read(&root().join("scenarios/study-1.toml")).unwrap()
 }
 
@@ -294,5 +293,5 @@ fn the_readme_states_the_defaults() {
 }
 
 fn settled_control() -> Control {
-    Scenario { control: Control::default(), ..study() }.with_defaults().control
+    Scenario { control: Control::default(), ..study().into_scenario() }.with_defaults().control
 }

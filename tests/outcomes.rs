@@ -29,7 +29,7 @@ fn room(task: [f64; 2]) -> Scenario {
             boundary: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 0.9], [2.4, 1.0], [0.0, 1.0]],
             holes: vec![vec![[1.0, 0.4], [1.2, 0.4], [1.2, 0.6], [1.0, 0.6]]],
         },
-        link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+        link: LinkRanges::new(0.4, 0.5),
         control: Control {
             clearance: Some(CLEARANCE),
             service_radius: Some(SERVICE_RADIUS),

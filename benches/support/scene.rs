@@ -6,7 +6,7 @@ use pleach::automaton::network::Site;
 use pleach::automaton::network::beacon::Beacon;
 use pleach::automaton::network::record::{Route, Snapshot};
 use pleach::automaton::network::robot::Robot;
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::ValidScenario;
 use pleach::continuous::Point;
 use pleach::continuous::geometry::{Disc, Segment, convex_region, voronoi_half_planes};
 use pleach::continuous::network::LinkReliability;
@@ -22,7 +22,7 @@ const TEAM: usize = 2;
 /// What the network looks like at the moment, from outside.
 pub struct Scene {
     /// Study I.
-    pub scenario: Scenario,
+    pub scenario: ValidScenario,
     /// What its robots know from the beginning.
     pub site: Arc<Site>,
     /// The view of the observers.
@@ -35,7 +35,7 @@ impl Scene {
         let scenario = super::study_1();
         let mut course = Course::new(&scenario);
         course.reach_advance(TEAM);
-        let site = Arc::new(Site::new(&scenario).expect("a valid site"));
+        let site = Arc::clone(scenario.site());
         Scene { snapshot: course.snapshot(), scenario, site }
     }
 

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod diagram;
+mod interrupt;
 mod progress;
 mod run;
 mod status;

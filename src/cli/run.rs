@@ -1,10 +1,10 @@
 //! `pleach run`.
 
 use super::arguments::RunArguments;
+use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::status::{Failure, Status};
-use pleach::automaton::network::Site;
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::{Scenario, ValidScenario};
 use pleach::figures::Album;
 use pleach::mission::{self, Watcher};
 use pleach::scenario_file;
@@ -26,9 +26,10 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
     if let Some(folder) = &folder {
         create_folder(folder)?;
     }
-    let mut album = folder.as_ref().map(|_| open_album(&scenario)).transpose()?;
+    let mut album = folder.as_ref().map(|_| open_album(&scenario));
+    let mut interrupt = Interrupt::listen()?;
 
-    let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, &mut progress];
+    let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, &mut progress, &mut interrupt];
     watchers.extend(trace.as_mut().map(|trace| trace as &mut dyn Watcher));
     watchers.extend(album.as_mut().map(|album| album as &mut dyn Watcher));
     let clock = Instant::now();
@@ -49,11 +50,10 @@ pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
     Ok(end.outcome.into())
 }
 
-fn open_album(scenario: &Scenario) -> Result<Album, Failure> {
-    let site = Site::new(scenario).map_err(|error| Failure::Internal(error.to_string()))?;
+fn open_album(scenario: &ValidScenario) -> Album {
     let corners =
         |outline: &Vec<_>| outline.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-    Ok(Album::new(scenario, site.free_space.outline().iter().map(corners).collect()))
+    Album::new(scenario, scenario.site().free_space.outline().iter().map(corners).collect())
 }
 
 fn start_trace(path: &Path, scenario: &Scenario) -> Result<TraceWriter<BufWriter<File>>, Failure> {

@@ -31,7 +31,8 @@ impl From<Outcome> for Status {
             Outcome::InsufficientRobots
             | Outcome::UnreachableTask
             | Outcome::StepLimit
-            | Outcome::Blocked => Status::Unserviced,
+            | Outcome::Blocked
+            | Outcome::Interrupted => Status::Unserviced,
         }
     }
 }
@@ -95,6 +96,7 @@ mod tests {
         assert_eq!(status(Outcome::UnreachableTask), 3);
         assert_eq!(status(Outcome::StepLimit), 3);
         assert_eq!(status(Outcome::Blocked), 3);
+        assert_eq!(status(Outcome::Interrupted), 3);
         assert_eq!(status(Outcome::InvariantViolated), 4);
     }
 }

@@ -26,8 +26,8 @@ use super::beacon::{Beacon, Notice};
 use super::medium::{Medium, Radio};
 use super::record::{End, MissionEvent, Outcome};
 use super::robot::Robot;
-use super::scenario::Scenario;
-use super::site::{Site, SiteError};
+use super::scenario::{Scenario, ValidScenario};
+use super::site::Site;
 
 /// Where a control period stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,9 +62,6 @@ pub enum NetworkJump {
 /// What went wrong inside the simulator.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
-    /// The floor plan or the radio is not valid.
-    #[error(transparent)]
-    Site(#[from] SiteError),
     /// An automaton is not well formed.
     #[error(transparent)]
     Build(#[from] crate::BuildError),
@@ -112,9 +109,9 @@ impl Network<Radio> {
     /// The network of a scenario at its start, with the synchronous medium.
     ///
     /// # Errors
-    /// When the scenario's floor plan or radio is not valid.
-    pub fn new(scenario: &Scenario) -> Result<Self, NetworkError> {
-        let site = Arc::new(Site::new(scenario)?);
+    /// When an automaton is not well formed.
+    pub fn new(scenario: &ValidScenario) -> Result<Self, NetworkError> {
+        let site = Arc::clone(scenario.site());
         let medium = Radio::new(&site);
         Network::with_medium(scenario, site, medium)
     }

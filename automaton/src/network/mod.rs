@@ -5,6 +5,7 @@ pub mod automata;
 pub mod beacon;
 mod composition;
 pub mod duty;
+mod link;
 pub mod medium;
 pub mod observer;
 pub mod record;
@@ -15,6 +16,7 @@ pub mod site;
 
 pub use automata::{mission_automaton, role_automaton};
 pub use composition::{KernelTimes, Network, NetworkError, NetworkJump};
+pub use link::Link;
 pub use medium::{Medium, Radio};
 pub use robot::Robot;
 pub use site::{Site, SiteError};

@@ -1,0 +1,59 @@
+//! `[link]`: how far the radio carries, and how its reliability falls with the distance.
+
+use pleach_continuous::network::reliability::ReliabilityError;
+use pleach_continuous::network::{CubicReliability, LinkReliability};
+use serde::{Deserialize, Serialize};
+
+use crate::network::Link;
+
+/// The radio: a model and its two distances.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LinkRanges {
+    /// How the reliability falls between the two distances. Default `cubic`.
+    #[serde(default)]
+    pub model: LinkModel,
+    /// l: reliability 1 up to here.
+    pub full_range: f64,
+    /// u: reliability 0 from here on.
+    pub max_range: f64,
+}
+
+/// The link models that a scenario can name.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LinkModel {
+    /// [`CubicReliability`], eq. (27) of the paper.
+    #[default]
+    Cubic,
+}
+
+impl LinkModel {
+    /// The names that scenario files use.
+    pub const NAMES: &'static [&'static str] = &["cubic"];
+}
+
+impl LinkRanges {
+    /// The cubic model of eq. (27) with these distances.
+    pub const fn new(full_range: f64, max_range: f64) -> Self {
+        Self { model: LinkModel::Cubic, full_range, max_range }
+    }
+
+    /// The link model.
+    ///
+    /// # Errors
+    /// Unless 0 ≤ `full_range` < `max_range` and both are finite.
+    pub fn link(&self) -> Result<Link, ReliabilityError> {
+        let Self { model, full_range, max_range } = *self;
+        Ok(match model {
+            LinkModel::Cubic => Link::new(CubicReliability::new(full_range, max_range)?),
+        })
+    }
+
+    /// The distance at which the reliability is `reliability`, a number between 0 and 1; for
+    /// ranges that make no link model, l.
+    pub fn distance_of(&self, reliability: f64) -> f64 {
+        self.link().map_or(self.full_range, |link| link.distance_at(reliability))
+    }
+}
