@@ -158,6 +158,7 @@ pub mod figures;
 pub mod mission;
 pub mod prelude;
 pub mod scenario_file;
+pub mod starts;
 pub mod story;
 pub mod summary;
 pub mod trace;

@@ -95,8 +95,12 @@ pub fn run_network<M: Medium>(
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     let is_transition = |from, to| ROLES.enabled(from).any(|row| row.target == to);
-    let mut gallery =
-        Gallery { monitor: Monitor::new(scenario, is_transition), watchers, failure: None };
+    let mut gallery = Gallery {
+        monitor: Monitor::new(scenario, is_transition),
+        watchers,
+        failure: None,
+        saturated: Vec::new(),
+    };
     let settings = network.site().settings;
     let horizon = settings.period * (settings.max_steps as f64 + 1.0);
     let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
@@ -104,7 +108,7 @@ pub fn run_network<M: Medium>(
         return Err(error.into());
     }
     let end = match ending.reason {
-        Reason::Finished(end) | Reason::Interrupted(end) => end,
+        Reason::Finished(end) | Reason::Interrupted(end) => gallery.explain(end),
         other => {
             return Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") });
         }
@@ -119,11 +123,27 @@ pub fn run_network<M: Medium>(
 /// transitions that consumes no time can reach it.
 const JUMPS_PER_PERIOD: u32 = 1_000_000;
 
+/// The load from which on a robot counts as saturated: it sends all the time.
+const SATURATED: f64 = 0.999;
+
 /// The monitor and the watchers, looking on while the executor runs.
 struct Gallery<'a, 'w> {
     monitor: Monitor<'a>,
     watchers: &'a mut [&'w mut dyn Watcher],
     failure: Option<io::Error>,
+    /// The robots that send all the time in the last period, with their loads.
+    saturated: Vec<(usize, f64)>,
+}
+
+/// The robots that send all the time, each with its load Σ_j T_ij.
+fn saturated(snapshot: &Snapshot) -> Vec<(usize, f64)> {
+    let mut loads = vec![0.0; snapshot.positions.len()];
+    for route in &snapshot.routes {
+        if let Some(load) = loads.get_mut(route.from) {
+            *load += route.share;
+        }
+    }
+    loads.into_iter().enumerate().filter(|&(_, load)| load >= SATURATED).collect()
 }
 
 impl Gallery<'_, '_> {
@@ -132,6 +152,24 @@ impl Gallery<'_, '_> {
             watcher.observe(snapshot, events)?;
         }
         Ok(())
+    }
+
+    /// A mission that gets stuck while robots send all the time is stuck because of their links:
+    /// the reason names them.
+    fn explain(&self, end: End) -> End {
+        let is_stuck = matches!(end.outcome, Outcome::Blocked | Outcome::StepLimit);
+        if !is_stuck || self.saturated.is_empty() {
+            return end;
+        }
+        let loads = self.saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
+        let loads: Vec<String> = loads.collect();
+        let reason = format!(
+            "{}; the load is {}: its links carry no more, so lower the rates, place robots closer \
+             together or add some",
+            end.reason,
+            loads.join(", ")
+        );
+        End { reason, ..end }
     }
 
     /// The end that a watcher asks for.
@@ -160,6 +198,7 @@ impl<M: Medium> Observer<Network<M>> for Gallery<'_, '_> {
             self.failure = Some(error);
             return ControlFlow::Break(End { outcome: Outcome::Blocked, reason, task: None });
         }
+        self.saturated = saturated(&snapshot);
         let end = self.check(&snapshot, &events).err();
         match end.or_else(|| self.interruption(snapshot.task)) {
             None => ControlFlow::Continue(()),

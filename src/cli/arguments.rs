@@ -1,7 +1,10 @@
 //! The arguments that the program understands.
 
+use super::sweep::Sweep;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use std::path::PathBuf;
+use std::thread;
 
 /// Robots grow a network of relays from fixed access points to the places where they are needed.
 #[derive(Debug, Parser)]
@@ -25,38 +28,104 @@ Start with: pleach run scenarios/study-1.toml";
 /// The things that the program does.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run the mission of a scenario and say how it went
+    /// Run the missions of scenarios and say how they went
     ///
     /// The robots start where the scenario puts them. Tasks are announced one after another,
     /// and for each the network grows a branch until a robot is close enough to service it.
     /// Progress is shown while the mission runs, then a summary: tasks serviced and when,
     /// recruits used, how close robots came to each other and to walls, the smallest residual
     /// of communication, and the time that each part of the computation took.
+    ///
+    /// Several scenarios, values to sweep or repeats give a table with a line for each run, and
+    /// the exit status of the worst: 1, then 4, then 3, then 0. Ctrl-C or SIGTERM ends a mission
+    /// in order: trace, summary and figures tell of it up to then, and the exit status is 3.
     Run(RunArguments),
+    /// Say whether a mission can start from scenarios, and draw their starts
+    ///
+    /// Nothing is run. Mistakes are told with file, line, key and what would be right (exit
+    /// status 2). Tasks that no robot can service are named (exit status 3), and the links of
+    /// the start that cross walls, which the model of the radio does not see, are counted.
+    Check(CheckArguments),
     /// Draw one of the automata that the robots run
     ///
     /// The drawing is made from the transition table that the robots run, and printed.
     Diagram(DiagramArguments),
+    /// Print a script that completes the arguments of pleach in a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page, or write one for each command into a folder
+    Man {
+        /// The folder, created if it is missing
+        folder: Option<PathBuf>,
+    },
 }
 
 /// The arguments of `pleach run`.
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_STATUS)]
 pub struct RunArguments {
-    /// The scenario, a TOML file: workspace, radio, access points, robots and tasks
-    pub scenario: PathBuf,
-    /// Write what happens to FILE, one JSON object a line
+    /// Scenarios: TOML files, folders of TOML files, or `-` for the standard input
+    #[arg(required = true, value_name = "SCENARIO")]
+    pub scenarios: Vec<PathBuf>,
+    /// Set a value of the scenario, such as control.step_radius=0.02 or robot[*].rate=0.05;
+    /// FROM..TO:COUNT runs it with COUNT values, several sweeps with all combinations
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<Sweep>,
+    /// Run every scenario COUNT times, each time with robots at other random starts
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub repeat: Option<u64>,
+    /// The seed of the first random starts; each repeat takes the next one
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "repeat")]
+    pub seed: u64,
+    /// Run up to COUNT missions at once [default: one for each processor]
+    #[arg(long, short, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
+    /// Write what happens to FILE, one JSON object a line; with several runs FILE is a folder
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
-    /// Write figures (SVG) into FOLDER [default: figures/<name of the scenario>]
+    /// Write figures (SVG) into FOLDER [default: figures/<name of the scenario>, and none with
+    /// several runs]
     #[arg(long, value_name = "FOLDER", conflicts_with = "no_figures")]
     pub figures: Option<PathBuf>,
     /// Write no figures
     #[arg(long)]
     pub no_figures: bool,
+    /// Write a table of the runs to FILE as comma-separated values
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write a table of the runs to FILE as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
     /// Show no progress, only the summary
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+impl RunArguments {
+    /// How many missions run at once.
+    pub fn jobs(&self) -> usize {
+        let processors = || thread::available_parallelism().map_or(1, |count| count.get());
+        self.jobs.map_or_else(processors, usize::from)
+    }
+}
+
+/// The arguments of `pleach check`.
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// Scenarios: TOML files, folders of TOML files, or `-` for the standard input
+    #[arg(required = true, value_name = "SCENARIO")]
+    pub scenarios: Vec<PathBuf>,
+    /// Set a value of the scenario, such as control.step_radius=0.02
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<Sweep>,
+    /// Draw the start (SVG) into FOLDER [default: figures/<name of the scenario>]
+    #[arg(long, value_name = "FOLDER", conflicts_with = "no_figures")]
+    pub figures: Option<PathBuf>,
+    /// Draw nothing
+    #[arg(long)]
+    pub no_figures: bool,
 }
 
 /// The arguments of `pleach diagram`.

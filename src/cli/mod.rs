@@ -1,11 +1,21 @@
 //! The command line: what it understands, and what it does.
 
 mod arguments;
+mod batch;
+mod check;
 mod diagram;
 mod interrupt;
+mod job;
+mod manual;
+mod plan;
 mod progress;
+mod record;
 mod run;
+mod source;
 mod status;
+mod sweep;
+mod table;
+mod terminal;
 
 pub use arguments::Arguments;
 
@@ -16,7 +26,10 @@ use std::process::ExitCode;
 pub fn carry_out(arguments: Arguments) -> ExitCode {
     let result = match arguments.command {
         Command::Run(run) => run::run(&run),
+        Command::Check(check) => check::check(&check),
         Command::Diagram(diagram) => diagram::print(&diagram),
+        Command::Completions { shell } => manual::print_completions(shell),
+        Command::Man { folder } => manual::write_manual(folder.as_deref()),
     };
     let status = result.unwrap_or_else(|failure| {
         eprintln!("error: {failure}");

@@ -3,6 +3,7 @@
 use pleach::automaton::network::record::Outcome;
 use pleach::mission::MissionError;
 use pleach::scenario_file::ScenarioError;
+use pleach::starts::NoStarts;
 use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -37,6 +38,25 @@ impl From<Outcome> for Status {
     }
 }
 
+impl Status {
+    /// The status with this number.
+    pub fn of_number(number: u8) -> Self {
+        let all = [Status::Done, Status::BadInput, Status::Unserviced, Status::InvariantViolated];
+        all.into_iter().find(|&status| status as u8 == number).unwrap_or(Status::Failed)
+    }
+
+    /// How bad it is: of several runs the worst one decides.
+    pub fn severity(self) -> u8 {
+        match self {
+            Status::Done => 0,
+            Status::Unserviced => 1,
+            Status::BadInput => 2,
+            Status::InvariantViolated => 3,
+            Status::Failed => 4,
+        }
+    }
+}
+
 impl From<Status> for ExitCode {
     fn from(status: Status) -> Self {
         ExitCode::from(status as u8)
@@ -49,6 +69,29 @@ pub enum Failure {
     /// No mission can start from the scenario.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
+    /// No mission can start from some of the scenarios.
+    #[error("{}", one_per_line(.0))]
+    Scenarios(Vec<ScenarioError>),
+    /// A folder without scenarios.
+    #[error("{}: no scenario is in this folder; name one with files that end in .toml", folder.display())]
+    NoScenarios {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The arguments ask for more runs than can be meant.
+    #[error("the arguments ask for {count} runs; at most {most} can be done in one call")]
+    TooManyRuns {
+        /// How many.
+        count: usize,
+        /// How many are possible.
+        most: usize,
+    },
+    /// Arguments that contradict each other.
+    #[error("{0}")]
+    Usage(String),
+    /// Robots cannot be placed at random.
+    #[error(transparent)]
+    Starts(#[from] NoStarts),
     /// A file cannot be created.
     #[error("{}: cannot be created: {source}; choose a path that may be written", path.display())]
     Creation {
@@ -74,11 +117,21 @@ impl From<MissionError> for Failure {
     }
 }
 
+fn one_per_line(errors: &[ScenarioError]) -> String {
+    errors.iter().map(ScenarioError::to_string).collect::<Vec<_>>().join("\n")
+}
+
 impl Failure {
     /// The exit status that tells this failure.
     pub fn status(&self) -> Status {
         match self {
-            Failure::Scenario(_) | Failure::Creation { .. } => Status::BadInput,
+            Failure::Scenario(_)
+            | Failure::Scenarios(_)
+            | Failure::NoScenarios { .. }
+            | Failure::TooManyRuns { .. }
+            | Failure::Usage(_)
+            | Failure::Starts(_)
+            | Failure::Creation { .. } => Status::BadInput,
             Failure::Output(_) | Failure::Mission(_) | Failure::Internal(_) => Status::Failed,
         }
     }

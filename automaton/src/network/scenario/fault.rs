@@ -119,6 +119,9 @@ pub enum Problem {
     /// Nobody to do anything.
     #[error("there is none: a mission needs at least one [[robot]]")]
     NoRobot,
+    /// Places for another number of robots than there are.
+    #[error("there are {stated} robots and places for {given}: give one place for each")]
+    OtherNumber { stated: usize, given: usize },
     /// A polygon of the workspace is not what it should be.
     #[error("{0}")]
     Outline(String),

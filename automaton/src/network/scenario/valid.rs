@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pleach_continuous::network::LinkReliability;
 
-use super::{InvalidScenario, Scenario, Settings, placement};
+use super::{InvalidScenario, KeyPath, Problem, Scenario, Settings, placement};
 use crate::network::Site;
 
 /// A scenario that a mission can start from, with the [`Site`] that its robots know.
@@ -56,6 +56,29 @@ impl ValidScenario {
             Ok(Self { scenario, site: Arc::new(site) })
         } else {
             Err(faults.into())
+        }
+    }
+
+    /// The same scenario with robots at other places, one for each. The geometry is not prepared
+    /// again.
+    ///
+    /// # Errors
+    /// When robots do not stand where a mission can start, or are not as many as before.
+    pub fn with_starts(&self, starts: &[[f64; 2]]) -> Result<Self, InvalidScenario> {
+        let mut scenario = self.scenario.clone();
+        if starts.len() != scenario.robot.len() {
+            let (stated, given) = (scenario.robot.len(), starts.len());
+            let key = KeyPath::root().key("robot");
+            return Err(vec![Problem::OtherNumber { stated, given }.at(key)].into());
+        }
+        for (robot, start) in scenario.robot.iter_mut().zip(starts) {
+            robot.position = *start;
+        }
+        scenario.check_values()?;
+        let faults = placement::faults(&scenario, &self.site);
+        match faults.is_empty() {
+            true => Ok(Self { scenario, site: Arc::clone(&self.site) }),
+            false => Err(faults.into()),
         }
     }
 
