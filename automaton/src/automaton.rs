@@ -10,6 +10,7 @@ use thiserror::Error;
 use crate::builder::Builder;
 use crate::coordinates::Coordinates;
 use crate::flow::Flow;
+use crate::located::{Holds, Place};
 use crate::reset::Reset;
 
 /// A hybrid automaton over locations `L`, events `E` and a state `S`.
@@ -207,6 +208,21 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         state: &mut S,
     ) -> Result<Option<Jump<L, E>>, TransitionError> {
         self.enabled(*location, state)?.map(|step| step.fire(location, state)).transpose()
+    }
+
+    /// Takes the transition that [`enabled`](Self::enabled) finds from the place where `state`
+    /// stands, if there is one.
+    ///
+    /// # Errors
+    ///
+    /// As for [`enabled`](Self::enabled); the state is then as before.
+    pub fn step_in_place<P>(&self, state: &mut S) -> Result<Option<Jump<L, E>>, TransitionError>
+    where
+        P: Place<Location = L>,
+        S: Holds<P>,
+    {
+        let mut location = state.current().location();
+        self.step(&mut location, state)
     }
 
     fn first(

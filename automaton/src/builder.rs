@@ -11,6 +11,7 @@ use crate::automaton::{Automaton, Mode, Transition, node};
 use crate::coordinates::{Coordinate, Coordinates};
 use crate::edge::Edge;
 use crate::flow::Flow;
+use crate::located::Transfer;
 use crate::reset::Reset;
 
 /// An [`Automaton`] that is being put together.
@@ -33,7 +34,13 @@ pub struct Builder<L, E, S> {
     ranges: Vec<(String, RangeInclusive<f64>)>,
     /// The names of all variables, where the type of the state tells.
     known: Option<&'static [&'static str]>,
+    /// The names of all variables and propositions, where the state is not its coordinates.
+    observed: Option<Names>,
+    transfers: Vec<Transfer<L, E, S>>,
 }
+
+/// The names of variables and of propositions.
+type Names = (&'static [&'static str], &'static [&'static str]);
 
 /// Why the parts do not make an automaton.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -86,6 +93,32 @@ pub enum BuildError {
         place: &'static str,
         /// What is given twice: guard, flow or invariant.
         part: &'static str,
+    },
+    /// A row of the table is not carried out, although others are.
+    #[error("nothing says what the row of `{location}` on event `{event}` carries over")]
+    RowWithoutTransfer {
+        /// The source of the row.
+        location: &'static str,
+        /// The event of the row.
+        event: &'static str,
+    },
+    /// What is carried out is in no row of the table.
+    #[error("no row of the table leads from `{source_location}` on event `{event}` to `{target}`")]
+    TransferWithoutRow {
+        /// The source.
+        source_location: &'static str,
+        /// The event.
+        event: &'static str,
+        /// The target.
+        target: &'static str,
+    },
+    /// A guard or an invariant names a proposition that the state does not have.
+    #[error("`{place}` names proposition `{proposition}`, which the state does not have")]
+    UnknownProposition {
+        /// The event or the location.
+        place: &'static str,
+        /// The name of the proposition.
+        proposition: String,
     },
     /// A formula names a variable that the state does not have.
     #[error("the {part} of `{place}` names variable `{variable}`, which the state does not have")]
@@ -148,7 +181,26 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             invariants: Vec::new(),
             ranges: Vec::new(),
             known: None,
+            observed: None,
+            transfers: Vec::new(),
         }
+    }
+
+    /// What the row from one location on one event carries over, and when.
+    pub fn carried_out(mut self, transfer: Transfer<L, E, S>) -> Self {
+        self.transfers.push(transfer);
+        self
+    }
+
+    /// These are the variables and the propositions that the state has: no formula may name
+    /// another.
+    pub fn observing(
+        mut self,
+        variables: &'static [&'static str],
+        propositions: &'static [&'static str],
+    ) -> Self {
+        self.observed = Some((variables, propositions));
+        self
     }
 
     /// The transitions on `event` may be taken where `guard` holds, and do `reset`.
@@ -182,13 +234,18 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     ///
     /// The first [`BuildError`] found: in the vocabularies, the table, the guards, then in what
     /// is said about the locations.
-    pub fn build(self) -> Result<Automaton<L, E, S>, BuildError> {
+    pub fn build(mut self) -> Result<Automaton<L, E, S>, BuildError> {
         self.check_vocabulary()?;
         self.check_table()?;
+        self.match_transfers()?;
         self.check_parts()?;
         if let Some(names) = self.known {
             self.check_variables(|name| names.contains(&name))?;
             self.check_initial_state(names)?;
+        }
+        if let Some((variables, propositions)) = self.observed {
+            self.check_variables(|name| variables.contains(&name))?;
+            self.check_propositions(propositions)?;
         }
         let mut graph = DiGraph::with_capacity(L::ALL.len(), self.rows.len());
         for &location in L::ALL {
@@ -213,6 +270,53 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     pub fn build_for(self, example: &S) -> Result<Automaton<L, E, S>, BuildError> {
         self.check_variables(|name| example.value(name).is_some())?;
         self.build()
+    }
+
+    /// Finds the row of every transfer, and a transfer for every row if there are any.
+    fn match_transfers(&mut self) -> Result<(), BuildError> {
+        for transfer in std::mem::take(&mut self.transfers) {
+            let Transfer { source, event, target, guard, reset } = transfer;
+            let fits =
+                |row: &Row<L, E>| (row.source, row.event, row.target) == (source, event, target);
+            let row = self.rows.iter().position(fits).ok_or(BuildError::TransferWithoutRow {
+                source_location: source.name(),
+                event: event.name(),
+                target: target.name(),
+            })?;
+            if self.edges.iter().any(|(given, ..)| *given == row) {
+                return Err(BuildError::GivenTwice { place: event.name(), part: "transfer" });
+            }
+            self.edges.push((row, guard, reset));
+        }
+        let lacks = |number: &usize| {
+            let event = self.rows[*number].event;
+            !self.edges.iter().any(|(given, ..)| given == number)
+                && !self.conditions.iter().any(|(given, ..)| *given == event)
+        };
+        match (0..self.rows.len()).find(lacks).filter(|_| !self.edges.is_empty()) {
+            Some(number) => Err(BuildError::RowWithoutTransfer {
+                location: self.rows[number].source.name(),
+                event: self.rows[number].event.name(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    fn check_propositions(&self, known: &[&str]) -> Result<(), BuildError> {
+        let conditions = self.conditions.iter().map(|(event, guard, _)| (event.name(), guard));
+        let edges = self.edges.iter();
+        let edges = edges.map(|(row, guard, _)| (self.rows[*row].event.name(), guard));
+        let guards = conditions.chain(edges).map(|(place, guard)| (place, guard.predicate()));
+        let invariants = self.invariants.iter();
+        let invariants = invariants.map(|(location, invariant)| (location.name(), invariant));
+        for (place, predicate) in guards.chain(invariants) {
+            if let Some(name) =
+                predicate.propositions().into_iter().find(|name| !known.contains(name))
+            {
+                return Err(BuildError::UnknownProposition { place, proposition: name.to_owned() });
+            }
+        }
+        Ok(())
     }
 
     fn check_vocabulary(&self) -> Result<(), BuildError> {

@@ -281,13 +281,13 @@ impl Proof {
     }
 }
 
-/// What a predicate in negation normal form says beside its functions, about which nothing is
-/// known: it holds wherever the predicate does.
+/// What a predicate in negation normal form says beside its propositions and functions,
+/// about which nothing is known: it holds wherever the predicate does.
 fn without_functions(predicate: &Predicate) -> Predicate {
     match predicate {
         Predicate::All(parts) => Predicate::all(parts.iter().map(without_functions)),
         Predicate::Any(parts) => Predicate::any(parts.iter().map(without_functions)),
-        Predicate::Not(_) | Predicate::Function(_) => always(),
+        Predicate::Not(_) | Predicate::Proposition(_) | Predicate::Function(_) => always(),
         known => known.clone(),
     }
 }

@@ -28,6 +28,7 @@ pub mod diagram;
 pub mod edge;
 pub mod executor;
 pub mod flow;
+pub mod located;
 #[cfg(feature = "network")]
 pub mod network;
 pub mod reset;
@@ -48,6 +49,7 @@ pub use coverage::{Coverage, CoverageError};
 pub use edge::{Edge, from};
 pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
 pub use flow::{Flow, Rate};
+pub use located::{Current, DataOf, Holds, Place, Transfer};
 pub use reset::{Assignment, Reset};
 pub use time::HybridTime;
 

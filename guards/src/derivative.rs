@@ -1,13 +1,20 @@
 //! Derivatives of expressions, as expressions.
 
-use crate::expression::{BinaryOperator, Expression, UnaryOperator, constant};
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use crate::expression::{BinaryOperator, Choice, Expression, UnaryOperator, constant};
+use crate::fold::Operands;
+use crate::predicate::Comparison;
 
 impl Expression {
     /// The partial derivative with respect to `variable`.
     ///
-    /// Where an absolute value, minimum or maximum has a kink, the derivative divides 0 by 0 and
-    /// so is not a number; elsewhere it is that of the side the state is on. Terms that are 0 and
-    /// factors that are 1 are left out, nothing else is simplified.
+    /// Where an absolute value, minimum or maximum has a kink, and where a sign, a floor, a choice
+    /// or a table of steps may jump, the derivative divides 0 by 0 and so is not a number; elsewhere
+    /// it is that of the side the state is on. At a point of a table of lines it is the slope of the
+    /// line that follows. Terms that are 0 and factors that are 1 are left out, nothing else is
+    /// simplified.
     ///
     /// ```
     /// use pleach_guards::variable;
@@ -22,20 +29,23 @@ impl Expression {
     /// # Ok::<(), pleach_guards::EvaluationError>(())
     /// ```
     pub fn derivative(&self, variable: &str) -> Expression {
-        match self {
-            Expression::Constant(_) => constant(0.0),
-            Expression::Variable(name) if **name == *variable => constant(1.0),
-            Expression::Variable(_) => constant(0.0),
-            Expression::Unary(operator, operand) => {
-                operator.derivative(operand, operand.derivative(variable))
+        let Ok(derivative) = self.fold(&mut |part, inner| {
+            Ok::<_, Infallible>(part.derivative_by_operands(inner, variable))
+        });
+        derivative
+    }
+
+    /// The derivative, given those of the operands.
+    fn derivative_by_operands(&self, inner: Operands<Expression>, variable: &str) -> Expression {
+        match (self, inner) {
+            (Expression::Variable(name), _) if **name == *variable => constant(1.0),
+            (Expression::Unary(operator, operand), Operands::One(inner)) => {
+                operator.derivative(operand, inner)
             }
-            Expression::Binary(operator, left, right) => {
-                let (inner_left, inner_right) =
-                    (left.derivative(variable), right.derivative(variable));
-                operator.derivative((left, inner_left), (right, inner_right))
+            (Expression::Binary(operator, left, right), Operands::Two(one, another)) => {
+                operator.derivative((left, one), (right, another))
             }
-            Expression::Power(base, exponent) => {
-                let inner = base.derivative(variable);
+            (Expression::Power(base, exponent), Operands::One(inner)) => {
                 let lowered = match exponent - 1.0 {
                     0.0 => constant(1.0),
                     1.0 => (**base).clone(),
@@ -43,8 +53,40 @@ impl Expression {
                 };
                 product(product(constant(*exponent), lowered), inner)
             }
+            (Expression::Lookup(table, place), Operands::One(inner)) => {
+                product(table.derivative().at(&**place), inner)
+            }
+            (Expression::Choice(choice), Operands::Four([left, right, then, otherwise])) => {
+                choice.derivative([left, right], then, otherwise)
+            }
+            _ => constant(0.0),
         }
     }
+}
+
+impl Choice {
+    /// The derivative of what is chosen, and no number where the choice changes: there it may jump.
+    fn derivative(
+        &self,
+        [left, right]: [Expression; 2],
+        then: Expression,
+        otherwise: Expression,
+    ) -> Expression {
+        let Comparison { left: one, right: another, .. } = &self.condition;
+        let is_fixed = is(&left, 0.0) && is(&right, 0.0);
+        let chosen = if then == otherwise {
+            then
+        } else {
+            let parts = [one.clone(), another.clone(), then, otherwise];
+            Expression::Choice(Arc::new(self.with(parts)))
+        };
+        if is_fixed { chosen } else { sum(chosen, at_jumps(one - another)) }
+    }
+}
+
+/// 0, and no number where `distance` is 0.
+fn at_jumps(distance: Expression) -> Expression {
+    constant(0.0) / distance
 }
 
 impl UnaryOperator {
@@ -55,6 +97,10 @@ impl UnaryOperator {
             UnaryOperator::AbsoluteValue => operand / operand.abs(),
             UnaryOperator::Sine => operand.cos(),
             UnaryOperator::Cosine => -operand.sin(),
+            UnaryOperator::Tangent => 1.0 + operand.tan().power(2.0),
+            UnaryOperator::HyperbolicTangent => 1.0 - operand.tanh().power(2.0),
+            UnaryOperator::Sign => at_jumps(operand.clone()),
+            UnaryOperator::Floor => at_jumps(operand - operand.floor()),
             UnaryOperator::Exponential => operand.exp(),
             UnaryOperator::Logarithm => 1.0 / operand,
         };
@@ -81,6 +127,10 @@ impl BinaryOperator {
             BinaryOperator::Quotient => quotient(
                 difference(product(inner_left, right.clone()), product(left.clone(), inner_right)),
                 right.power(2.0),
+            ),
+            BinaryOperator::Angle => quotient(
+                difference(product(right.clone(), inner_left), product(left.clone(), inner_right)),
+                left.power(2.0) + right.power(2.0),
             ),
             // Halfway between the operands, less or more half their distance.
             BinaryOperator::Minimum | BinaryOperator::Maximum if inner_left == inner_right => {

@@ -5,6 +5,11 @@ use std::iter::{Product, Sum};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
+use crate::fold::Operands;
+use crate::operator::raise;
+pub use crate::operator::{BinaryOperator, UnaryOperator};
+use crate::predicate::{Comparison, Predicate};
+use crate::table::Table;
 use crate::valuation::{EvaluationError, Valuation};
 
 /// An arithmetic expression over named variables, as data.
@@ -24,7 +29,9 @@ use crate::valuation::{EvaluationError, Valuation};
 /// assert_eq!(energy.evaluate(&[("height", 1.0), ("velocity", 2.0)])?, 11.81);
 /// # Ok::<(), pleach_guards::EvaluationError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+///
+/// An expression may be as deep as memory allows; nothing here exhausts the stack.
+#[derive(Clone)]
 #[non_exhaustive]
 pub enum Expression {
     /// A number.
@@ -37,40 +44,21 @@ pub enum Expression {
     Binary(BinaryOperator, Arc<Expression>, Arc<Expression>),
     /// A base raised to a fixed exponent.
     Power(Arc<Expression>, f64),
+    /// The value of a table at a place.
+    Lookup(Table, Arc<Expression>),
+    /// One of two expressions, as a comparison holds or not.
+    Choice(Arc<Choice>),
 }
 
-/// An operator with one operand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UnaryOperator {
-    /// −a
-    Negation,
-    /// |a|
-    AbsoluteValue,
-    /// sin a, of an angle in radians
-    Sine,
-    /// cos a, of an angle in radians
-    Cosine,
-    /// eᵃ
-    Exponential,
-    /// ln a, to the base e
-    Logarithm,
-}
-
-/// An operator with two operands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BinaryOperator {
-    /// a + b
-    Sum,
-    /// a − b
-    Difference,
-    /// a · b
-    Product,
-    /// a ÷ b
-    Quotient,
-    /// min(a, b)
-    Minimum,
-    /// max(a, b)
-    Maximum,
+/// One of two expressions, as a comparison holds or not; the other one need not have a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// What decides.
+    pub condition: Comparison,
+    /// What it is where the condition holds.
+    pub then: Expression,
+    /// What it is elsewhere.
+    pub otherwise: Expression,
 }
 
 /// The variable called `name`.
@@ -98,7 +86,65 @@ pub fn norm(components: impl IntoIterator<Item = Expression>) -> Expression {
     squares.sum::<Expression>().square_root()
 }
 
+/// The smallest of these, grouped to the left; of none, it is ∞.
+pub fn minimum(operands: impl IntoIterator<Item = Expression>) -> Expression {
+    let smaller = |least: Expression, next: Expression| least.min(next);
+    operands.into_iter().reduce(smaller).unwrap_or(constant(f64::INFINITY))
+}
+
+/// The largest of these, grouped to the left; of none, it is −∞.
+pub fn maximum(operands: impl IntoIterator<Item = Expression>) -> Expression {
+    let larger = |most: Expression, next: Expression| most.max(next);
+    operands.into_iter().reduce(larger).unwrap_or(constant(f64::NEG_INFINITY))
+}
+
+/// The expression of the first case whose condition holds, and `otherwise` where none does.
+///
+/// Parts that are not chosen need not have a value.
+///
+/// ```
+/// use pleach_guards::{piecewise, variable};
+///
+/// let x = variable("x");
+/// let root = piecewise([(x.at_least(0.0), x.square_root())], 0.0).expect("comparisons");
+/// assert_eq!(root.to_string(), "if(x ≥ 0, √x, 0)");
+/// assert_eq!(root.evaluate(&[("x", 9.0)])?, 3.0);
+/// assert_eq!(root.evaluate(&[("x", -9.0)])?, 0.0);
+/// # Ok::<(), pleach_guards::EvaluationError>(())
+/// ```
+///
+/// Returns `None` if a condition rests on a [function](Predicate::function) or a proposition, which
+/// no formula can contain.
+pub fn piecewise(
+    cases: impl IntoIterator<Item = (Predicate, Expression), IntoIter: DoubleEndedIterator>,
+    otherwise: impl Into<Expression>,
+) -> Option<Expression> {
+    let cases = cases.into_iter().rev();
+    cases.into_iter().try_fold(otherwise.into(), |rest, (condition, value)| {
+        Expression::chosen(&condition, value, rest)
+    })
+}
+
 impl Expression {
+    /// `then` where `condition` holds, else `otherwise`.
+    fn chosen(condition: &Predicate, then: Expression, otherwise: Expression) -> Option<Self> {
+        Some(match condition {
+            Predicate::Comparison(comparison) => {
+                let condition = comparison.clone();
+                Expression::Choice(Arc::new(Choice { condition, then, otherwise }))
+            }
+            Predicate::Not(inner) => Expression::chosen(inner, otherwise, then)?,
+            Predicate::All(parts) => parts.iter().rev().try_fold(then, |chosen, part| {
+                Expression::chosen(part, chosen, otherwise.clone())
+            })?,
+            Predicate::Any(parts) => parts
+                .iter()
+                .rev()
+                .try_fold(otherwise, |rest, part| Expression::chosen(part, then.clone(), rest))?,
+            Predicate::Function(_) | Predicate::Proposition(_) => return None,
+        })
+    }
+
     /// |self|
     pub fn abs(&self) -> Expression {
         self.unary(UnaryOperator::AbsoluteValue)
@@ -134,6 +180,31 @@ impl Expression {
         self.unary(UnaryOperator::Cosine)
     }
 
+    /// tan(self), of an angle in radians.
+    pub fn tan(&self) -> Expression {
+        self.unary(UnaryOperator::Tangent)
+    }
+
+    /// The angle of the point (`x`, self), from −π to π radians.
+    pub fn atan2(&self, x: impl Into<Expression>) -> Expression {
+        self.binary(BinaryOperator::Angle, x.into())
+    }
+
+    /// tanh(self), the hyperbolic tangent, from −1 to 1.
+    pub fn tanh(&self) -> Expression {
+        self.unary(UnaryOperator::HyperbolicTangent)
+    }
+
+    /// −1, 0 or 1, as self is negative, 0 or positive.
+    pub fn sign(&self) -> Expression {
+        self.unary(UnaryOperator::Sign)
+    }
+
+    /// The largest whole number that is at most self.
+    pub fn floor(&self) -> Expression {
+        self.unary(UnaryOperator::Floor)
+    }
+
     /// exp(self), the power of e.
     pub fn exp(&self) -> Expression {
         self.unary(UnaryOperator::Exponential)
@@ -154,21 +225,57 @@ impl Expression {
     /// [`EvaluationError::UnknownVariable`] if `state` lacks a variable, and
     /// [`EvaluationError::NotANumber`] where any part, a variable included, is NaN.
     pub fn evaluate(&self, state: &(impl Valuation + ?Sized)) -> Result<f64, EvaluationError> {
-        let value = match self {
-            Expression::Constant(value) => *value,
-            Expression::Variable(name) => state
-                .value(name)
-                .ok_or_else(|| EvaluationError::UnknownVariable { variable: name.to_string() })?,
-            Expression::Unary(operator, operand) => operator.apply(operand.evaluate(state)?),
-            Expression::Binary(operator, left, right) => {
-                operator.apply(left.evaluate(state)?, right.evaluate(state)?)
-            }
-            Expression::Power(base, exponent) => raise(base.evaluate(state)?, *exponent),
-        };
+        let value = self.fold(&mut |part, operands| part.value(operands, state))?;
         if value.is_nan() {
-            return Err(EvaluationError::NotANumber { expression: self.to_string() });
+            return Err(EvaluationError::NotANumber {
+                expression: self.undefined_part(state)?.to_string(),
+            });
         }
         Ok(value)
+    }
+
+    /// The value, given those of the operands; NaN where one that counts is.
+    fn value(
+        &self,
+        operands: Operands<f64>,
+        state: &(impl Valuation + ?Sized),
+    ) -> Result<f64, EvaluationError> {
+        match self {
+            Expression::Variable(name) => state
+                .value(name)
+                .ok_or_else(|| EvaluationError::UnknownVariable { variable: name.to_string() }),
+            _ => Ok(self.computed(operands).unwrap_or(f64::NAN)),
+        }
+    }
+
+    /// The result of the operation on these operands; of a variable, none.
+    pub(crate) fn computed(&self, operands: Operands<f64>) -> Option<f64> {
+        Some(match (self, operands) {
+            (Expression::Constant(value), _) => *value,
+            (Expression::Unary(operator, _), Operands::One(operand)) => operator.apply(operand),
+            (Expression::Power(_, exponent), Operands::One(base)) => raise(base, *exponent),
+            (Expression::Lookup(table, _), Operands::One(place)) => table.value(place),
+            (Expression::Binary(operator, ..), Operands::Two(left, right)) => {
+                operator.apply(left, right)
+            }
+            (Expression::Choice(choice), Operands::Four([left, right, then, otherwise])) => {
+                Choice::select(choice.condition.relation, (left, right), (then, otherwise))
+            }
+            _ => return None,
+        })
+    }
+
+    /// The smallest part that makes the value NaN, the leftmost if there are several.
+    fn undefined_part(
+        &self,
+        state: &(impl Valuation + ?Sized),
+    ) -> Result<&Expression, EvaluationError> {
+        let whole = self.fold(&mut |part, operands: Operands<(f64, &Expression)>| {
+            let inner = operands.find(|(value, _)| value.is_nan()).map(|(_, culprit)| *culprit);
+            let value = part.value(operands.map(|(value, _)| value), state)?;
+            Ok((value, inner.unwrap_or(part)))
+        });
+        whole.map(|(_, culprit)| culprit)
     }
 
     /// The names of the variables that occur, in alphabetical order.
@@ -179,17 +286,9 @@ impl Expression {
     }
 
     pub(crate) fn collect_variables<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
-        match self {
-            Expression::Constant(_) => {}
-            Expression::Variable(name) => {
+        for part in self.parts() {
+            if let Expression::Variable(name) = part {
                 names.insert(name);
-            }
-            Expression::Unary(_, operand) | Expression::Power(operand, _) => {
-                operand.collect_variables(names);
-            }
-            Expression::Binary(_, left, right) => {
-                left.collect_variables(names);
-                right.collect_variables(names);
             }
         }
     }
@@ -200,44 +299,6 @@ impl Expression {
 
     fn binary(&self, operator: BinaryOperator, right: Expression) -> Expression {
         Expression::Binary(operator, Arc::new(self.clone()), Arc::new(right))
-    }
-}
-
-impl UnaryOperator {
-    pub(crate) fn apply(self, operand: f64) -> f64 {
-        match self {
-            UnaryOperator::Negation => -operand,
-            UnaryOperator::AbsoluteValue => operand.abs(),
-            UnaryOperator::Sine => operand.sin(),
-            UnaryOperator::Cosine => operand.cos(),
-            UnaryOperator::Exponential => operand.exp(),
-            UnaryOperator::Logarithm => operand.ln(),
-        }
-    }
-}
-
-impl BinaryOperator {
-    pub(crate) fn apply(self, left: f64, right: f64) -> f64 {
-        match self {
-            BinaryOperator::Sum => left + right,
-            BinaryOperator::Difference => left - right,
-            BinaryOperator::Product => left * right,
-            BinaryOperator::Quotient => left / right,
-            BinaryOperator::Minimum => left.min(right),
-            BinaryOperator::Maximum => left.max(right),
-        }
-    }
-}
-
-/// Squares and roots go through operations that IEEE 754 rounds exactly, so that they are the same
-/// on every machine.
-pub(crate) fn raise(base: f64, exponent: f64) -> f64 {
-    if exponent == 2.0 {
-        base * base
-    } else if exponent == 0.5 {
-        base.sqrt()
-    } else {
-        base.powf(exponent)
     }
 }
 

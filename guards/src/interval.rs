@@ -16,6 +16,7 @@
 //! # Ok::<(), pleach_guards::EmptyInterval>(())
 //! ```
 
+mod functions;
 mod rounding;
 
 use std::error::Error;
@@ -218,7 +219,9 @@ impl Interval {
         Interval { lower: self.lower.max(0.0), ..self }
     }
 
-    fn hull(self, other: Interval) -> Interval {
+    /// The narrowest interval around both.
+    #[must_use]
+    pub fn hull(self, other: Interval) -> Interval {
         Interval { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
     }
 }

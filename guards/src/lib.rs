@@ -66,7 +66,7 @@
 //!
 //! # Where things are
 //!
-//! [`expression`] and [`predicate`] are the data, [`function`] is the way out of it, [`valuation`]
+//! [`expression`], with its [tables](table), and [`predicate`] are the data, [`function`] is the way out of it, [`valuation`]
 //! is what they are evaluated on, [`guard`] gives a predicate its name, and [`crossing`] follows
 //! margins over time. [`mod@print`] writes all of it as Unicode text and LaTeX, [`parse`] reads
 //! the text, and `serialization` (feature `serde`) takes it into files.
@@ -75,11 +75,12 @@
 //! predicates over whole boxes of states by [`interval`] arithmetic; [`linear`] reads off the
 //! coefficients of affine expressions, [`derivative`] differentiates, [`substitution`] renames
 //! variables and applies resets, and [`normal_form`] resolves negations and lists alternatives.
-//! [`program`] compiles all of it for hot loops.
+//! [`program`] compiles all of it for hot loops, and [`tape`] lists of expressions together.
 
 pub mod crossing;
 pub mod derivative;
 pub mod expression;
+mod fold;
 pub mod function;
 pub mod guard;
 pub mod interval;
@@ -87,6 +88,7 @@ pub mod linear;
 mod name;
 pub mod network;
 pub mod normal_form;
+mod operator;
 pub mod parse;
 pub mod predicate;
 pub mod print;
@@ -95,18 +97,22 @@ pub mod range;
 #[cfg(feature = "serde")]
 pub mod serialization;
 pub mod substitution;
+pub mod table;
+pub mod tape;
 pub mod valuation;
 
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
-pub use expression::{Expression, constant, norm, variable};
+pub use expression::{Expression, constant, maximum, minimum, norm, piecewise, variable};
 pub use function::NamedFunction;
 pub use guard::Guard;
 pub use interval::{EmptyInterval, Interval};
 pub use linear::LinearForm;
 pub use normal_form::NoDisjunctiveForm;
 pub use parse::ParseError;
-pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not};
+pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not, proposition};
 pub use program::{CompiledPredicate, Program};
 pub use range::{Ranges, Truth};
 pub use substitution::Substitution;
+pub use table::{Interpolation, InvalidTable, Table};
+pub use tape::Tape;
 pub use valuation::{EvaluationError, Valuation};

@@ -1,9 +1,11 @@
 //! Affine expressions as coefficients.
 
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::ops::{Add, Div, Mul};
 
 use crate::expression::{BinaryOperator, Expression, UnaryOperator};
+use crate::fold::Operands;
 use crate::valuation::{EvaluationError, Valuation};
 
 /// a₁·x₁ + … + aₙ·xₙ + b: one coefficient per variable, none of them 0, and a constant.
@@ -55,31 +57,82 @@ impl Expression {
         &self,
         number: &impl Fn(f64) -> Option<N>,
     ) -> Option<LinearForm<N>> {
-        let form = |part: &Expression| part.linear_form_over(number);
-        let (zero, minus_one) = (number(0.0)?, LinearForm::of_constant(number(-1.0)?));
-        let opposite = |part: &Expression| form(part)?.times(minus_one.clone());
-        let mut form = match self {
-            Expression::Variable(name) => LinearForm {
-                coefficients: BTreeMap::from([(name.to_string(), number(1.0)?)]),
-                constant: zero.clone(),
-            },
-            Expression::Unary(UnaryOperator::Negation, operand) => opposite(operand)?,
-            Expression::Binary(BinaryOperator::Sum, left, right) => form(left)?.plus(form(right)?),
-            Expression::Binary(BinaryOperator::Difference, left, right) => {
-                form(left)?.plus(opposite(right)?)
+        let (zero, minus_one) = (number(0.0)?, number(-1.0)?);
+        let one = number(1.0)?;
+        let whole = self.fold(&mut |part, operands: Operands<Affine<N>>| {
+            let value = operands.values().and_then(|values| part.computed(values));
+            let form = match part {
+                Expression::Variable(name) => Some(LinearForm {
+                    coefficients: BTreeMap::from([(name.to_string(), one.clone())]),
+                    constant: zero.clone(),
+                }),
+                part if part.is_arithmetic() => part.affine(operands, &minus_one, &zero),
+                _ => value.and_then(number).map(LinearForm::of_constant),
+            };
+            Ok::<_, Infallible>(Affine { form: form.map(|form| form.without(&zero)), value })
+        });
+        let Ok(Affine { form, .. }) = whole;
+        form
+    }
+
+    /// Whether it is one of the operations that make forms of forms.
+    fn is_arithmetic(&self) -> bool {
+        match self {
+            Expression::Unary(operator, _) => *operator == UnaryOperator::Negation,
+            Expression::Power(_, exponent) => *exponent == 1.0,
+            Expression::Binary(operator, ..) => matches!(
+                operator,
+                BinaryOperator::Sum
+                    | BinaryOperator::Difference
+                    | BinaryOperator::Product
+                    | BinaryOperator::Quotient
+            ),
+            _ => false,
+        }
+    }
+
+    /// The operation on forms, if that is a form.
+    fn affine<N: Coefficient>(
+        &self,
+        operands: Operands<Affine<N>>,
+        minus_one: &N,
+        zero: &N,
+    ) -> Option<LinearForm<N>> {
+        let opposite = |form: LinearForm<N>| form.map(|number| number * minus_one.clone());
+        Some(match (self, operands) {
+            (Expression::Unary(UnaryOperator::Negation, _), Operands::One(operand)) => {
+                opposite(operand.form?)
             }
-            Expression::Binary(BinaryOperator::Product, left, right) => {
-                form(left)?.times(form(right)?)?
+            (Expression::Power(..), Operands::One(base)) => base.form?,
+            (Expression::Binary(operator, ..), Operands::Two(left, right)) => {
+                let (left, right) = (left.form?, right.form?);
+                match operator {
+                    BinaryOperator::Sum => left.plus(right),
+                    BinaryOperator::Difference => left.plus(opposite(right)),
+                    BinaryOperator::Product => left.times(right)?,
+                    BinaryOperator::Quotient => {
+                        let divisor = right.into_constant().filter(|divisor| divisor != zero)?;
+                        left.map(|number| number / divisor.clone())
+                    }
+                    _ => return None,
+                }
             }
-            Expression::Binary(BinaryOperator::Quotient, left, right) => {
-                let divisor = form(right)?.into_constant().filter(|divisor| *divisor != zero)?;
-                form(left)?.map(|number| number / divisor.clone())
-            }
-            Expression::Power(base, exponent) if *exponent == 1.0 => form(base)?,
-            _ => LinearForm::of_constant(number(self.folded()?)?),
-        };
-        form.coefficients.retain(|_, coefficient| *coefficient != zero);
-        Some(form)
+            _ => return None,
+        })
+    }
+}
+
+/// What is known of a part: its form, if it is affine, and its value, if it is a constant.
+struct Affine<N> {
+    form: Option<LinearForm<N>>,
+    value: Option<f64>,
+}
+
+impl<N> Operands<Affine<N>> {
+    /// The values, if all operands are constants.
+    fn values(&self) -> Option<Operands<f64>> {
+        let all = self.listed().into_iter().flatten().all(|operand| operand.value.is_some());
+        all.then(|| self.map_ref(|operand| operand.value.unwrap_or(f64::NAN)))
     }
 }
 
@@ -109,6 +162,11 @@ impl<N: Coefficient> LinearForm<N> {
             self.coefficients.insert(variable, sum);
         }
         self.constant = self.constant + other.constant;
+        self
+    }
+
+    fn without(mut self, zero: &N) -> Self {
+        self.coefficients.retain(|_, coefficient| coefficient != zero);
         self
     }
 

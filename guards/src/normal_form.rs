@@ -1,11 +1,13 @@
 //! Predicates in normal forms, as analyses take them apart.
 
+use std::convert::Infallible;
 use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::expression::{BinaryOperator, Expression, UnaryOperator};
+use crate::expression::{BinaryOperator, Expression, UnaryOperator, constant};
 use crate::predicate::{Comparison, Predicate, Relation};
+use crate::table::Interpolation;
 
 impl Predicate {
     /// The predicate with all negations resolved, except those of named functions.
@@ -38,8 +40,10 @@ impl Predicate {
             Predicate::All(conjuncts) => Predicate::any(parts(conjuncts)),
             Predicate::Any(disjuncts) if affirmed => Predicate::any(parts(disjuncts)),
             Predicate::Any(disjuncts) => Predicate::all(parts(disjuncts)),
-            Predicate::Function(_) if affirmed => self.clone(),
-            Predicate::Function(_) => Predicate::Not(Arc::new(self.clone())),
+            Predicate::Proposition(_) | Predicate::Function(_) if affirmed => self.clone(),
+            Predicate::Proposition(_) | Predicate::Function(_) => {
+                Predicate::Not(Arc::new(self.clone()))
+            }
         }
     }
 
@@ -67,8 +71,9 @@ impl Predicate {
         disjuncts(&self.negation_normal_form(), limit)
     }
 
-    /// The predicate without absolute values, minima and maxima: each comparison with such parts
-    /// becomes a disjunction of cases in which it is one of its operands.
+    /// The predicate without absolute values, signs, minima, maxima, choices and tables: each
+    /// comparison with such parts becomes a disjunction of cases in which it is one of what they
+    /// can be.
     ///
     /// It holds in the same states, save where a part of a case that does not apply is not a
     /// number, such as √−x in √|x|, or where a piece that is divided by is a zero of the other sign. Its
@@ -99,7 +104,7 @@ impl Predicate {
             Predicate::Not(inner) => Predicate::Not(Arc::new(inner.by_cases(limit)?)),
             Predicate::All(conjuncts) => Predicate::All(parts(conjuncts)?),
             Predicate::Any(disjuncts) => Predicate::Any(parts(disjuncts)?),
-            Predicate::Function(_) => self.clone(),
+            Predicate::Proposition(_) | Predicate::Function(_) => self.clone(),
         })
     }
 }
@@ -126,6 +131,9 @@ fn disjuncts(
             Ok(sum)
         })?,
         Predicate::Not(inner) => return disjuncts(inner, limit),
+        Predicate::Proposition(name) => {
+            return Err(NoDisjunctiveForm::Proposition { name: name.to_string() });
+        }
         Predicate::Function(function) => {
             return Err(NoDisjunctiveForm::Function { name: function.name().to_string() });
         }
@@ -165,52 +173,64 @@ fn split(
 }
 
 impl Expression {
-    /// An absolute value, minimum or maximum that has no other in it.
+    /// A part that is piecewise and has no other such part in it.
     fn first_piece(&self) -> Option<&Expression> {
+        // Operations come before their operands: the last piece has none in it.
+        self.parts().filter(|part| part.is_piecewise()).last()
+    }
+
+    fn is_piecewise(&self) -> bool {
         match self {
-            Expression::Constant(_) | Expression::Variable(_) => None,
-            Expression::Power(base, _) => base.first_piece(),
-            Expression::Unary(operator, operand) => operand
-                .first_piece()
-                .or((*operator == UnaryOperator::AbsoluteValue).then_some(self)),
-            Expression::Binary(operator, left, right) => {
-                let piecewise =
-                    matches!(operator, BinaryOperator::Minimum | BinaryOperator::Maximum);
-                left.first_piece().or_else(|| right.first_piece()).or(piecewise.then_some(self))
+            Expression::Unary(operator, _) => {
+                matches!(operator, UnaryOperator::AbsoluteValue | UnaryOperator::Sign)
             }
+            Expression::Binary(operator, ..) => {
+                matches!(operator, BinaryOperator::Minimum | BinaryOperator::Maximum)
+            }
+            Expression::Lookup(table, _) => table.interpolation() != Interpolation::Flat,
+            Expression::Choice(_) => true,
+            Expression::Constant(_) | Expression::Variable(_) | Expression::Power(..) => false,
         }
     }
 
     /// What a piece can be, each with the condition under which it is that.
-    fn choices(&self) -> Option<[(Predicate, Expression); 2]> {
-        match self {
-            Expression::Unary(UnaryOperator::AbsoluteValue, operand) => Some([
+    fn choices(&self) -> Option<Vec<(Predicate, Expression)>> {
+        Some(match self {
+            Expression::Unary(UnaryOperator::AbsoluteValue, operand) => vec![
                 (operand.at_least(0.0), (**operand).clone()),
                 (operand.less_than(0.0), -&**operand),
-            ]),
-            Expression::Binary(BinaryOperator::Minimum, left, right) => Some([
+            ],
+            Expression::Unary(UnaryOperator::Sign, operand) => vec![
+                (operand.more_than(0.0), constant(1.0)),
+                (operand.less_than(0.0), constant(-1.0)),
+                (operand.at_least(0.0) & operand.at_most(0.0), constant(0.0)),
+            ],
+            Expression::Binary(BinaryOperator::Minimum, left, right) => vec![
                 (left.at_most(&**right), (**left).clone()),
                 (left.more_than(&**right), (**right).clone()),
-            ]),
-            Expression::Binary(BinaryOperator::Maximum, left, right) => Some([
+            ],
+            Expression::Binary(BinaryOperator::Maximum, left, right) => vec![
                 (left.at_least(&**right), (**left).clone()),
                 (left.less_than(&**right), (**right).clone()),
-            ]),
-            _ => None,
-        }
+            ],
+            Expression::Lookup(table, place) => table.pieces(place)?,
+            Expression::Choice(choice) => vec![
+                (Predicate::Comparison(choice.condition.clone()), choice.then.clone()),
+                (Predicate::Comparison(choice.condition.opposite()), choice.otherwise.clone()),
+            ],
+            _ => return None,
+        })
     }
 
     fn replace(&self, part: &Expression, replacement: &Expression) -> Expression {
-        let inner = |operand: &Expression| Arc::new(operand.replace(part, replacement));
-        match self {
-            _ if self == part => replacement.clone(),
-            Expression::Constant(_) | Expression::Variable(_) => self.clone(),
-            Expression::Unary(operator, operand) => Expression::Unary(*operator, inner(operand)),
-            Expression::Binary(operator, left, right) => {
-                Expression::Binary(*operator, inner(left), inner(right))
-            }
-            Expression::Power(base, exponent) => Expression::Power(inner(base), *exponent),
-        }
+        let Ok(replaced) = self.fold(&mut |inner, operands| {
+            Ok::<_, Infallible>(if inner == part {
+                replacement.clone()
+            } else {
+                inner.with_operands(operands)
+            })
+        });
+        replaced
     }
 }
 
@@ -247,6 +267,11 @@ pub enum NoDisjunctiveForm {
         /// Its name.
         name: String,
     },
+    /// A proposition is not made of comparisons.
+    Proposition {
+        /// Its name.
+        name: String,
+    },
     /// There would be more parts than were allowed.
     TooLarge {
         /// How many were allowed.
@@ -259,6 +284,9 @@ impl fmt::Display for NoDisjunctiveForm {
         match self {
             Self::Function { name } => {
                 write!(formatter, "the function `{name}` is not made of comparisons")
+            }
+            Self::Proposition { name } => {
+                write!(formatter, "the proposition `{name}` is not made of comparisons")
             }
             Self::TooLarge { limit } => {
                 write!(formatter, "the normal form has more than the {limit} parts allowed")

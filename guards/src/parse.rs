@@ -29,13 +29,17 @@
 //! power       = atom [ raised digits | "^" exponent ] | "√" atom
 //! exponent    = [ minus ] number | "(" [ minus ] number ")"
 //! atom        = number | name | "(" sum ")" | "|" sum "|" | function "(" sum { "," sum } ")"
+//!             | "if" "(" sum relation sum "," sum "," sum ")"
+//!             | table "(" point "," { point "," } sum ")"
+//! point       = "(" [ minus ] number "," [ minus ] number ")"
 //! relation    = "≤" | "<=" | "<" | "≥" | ">=" | ">"
 //! ```
 //!
 //! *or* is `∨`, `||` or `or`; *and* is `∧`, `&&` or `and`; *not* is `¬`, `!` or `not`; *minus* is
 //! `−` or `-`; *times* is `·`, `×` or `*`; *over* is `÷` or `/`. The functions of one operand are
-//! `abs`, `sqrt`, `sin`, `cos`, `exp` and `ln`, those of two are `min` and `max`. A number is
-//! decimal, as `0.5` or `1e-3`, or `∞` (`infinity`) or `NaN`. A minus before a number that stands
+//! `abs`, `sqrt`, `sin`, `cos`, `tan`, `tanh`, `exp`, `ln`, `sign` and `floor`; `atan2` has two, and
+//! `min` and `max` have two or more. A [table](crate::Table) is `linear` or `steps` (`flat` is the
+//! slope of steps). A number is decimal, as `0.5` or `1e-3`, or `∞` (`infinity`) or `NaN`. A minus before a number that stands
 //! alone belongs to the number.
 //!
 //! Text that nests more than 100 levels, or in which more than 1000 operations build on one another,
@@ -53,7 +57,7 @@ use std::borrow::Cow;
 use std::str::FromStr;
 
 use crate::expression::Expression;
-use crate::predicate::{Comparison, Predicate, Relation, always, never, not};
+use crate::predicate::{Comparison, Predicate, Relation, always, never, not, proposition};
 pub use error::ParseError;
 use tokens::{Located, Token, tokens};
 
@@ -62,7 +66,7 @@ use tokens::{Located, Token, tokens};
 const NESTING_LIMIT: usize = 100;
 
 const RELATION: &str = "`≤`, `<`, `≥` or `>` (for equality, compare |a − b| with a tolerance)";
-const STATEMENT: &str = "`(`, `¬`, `always` or `never`";
+const STATEMENT: &str = "`(`, `¬`, `always`, `never` or the name of a proposition";
 const TRAILER: &str = "an operator or the end";
 
 impl FromStr for Expression {
@@ -121,6 +125,7 @@ impl Reader<'_> {
         let begins_statement = match self.token() {
             Token::Not | Token::Always | Token::Never => true,
             Token::Open => self.encloses_predicate(),
+            Token::Word(_) | Token::Quoted(_) => self.is_proposition(),
             _ => false,
         };
         if begins_statement { self.statement() } else { self.comparison() }
@@ -133,6 +138,12 @@ impl Reader<'_> {
             Ok(never())
         } else if self.take(Token::Not) {
             self.nested(Self::statement).map(not)
+        } else if let Token::Word(name) | Token::Quoted(name) = self.token()
+            && self.is_proposition()
+        {
+            let named = proposition(name);
+            self.position += 1;
+            Ok(named)
         } else {
             self.expect(Token::Open, STATEMENT)?;
             let inner = self.nested(Self::disjunction)?;
@@ -143,6 +154,12 @@ impl Reader<'_> {
 
     fn comparison(&mut self) -> Result<Predicate, ParseError> {
         let left = self.sum()?.expression;
+        let relation = self.relation()?;
+        let right = self.sum()?.expression;
+        Ok(Predicate::Comparison(Comparison { left, relation, right }))
+    }
+
+    fn relation(&mut self) -> Result<Relation, ParseError> {
         let relation = match self.token() {
             Token::AtMost => Relation::AtMost,
             Token::LessThan => Relation::LessThan,
@@ -151,8 +168,7 @@ impl Reader<'_> {
             _ => return Err(self.expected(RELATION)),
         };
         self.position += 1;
-        let right = self.sum()?.expression;
-        Ok(Predicate::Comparison(Comparison { left, relation, right }))
+        Ok(relation)
     }
 
     /// Takes an *or*. In its ASCII spelling it is two bars, but only here, after an operand, where
@@ -166,13 +182,33 @@ impl Reader<'_> {
         is_bars || self.take(Token::Or)
     }
 
+    /// Whether the name here is a statement by itself: what follows ends it.
+    fn is_proposition(&self) -> bool {
+        let ends = [Token::And, Token::Or, Token::Close, Token::End];
+        self.follow(1, &[Token::Bar, Token::Bar])
+            || self.tokens.get(self.position + 1).is_some_and(|next| ends.contains(&next.token))
+    }
+
     /// Whether anything up to the matching parenthesis belongs to a predicate.
     fn encloses_predicate(&self) -> bool {
         let mut open = 0;
+        // How many of the parentheses around are those of a choice, whose condition is its own.
+        let mut choices = Vec::new();
+        let mut before = &Token::End;
         for Located { token, .. } in &self.tokens[self.position..] {
+            let is_inside = !choices.is_empty();
+            let is_choice = matches!(before, Token::Word(word) if word == "if");
+            before = token;
             match token {
-                Token::Open => open += 1,
-                Token::Close => open -= 1,
+                Token::Open => {
+                    open += 1;
+                    choices.extend(is_choice.then_some(open));
+                }
+                Token::Close => {
+                    choices.pop_if(|choice| *choice == open);
+                    open -= 1;
+                }
+                _ if is_inside => {}
                 Token::AtMost | Token::LessThan | Token::AtLeast | Token::MoreThan => return true,
                 Token::Equality | Token::Ellipsis => return true,
                 Token::Not | Token::And | Token::Or | Token::Always | Token::Never => return true,

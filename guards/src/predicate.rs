@@ -41,6 +41,8 @@ pub enum Predicate {
     All(Arc<[Predicate]>),
     /// At least one of them holds; with none, this is [`never()`].
     Any(Arc<[Predicate]>),
+    /// A named statement that is true or false, without a measure of how far it is from the other.
+    Proposition(Arc<str>),
     /// The margin that a function computes is at least 0.
     Function(NamedFunction),
 }
@@ -57,7 +59,7 @@ pub struct Comparison {
 }
 
 /// An order between two numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Relation {
     /// a ≤ b
     AtMost,
@@ -87,6 +89,33 @@ pub fn always() -> Predicate {
 /// The predicate that no state satisfies, with margin −∞.
 pub fn never() -> Predicate {
     Predicate::Any(Arc::new([]))
+}
+
+/// The atomic proposition called `name`: its truth is read off the state
+/// ([`Valuation::truth`]), and its margin is ∞ where it is true and −∞ where it is false.
+///
+/// ```
+/// use pleach_guards::{Valuation, proposition, variable};
+///
+/// struct Door { angle: f64, is_locked: bool }
+///
+/// impl Valuation for Door {
+///     fn value(&self, variable: &str) -> Option<f64> {
+///         (variable == "angle").then_some(self.angle)
+///     }
+///     fn truth(&self, proposition: &str) -> Option<bool> {
+///         (proposition == "locked").then_some(self.is_locked)
+///     }
+/// }
+///
+/// let may_close = variable("angle").at_most(0.1) & !proposition("locked");
+/// assert_eq!(may_close.to_string(), "angle ≤ 0.1 ∧ ¬locked");
+/// let verdict = may_close.evaluate(&Door { angle: 0.0, is_locked: false })?;
+/// assert_eq!((verdict.holds, verdict.margin), (true, 0.1));
+/// # Ok::<(), pleach_guards::EvaluationError>(())
+/// ```
+pub fn proposition(name: &str) -> Predicate {
+    Predicate::Proposition(name.into())
 }
 
 /// The predicate that holds where `predicate` does not.
@@ -214,6 +243,7 @@ impl Predicate {
             Predicate::Any(parts) => parts
                 .iter()
                 .try_fold(Verdict::NEVER, |verdict, part| Ok(verdict.or(part.evaluate(state)?))),
+            Predicate::Proposition(name) => Verdict::of(name, state),
             Predicate::Function(function) => {
                 let margin = function.margin(state)?;
                 Ok(Verdict { margin, holds: margin >= 0.0 })
@@ -249,7 +279,27 @@ impl Predicate {
             Predicate::All(parts) | Predicate::Any(parts) => {
                 parts.iter().for_each(|part| part.collect_variables(names));
             }
-            Predicate::Function(_) => {}
+            Predicate::Proposition(_) | Predicate::Function(_) => {}
+        }
+    }
+
+    /// The names of the propositions that occur, in alphabetical order.
+    pub fn propositions(&self) -> BTreeSet<&str> {
+        let mut names = BTreeSet::new();
+        self.collect_propositions(&mut names);
+        names
+    }
+
+    fn collect_propositions<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
+        match self {
+            Predicate::Proposition(name) => {
+                names.insert(name);
+            }
+            Predicate::Not(inner) => inner.collect_propositions(names),
+            Predicate::All(parts) | Predicate::Any(parts) => {
+                parts.iter().for_each(|part| part.collect_propositions(names));
+            }
+            Predicate::Comparison(_) | Predicate::Function(_) => {}
         }
     }
 
@@ -267,7 +317,7 @@ impl Predicate {
 
     fn collect_functions<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
         match self {
-            Predicate::Comparison(_) => {}
+            Predicate::Comparison(_) | Predicate::Proposition(_) => {}
             Predicate::Not(inner) => inner.collect_functions(names),
             Predicate::All(parts) | Predicate::Any(parts) => {
                 parts.iter().for_each(|part| part.collect_functions(names));
@@ -305,6 +355,20 @@ impl Verdict {
     pub const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
     /// What [`never()`] says.
     pub const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
+
+    /// The verdict on a proposition in `state`.
+    pub(crate) fn of(
+        proposition: &str,
+        state: &(impl Valuation + ?Sized),
+    ) -> Result<Verdict, EvaluationError> {
+        match state.truth(proposition) {
+            Some(true) => Ok(Verdict::ALWAYS),
+            Some(false) => Ok(Verdict::NEVER),
+            None => {
+                Err(EvaluationError::UnknownProposition { proposition: proposition.to_owned() })
+            }
+        }
+    }
 
     /// Whether margin and verdict tell the same: a positive margin says that the predicate holds,
     /// a negative one that it does not, and NaN says nothing.

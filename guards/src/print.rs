@@ -6,12 +6,13 @@
 //! and the other grouping shows its parentheses; addition of floating-point numbers is not
 //! associative, and so the difference matters.
 
+mod arithmetic;
 mod notation;
 
 use std::fmt::{self, Display, Write};
 
-use crate::expression::{BinaryOperator, Expression, UnaryOperator};
-use crate::predicate::{Comparison, Predicate, Relation};
+use crate::expression::Expression;
+use crate::predicate::{Comparison, Predicate};
 use notation::{LATEX, Notation, TEXT};
 
 impl Display for Expression {
@@ -54,16 +55,13 @@ fn latex(print: impl FnOnce(&mut Printer) -> fmt::Result) -> String {
     out
 }
 
-/// How tightly the outermost operator of a term binds.
+/// How tightly the outermost operator of a predicate binds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Disjunction,
     Conjunction,
     Comparison,
     Opposite,
-    Sum,
-    Product,
-    Power,
     Atom,
 }
 
@@ -75,40 +73,9 @@ impl Binding {
             Predicate::All(parts) | Predicate::Any(parts) if parts.is_empty() => Binding::Atom,
             Predicate::All(_) => Binding::Conjunction,
             Predicate::Any(_) => Binding::Disjunction,
-            Predicate::Function(_) => Binding::Atom,
+            Predicate::Proposition(_) | Predicate::Function(_) => Binding::Atom,
         }
     }
-
-    fn of_expression(expression: &Expression) -> Binding {
-        match expression {
-            Expression::Constant(value) if value.is_sign_negative() => Binding::Sum,
-            Expression::Constant(_) | Expression::Variable(_) => Binding::Atom,
-            Expression::Unary(UnaryOperator::Negation, _) => Binding::Sum,
-            Expression::Unary(_, _) => Binding::Atom,
-            Expression::Binary(..) if begins_negative(expression) => Binding::Sum,
-            Expression::Binary(operator, ..) => match operator {
-                BinaryOperator::Sum | BinaryOperator::Difference => Binding::Sum,
-                BinaryOperator::Product | BinaryOperator::Quotient => Binding::Product,
-                BinaryOperator::Minimum | BinaryOperator::Maximum => Binding::Atom,
-            },
-            Expression::Power(..) => Binding::Power,
-        }
-    }
-}
-
-/// The factor that a product or quotient begins with; of anything else, itself.
-fn first_factor(expression: &Expression) -> &Expression {
-    match expression {
-        Expression::Binary(BinaryOperator::Product | BinaryOperator::Quotient, left, _) => {
-            first_factor(left)
-        }
-        other => other,
-    }
-}
-
-/// Whether a number, product or quotient begins with a minus that belongs to a number.
-fn begins_negative(expression: &Expression) -> bool {
-    matches!(first_factor(expression), Expression::Constant(value) if value.is_sign_negative())
 }
 
 struct Printer<'a> {
@@ -128,6 +95,7 @@ impl Printer<'_> {
             Predicate::Any(parts) if parts.is_empty() => self.out.write_str(self.notation.never),
             Predicate::All(parts) => self.joined(parts, self.notation.and, Binding::Comparison),
             Predicate::Any(parts) => self.joined(parts, self.notation.or, Binding::Conjunction),
+            Predicate::Proposition(name) => (self.notation.write_name)(self.out, name),
             Predicate::Function(function) => {
                 (self.notation.write_name)(self.out, function.name())?;
                 self.enclosed(self.notation.parentheses, |printer| {
@@ -154,112 +122,8 @@ impl Printer<'_> {
 
     fn comparison(&mut self, comparison: &Comparison) -> fmt::Result {
         self.expression(&comparison.left)?;
-        self.out.write_str(match comparison.relation {
-            Relation::AtMost => self.notation.at_most,
-            Relation::LessThan => " < ",
-            Relation::AtLeast => self.notation.at_least,
-            Relation::MoreThan => " > ",
-        })?;
+        self.relation(comparison.relation)?;
         self.expression(&comparison.right)
-    }
-
-    fn expression(&mut self, expression: &Expression) -> fmt::Result {
-        match expression {
-            Expression::Constant(value) => self.notation.write_number(self.out, *value),
-            Expression::Variable(name) => (self.notation.write_name)(self.out, name),
-            Expression::Unary(operator, operand) => self.unary(*operator, operand),
-            Expression::Binary(operator, left, right) => self.binary(*operator, left, right),
-            Expression::Power(base, exponent) if *exponent == 0.5 => self.root(base),
-            Expression::Power(base, exponent) => {
-                self.operand(base, Binding::Atom)?;
-                (self.notation.write_exponent)(self.out, *exponent)
-            }
-        }
-    }
-
-    fn unary(&mut self, operator: UnaryOperator, operand: &Expression) -> fmt::Result {
-        let (name, brackets) = match operator {
-            UnaryOperator::Negation => {
-                self.out.write_str(self.notation.minus)?;
-                // A minus right before a number is a part of the number.
-                let is_number = matches!(first_factor(operand), Expression::Constant(_));
-                let is_loose = is_number || Binding::of_expression(operand) < Binding::Product;
-                return self.parenthesised_if(is_loose, |printer| printer.expression(operand));
-            }
-            UnaryOperator::AbsoluteValue => ("", self.notation.bars),
-            UnaryOperator::Sine => (self.notation.sine, self.notation.parentheses),
-            UnaryOperator::Cosine => (self.notation.cosine, self.notation.parentheses),
-            UnaryOperator::Exponential => (self.notation.exponential, self.notation.parentheses),
-            UnaryOperator::Logarithm => (self.notation.logarithm, self.notation.parentheses),
-        };
-        self.out.write_str(name)?;
-        self.enclosed(brackets, |printer| printer.expression(operand))
-    }
-
-    fn binary(
-        &mut self,
-        operator: BinaryOperator,
-        left: &Expression,
-        right: &Expression,
-    ) -> fmt::Result {
-        let (symbol, least_left, least_right) = match operator {
-            BinaryOperator::Sum => (" + ", Binding::Sum, Binding::Product),
-            BinaryOperator::Difference => {
-                (self.notation.difference, Binding::Sum, Binding::Product)
-            }
-            BinaryOperator::Product => (self.notation.product, Binding::Product, Binding::Power),
-            BinaryOperator::Quotient => return self.quotient(left, right),
-            BinaryOperator::Minimum => return self.function(self.notation.minimum, left, right),
-            BinaryOperator::Maximum => return self.function(self.notation.maximum, left, right),
-        };
-        self.left_operand(left, least_left)?;
-        self.out.write_str(symbol)?;
-        self.operand(right, least_right)
-    }
-
-    /// What stands on the left may begin with a negative number.
-    fn left_operand(&mut self, operand: &Expression, least: Binding) -> fmt::Result {
-        let is_loose = Binding::of_expression(operand) < least && !begins_negative(operand);
-        self.parenthesised_if(is_loose, |printer| printer.expression(operand))
-    }
-
-    fn quotient(&mut self, left: &Expression, right: &Expression) -> fmt::Result {
-        match self.notation.quotient {
-            Some(symbol) => {
-                self.left_operand(left, Binding::Product)?;
-                self.out.write_str(symbol)?;
-                self.operand(right, Binding::Power)
-            }
-            None => {
-                self.out.write_str(r"\frac")?;
-                self.enclosed(("{", "}"), |printer| printer.expression(left))?;
-                self.enclosed(("{", "}"), |printer| printer.expression(right))
-            }
-        }
-    }
-
-    fn function(&mut self, name: &str, left: &Expression, right: &Expression) -> fmt::Result {
-        self.out.write_str(name)?;
-        self.enclosed(self.notation.parentheses, |printer| {
-            printer.expression(left)?;
-            printer.out.write_str(", ")?;
-            printer.expression(right)
-        })
-    }
-
-    fn root(&mut self, base: &Expression) -> fmt::Result {
-        match self.notation.root {
-            Some(symbol) => {
-                self.out.write_str(symbol)?;
-                self.operand(base, Binding::Atom)
-            }
-            None => self.enclosed((r"\sqrt{", "}"), |printer| printer.expression(base)),
-        }
-    }
-
-    fn operand(&mut self, operand: &Expression, least: Binding) -> fmt::Result {
-        let loose = Binding::of_expression(operand) < least;
-        self.parenthesised_if(loose, |printer| printer.expression(operand))
     }
 
     fn parenthesised_if(

@@ -26,9 +26,12 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::expression::{BinaryOperator, Expression, UnaryOperator, raise};
+use crate::expression::{BinaryOperator, Choice, Expression, UnaryOperator};
+use crate::fold::Operands;
 use crate::function::NamedFunction;
+use crate::operator::raise;
 use crate::predicate::{Comparison, Predicate, Relation, Verdict};
+use crate::table::Table;
 use crate::valuation::{EvaluationError, Valuation};
 
 /// How many intermediate values fit on the stack of the thread, in numbers. Expressions written by
@@ -40,6 +43,7 @@ const SHALLOW: usize = 16;
 pub struct Program {
     start: Operand,
     instructions: Box<[Instruction]>,
+    tables: Box<[Table]>,
     depth: usize,
 }
 
@@ -66,6 +70,11 @@ enum Instruction {
     Binary(BinaryOperator),
     /// Raises the current value to a fixed exponent.
     Power(f64),
+    /// Looks the current value up in the table with this number.
+    Lookup(usize),
+    /// Makes the current value, or what was put on the stack before it, the current one: what came
+    /// before these two compares like this, or does not.
+    Select(Relation),
 }
 
 /// What an instruction can use without a step of its own; sums of these are the affine
@@ -94,12 +103,11 @@ impl Expression {
     ///
     /// [`EvaluationError::UnknownVariable`] if a variable of the expression is not listed.
     pub fn compile(&self, variables: &[impl AsRef<str>]) -> Result<Program, EvaluationError> {
-        let mut compiler =
-            Compiler { variables, start: None, instructions: Vec::new(), height: 0, depth: 0 };
-        compiler.expression(self)?;
-        let Compiler { start, instructions, depth, .. } = compiler;
-        let start = start.unwrap_or(Operand::Constant(f64::NAN));
-        Ok(Program { start, instructions: instructions.into(), depth })
+        let mut compiler = Compiler { variables, tables: Vec::new() };
+        let code = self.fold(&mut |part, operands| compiler.part(part, operands))?;
+        let Code { start, instructions, depth } = code.unfolded();
+        let (instructions, tables) = (instructions.into(), compiler.tables.into());
+        Ok(Program { start, instructions, tables, depth })
     }
 }
 
@@ -142,115 +150,102 @@ impl Program {
                     read(operand)
                 }
                 Instruction::Unary(operator) => operator.apply(current),
-                Instruction::WithRight(operator, operand) => {
-                    combine(operator, current, read(operand))
-                }
-                Instruction::WithLeft(operator, operand) => {
-                    combine(operator, read(operand), current)
-                }
+                Instruction::WithRight(operator, operand) => operator.apply(current, read(operand)),
+                Instruction::WithLeft(operator, operand) => operator.apply(read(operand), current),
                 Instruction::Binary(operator) => {
                     height -= 1;
-                    combine(operator, stack[height], current)
+                    operator.apply(stack[height], current)
                 }
-                Instruction::Power(exponent) => raise_number(current, exponent),
+                Instruction::Power(exponent) => raise(current, exponent),
+                Instruction::Lookup(table) => self.tables[table].value(current),
+                Instruction::Select(relation) => {
+                    height -= 3;
+                    let sides = (stack[height], stack[height + 1]);
+                    Choice::select(relation, sides, (stack[height + 2], current))
+                }
             };
         }
         current
     }
 }
 
-/// As the operator does, but no minimum or maximum hides what is not a number.
-#[inline]
-fn combine(operator: BinaryOperator, left: f64, right: f64) -> f64 {
-    match operator {
-        BinaryOperator::Minimum | BinaryOperator::Maximum if left.is_nan() || right.is_nan() => {
-            f64::NAN
-        }
-        _ => operator.apply(left, right),
-    }
-}
-
-/// As [`raise`], but the power 0 does not hide what is not a number.
-#[inline]
-fn raise_number(base: f64, exponent: f64) -> f64 {
-    if base.is_nan() { base } else { raise(base, exponent) }
-}
-
 struct Compiler<'a, N> {
     variables: &'a [N],
-    start: Option<Operand>,
+    tables: Vec<Table>,
+}
+
+/// What a part of an expression is compiled to.
+enum Piece {
+    /// What needs no instruction of its own: the program of that part has just a start.
+    Operand(Operand),
+    Code(Code),
+}
+
+/// A program in the making.
+struct Code {
+    start: Operand,
     instructions: Vec<Instruction>,
-    height: usize,
     depth: usize,
 }
 
+impl Code {
+    fn then(mut self, instruction: Instruction) -> Piece {
+        self.instructions.push(instruction);
+        Piece::Code(self)
+    }
+
+    /// Both programs after one another; what the first computes is on a stack of this height, above
+    /// what it left there itself, while the second runs.
+    fn before(mut self, other: Code, height: usize) -> Code {
+        self.instructions.push(Instruction::Load(other.start));
+        self.instructions.extend(other.instructions);
+        self.depth = self.depth.max(height + 1 + other.depth);
+        self
+    }
+}
+
+impl Piece {
+    fn unfolded(self) -> Code {
+        match self {
+            Piece::Operand(start) => Code { start, instructions: Vec::new(), depth: 0 },
+            Piece::Code(code) => code,
+        }
+    }
+}
+
 impl<N: AsRef<str>> Compiler<'_, N> {
-    fn expression(&mut self, expression: &Expression) -> Result<(), EvaluationError> {
-        if let Some(operand) = self.operand(expression)? {
-            self.load(operand);
-            return Ok(());
-        }
-        match expression {
-            Expression::Constant(_) | Expression::Variable(_) => {}
-            Expression::Unary(operator, operand) => {
-                self.expression(operand)?;
-                self.instructions.push(Instruction::Unary(*operator));
-            }
-            Expression::Power(base, exponent) => {
-                self.expression(base)?;
-                self.instructions.push(Instruction::Power(*exponent));
-            }
-            Expression::Binary(operator, left, right) => self.binary(*operator, left, right)?,
-        }
-        Ok(())
-    }
-
-    fn binary(
+    /// The program of a part, given those of its operands. Operations on constants are done.
+    fn part(
         &mut self,
-        operator: BinaryOperator,
-        left: &Expression,
-        right: &Expression,
-    ) -> Result<(), EvaluationError> {
-        if let Some(operand) = self.operand(right)? {
-            self.expression(left)?;
-            self.instructions.push(Instruction::WithRight(operator, operand));
-        } else if let Some(operand) = self.operand(left)? {
-            self.expression(right)?;
-            self.instructions.push(Instruction::WithLeft(operator, operand));
-        } else {
-            self.expression(left)?;
-            self.expression(right)?;
-            self.height -= 1;
-            self.instructions.push(Instruction::Binary(operator));
+        part: &Expression,
+        operands: Operands<Piece>,
+    ) -> Result<Piece, EvaluationError> {
+        if let Some(value) = folded(part, &operands) {
+            return Ok(Piece::Operand(Operand::Constant(value)));
         }
-        Ok(())
-    }
-
-    fn load(&mut self, operand: Operand) {
-        if self.start.is_none() {
-            self.start = Some(operand);
-        } else {
-            self.height += 1;
-            self.depth = self.depth.max(self.height);
-            self.instructions.push(Instruction::Load(operand));
-        }
-    }
-
-    fn operand(&self, expression: &Expression) -> Result<Option<Operand>, EvaluationError> {
-        if let Some(value) = expression.folded() {
-            return Ok(Some(Operand::Constant(value)));
-        }
-        match expression {
-            Expression::Variable(name) => Ok(Some(Operand::Variable(self.place(name)?))),
-            Expression::Binary(BinaryOperator::Product, left, right) => match (&**left, &**right) {
-                (Expression::Variable(name), factor) | (factor, Expression::Variable(name)) => {
-                    let Some(factor) = factor.folded() else { return Ok(None) };
-                    Ok(Some(Operand::Scaled(factor, self.place(name)?)))
-                }
-                _ => Ok(None),
-            },
-            _ => Ok(None),
-        }
+        Ok(match (part, operands) {
+            (Expression::Variable(name), _) => Piece::Operand(Operand::Variable(self.place(name)?)),
+            (Expression::Unary(operator, _), Operands::One(operand)) => {
+                operand.unfolded().then(Instruction::Unary(*operator))
+            }
+            (Expression::Power(_, exponent), Operands::One(base)) => {
+                base.unfolded().then(Instruction::Power(*exponent))
+            }
+            (Expression::Lookup(table, _), Operands::One(place)) => {
+                self.tables.push(table.clone());
+                place.unfolded().then(Instruction::Lookup(self.tables.len() - 1))
+            }
+            (Expression::Binary(operator, ..), Operands::Two(left, right)) => {
+                binary(*operator, left, right)
+            }
+            (Expression::Choice(choice), Operands::Four(parts)) => {
+                let [left, right, then, otherwise] = parts.map(Piece::unfolded);
+                let both = left.before(right, 0).before(then, 1).before(otherwise, 2);
+                both.then(Instruction::Select(choice.condition.relation))
+            }
+            // No part has other operands than its own.
+            _ => Piece::Operand(Operand::Constant(f64::NAN)),
+        })
     }
 
     fn place(&self, name: &str) -> Result<usize, EvaluationError> {
@@ -261,17 +256,37 @@ impl<N: AsRef<str>> Compiler<'_, N> {
     }
 }
 
-impl Expression {
-    /// The value of an expression without variables, NaN where it has none.
-    pub(crate) fn folded(&self) -> Option<f64> {
-        match self {
-            Expression::Constant(value) => Some(*value),
-            Expression::Variable(_) => None,
-            Expression::Unary(operator, operand) => Some(operator.apply(operand.folded()?)),
-            Expression::Binary(operator, left, right) => {
-                Some(combine(*operator, left.folded()?, right.folded()?))
-            }
-            Expression::Power(base, exponent) => Some(raise_number(base.folded()?, *exponent)),
+/// The value of an operation on constants.
+fn folded(part: &Expression, operands: &Operands<Piece>) -> Option<f64> {
+    let constant = |piece: &Piece| match piece {
+        Piece::Operand(Operand::Constant(value)) => Some(*value),
+        _ => None,
+    };
+    let all = operands.listed().into_iter().flatten().all(|piece| constant(piece).is_some());
+    let values = all.then(|| operands.map_ref(|piece| constant(piece).unwrap_or(f64::NAN)))?;
+    part.computed(values)
+}
+
+fn binary(operator: BinaryOperator, left: Piece, right: Piece) -> Piece {
+    match (operator, left, right) {
+        (
+            BinaryOperator::Product,
+            Piece::Operand(Operand::Variable(variable)),
+            Piece::Operand(Operand::Constant(factor)),
+        )
+        | (
+            BinaryOperator::Product,
+            Piece::Operand(Operand::Constant(factor)),
+            Piece::Operand(Operand::Variable(variable)),
+        ) => Piece::Operand(Operand::Scaled(factor, variable)),
+        (_, left, Piece::Operand(right)) => {
+            left.unfolded().then(Instruction::WithRight(operator, right))
+        }
+        (_, Piece::Operand(left), right) => {
+            right.unfolded().then(Instruction::WithLeft(operator, left))
+        }
+        (_, left, right) => {
+            left.unfolded().before(right.unfolded(), 0).then(Instruction::Binary(operator))
         }
     }
 }
@@ -283,7 +298,8 @@ impl Predicate {
     ///
     /// # Errors
     ///
-    /// [`EvaluationError::UnknownVariable`] if a variable of the predicate is not listed.
+    /// [`EvaluationError::UnknownVariable`] if a variable of the predicate is not listed, and
+    /// [`EvaluationError::UnknownProposition`] if there is a proposition: a slice holds numbers.
     pub fn compile(
         &self,
         variables: &[impl AsRef<str>],
@@ -370,6 +386,9 @@ impl Test {
             Predicate::Not(inner) => Test::Not(Box::new(Test::of(inner, names)?)),
             Predicate::All(parts) => Test::All(all(parts)?),
             Predicate::Any(parts) => Test::Any(all(parts)?),
+            Predicate::Proposition(name) => {
+                return Err(EvaluationError::UnknownProposition { proposition: name.to_string() });
+            }
             Predicate::Function(function) => Test::Function(function.clone()),
         })
     }

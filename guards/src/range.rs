@@ -24,6 +24,7 @@
 use std::collections::BTreeMap;
 
 use crate::expression::{BinaryOperator, Expression, UnaryOperator};
+use crate::fold::Operands;
 use crate::interval::Interval;
 use crate::predicate::{Comparison, Predicate, Relation};
 use crate::valuation::EvaluationError;
@@ -79,25 +80,50 @@ impl Expression {
     /// [`EvaluationError::UnknownVariable`] if the box lacks a variable, and
     /// [`EvaluationError::NotANumber`] if a part has no value anywhere in the box.
     pub fn range(&self, states: &(impl Ranges + ?Sized)) -> Result<Interval, EvaluationError> {
-        let nowhere = || EvaluationError::NotANumber { expression: self.to_string() };
-        match self {
-            Expression::Constant(value) if value.is_nan() => Err(nowhere()),
-            Expression::Constant(value) => Ok(Interval::point(*value)),
+        let range = self.fold(&mut |part, operands| match part {
             Expression::Variable(name) => states
                 .range(name)
+                .map(Ok)
                 .ok_or_else(|| EvaluationError::UnknownVariable { variable: name.to_string() }),
-            Expression::Unary(operator, operand) => {
-                operator.range(operand.range(states)?).ok_or_else(nowhere)
+            _ => Ok(part.range_of(operands)),
+        })?;
+        range.map_err(|nowhere| EvaluationError::NotANumber { expression: nowhere.to_string() })
+    }
+
+    /// Encloses the results of the operation on operands in these intervals; if there are none, the
+    /// part that has no value. Of a choice only the part that is chosen need have one.
+    fn range_of<'e>(
+        &'e self,
+        operands: Operands<Result<Interval, &'e Expression>>,
+    ) -> Result<Interval, &'e Expression> {
+        match (self, operands) {
+            (Expression::Constant(value), _) if !value.is_nan() => Ok(Interval::point(*value)),
+            (Expression::Unary(operator, _), Operands::One(operand)) => {
+                operator.range(operand?).ok_or(self)
             }
-            Expression::Binary(BinaryOperator::Product, left, right) if left == right => {
-                left.range(states)?.power(2.0).ok_or_else(nowhere)
+            (Expression::Power(_, exponent), Operands::One(base)) => {
+                base?.power(*exponent).ok_or(self)
             }
-            Expression::Binary(operator, left, right) => {
-                Ok(operator.range(left.range(states)?, right.range(states)?))
+            (Expression::Lookup(table, _), Operands::One(place)) => Ok(table.range(place?)),
+            (Expression::Binary(BinaryOperator::Product, left, right), Operands::Two(one, _))
+                if left == right =>
+            {
+                one?.power(2.0).ok_or(self)
             }
-            Expression::Power(base, exponent) => {
-                base.range(states)?.power(*exponent).ok_or_else(nowhere)
+            (Expression::Binary(operator, ..), Operands::Two(left, right)) => {
+                Ok(operator.range(left?, right?))
             }
+            (Expression::Choice(choice), Operands::Four([left, right, then, otherwise])) => {
+                match choice.condition.relation.truth(left?, right?) {
+                    Truth::Always => then,
+                    Truth::Never => otherwise,
+                    Truth::Undecided => match (then, otherwise) {
+                        (Ok(then), Ok(otherwise)) => Ok(then.hull(otherwise)),
+                        (then, otherwise) => then.or(otherwise),
+                    },
+                }
+            }
+            _ => Err(self),
         }
     }
 }
@@ -109,6 +135,10 @@ impl UnaryOperator {
             UnaryOperator::AbsoluteValue => Some(operand.abs()),
             UnaryOperator::Sine => Some(operand.sin()),
             UnaryOperator::Cosine => Some(operand.cos()),
+            UnaryOperator::Tangent => Some(operand.tan()),
+            UnaryOperator::HyperbolicTangent => Some(operand.tanh()),
+            UnaryOperator::Sign => Some(operand.sign()),
+            UnaryOperator::Floor => Some(operand.floor()),
             UnaryOperator::Exponential => Some(operand.exp()),
             UnaryOperator::Logarithm => operand.ln(),
         }
@@ -124,12 +154,14 @@ impl BinaryOperator {
             BinaryOperator::Quotient => left / right,
             BinaryOperator::Minimum => left.min(right),
             BinaryOperator::Maximum => left.max(right),
+            BinaryOperator::Angle => left.atan2(right),
         }
     }
 }
 
 impl Predicate {
-    /// What is known about the predicate everywhere in the box. A named function is undecided.
+    /// What is known about the predicate everywhere in the box. Propositions and named functions are
+    /// undecided.
     ///
     /// # Errors
     ///
@@ -145,7 +177,7 @@ impl Predicate {
             Predicate::Any(parts) => {
                 parts.iter().try_fold(Truth::Never, |truth, part| Ok(truth.or(part.truth(states)?)))
             }
-            Predicate::Function(_) => Ok(Truth::Undecided),
+            Predicate::Proposition(_) | Predicate::Function(_) => Ok(Truth::Undecided),
         }
     }
 }
@@ -155,12 +187,19 @@ impl Comparison {
     /// [`Expression::range`].
     pub fn truth(&self, states: &(impl Ranges + ?Sized)) -> Result<Truth, EvaluationError> {
         let (left, right) = (self.left.range(states)?, self.right.range(states)?);
-        Ok(match self.relation {
+        Ok(self.relation.truth(left, right))
+    }
+}
+
+impl Relation {
+    /// What is known about it between any numbers of two intervals.
+    fn truth(self, left: Interval, right: Interval) -> Truth {
+        match self {
             Relation::AtMost => at_most(left, right),
             Relation::LessThan => at_most(right, left).opposite(),
             Relation::AtLeast => at_most(right, left),
             Relation::MoreThan => at_most(left, right).opposite(),
-        })
+        }
     }
 }
 

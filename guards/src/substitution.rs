@@ -1,6 +1,7 @@
 //! Expressions in the place of variables.
 
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use crate::expression::Expression;
@@ -55,18 +56,14 @@ impl Substitution {
 impl Expression {
     /// The expression with each variable replaced that has a replacement.
     pub fn substitute(&self, substitution: &Substitution) -> Expression {
-        let replaced = |part: &Expression| Arc::new(part.substitute(substitution));
-        match self {
-            Expression::Constant(_) => self.clone(),
-            Expression::Variable(name) => {
-                substitution.replacement(name).cloned().unwrap_or_else(|| self.clone())
-            }
-            Expression::Unary(operator, operand) => Expression::Unary(*operator, replaced(operand)),
-            Expression::Binary(operator, left, right) => {
-                Expression::Binary(*operator, replaced(left), replaced(right))
-            }
-            Expression::Power(base, exponent) => Expression::Power(replaced(base), *exponent),
-        }
+        let Ok(substituted) = self.fold(&mut |part, operands| {
+            let replacement = match part {
+                Expression::Variable(name) => substitution.replacement(name).cloned(),
+                _ => None,
+            };
+            Ok::<_, Infallible>(replacement.unwrap_or_else(|| part.with_operands(operands)))
+        });
+        substituted
     }
 }
 
@@ -86,6 +83,7 @@ impl Predicate {
             Predicate::Not(inner) => Predicate::Not(Arc::new(inner.substitute(substitution))),
             Predicate::All(parts) => Predicate::All(replaced(parts)),
             Predicate::Any(parts) => Predicate::Any(replaced(parts)),
+            Predicate::Proposition(_) => self.clone(),
             Predicate::Function(function) => {
                 Predicate::Function(replace_in(function, substitution))
             }

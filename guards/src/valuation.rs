@@ -30,11 +30,20 @@ use std::fmt;
 pub trait Valuation {
     /// The value of `variable`, or `None` if the state has no variable of that name.
     fn value(&self, variable: &str) -> Option<f64>;
+
+    /// Whether `proposition` is true, or `None` if the state has no proposition of that name.
+    fn truth(&self, _proposition: &str) -> Option<bool> {
+        None
+    }
 }
 
 impl<V: Valuation + ?Sized> Valuation for &V {
     fn value(&self, variable: &str) -> Option<f64> {
         (**self).value(variable)
+    }
+
+    fn truth(&self, proposition: &str) -> Option<bool> {
+        (**self).truth(proposition)
     }
 }
 
@@ -74,6 +83,11 @@ pub enum EvaluationError {
         /// The name asked for.
         variable: String,
     },
+    /// The state has no proposition of this name.
+    UnknownProposition {
+        /// The name asked for.
+        proposition: String,
+    },
     /// A part of an expression is not a number, such as 0 ÷ 0, ∞ − ∞ or √−1.
     ///
     /// This is an error and not a verdict: if a comparison with such a part did "not hold", its
@@ -89,6 +103,9 @@ impl fmt::Display for EvaluationError {
         match self {
             Self::UnknownVariable { variable } => {
                 write!(formatter, "the state has no variable `{variable}`")
+            }
+            Self::UnknownProposition { proposition } => {
+                write!(formatter, "the state has no proposition `{proposition}`")
             }
             Self::NotANumber { expression } => {
                 write!(formatter, "`{expression}` is not a number in this state")
@@ -125,6 +142,8 @@ mod tests {
     fn errors_say_what_is_missing() {
         let unknown = EvaluationError::UnknownVariable { variable: "y".into() };
         assert_eq!(unknown.to_string(), "the state has no variable `y`");
+        let unknown = EvaluationError::UnknownProposition { proposition: "p".into() };
+        assert_eq!(unknown.to_string(), "the state has no proposition `p`");
         let undefined = EvaluationError::NotANumber { expression: "0 ÷ 0".into() };
         assert_eq!(undefined.to_string(), "`0 ÷ 0` is not a number in this state");
     }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{expressions, predicates};
-use pleach_guards::{EvaluationError, Predicate, Verdict, constant, variable};
+use pleach_guards::{EvaluationError, Predicate, Tape, Verdict, constant, variable};
 use proptest::prelude::*;
 
 const NAMES: [&str; 3] = ["δ", "x", "y"];
@@ -17,6 +17,25 @@ proptest! {
         let [delta, x, y] = values;
         let found = program.evaluate_at(&[y, 99.0, delta, x], &[2, 3, 0]);
         prop_assert!(same(found, expected), "{expression} at {values:?}");
+    }
+
+    #[test]
+    fn tapes_compute_bit_for_bit(
+        expressions in prop::collection::vec(expressions(), 1..4),
+        values in values(),
+    ) {
+        // Whole expressions and their sums share their parts.
+        let sums = expressions.windows(2).map(|pair| &pair[0] * &pair[1] - &pair[0]);
+        let all: Vec<_> = expressions.iter().cloned().chain(sums).collect();
+        let tape = Tape::compile(&all, &NAMES).expect("these are all names that occur");
+        let (mut places, mut results) = (tape.places(), vec![0.0; all.len()]);
+        for _ in 0..2 {
+            tape.evaluate(&values, &mut places, &mut results);
+            for (expression, found) in all.iter().zip(&results) {
+                let expected = expression.evaluate(&state(values)).unwrap_or(f64::NAN);
+                prop_assert!(same(*found, expected), "{expression} at {values:?}");
+            }
+        }
     }
 
     #[test]

@@ -5,7 +5,9 @@ mod common;
 use std::thread;
 
 use common::{odd_expressions, odd_predicates, predicates};
-use pleach_guards::{Expression, ParseError, Predicate, always, constant, never, not, variable};
+use pleach_guards::{
+    Expression, ParseError, Predicate, always, constant, never, not, proposition, variable,
+};
 use proptest::prelude::*;
 
 proptest! {
@@ -117,7 +119,7 @@ fn errors_say_where_and_what() {
     let relation = "`≤`, `<`, `≥` or `>` (for equality, compare |a − b| with a tolerance)";
     let cases = [
         ("", 1, operand, ""),
-        ("x", 2, relation, ""),
+        ("x + 1", 6, relation, ""),
         ("x = 3", 3, relation, "="),
         ("x == 3", 3, relation, "=="),
         ("x ≤", 4, operand, ""),
@@ -126,7 +128,7 @@ fn errors_say_where_and_what() {
         ("0 ≤ x ≤ 1", 7, "an operator or the end", "≤"),
         ("(x ≤ 1", 7, "an operator or `)`", ""),
         ("|x ≤ 1", 4, "an operator or `|`", "≤"),
-        ("¬x ≤ 1", 2, "`(`, `¬`, `always` or `never`", "x"),
+        ("¬x ≤ 1", 2, "`(`, `¬`, `always`, `never` or the name of a proposition", "x"),
         ("x & y", 3, "`&&` or `∧`", "&"),
         ("x ≤ $", 5, "a number, a name, an operator or a parenthesis", "$"),
         ("x ≤ 1e", 5, "a number", "1e"),
@@ -135,7 +137,12 @@ fn errors_say_where_and_what() {
         ("x^y ≤ 1", 3, "a number as the exponent", "y"),
         ("x^(2 ≤ 1", 6, "`)` after the exponent", "≤"),
         ("√x² ≤ 1", 3, "parentheses that say which is first, root or power", "²"),
-        ("tan(x) ≤ 1", 1, "a function: abs, sqrt, sin, cos, exp, ln, min or max", "tan"),
+        (
+            "sec(x) ≤ 1",
+            1,
+            "a function: abs, sqrt, sin, cos, tan, tanh, atan2, exp, ln, sign, floor, min, max, if, linear or steps",
+            "sec",
+        ),
         ("min(x) ≤ 1", 6, "an operator or `,`", ")"),
         ("`x ≤ 1", 1, "a closing backtick", "`x ≤ 1"),
         ("(x = 3)", 4, relation, "="),
@@ -150,6 +157,17 @@ fn errors_say_where_and_what() {
     assert_eq!(error.to_string(), "column 3: expected an operator or the end, found `≤`");
     let error = "x +".parse::<Expression>().expect_err("half a sum");
     assert_eq!(error.to_string(), format!("column 4: expected {operand}, found the end"));
+}
+
+/// A name that stands where a comparison could is a proposition.
+#[test]
+fn propositions_are_names_by_themselves() {
+    let text = "leads ∧ ¬`two words` ∨ (engaged ∧ x ≤ 1)";
+    let leads = proposition("leads").and(!proposition("two words"));
+    let expected = leads.or(proposition("engaged").and(variable("x").at_most(1.0)));
+    assert_eq!(text.parse(), Ok(expected.clone()));
+    assert_eq!("leads && not `two words` || (engaged && x <= 1)".parse(), Ok(expected.clone()));
+    assert_eq!(expected.to_string().parse(), Ok(expected));
 }
 
 /// Nesting counts what is open, not what was.

@@ -1,5 +1,7 @@
 //! An automaton as checks read it: without its types, and with its formulas as data.
 
+use std::collections::BTreeSet;
+
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::{Expression, not};
 use pleach_guards::{Guard, Interval, Predicate, Substitution, Valuation, always, variable};
@@ -74,7 +76,7 @@ impl Model {
         let modes = modes.map(|((mode, location), leaving)| Mode {
             name: location.name(),
             motion: mode.flow.as_ref().map_or(Motion::Rates(Vec::new()), motion),
-            invariant: mode.invariant.clone().unwrap_or_else(always),
+            invariant: mode.invariant.as_ref().map_or_else(always, in_numbers),
             leaving: leaving.iter().map(|edge| edge.index()).collect(),
         });
         let transitions = automaton.graph.edge_indices().filter_map(|edge| {
@@ -86,7 +88,10 @@ impl Model {
                 event: E::ALL.iter().position(|event| *event == transition.event)?,
                 urgency: transition.urgency,
                 priority: transition.priority,
-                guard: transition.guard.clone(),
+                guard: Guard::new(
+                    transition.guard.name(),
+                    in_numbers(transition.guard.predicate()),
+                ),
                 effect: effect(&transition.reset),
             })
         });
@@ -104,8 +109,10 @@ impl Model {
         };
         let declared = automaton.known.into_iter().flatten().map(|name| (*name).to_owned());
         let names: Vec<String> = declared.chain(model.variables()).collect();
+        let propositions = propositions_of(automaton);
         for name in names {
-            let range = automaton.range(&name);
+            let is_proposition = propositions.contains(&name);
+            let range = if is_proposition { 0.0..=1.0 } else { automaton.range(&name) };
             let range = Interval::new(*range.start(), *range.end()).unwrap_or(Interval::WHOLE);
             model.region.insert(name, range);
         }
@@ -202,6 +209,28 @@ impl Transition {
     pub(crate) fn refused(&self) -> Predicate {
         not(self.guard.predicate().clone())
     }
+}
+
+/// A predicate in which every proposition is a number, at least 1 where it is true: numbers are
+/// what decisions are about.
+fn in_numbers(predicate: &Predicate) -> Predicate {
+    let each = |parts: &[Predicate]| parts.iter().map(in_numbers).collect();
+    match predicate {
+        Predicate::Proposition(name) => variable(name).at_least(1.0),
+        Predicate::Not(inner) => not(in_numbers(inner)),
+        Predicate::All(parts) => Predicate::All(each(parts)),
+        Predicate::Any(parts) => Predicate::Any(each(parts)),
+        other => other.clone(),
+    }
+}
+
+fn propositions_of<L: Location, E: Event, S: Valuation>(
+    automaton: &Automaton<L, E, S>,
+) -> BTreeSet<String> {
+    let invariants = automaton.modes.iter().filter_map(|mode| mode.invariant.as_ref());
+    let guards = automaton.graph.edge_weights().map(|transition| transition.guard.predicate());
+    let named = invariants.chain(guards).flat_map(Predicate::propositions);
+    named.map(str::to_owned).collect()
 }
 
 fn motion<S>(flow: &Flow<S>) -> Motion {

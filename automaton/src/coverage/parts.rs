@@ -120,11 +120,13 @@ impl Parts {
     }
 }
 
-/// The comparisons and functions that a predicate is made of, each once.
+/// The comparisons, propositions and functions that a predicate is made of, each once.
 fn conditions_of(predicate: &Predicate, found: &mut Vec<Predicate>) {
     match predicate {
         _ if found.contains(predicate) => {}
-        Predicate::Comparison(_) | Predicate::Function(_) => found.push(predicate.clone()),
+        Predicate::Comparison(_) | Predicate::Proposition(_) | Predicate::Function(_) => {
+            found.push(predicate.clone());
+        }
         Predicate::Not(inner) => conditions_of(inner, found),
         Predicate::All(parts) | Predicate::Any(parts) => {
             parts.iter().for_each(|part| conditions_of(part, found));

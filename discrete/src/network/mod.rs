@@ -1,6 +1,7 @@
 //! The discrete layer of the robot network: identities, roles, phases and the small protocols by
 //! which robots agree. Nothing here knows a coordinate, a clock or a medium.
 
+pub mod activity;
 pub mod agreement;
 pub mod bulletin;
 pub mod election;
@@ -12,6 +13,7 @@ pub mod post;
 pub mod role;
 pub mod tables;
 
+pub use activity::{Activity, DUTIES, DutyEvent};
 pub use agreement::Agreement;
 pub use bulletin::Bulletin;
 pub use election::{Bid, Election};

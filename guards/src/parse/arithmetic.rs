@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use super::Reader;
 use super::error::ParseError;
-use super::tokens::Token;
-use crate::expression::{BinaryOperator, Expression, UnaryOperator, constant};
+use super::tokens::{Located, Token};
+use crate::expression::{BinaryOperator, Choice, Expression, UnaryOperator, constant};
+use crate::predicate::Comparison;
+use crate::table::{Interpolation, Table};
 
 /// How many operations may build on one another in an expression, such as the additions of a long
 /// sum, so that no text makes an expression too deep to be evaluated, printed or dropped.
@@ -13,6 +15,9 @@ const HEIGHT_LIMIT: usize = 1000;
 
 const OPERAND: &str = "a number, a name, `(`, `|`, `√` or `−`";
 const CLOSING: &str = "an operator or `)`";
+const SEPARATOR: &str = "an operator or `,`";
+const FUNCTION: &str = "a function: abs, sqrt, sin, cos, tan, tanh, atan2, exp, ln, sign, floor, \
+                        min, max, if, linear or steps";
 
 /// An expression and how many operations in it build on one another.
 pub(super) struct Tree {
@@ -87,7 +92,7 @@ impl Reader<'_> {
     ) -> Result<Tree, ParseError> {
         let start = self.position;
         let operand = self.nested(rule)?;
-        match operand.expression {
+        match &operand.expression {
             Expression::Constant(value) if self.position == start + 1 => {
                 Ok(Tree::leaf(constant(-value)))
             }
@@ -149,16 +154,25 @@ impl Reader<'_> {
             "abs" => self.function_of_one(UnaryOperator::AbsoluteValue),
             "sin" => self.function_of_one(UnaryOperator::Sine),
             "cos" => self.function_of_one(UnaryOperator::Cosine),
+            "tan" => self.function_of_one(UnaryOperator::Tangent),
+            "tanh" => self.function_of_one(UnaryOperator::HyperbolicTangent),
             "exp" => self.function_of_one(UnaryOperator::Exponential),
             "ln" => self.function_of_one(UnaryOperator::Logarithm),
+            "sign" => self.function_of_one(UnaryOperator::Sign),
+            "floor" => self.function_of_one(UnaryOperator::Floor),
             "sqrt" => {
                 self.position += 1;
                 let base = self.enclosed(Token::Close, CLOSING)?;
                 self.raise(base, 0.5)
             }
-            "min" => self.function_of_two(BinaryOperator::Minimum),
-            "max" => self.function_of_two(BinaryOperator::Maximum),
-            _ => Err(self.expected("a function: abs, sqrt, sin, cos, exp, ln, min or max")),
+            "atan2" => self.angle(),
+            "min" => self.extremum(BinaryOperator::Minimum),
+            "max" => self.extremum(BinaryOperator::Maximum),
+            "if" => self.choice(),
+            "linear" => self.lookup(Interpolation::Linear),
+            "steps" => self.lookup(Interpolation::Steps),
+            "flat" => self.lookup(Interpolation::Flat),
+            _ => Err(self.expected(FUNCTION)),
         }
     }
 
@@ -168,13 +182,85 @@ impl Reader<'_> {
         self.unary(operator, operand)
     }
 
-    fn function_of_two(&mut self, operator: BinaryOperator) -> Result<Tree, ParseError> {
+    fn angle(&mut self) -> Result<Tree, ParseError> {
         self.position += 2;
         let left = self.nested(Self::sum)?;
-        self.expect(Token::Comma, "an operator or `,`")?;
+        self.expect(Token::Comma, SEPARATOR)?;
         let right = self.nested(Self::sum)?;
         self.expect(Token::Close, CLOSING)?;
-        self.binary(operator, left, right)
+        self.binary(BinaryOperator::Angle, left, right)
+    }
+
+    /// Of two operands or more, grouped to the left.
+    fn extremum(&mut self, operator: BinaryOperator) -> Result<Tree, ParseError> {
+        self.position += 2;
+        let mut extremum = self.nested(Self::sum)?;
+        self.expect(Token::Comma, SEPARATOR)?;
+        loop {
+            let operand = self.nested(Self::sum)?;
+            extremum = self.binary(operator, extremum, operand)?;
+            if !self.take(Token::Comma) {
+                break;
+            }
+        }
+        self.expect(Token::Close, CLOSING)?;
+        Ok(extremum)
+    }
+
+    fn choice(&mut self) -> Result<Tree, ParseError> {
+        self.position += 2;
+        let left = self.nested(Self::sum)?;
+        let relation = self.relation()?;
+        let right = self.nested(Self::sum)?;
+        self.expect(Token::Comma, SEPARATOR)?;
+        let then = self.nested(Self::sum)?;
+        self.expect(Token::Comma, SEPARATOR)?;
+        let otherwise = self.nested(Self::sum)?;
+        self.expect(Token::Close, CLOSING)?;
+        let parts = [left, right, then, otherwise];
+        let below = parts.iter().map(|part| part.height).max().unwrap_or(0);
+        let [left, right, then, otherwise] = parts.map(|part| part.expression);
+        let condition = Comparison { left, relation, right };
+        self.grown(Expression::Choice(Arc::new(Choice { condition, then, otherwise })), below)
+    }
+
+    /// The points of a table, then the place.
+    fn lookup(&mut self, interpolation: Interpolation) -> Result<Tree, ParseError> {
+        let start = self.position;
+        self.position += 2;
+        let mut points = Vec::new();
+        while let Some(point) = self.point() {
+            points.push(point);
+            self.expect(Token::Comma, "`,` after a point of the table")?;
+        }
+        let table = Table::new(interpolation, points).map_err(|fault| {
+            let Located { column, text, .. } = self.tokens[start];
+            ParseError::new(column, format!("a table of points `(place, value)` ({fault})"), text)
+        })?;
+        let place = self.nested(Self::sum)?;
+        self.expect(Token::Close, CLOSING)?;
+        self.grown(Expression::Lookup(table, Arc::new(place.expression)), place.height)
+    }
+
+    /// Takes two numbers between parentheses, if they follow.
+    fn point(&mut self) -> Option<(f64, f64)> {
+        let start = self.position;
+        let number = |reader: &mut Self| {
+            let is_negative = reader.take(Token::Minus);
+            let Token::Number(value) = *reader.token() else { return None };
+            reader.position += 1;
+            Some(if is_negative { -value } else { value })
+        };
+        let point = |reader: &mut Self| {
+            let place = reader.take(Token::Open).then(|| number(reader))??;
+            let value = reader.take(Token::Comma).then(|| number(reader))??;
+            reader.take(Token::Close).then_some((place, value))
+        };
+        let point = point(self);
+        if point.is_none() {
+            self.position = start;
+        }
+        point
     }
 
     /// The sum between the token that opens here and the one that closes.

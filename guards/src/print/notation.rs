@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use crate::name::{self, RAISED_DIGITS, RAISED_MINUS};
+use crate::table::Interpolation;
 
 /// What differs between text and LaTeX.
 pub(super) struct Notation {
@@ -24,6 +25,17 @@ pub(super) struct Notation {
     pub maximum: &'static str,
     pub sine: &'static str,
     pub cosine: &'static str,
+    pub tangent: &'static str,
+    pub hyperbolic_tangent: &'static str,
+    pub angle: &'static str,
+    pub sign: &'static str,
+    /// Before the operand, and what encloses it.
+    pub floor: (&'static str, (&'static str, &'static str)),
+    /// The names of tables of lines, of steps, and of the slopes of steps.
+    pub tables: [&'static str; 3],
+    /// What begins a choice, what stands before its condition and before its other part, and what
+    /// ends it; without it, a choice is written as a function.
+    pub cases: Option<[&'static str; 4]>,
     pub exponential: &'static str,
     pub logarithm: &'static str,
     pub ellipsis: &'static str,
@@ -51,6 +63,13 @@ pub(super) static TEXT: Notation = Notation {
     maximum: "max",
     sine: "sin",
     cosine: "cos",
+    tangent: "tan",
+    hyperbolic_tangent: "tanh",
+    angle: "atan2",
+    sign: "sign",
+    floor: ("floor", ("(", ")")),
+    tables: ["linear", "steps", "flat"],
+    cases: None,
     exponential: "exp",
     logarithm: "ln",
     ellipsis: "…",
@@ -78,6 +97,13 @@ pub(super) static LATEX: Notation = Notation {
     maximum: r"\max",
     sine: r"\sin",
     cosine: r"\cos",
+    tangent: r"\tan",
+    hyperbolic_tangent: r"\tanh",
+    angle: r"\operatorname{atan2}",
+    sign: r"\operatorname{sign}",
+    floor: ("", (r"\left\lfloor ", r"\right\rfloor ")),
+    tables: [r"\operatorname{linear}", r"\operatorname{steps}", r"\operatorname{flat}"],
+    cases: Some([r"\begin{cases}", r" & \text{if } ", r" & \text{otherwise}", r"\end{cases}"]),
     exponential: r"\exp",
     logarithm: r"\ln",
     ellipsis: r"\ldots",
@@ -93,6 +119,15 @@ pub(super) static LATEX: Notation = Notation {
 };
 
 impl Notation {
+    pub fn table(&self, interpolation: Interpolation) -> &'static str {
+        let [linear, steps, flat] = self.tables;
+        match interpolation {
+            Interpolation::Linear => linear,
+            Interpolation::Steps => steps,
+            Interpolation::Flat => flat,
+        }
+    }
+
     /// The shortest decimal that reads back as `value`.
     pub fn write_number(&self, out: &mut dyn Write, value: f64) -> fmt::Result {
         if value.is_sign_negative() {

@@ -4,8 +4,11 @@
 
 use std::sync::Arc;
 
-use pleach_guards::expression::UnaryOperator;
-use pleach_guards::{Expression, Predicate, always, constant, never, not, variable};
+use pleach_guards::expression::{Choice, UnaryOperator};
+use pleach_guards::{
+    Comparison, Expression, Interpolation, Predicate, Relation, Table, always, constant, never,
+    not, variable,
+};
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
 use proptest::prelude::*;
 
@@ -51,6 +54,16 @@ fn expressions_of(
             inner.clone().prop_map(|a| a.sin()),
             inner.clone().prop_map(|a| a.cos()),
             inner.clone().prop_map(|a| a.exp()),
+            inner.clone().prop_map(|a| a.tan()),
+            inner.clone().prop_map(|a| a.tanh()),
+            inner.clone().prop_map(|a| a.sign()),
+            inner.clone().prop_map(|a| a.floor()),
+            pairs().prop_map(|(a, b)| a.atan2(b)),
+            (tables(), inner.clone()).prop_map(|(table, a)| table.at(a)),
+            (pairs(), pairs(), relations()).prop_map(|((a, b), (then, otherwise), relation)| {
+                let condition = Comparison { left: a, relation, right: b };
+                Expression::Choice(Arc::new(Choice { condition, then, otherwise }))
+            }),
             inner.clone().prop_map(|a| a.ln()),
             (inner.clone(), exponents.clone()).prop_map(|(a, exponent)| a.power(exponent)),
             inner.clone().prop_map(|a| a.square_root()),
@@ -61,6 +74,21 @@ fn expressions_of(
             pairs().prop_map(|(a, b)| a.min(b)),
             pairs().prop_map(|(a, b)| a.max(b)),
         ]
+    })
+}
+
+fn relations() -> impl Strategy<Value = Relation> {
+    let [most, least] = [Relation::AtMost, Relation::AtLeast];
+    prop::sample::select(vec![most, least, Relation::LessThan, Relation::MoreThan])
+}
+
+/// Tables of up to four points.
+fn tables() -> impl Strategy<Value = Table> {
+    let kinds = vec![Interpolation::Linear, Interpolation::Steps, Interpolation::Flat];
+    let points = prop::collection::btree_map(-3..4, -8..9, 1..5);
+    (prop::sample::select(kinds), points).prop_map(|(kind, points)| {
+        let points = points.into_iter().map(|(x, y)| (f64::from(x), 0.5 * f64::from(y)));
+        Table::new(kind, points.collect::<Vec<_>>()).expect("places ascend")
     })
 }
 

@@ -1,0 +1,243 @@
+//! Locations that own data: states of an automaton as typed values.
+//!
+//! An enum that [`places!`](crate::places!) declares has one variant for each location, and each
+//! variant holds the data that this location needs and no other. A transition from one location to
+//! another is then a function from the source's data to the target's ([`Transfer`]): one that
+//! forgets data, or needs data that its source does not have, does not compile. Tables, checks and
+//! drawings see the locations alone, as they do of any other automaton.
+//!
+//! ```
+//! use pleach_automaton::located::{Current, Holds, Transfer};
+//! use pleach_automaton::{Automaton, places};
+//! use pleach_discrete::{Row, TransitionTable, Urgency, vocabulary};
+//! use pleach_guards::{Valuation, variable};
+//!
+//! places! {
+//!     /// What a lift does.
+//!     pub enum Lift: LiftLocation {
+//!         /// It stands at a floor.
+//!         Standing(Standing) = "standing",
+//!         /// It is on its way between two floors.
+//!         Moving(Moving) = "moving",
+//!     }
+//! }
+//! #[derive(Clone, Debug, PartialEq)]
+//! pub struct Standing { floor: u8 }
+//! #[derive(Clone, Debug, PartialEq)]
+//! pub struct Moving { from: u8, to: u8 }
+//!
+//! vocabulary! { enum Press: Event { Called = "called", Arrived = "arrived" } }
+//!
+//! struct Cabin { lift: Current<Lift>, call: u8, remaining: f64 }
+//! # impl Valuation for Cabin {
+//! #     fn value(&self, variable: &str) -> Option<f64> {
+//! #         match variable { "remaining" => Some(self.remaining), "call" => Some(self.call.into()), _ => None }
+//! #     }
+//! # }
+//! impl Holds<Lift> for Cabin {
+//!     type Effects = ();
+//!     fn current(&self) -> &Current<Lift> { &self.lift }
+//!     fn current_mut(&mut self) -> &mut Current<Lift> { &mut self.lift }
+//!     fn carry_out(&mut self, (): ()) {}
+//! }
+//!
+//! fn set_out(standing: &Standing, cabin: &Cabin, _: &mut ()) -> Moving {
+//!     Moving { from: standing.floor, to: cabin.call }
+//! }
+//! fn stop(moving: &Moving, _: &Cabin, _: &mut ()) -> Standing {
+//!     Standing { floor: moving.to }
+//! }
+//!
+//! const fn row(source: LiftLocation, event: Press, target: LiftLocation) -> Row<LiftLocation, Press> {
+//!     Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
+//! }
+//! const TABLE: TransitionTable<LiftLocation, Press> = TransitionTable::new(&[
+//!     row(LiftLocation::Standing, Press::Called, LiftLocation::Moving),
+//!     row(LiftLocation::Moving, Press::Arrived, LiftLocation::Standing),
+//! ]);
+//!
+//! let automaton = Automaton::builder(TABLE, LiftLocation::Standing)
+//!     .carried_out(Transfer::new(Press::Called, variable("call").more_than(0.0), "set out", set_out))
+//!     .carried_out(Transfer::new(Press::Arrived, variable("remaining").at_most(0.0), "stop", stop))
+//!     .build()?;
+//!
+//! let start = Lift::Standing(Standing { floor: 0 });
+//! let mut cabin = Cabin { lift: Current::new(start), call: 3, remaining: 9.0 };
+//! automaton.step_in_place(&mut cabin)?;
+//! assert_eq!(*cabin.lift, Lift::Moving(Moving { from: 0, to: 3 }));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use std::ops::Deref;
+
+use pleach_discrete::{Event, Location};
+use pleach_guards::{Guard, Valuation};
+
+use crate::reset::Reset;
+
+/// A value of one of several types, one for each location; declared by
+/// [`places!`](crate::places!).
+pub trait Place: Sized + 'static {
+    /// The locations.
+    type Location: Location;
+
+    /// The location that owns this value.
+    fn location(&self) -> Self::Location;
+}
+
+/// The data that one location of `P` owns.
+pub trait DataOf<P: Place>: Sized + 'static {
+    /// The location.
+    const LOCATION: P::Location;
+
+    /// The data, if `place` is this location.
+    fn of(place: &P) -> Option<&Self>;
+
+    /// The place with this data.
+    fn into_place(self) -> P;
+}
+
+/// Where an automaton stands. Only its own transitions change it: apart from [`new`](Self::new),
+/// nothing makes one or assigns to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Current<P>(P);
+
+impl<P> Current<P> {
+    /// The place where a run starts.
+    pub const fn new(initial: P) -> Self {
+        Current(initial)
+    }
+}
+
+impl<P> Deref for Current<P> {
+    type Target = P;
+
+    fn deref(&self) -> &P {
+        &self.0
+    }
+}
+
+/// A state of which one part is the place of an automaton over `P`.
+pub trait Holds<P: Place> {
+    /// What a transition does beside entering its target, such as sending messages; nothing by
+    /// default.
+    type Effects: Default;
+
+    /// Where the automaton stands.
+    fn current(&self) -> &Current<P>;
+
+    /// Where the automaton stands, for its transitions.
+    fn current_mut(&mut self) -> &mut Current<P>;
+
+    /// Carries out what a transition has done beside entering its target.
+    fn carry_out(&mut self, effects: Self::Effects);
+}
+
+/// What the transitions on one event from one location do, and when: a function of the source's
+/// data and the state before the jump, x⁻, to the target's data.
+///
+/// The locations are those of the function's types. The function changes nothing: what it returns
+/// and the effects that it notes are carried out afterwards.
+#[derive(Clone, Debug)]
+pub struct Transfer<L, E, S> {
+    pub(crate) source: L,
+    pub(crate) event: E,
+    pub(crate) target: L,
+    pub(crate) guard: Guard,
+    pub(crate) reset: Reset<S>,
+}
+
+impl<L: Location, E: Event, S: 'static> Transfer<L, E, S> {
+    /// On `event`, where `guard` holds: `carry_over` under the name that drawings show.
+    pub fn new<P, A, B>(
+        event: E,
+        guard: impl Into<Guard>,
+        name: &str,
+        carry_over: impl Fn(&A, &S, &mut S::Effects) -> B + Send + Sync + 'static,
+    ) -> Self
+    where
+        P: Place<Location = L>,
+        A: DataOf<P>,
+        B: DataOf<P>,
+        S: Holds<P> + Valuation,
+    {
+        let reset = Reset::new(name, move |state: &mut S| {
+            let mut effects = S::Effects::default();
+            // The table has led here from this very location.
+            let Some(data) = A::of(state.current()) else { return };
+            let target = carry_over(data, state, &mut effects).into_place();
+            *state.current_mut() = Current(target);
+            state.carry_out(effects);
+        });
+        Transfer { source: A::LOCATION, event, target: B::LOCATION, guard: guard.into(), reset }
+    }
+}
+
+/// Declares an enum of [places](Place) and, after the colon, the enum of their locations.
+///
+/// Each variant holds the data of its location, which is a type of its own, and is called as it is
+/// written or by the name after an equals sign.
+#[macro_export]
+macro_rules! places {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis enum $place:ident : $location:ident {
+            $($(#[$note:meta])* $variant:ident($data:ty) $(= $word:literal)?),+ $(,)?
+        }
+    ) => {
+        $crate::discrete::vocabulary! {
+            $(#[$attribute])*
+            $visibility enum $location: Location {
+                $($(#[$note])* $variant $(= $word)?),+
+            }
+        }
+        $crate::places_of! {
+            $(#[$attribute])*
+            $visibility enum $place: $location { $($(#[$note])* $variant($data)),+ }
+        }
+    };
+}
+
+/// Declares an enum of [places](Place) whose locations are declared already: each variant is called
+/// like its location.
+#[macro_export]
+macro_rules! places_of {
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis enum $place:ident : $location:ident {
+            $($(#[$note:meta])* $variant:ident($data:ty)),+ $(,)?
+        }
+    ) => {
+        $(#[$attribute])*
+        #[derive(Clone, Debug, PartialEq)]
+        $visibility enum $place {
+            $($(#[$note])* $variant($data)),+
+        }
+
+        impl $crate::located::Place for $place {
+            type Location = $location;
+
+            fn location(&self) -> $location {
+                match self {
+                    $($place::$variant(_) => $location::$variant),+
+                }
+            }
+        }
+
+        $(impl $crate::located::DataOf<$place> for $data {
+            const LOCATION: $location = $location::$variant;
+
+            fn of(place: &$place) -> Option<&Self> {
+                match place {
+                    $place::$variant(data) => Some(data),
+                    #[allow(unreachable_patterns)]
+                    _ => None,
+                }
+            }
+
+            fn into_place(self) -> $place {
+                $place::$variant(self)
+            }
+        })+
+    };
+}

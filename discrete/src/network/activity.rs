@@ -1,0 +1,314 @@
+//! What a robot does for the network: the locations of its duty, and the table between them.
+//!
+//! Each location has one of the paper's roles ([`Role`]) and one way of moving. Redundant robots
+//! stand by; the tree consists of relays, junctions and leaves; the primary team follows its
+//! leader; the robots of the path Σ wait until it is their turn and then shift to the next place.
+//! An elected leader with past duties is bound until it is released (L_b = 1).
+
+use super::Role;
+use crate::{Row, TransitionTable, Urgency, vocabulary};
+
+#[cfg(any(kani, test))]
+mod proofs;
+
+vocabulary! {
+    /// What a robot does for the network.
+    pub enum Activity: Location {
+        /// It holds the post of a redundant robot and may be recruited.
+        Standby = "standby",
+        /// It holds a fixed post on one branch of the tree.
+        Relay = "relay",
+        /// It holds a fixed post where branches part.
+        Junction = "junction",
+        /// It holds a fixed post from which it services a task.
+        Leaf = "leaf",
+        /// It is elected leader, and holds a post until it is released from it (L_b = 1).
+        Bound = "bound leader",
+        /// It holds its post on the path Σ until it is relieved or its turn comes.
+        Waiting = "waiting on the path",
+        /// It is the elected leader at the end of Σ and waits to be released (L_b = 1).
+        AwaitingRelease = "awaiting release",
+        /// It has left its place on Σ and is on its way to the next one, eq. (25).
+        Shifting = "shifting along the path",
+        /// It follows the next robot of the primary team, eq. (24).
+        Following = "following the team",
+        /// It heads the primary team towards the announced task, eq. (24).
+        Leading = "leading the team",
+    }
+
+    /// What changes the duty of a robot (Algorithms 3 and 4, Remark 5.6).
+    pub enum DutyEvent: Event {
+        /// It wins the leader election and nothing depends on it.
+        Elected = "elected",
+        /// It wins the leader election and has past duties.
+        Bound = "bound",
+        /// The path Σ passes its post.
+        PathJoined = "path joined",
+        /// Its turn has come, and its post is held by another robot if it matters.
+        SetOut = "set out",
+        /// It takes the post of a redundant robot at the next place.
+        StandbyReached = "standby reached",
+        /// It takes the post of a relay at the next place.
+        RelayReached = "relay reached",
+        /// It takes the post of a junction at the next place.
+        JunctionReached = "junction reached",
+        /// It takes the post of a leaf at the next place.
+        LeafReached = "leaf reached",
+        /// Σ is given up or done: it goes on as a redundant robot.
+        StandbyKept = "standby kept",
+        /// Σ is given up or done: it goes on as a relay.
+        RelayKept = "relay kept",
+        /// Σ is given up or done: it goes on as a leaf.
+        LeafKept = "leaf kept",
+        /// Σ is given up: it is bound as before.
+        BoundKept = "bound kept",
+        /// It is relieved, and joins the primary team behind p₁.
+        TeamJoined = "team joined",
+        /// It is relieved, and leads.
+        Released = "released",
+        /// It is within reach of the announced task, eq. (2).
+        TaskReached = "task reached",
+        /// The team is dissolved: its post becomes fixed where it is.
+        Settled = "settled",
+        /// Another task is announced before it was released: it goes on as a relay.
+        RelayResumed = "relay resumed",
+        /// Another task is announced before it was released: it goes on as a leaf.
+        LeafResumed = "leaf resumed",
+        /// A second branch parts from its post.
+        Branched = "branched",
+        /// Only one branch is left at its post.
+        Merged = "merged",
+        /// A branch of the tree depends on it, Remark 5.6 (i).
+        Promoted = "promoted",
+        /// No branch depends on it any more, Remark 5.6 (ii).
+        Retired = "retired",
+        /// It attaches to another parent in the tree.
+        Attached = "attached",
+        /// It exchanges duties with a robot that stands by.
+        TakesStandby = "takes standby",
+        /// It exchanges duties with a relay.
+        TakesRelay = "takes relay",
+        /// It exchanges duties with a junction.
+        TakesJunction = "takes junction",
+        /// It exchanges duties with a leaf.
+        TakesLeaf = "takes leaf",
+        /// It exchanges duties with a bound leader.
+        TakesBound = "takes bound leader",
+        /// It exchanges duties with a robot that waits on Σ.
+        TakesWaiting = "takes waiting",
+        /// It exchanges duties with a leader that waits to be released.
+        TakesAwaitingRelease = "takes awaiting release",
+        /// It exchanges duties with a robot that shifts along Σ.
+        TakesShifting = "takes shifting",
+        /// It exchanges duties with a member of the primary team.
+        TakesFollowing = "takes following",
+        /// It exchanges duties with the leader.
+        TakesLeading = "takes leading",
+    }
+}
+
+impl Activity {
+    /// Whether the robot holds a fixed post of the tree, which must not be left unheld.
+    pub const fn holds_fixed_post(self) -> bool {
+        matches!(
+            self,
+            Activity::Relay
+                | Activity::Junction
+                | Activity::Leaf
+                | Activity::Bound
+                | Activity::Waiting
+                | Activity::AwaitingRelease
+        )
+    }
+
+    /// Whether the robot is on its way and holds no fixed post.
+    pub const fn is_under_way(self) -> bool {
+        matches!(self, Activity::Shifting | Activity::Following | Activity::Leading)
+    }
+
+    /// Whether a robot with this activity can have this role (Sec. II and V-D). One on the path Σ
+    /// keeps the role of the post that it holds; the first of Σ is the recruit.
+    pub const fn can_be(self, role: Role) -> bool {
+        match self {
+            Activity::Standby => matches!(role, Role::Redundant),
+            Activity::Relay | Activity::Following => matches!(role, Role::Node),
+            Activity::Junction => matches!(role, Role::Junction),
+            Activity::Leaf => matches!(role, Role::Leaf),
+            Activity::Bound | Activity::AwaitingRelease | Activity::Leading => {
+                matches!(role, Role::Leader)
+            }
+            Activity::Waiting => !matches!(role, Role::Leader),
+            Activity::Shifting => matches!(role, Role::Recruit | Role::Node),
+        }
+    }
+
+    /// The event on which another robot takes over a duty of this kind.
+    pub const fn taken_over(self) -> DutyEvent {
+        match self {
+            Activity::Standby => DutyEvent::TakesStandby,
+            Activity::Relay => DutyEvent::TakesRelay,
+            Activity::Junction => DutyEvent::TakesJunction,
+            Activity::Leaf => DutyEvent::TakesLeaf,
+            Activity::Bound => DutyEvent::TakesBound,
+            Activity::Waiting => DutyEvent::TakesWaiting,
+            Activity::AwaitingRelease => DutyEvent::TakesAwaitingRelease,
+            Activity::Shifting => DutyEvent::TakesShifting,
+            Activity::Following => DutyEvent::TakesFollowing,
+            Activity::Leading => DutyEvent::TakesLeading,
+        }
+    }
+}
+
+impl DutyEvent {
+    /// Whether the robot goes away from the post that it holds, which another robot must hold by
+    /// then: the guards of these events ask for it.
+    pub const fn needs_replacement(self) -> bool {
+        matches!(
+            self,
+            DutyEvent::SetOut
+                | DutyEvent::TeamJoined
+                | DutyEvent::Released
+                | DutyEvent::TakesShifting
+                | DutyEvent::TakesFollowing
+                | DutyEvent::TakesLeading
+        )
+    }
+}
+
+/// Whether a transition leaves no fixed post without a robot (Algorithm 4): who goes away from one
+/// has been replaced.
+pub const fn keeps_posts_held(source: Activity, event: DutyEvent, target: Activity) -> bool {
+    !(source.holds_fixed_post() && target.is_under_way()) || event.needs_replacement()
+}
+
+/// Whether a robot may change from one role to another in one transition of [`DUTIES`].
+///
+/// A robot that begins to wait on Σ keeps its role or becomes the recruit; what it does after it
+/// has waited, it does in the role that it had or as the recruit.
+pub fn may_follow(from: Role, to: Role) -> bool {
+    let leads_there = |row: &Row<Activity, DutyEvent>| {
+        let keeps = row.target == Activity::Waiting && row.source.can_be(from);
+        row.source.can_be(from)
+            && row.target.can_be(to)
+            && (!keeps || to == from || to == Role::Recruit || row.source.is_under_way())
+            && (row.source != Activity::Waiting || waits_as(from, row.target))
+    };
+    from == to || DUTIES.rows().iter().any(leads_there)
+}
+
+/// Whether a robot that waits on Σ in `role` may go on to `target`.
+const fn waits_as(role: Role, target: Activity) -> bool {
+    match target {
+        Activity::Standby => matches!(role, Role::Redundant | Role::Recruit),
+        Activity::Leaf => matches!(role, Role::Leaf),
+        Activity::Relay => matches!(role, Role::Node | Role::Junction | Role::Recruit),
+        _ => true,
+    }
+}
+
+const fn row(source: Activity, event: DutyEvent, target: Activity) -> Row<Activity, DutyEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
+}
+
+const fn later(source: Activity, event: DutyEvent, target: Activity) -> Row<Activity, DutyEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority: 1 }
+}
+
+/// A robot that is under way and one that is parked exchange their duties: both transitions.
+const fn exchange(mover: Activity, parked: Activity) -> [Row<Activity, DutyEvent>; 2] {
+    [row(mover, parked.taken_over(), parked), row(parked, mover.taken_over(), mover)]
+}
+
+/// The exchanges of a robot that is under way with every kind of parked one.
+macro_rules! rows {
+    ($($row:expr,)* ; exchanges $($mover:ident: [$($parked:ident),*]),*) => {
+        &[$($row,)* $($(
+            exchange(Activity::$mover, Activity::$parked)[0],
+            exchange(Activity::$mover, Activity::$parked)[1],
+        )*)*]
+    };
+}
+
+/// The table of a robot's duty.
+///
+/// Priority 0: what a step of the mission or an exchange asks for. Priority 1: what the robot
+/// itself finds about its post.
+pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
+    use Activity::*;
+    use DutyEvent as On;
+    TransitionTable::new(rows![
+        row(Standby, On::Elected, Leading),
+        row(Standby, On::Bound, Bound),
+        row(Relay, On::Bound, Bound),
+        row(Junction, On::Bound, Bound),
+        row(Leaf, On::Bound, Bound),
+        row(Bound, On::RelayResumed, Relay),
+        row(Bound, On::LeafResumed, Leaf),
+        row(Standby, On::PathJoined, Waiting),
+        row(Relay, On::PathJoined, Waiting),
+        row(Junction, On::PathJoined, Waiting),
+        row(Leaf, On::PathJoined, Waiting),
+        row(Bound, On::PathJoined, AwaitingRelease),
+        row(Waiting, On::StandbyKept, Standby),
+        row(Waiting, On::RelayKept, Relay),
+        row(Waiting, On::LeafKept, Leaf),
+        row(AwaitingRelease, On::BoundKept, Bound),
+        row(Waiting, On::TeamJoined, Following),
+        row(AwaitingRelease, On::Released, Leading),
+        row(Shifting, On::StandbyReached, Standby),
+        row(Shifting, On::RelayReached, Relay),
+        row(Shifting, On::JunctionReached, Junction),
+        row(Shifting, On::LeafReached, Leaf),
+        row(Leading, On::TaskReached, Leaf),
+        row(Leading, On::Settled, Relay),
+        row(Following, On::Settled, Relay),
+        later(Waiting, On::SetOut, Shifting),
+        later(Standby, On::Attached, Standby),
+        later(Following, On::Attached, Following),
+        later(Leading, On::Attached, Leading),
+        later(Standby, On::Promoted, Relay),
+        later(Relay, On::Branched, Junction),
+        later(Relay, On::Retired, Standby),
+        later(Junction, On::Merged, Relay),
+        ;
+        exchanges
+        Shifting: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease],
+        Following: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease],
+        Leading: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease]
+    ])
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Event;
+
+    #[test]
+    fn the_table_is_deterministic_and_every_location_is_reached() {
+        assert!(DUTIES.is_deterministic());
+        assert_eq!(DUTIES.unreachable_from(Activity::Standby), vec![]);
+        let named = |event: &&DutyEvent| DUTIES.rows().iter().any(|row| row.event == **event);
+        assert!(DutyEvent::ALL.iter().all(|event| named(&event)));
+    }
+
+    #[test]
+    fn no_transition_leaves_a_fixed_post_unheld() {
+        for row in DUTIES.rows() {
+            assert!(keeps_posts_held(row.source, row.event, row.target), "{row:?}");
+        }
+        assert!(!keeps_posts_held(Activity::Leaf, DutyEvent::Settled, Activity::Following));
+    }
+
+    /// The roles that may follow each role, against the algorithms of the paper.
+    #[test]
+    fn roles_change_as_the_algorithms_allow() {
+        use Role::{Junction, Leader, Leaf, Node, Recruit, Redundant};
+        let after = |from: Role| -> Vec<Role> {
+            Role::ALL.into_iter().filter(|&to| to != from && may_follow(from, to)).collect()
+        };
+        assert_eq!(after(Redundant), [Recruit, Node, Leader]);
+        assert_eq!(after(Recruit), [Redundant, Node, Junction, Leaf, Leader]);
+        assert_eq!(after(Leaf), [Recruit, Node, Leader]);
+        assert_eq!(after(Junction), [Recruit, Node, Leader]);
+    }
+}
