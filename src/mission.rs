@@ -161,7 +161,8 @@ impl Gallery<'_, '_> {
         if !is_stuck || self.saturated.is_empty() {
             return end;
         }
-        let loads = self.saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
+        let loads =
+            self.saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
         let loads: Vec<String> = loads.collect();
         let reason = format!(
             "{}; the load is {}: its links carry no more, so lower the rates, place robots closer \

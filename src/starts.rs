@@ -1,5 +1,6 @@
 //! Random places from which the robots of a scenario start.
 
+use crate::automaton::network::Site;
 use crate::automaton::network::scenario::ValidScenario;
 use crate::continuous::Point;
 use thiserror::Error;
@@ -42,19 +43,14 @@ pub struct NoStarts {
 pub fn draw(scenario: &ValidScenario, seed: u64) -> Result<ValidScenario, NoStarts> {
     let robots = scenario.robot.len();
     (0..DRAFTS)
-        .filter_map(|draft| places(scenario, robots, &mut Dice::new(seed, draft)))
+        .filter_map(|draft| places(scenario.site(), robots, &mut Dice::new(seed, draft)))
         .find_map(|starts| scenario.with_starts(&starts).ok())
         .ok_or(NoStarts { robots })
 }
 
 /// Random places for this many robots, each connected to an access point, or none if they do not
 /// fit. Rates are not looked at.
-pub(crate) fn places(
-    scenario: &ValidScenario,
-    robots: usize,
-    dice: &mut Dice,
-) -> Option<Vec<[f64; 2]>> {
-    let site = scenario.site();
+pub(crate) fn places(site: &Site, robots: usize, dice: &mut Dice) -> Option<Vec<[f64; 2]>> {
     let reach = REACH * site.build_length;
     let apart = APART * site.settings.clearance;
     let mut nodes = site.access_points.clone();
@@ -98,7 +94,7 @@ impl Dice {
     }
 
     /// An index below `count`.
-    fn below(&mut self, count: usize) -> usize {
+    pub fn below(&mut self, count: usize) -> usize {
         ((self.unit() * count as f64) as usize).min(count - 1)
     }
 

@@ -154,7 +154,9 @@ impl Summary {
             let label = format!("task {number}");
             write!(formatter, "  {label:<19} {place:<14} ")?;
             match serviced {
-                Some((step, robot)) => write!(formatter, "serviced at k = {step} by robot {robot}")?,
+                Some((step, robot)) => {
+                    write!(formatter, "serviced at k = {step} by robot {robot}")?
+                }
                 None => write!(formatter, "not serviced")?,
             }
             match (serviced, holder) {

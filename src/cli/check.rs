@@ -54,8 +54,14 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
         ("tasks", scenario.task.len().to_string()),
         ("links", format!("{links} at the start, {crossing} of them through walls")),
         ("longest new link", format!("{:.6}, along the shortest way", site.build_length)),
-        ("clearance", format!("{}; passages from {} on are open", resolved.clearance,
-            2.0 * resolved.clearance)),
+        (
+            "clearance",
+            format!(
+                "{}; passages from {} on are open",
+                resolved.clearance,
+                2.0 * resolved.clearance
+            ),
+        ),
     ];
     rows.extend(drawing.map(|path| ("start", path.display().to_string())));
     rows.extend(remarks.iter().map(|remark| ("remark", format!("{}: {remark}", remark.key()))));
@@ -95,8 +101,7 @@ fn draw(scenario: &ValidScenario, arguments: &CheckArguments) -> Result<Option<P
     let title = format!("{}: the start", scenario.name);
     let picture = plan.render(&Scene { snapshot: &snapshot, title: &title, trails: &[] });
     let path = folder.join("start.svg");
-    fs::write(&path, picture)
-        .map_err(|source| Failure::Creation { path: path.clone(), source })?;
+    fs::write(&path, picture).map_err(|source| Failure::Creation { path: path.clone(), source })?;
     Ok(Some(path))
 }
 

@@ -97,7 +97,8 @@ impl Record {
 
     /// The record of a run that the program could not do.
     pub fn failed(run: &Planned, reason: String) -> Self {
-        let set = |setting: &pleach::scenario_file::Setting| (setting.key(), setting.value().into());
+        let set =
+            |setting: &pleach::scenario_file::Setting| (setting.key(), setting.value().into());
         Self {
             run: run.number,
             source: run.source.clone(),
@@ -121,7 +122,8 @@ impl Record {
     }
 
     fn cells(&self) -> [String; 14] {
-        let optional = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+        let optional =
+            |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
         [
             self.seed.map_or_else(String::new, |seed| seed.to_string()),
             self.outcome.clone(),
@@ -143,8 +145,9 @@ impl Record {
 
 /// Writes the records as CSV, with a header and a column for each key that was set.
 pub fn write_csv(records: &[Record], output: impl Write) -> io::Result<()> {
-    let keys: Vec<&str> =
-        records.first().map_or_else(Vec::new, |first| first.set.iter().map(|(key, _)| &**key).collect());
+    let keys: Vec<&str> = records
+        .first()
+        .map_or_else(Vec::new, |first| first.set.iter().map(|(key, _)| &**key).collect());
     let (before, after) = COLUMNS;
     let mut table = csv::Writer::from_writer(output);
     table.write_record(before.iter().chain(&keys).chain(&after))?;

@@ -30,7 +30,9 @@ fn run_one(
     arguments: &RunArguments,
     interrupt: &Interrupt,
 ) -> Result<Status, Failure> {
-    warn_of_tasks(run);
+    if !arguments.quiet {
+        warn_of_tasks(run);
+    }
     let default_folder = || Path::new("figures").join(&run.scenario.name);
     let outputs = Outputs {
         trace: arguments.trace.clone(),

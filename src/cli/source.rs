@@ -1,8 +1,8 @@
 //! Where scenarios come from: files, folders of files, and the standard input.
 
 use super::status::Failure;
-use pleach::scenario_file::{self, ScenarioError, Setting};
 use pleach::automaton::network::scenario::ValidScenario;
+use pleach::scenario_file::{self, ScenarioError, Setting};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 

@@ -62,7 +62,8 @@ impl Range {
             )
         };
         let (to, count) = rest.split_once(':').ok_or_else(wrong)?;
-        let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+        let number =
+            |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
         let (from, to) = (number(from).ok_or_else(wrong)?, number(to).ok_or_else(wrong)?);
         let count = count.trim().parse().ok().filter(|count| (2..=MOST_VALUES).contains(count));
         Ok(Some(Self { from, to, count: count.ok_or_else(wrong)? }))
@@ -115,7 +116,8 @@ mod tests {
 
     #[test]
     fn sweeps_are_combined() {
-        let sweeps = ["a=1..2:2".parse().unwrap(), "b=3".parse().unwrap(), "c=5..6:2".parse().unwrap()];
+        let sweeps =
+            ["a=1..2:2".parse().unwrap(), "b=3".parse().unwrap(), "c=5..6:2".parse().unwrap()];
         let written: Vec<Vec<String>> = Sweep::combinations(&sweeps)
             .iter()
             .map(|combination| combination.iter().map(Setting::to_string).collect())

@@ -14,8 +14,7 @@ pub fn draw(records: &[Record], width: Option<usize>) -> String {
         header.push("seed".into());
     }
     header.extend(HEADER[2..].iter().map(|&name| name.to_owned()));
-    let rows: Vec<Vec<String>> =
-        std::iter::once(header).chain(records.iter().map(cells)).collect();
+    let rows: Vec<Vec<String>> = std::iter::once(header).chain(records.iter().map(cells)).collect();
     let columns = rows[0].len();
     let widths: Vec<usize> = (0..columns)
         .map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0))

@@ -7,6 +7,11 @@ use serde::{Deserialize, Serialize};
 use crate::network::Link;
 
 /// The radio: a model and its two distances.
+///
+/// The reliability of a link depends on its length alone: links reach through walls, as in the
+/// paper. In a building the two distances should be those that hold through its walls.
+/// [`ValidScenario::count_links`](super::ValidScenario::count_links) tells how many links of the
+/// start cross walls.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LinkRanges {
