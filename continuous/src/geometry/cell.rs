@@ -27,8 +27,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use std::f64::consts::SQRT_2;
+
+use super::segment::side;
+use super::workspace::edges_of;
 use super::{FreeSpace, HalfPlane, Segment};
-use crate::Point;
+use crate::{Point, Vector};
 
 #[cfg(any(kani, test))]
 mod proofs;
@@ -75,23 +79,47 @@ pub fn own_side(bisector: HalfPlane, position: Point, clearance: f64) -> HalfPla
 /// half-plane. Then the half-planes retreat by the τ/2 from the sight set to the planning set, as
 /// far as the way allows, so that robots stay away from where sight ends.
 ///
-/// Expects `position` in the free space. Should it not see so far towards `waypoint`, the region
-/// is grown around `position` alone. Half-planes that do not cut the disc are left out.
+/// Should `position` not see so far towards `waypoint`, the region is grown around `position` alone.
+/// Half-planes that do not cut the disc are left out.
+///
+/// For a `position` outside the free space, within the reach of re-entry, the region is the convex
+/// hull of `position` and of the region of its [entry](FreeSpace::entry): it admits the way in, and
+/// the straight way to what the entry sees of the way ahead, and [nothing farther
+/// out](super::reentry). A robot beyond that reach gets half-planes that it may stay in.
 pub fn convex_region(
     space: &FreeSpace,
     position: Point,
     waypoint: Point,
     radius: f64,
 ) -> Vec<HalfPlane> {
+    match space.entry(position) {
+        Some(entry) if entry != position => {
+            let half_side = radius + (position - entry).norm();
+            let way = way_ahead(space, entry, waypoint, half_side);
+            let region = free_region(space, &way, half_side * SQRT_2);
+            hull(position, &way, half_side, &region)
+        }
+        _ => free_region(space, &way_ahead(space, position, waypoint, radius), radius),
+    }
+}
+
+/// The segment from `position` towards `waypoint` within `radius`, or `position` alone if it is out
+/// of sight.
+fn way_ahead(space: &FreeSpace, position: Point, waypoint: Point, radius: f64) -> Segment {
     let ahead = way_within(position, waypoint, radius);
-    let way = if space.is_clear(&ahead) { ahead } else { Segment::new(position, position) };
+    if space.is_clear(&ahead) { ahead } else { Segment::still(position) }
+}
+
+/// The half-planes of the walls within `radius` of the beginning of a clear way.
+fn free_region(space: &FreeSpace, way: &Segment, radius: f64) -> Vec<HalfPlane> {
+    let position = way.from;
     let tolerance = space.tolerance();
     let touch = TOUCH * tolerance;
     let mut region = Vec::new();
     // Edges that rounding puts just outside the disc bound it too.
     space.for_each_wall_near(position, radius + tolerance, |wall| {
         let separating =
-            own_half_plane(wall, &way, touch).or_else(|| half_plane_between(wall, &way, touch));
+            own_half_plane(wall, way, touch).or_else(|| half_plane_between(wall, way, touch));
         // Back to the planning set, unless the way itself leaves it.
         let retracted = separating.map(|plane| {
             let offset = plane.offset - tolerance / 2.0;
@@ -100,6 +128,45 @@ pub fn convex_region(
         region.extend(retracted.filter(|plane| plane.margin(position) < radius));
     });
     region
+}
+
+/// The convex hull of `outside` and of the part of a region in the square around the beginning of
+/// the way: the half-planes of the region that contain `outside`, and the two tangents from there.
+fn hull(outside: Point, way: &Segment, half_side: f64, region: &[HalfPlane]) -> Vec<HalfPlane> {
+    let (kept, broken): (Vec<_>, Vec<_>) =
+        region.iter().copied().partition(|plane| plane.contains(outside));
+    if broken.is_empty() {
+        return kept;
+    }
+    let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+        .map(|(x, y)| way.from + Vector::new(x, y) * half_side);
+    let corners = region.iter().fold(square.to_vec(), |ring, plane| clipped(&ring, plane));
+    // The way belongs to the region, whatever rounding does to the corners.
+    let seen = || corners.iter().chain([&way.from, &way.to]).copied();
+    let tangent = |is_outer: fn(f64) -> bool| {
+        let outermost = seen()
+            .reduce(|best, next| if is_outer(side(outside, best, next)) { next } else { best });
+        Segment::new(outside, outermost.unwrap_or(way.from)).left_normal()
+    };
+    let (left, right) = (tangent(|side| side > 0.0), tangent(|side| side < 0.0));
+    let tangents = [left, -right].map(|outward| HalfPlane::through(outside, outward));
+    kept.into_iter().chain(tangents.into_iter().flatten()).collect()
+}
+
+/// The part of a convex polygon in a half-plane (I. E. Sutherland and G. W. Hodgman,
+/// <https://doi.org/10.1145/360767.360802>).
+fn clipped(ring: &[Point], plane: &HalfPlane) -> Vec<Point> {
+    let mut part = Vec::with_capacity(ring.len() + 1);
+    for edge in edges_of(ring) {
+        let (from, to) = (plane.margin(edge.from), plane.margin(edge.to));
+        if from >= 0.0 {
+            part.push(edge.from);
+        }
+        if (from >= 0.0) != (to >= 0.0) {
+            part.push(edge.at(from / (from - to)));
+        }
+    }
+    part
 }
 
 /// The part of the segment from `position` to `waypoint` that is not farther than `radius`.

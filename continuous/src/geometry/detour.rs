@@ -3,6 +3,7 @@
 //! A robot that stands in a corridor narrower than 4ρ is a wall for the others, which the geodesics
 //! of Definition 4.1 do not see. Here such robots are obstacles too.
 
+use super::reentry::with_ends;
 use super::search::{avoids, shortest_path};
 use super::{Disc, FreeSpace, Geodesic};
 use crate::Point;
@@ -16,7 +17,8 @@ impl FreeSpace {
     ///
     /// Paths around a disc follow a regular octagon about it. A disc that contains `to` is no
     /// obstacle (its occupant is whom the robot comes to replace), and one that contains `from`
-    /// is taken just small enough not to.
+    /// is taken just small enough not to. Ends outside the free space are treated as by
+    /// [`geodesic`](Self::geodesic); the way between them and the free space minds no obstacle.
     ///
     /// ```
     /// use pleach_continuous::Point;
@@ -31,6 +33,12 @@ impl FreeSpace {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn detour(&self, from: Point, to: Point, obstacles: &[Disc]) -> Option<Geodesic> {
+        let (entry, exit) = (self.entry(from)?, self.entry(to)?);
+        let path = self.detour_inside(entry, exit, obstacles)?;
+        Some(with_ends(path, (from, entry), (exit, to)))
+    }
+
+    fn detour_inside(&self, from: Point, to: Point, obstacles: &[Disc]) -> Option<Geodesic> {
         let mut path = self.geodesic(from, to)?;
         let mut waiting: Vec<Disc> = obstacles
             .iter()

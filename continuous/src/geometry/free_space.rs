@@ -15,7 +15,7 @@ use thiserror::Error;
 use super::edge_tree::EdgeTree;
 use super::erosion::{Region, erode};
 use super::visibility::VisibilityGraph;
-use super::workspace::edges_of;
+use super::workspace::{COORDINATE_LIMIT, edges_of};
 use super::{Segment, Workspace};
 use crate::Point;
 
@@ -28,6 +28,9 @@ const RELATIVE_TOLERANCE: f64 = 1e-6;
 /// left out. Small, so that the sight set stays around the planning set.
 const NEGLIGIBLE: f64 = 1e-3;
 
+/// The reach of re-entry as a fraction of ρ + τ, unless another one is asked for.
+const REACH: f64 = 0.5;
+
 /// The points of a workspace that keep a clearance ρ from its boundary, ready for questions about
 /// sight and shortest paths. See [the two nested sets](super#two-nested-sets).
 ///
@@ -38,6 +41,7 @@ const NEGLIGIBLE: f64 = 1e-3;
 pub struct FreeSpace {
     clearance: f64,
     tolerance: f64,
+    pub(super) reach: f64,
     planning: Outline,
     sight: Outline,
     graph: VisibilityGraph,
@@ -62,6 +66,17 @@ pub enum FreeSpaceError {
         clearance: f64,
         /// The larger side of the box around the workspace.
         extent: f64,
+    },
+    /// The reach of re-entry is no length, or leads back through walls.
+    #[error(
+        "the reach of re-entry is {reach}; it is a length of 0 or more, less than {limit}, the \
+         clearance that planned positions keep"
+    )]
+    InvalidReach {
+        /// The reach asked for.
+        reach: f64,
+        /// ρ + τ.
+        limit: f64,
     },
     /// The outline that was computed does not keep the clearance: coordinates so large, or details
     /// so small, that rounding exceeds the tolerance.
@@ -97,7 +112,8 @@ impl FreeSpace {
             return Err(FreeSpaceError::Empty { clearance, extent });
         }
         let graph = VisibilityGraph::new(&planning.rings, &sight.tree, tolerance);
-        let free_space = FreeSpace { clearance, tolerance, planning, sight, graph };
+        let reach = REACH * (clearance + tolerance);
+        let free_space = FreeSpace { clearance, tolerance, reach, planning, sight, graph };
         free_space.certify(workspace)?;
         Ok(free_space)
     }
@@ -123,10 +139,14 @@ impl FreeSpace {
     }
 
     /// The point of the planning set nearest to `point`; the point itself if it lies there.
+    ///
+    /// Coordinates beyond the limit of a [`Workspace`] count as that limit. A point with a
+    /// coordinate that is not a number has no nearest one and is returned as it is.
     pub fn nearest(&self, point: Point) -> Point {
         if self.planning.tree.encloses(point) {
             return point;
         }
+        let point = point.map(|coordinate| coordinate.clamp(-COORDINATE_LIMIT, COORDINATE_LIMIT));
         self.planning.tree.nearest(point).map_or(point, |(_, nearest)| nearest)
     }
 
@@ -142,8 +162,16 @@ impl FreeSpace {
 
     /// Whether a robot can walk straight from one point to the other: the segment between them
     /// lies in the sight set.
+    ///
+    /// A robot outside, within the reach of re-entry, sees what its [entry](Self::entry) sees, and
+    /// places that are not farther out than it is itself; [it never gets farther
+    /// out](super::reentry).
     pub fn sees(&self, from: Point, to: Point) -> bool {
-        self.contains(from) && self.is_clear(&Segment::new(from, to))
+        if self.contains(from) {
+            return self.is_clear(&Segment::new(from, to));
+        }
+        let (Some(entry), Some(exit)) = (self.entry(from), self.entry(to)) else { return false };
+        (to - exit).norm() <= (from - entry).norm() && self.is_clear(&Segment::new(entry, exit))
     }
 
     /// Whether a segment that starts in the sight set stays there.
@@ -176,7 +204,7 @@ impl FreeSpace {
             }
         }
         for edge in self.planning.edges() {
-            if !self.sees(edge.from, edge.to) {
+            if !(self.contains(edge.from) && self.is_clear(&edge)) {
                 return Err(failed(edge.from));
             }
         }

@@ -3,6 +3,7 @@
 use std::collections::BinaryHeap;
 
 use super::ranked::Ranked;
+use super::reentry::with_ends;
 use super::search::shortest_path;
 use super::{FreeSpace, Segment};
 use crate::Point;
@@ -42,8 +43,9 @@ fn segments(start: Point, waypoints: &[Point]) -> impl Iterator<Item = Segment> 
 #[derive(Debug, Clone)]
 pub struct Destination {
     goal: Point,
-    /// Whether the goal lies in the free space; otherwise no way leads to it.
-    is_free: bool,
+    /// The free point from which the goal is reached: the goal itself, or the point nearest to it;
+    /// `None` if no way leads to it.
+    exit: Option<Point>,
     ways: Vec<Way>,
 }
 
@@ -62,20 +64,26 @@ impl Destination {
         self.goal
     }
 
-    fn waypoints_from(&self, corner: usize, space: &FreeSpace) -> Vec<Point> {
+    fn waypoints_from(&self, corner: usize, exit: Point, space: &FreeSpace) -> Vec<Point> {
         let corners = space.graph().corners();
         let chain = std::iter::successors(Some(corner), |&at| self.ways[at].next);
-        chain.filter_map(|at| corners.get(at)).map(|corner| corner.at).chain([self.goal]).collect()
+        chain.filter_map(|at| corners.get(at)).map(|corner| corner.at).chain([exit]).collect()
     }
 }
 
 impl FreeSpace {
-    /// A shortest path from `from` to `to`, `None` if there is none or if one of them is not in
-    /// the free space (see [`FreeSpace::nearest`]).
+    /// A shortest path from `from` to `to`, `None` if there is none.
+    ///
+    /// From and to points outside the free space the path leads over their
+    /// [entry](FreeSpace::entry), the nearest free point; `None` if they are farther out than the
+    /// reach of re-entry.
     pub fn geodesic(&self, from: Point, to: Point) -> Option<Geodesic> {
-        if !self.contains(from) || !self.contains(to) {
-            return None;
-        }
+        let (entry, exit) = (self.entry(from)?, self.entry(to)?);
+        let path = self.geodesic_inside(entry, exit)?;
+        Some(with_ends(path, (from, entry), (exit, to)))
+    }
+
+    fn geodesic_inside(&self, from: Point, to: Point) -> Option<Geodesic> {
         if self.is_clear(&Segment::new(from, to)) {
             return Some(Geodesic::new(from, vec![to]));
         }
@@ -88,18 +96,16 @@ impl FreeSpace {
     }
 
     /// The shortest ways to `goal` from everywhere, for many questions about the same goal.
-    /// A goal outside the free space can be reached from nowhere.
+    /// A goal farther outside the free space than the reach of re-entry is reached from nowhere.
     pub fn destination(&self, goal: Point) -> Destination {
         let graph = self.graph();
         let unreached = Way { length: f64::INFINITY, next: None };
         let mut ways = vec![unreached; graph.corners().len()];
-        let is_free = self.contains(goal);
-        if !is_free {
-            return Destination { goal, is_free, ways };
-        }
+        let exit = self.entry(goal);
+        let Some(start) = exit else { return Destination { goal, exit, ways } };
         let mut frontier = BinaryHeap::new();
         for (index, corner) in graph.corners().iter().enumerate() {
-            let path = Segment::new(goal, corner.at);
+            let path = Segment::new(start, corner.at);
             if self.is_clear(&path) {
                 ways[index].length = path.length();
                 frontier.push(Ranked { cost: path.length(), item: index });
@@ -117,20 +123,28 @@ impl FreeSpace {
                 }
             }
         }
-        Destination { goal, is_free, ways }
+        Destination { goal, exit, ways }
     }
 
     /// A shortest path from `from` to a destination of this free space, `None` if there is none.
+    /// Ends outside the free space are treated as by [`geodesic`](Self::geodesic).
     ///
     /// Corners are tried in the order of the length that the path over them would have: the first
     /// one in sight is on a shortest path, and few are tested.
     pub fn geodesic_to(&self, from: Point, destination: &Destination) -> Option<Geodesic> {
-        if !destination.is_free || !self.contains(from) {
-            return None;
-        }
-        let goal = destination.goal;
-        if self.is_clear(&Segment::new(from, goal)) {
-            return Some(Geodesic::new(from, vec![goal]));
+        let (entry, exit) = (self.entry(from)?, destination.exit?);
+        let path = self.geodesic_to_exit(entry, exit, destination)?;
+        Some(with_ends(path, (from, entry), (exit, destination.goal)))
+    }
+
+    fn geodesic_to_exit(
+        &self,
+        from: Point,
+        exit: Point,
+        destination: &Destination,
+    ) -> Option<Geodesic> {
+        if self.is_clear(&Segment::new(from, exit)) {
+            return Some(Geodesic::new(from, vec![exit]));
         }
         let corners = self.graph().corners();
         let mut candidates: BinaryHeap<Ranked<usize>> = corners
@@ -145,7 +159,7 @@ impl FreeSpace {
             .collect();
         while let Some(Ranked { item: corner, .. }) = candidates.pop() {
             if self.is_clear(&Segment::new(from, corners[corner].at)) {
-                let waypoints = destination.waypoints_from(corner, self);
+                let waypoints = destination.waypoints_from(corner, exit, self);
                 return Some(self.departure(from, waypoints, |path| self.is_clear(path)));
             }
         }

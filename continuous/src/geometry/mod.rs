@@ -6,9 +6,11 @@
 //! | [`workspace`] | the polygon with holes W that bounds the robots' world, validated |
 //! | [`free_space`] | W_f, the points that keep a clearance ρ from ∂W (Algorithm 6, repaired) |
 //! | [`geodesic`] | shortest paths in W_f (Definition 4.1), and the way to a fixed destination |
+//! | [`reentry`] | robots slightly outside W_f, and how they come back |
 //! | [`detour`] | shortest paths that also keep out of discs |
 //! | [`cell`] | convex collision-free cells (Definition 4.2, (17) and (18)) |
-//! | [`shape`] | discs and half-planes |
+//! | [`neighbours`] | which points are within a distance of a place |
+//! | [`shape`] | discs, capsules and half-planes |
 //!
 //! ```
 //! use pleach_continuous::Point;
@@ -42,7 +44,9 @@ mod edge_tree;
 mod erosion;
 pub mod free_space;
 pub mod geodesic;
+pub mod neighbours;
 mod ranked;
+pub mod reentry;
 mod search;
 pub mod segment;
 pub mod shape;
@@ -52,6 +56,7 @@ pub mod workspace;
 pub use cell::{convex_region, voronoi_half_planes};
 pub use free_space::{FreeSpace, FreeSpaceError};
 pub use geodesic::{Destination, Geodesic};
+pub use neighbours::Neighbours;
 pub use segment::Segment;
-pub use shape::{Disc, HalfPlane};
+pub use shape::{Capsule, Disc, HalfPlane};
 pub use workspace::{Polygon, Workspace, WorkspaceError};

@@ -1,4 +1,4 @@
-//! Discs and half-planes.
+//! Discs, capsules and half-planes.
 
 use nalgebra::Unit;
 
@@ -29,6 +29,35 @@ impl Disc {
     /// the disc.
     pub fn gap(&self, segment: &Segment) -> f64 {
         segment.distance(self.center) - self.radius
+    }
+}
+
+/// The points within `radius` of a segment: where a robot may be that follows the segment up to
+/// an error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capsule {
+    /// The segment.
+    pub axis: Segment,
+    /// The radius, a length ≥ 0.
+    pub radius: f64,
+}
+
+impl Capsule {
+    /// Whether `point` lies in the capsule, its rim included.
+    pub fn contains(&self, point: Point) -> bool {
+        self.axis.distance(point) <= self.radius
+    }
+
+    /// Distance between two capsules; 0 or less if they meet.
+    pub fn gap(&self, other: &Capsule) -> f64 {
+        self.axis.distance_to(&other.axis) - self.radius - other.radius
+    }
+}
+
+impl From<Segment> for Capsule {
+    /// The segment alone.
+    fn from(axis: Segment) -> Capsule {
+        Capsule { axis, radius: 0.0 }
     }
 }
 

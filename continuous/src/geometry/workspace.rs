@@ -10,7 +10,7 @@ use super::segment::side;
 use crate::Point;
 
 /// Largest magnitude of a coordinate: beyond it the square of a length leaves the range of numbers.
-const COORDINATE_LIMIT: f64 = 1e100;
+pub(super) const COORDINATE_LIMIT: f64 = 1e100;
 
 /// The bounded region W in which the robots live: a simple polygon without the interiors of its
 /// holes. Its boundary ∂W has W on the left: the outer boundary runs counter-clockwise, holes run

@@ -35,20 +35,49 @@
 //! load is what it is now, at most 1 with feasible routes.
 //!
 //! The same argument bounds the euclidean length of a link by [`worst_separation`].
+//!
+//! # Errors of position and motion
+//!
+//! Let a robot know its place up to a distance e_p (*position error*: what it believes and what is
+//! true differ by at most that) and follow a segment up to a distance e_m (*motion error*: where
+//! it believes to be and the point of the segment that it should be at differ by at most that).
+//! Then it is at every instant within r = e_p + e_m of a point of the segment that it has
+//! announced: in the [`Capsule`] with that axis and radius. [`worst_load_within`] takes capsules.
+//!
+//! *Proof.* Let the axes be traversed as above, α_n ∈ \[0, 1\]. By the triangle inequality the true
+//! distance of i and j is at most δ_ij(α_i, α_j) + r_i + r_j, where δ_ij is the distance of the
+//! points on the axes. 1/R is nondecreasing, so
+//!
+//! ```text
+//! h_i ≤ Σ_j F_ij / R(δ_ij(α_i, α_j) + r_i + r_j).
+//! ```
+//!
+//! A constant added to a convex function leaves it convex, so the right side is convex in α, and
+//! the argument with the corners applies to it. For collinear moves that end farthest apart the
+//! bound is attained. ∎
+//!
+//! Halving an axis replaces \[0, 1\] by \[0, γ\] as before and leaves the radii; the worst load does
+//! not rise. When all who are involved stay, it is the load at distances longer by r_i + r_j. That
+//! is at most 1 if routes are feasible for such distances:
+//! [`WithMargin`](super::reliability::WithMargin) is the link model for routing then.
 
 use std::ops::Add;
 
 use super::reliability::LinkReliability;
 use crate::Point;
-pub use crate::geometry::Segment;
+pub use crate::geometry::{Capsule, Segment};
 
 #[cfg(any(kani, test))]
 mod proofs;
 
 /// h_i: the time share that a sender at `own` needs to carry its flows, given as pairs of a flow
 /// F_ij and the place of the receiver. Infinite if a receiver of a flow cannot be reached.
-pub fn load(own: Point, receivers: &[(f64, Point)], reliability: &impl LinkReliability) -> f64 {
-    receivers.iter().map(|&(flow, place)| term(flow, &own, &place, reliability)).sum()
+pub fn load(
+    own: Point,
+    receivers: &[(f64, Point)],
+    reliability: &(impl LinkReliability + ?Sized),
+) -> f64 {
+    receivers.iter().map(|&(flow, place)| term(flow, (own - place).norm(), reliability)).sum()
 }
 
 /// The largest load of a sender while it and its receivers carry out their moves, each at any
@@ -71,14 +100,52 @@ pub fn load(own: Point, receivers: &[(f64, Point)], reliability: &impl LinkRelia
 pub fn worst_load(
     own: Segment,
     receivers: &[(f64, Segment)],
-    reliability: &impl LinkReliability,
+    reliability: &(impl LinkReliability + ?Sized),
+) -> f64 {
+    largest_load(
+        own.into(),
+        receivers.iter().map(|&(flow, move_of)| (flow, move_of.into())),
+        reliability,
+    )
+}
+
+/// The largest load of a sender while it and its receivers carry out their moves, each at any
+/// pace or not at all, and each anywhere in its capsule. Infinite if a flow could be cut off. See
+/// the module for what the capsules are and for the proof.
+///
+/// ```
+/// use pleach_continuous::Point;
+/// use pleach_continuous::network::acceptance::{Capsule, Segment, worst_load_within};
+/// use pleach_continuous::network::CubicReliability;
+///
+/// let link = CubicReliability::new(0.4, 0.5)?;
+/// let away = Segment { from: Point::new(0.4, 0.0), to: Point::new(0.44, 0.0) };
+/// let robot = Capsule { axis: away, radius: 0.01 };
+/// let access_point = Capsule::from(Segment::still(Point::origin()));
+/// // At the end R may be as low as 1/2: the flow of 0.3 then takes 0.6 of the sender's time.
+/// assert!((worst_load_within(robot, &[(0.3, access_point)], &link) - 0.6).abs() < 1e-12);
+/// # Ok::<(), pleach_continuous::network::reliability::ReliabilityError>(())
+/// ```
+pub fn worst_load_within(
+    own: Capsule,
+    receivers: &[(f64, Capsule)],
+    reliability: &(impl LinkReliability + ?Sized),
+) -> f64 {
+    largest_load(own, receivers.iter().copied(), reliability)
+}
+
+fn largest_load(
+    own: Capsule,
+    receivers: impl Iterator<Item = (f64, Capsule)> + Clone,
+    reliability: &(impl LinkReliability + ?Sized),
 ) -> f64 {
     let terms_from = |place: Point| {
-        receivers.iter().map(move |&(flow, receiver)| {
-            ends(&receiver).map(|end| term(flow, &place, &end, reliability))
+        receivers.clone().map(move |(flow, receiver)| {
+            let spread = own.radius + receiver.radius;
+            ends(&receiver.axis).map(|end| term(flow, (place - end).norm() + spread, reliability))
         })
     };
-    worst_corner(ends(&own).map(terms_from))
+    worst_corner(ends(&own.axis).map(terms_from))
 }
 
 /// The largest sum over the corners of the moves: `terms` has one list for each end of the
@@ -108,11 +175,8 @@ fn ends(segment: &Segment) -> [Point; 2] {
 }
 
 /// F/R: what one flow adds to the load. A flow of zero adds nothing, however far the receiver.
-fn term(flow: f64, sender: &Point, receiver: &Point, reliability: &impl LinkReliability) -> f64 {
-    if flow == 0.0 {
-        return 0.0;
-    }
-    flow * reliability.expected_transmissions((sender - receiver).norm())
+fn term(flow: f64, distance: f64, reliability: &(impl LinkReliability + ?Sized)) -> f64 {
+    if flow == 0.0 { 0.0 } else { flow * reliability.expected_transmissions(distance) }
 }
 
 /// The largest euclidean distance between two robots while each carries out its move at any pace
@@ -130,7 +194,7 @@ pub fn worst_separation(one: Segment, other: Segment) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::CubicReliability;
+    use crate::network::{CubicReliability, WithMargin};
     use proptest::prelude::*;
 
     /// Rounding of a sum of a few terms of order one.
@@ -198,6 +262,68 @@ mod tests {
             let before = worst_load(own, &receivers, &link());
             let now = worst_load(shrunk(&own, halves[0]), &after, &link());
             prop_assert!(now <= before * (1.0 + ROUNDING));
+        }
+
+        /// Wherever in their capsules the sender and the receivers are.
+        #[test]
+        fn no_error_exceeds_the_worst_load_within(
+            own in segment(),
+            receivers in receivers(),
+            radii in prop::collection::vec(0.0..0.05f64, 5),
+            tries in prop::collection::vec(
+                prop::collection::vec((0.0..=1.0f64, 0.0..=1.0f64, 0.0..6.3f64), 5), 20,
+            ),
+        ) {
+            let capsules: Vec<_> = receivers
+                .iter()
+                .zip(&radii[1..])
+                .map(|(&(flow, axis), &radius)| (flow, Capsule { axis, radius }))
+                .collect();
+            let own = Capsule { axis: own, radius: radii[0] };
+            let worst = worst_load_within(own, &capsules, &link());
+            for errors in tries {
+                let place = |capsule: &Capsule, (pace, share, angle): (f64, f64, f64)| {
+                    let error = crate::Vector::new(angle.cos(), angle.sin()) * share;
+                    capsule.axis.at(pace) + error * capsule.radius
+                };
+                let now: Vec<_> = capsules
+                    .iter()
+                    .zip(&errors[1..])
+                    .map(|((flow, capsule), error)| (*flow, place(capsule, *error)))
+                    .collect();
+                let load = load(place(&own, errors[0]), &now, &link());
+                prop_assert!(load <= worst * (1.0 + ROUNDING), "{load} exceeds {worst}");
+            }
+        }
+
+        /// Errors in opposite directions at the ends that are farthest apart attain it.
+        #[test]
+        fn the_worst_load_within_is_attained_by_collinear_moves(
+            gap in 0.1..0.4f64, away in 0.0..0.2f64, radii in (0.0..0.05f64, 0.0..0.05f64),
+        ) {
+            let to_the_right = |from: f64, to: f64, radius: f64| {
+                let axis = Segment::new(Point::new(from, 0.0), Point::new(to, 0.0));
+                Capsule { axis, radius }
+            };
+            let own = to_the_right(0.0, 0.0, radii.0);
+            let receiver = to_the_right(gap, gap + away, radii.1);
+            let worst = worst_load_within(own, &[(0.1, receiver)], &link());
+            let farthest = [(0.1, Point::new(gap + away + radii.1, 0.0))];
+            let load = load(Point::new(-radii.0, 0.0), &farthest, &link());
+            prop_assert!((load - worst).abs() <= ROUNDING * worst, "{load} {worst}");
+        }
+
+        #[test]
+        fn a_margin_of_the_link_model_is_a_radius(
+            own in segment(), receivers in receivers(), error in 0.0..0.1f64,
+        ) {
+            let around = |axis: Segment| Capsule { axis, radius: error };
+            let capsules: Vec<_> =
+                receivers.iter().map(|&(flow, axis)| (flow, around(axis))).collect();
+            let within = worst_load_within(around(own), &capsules, &link());
+            let with_margin = WithMargin::new(link(), 2.0 * error).unwrap();
+            let worst = worst_load(own, &receivers, &with_margin);
+            prop_assert!(within == worst || (within - worst).abs() <= ROUNDING * worst);
         }
 
         #[test]

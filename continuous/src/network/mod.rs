@@ -18,4 +18,4 @@ pub mod rates;
 pub mod reliability;
 pub mod routing;
 
-pub use reliability::{CubicReliability, LinkReliability};
+pub use reliability::{CubicReliability, LinkReliability, LogisticReliability, WithMargin};

@@ -49,7 +49,11 @@ pub fn residual(
 }
 
 /// ∇R(‖x − y‖) with respect to x = `own`, per unit of length; zero where both coincide.
-pub fn reliability_gradient(own: Point, other: Point, link: &impl LinkReliability) -> Vector {
+pub fn reliability_gradient(
+    own: Point,
+    other: Point,
+    link: &(impl LinkReliability + ?Sized),
+) -> Vector {
     let difference = own - other;
     let distance = difference.norm();
     if distance > 0.0 { difference * (link.slope(distance) / distance) } else { Vector::zeros() }
@@ -70,7 +74,7 @@ pub struct Exchange {
 pub fn residual_gradient(
     own: Point,
     exchanges: impl IntoIterator<Item = Exchange>,
-    link: &impl LinkReliability,
+    link: &(impl LinkReliability + ?Sized),
 ) -> Vector {
     exchanges.into_iter().fold(Vector::zeros(), |sum, exchange| {
         let gradient = reliability_gradient(own, exchange.neighbour, link);
@@ -82,7 +86,7 @@ pub fn residual_gradient(
 pub fn neighbour_residual_gradient(
     own: Point,
     exchange: &Exchange,
-    link: &impl LinkReliability,
+    link: &(impl LinkReliability + ?Sized),
 ) -> Vector {
     reliability_gradient(own, exchange.neighbour, link) * (exchange.received - exchange.sent)
 }
@@ -122,7 +126,7 @@ pub fn residuals(
     robots: &[Point],
     access_points: &[Point],
     rates: &[f64],
-    link: &impl LinkReliability,
+    link: &(impl LinkReliability + ?Sized),
 ) -> Result<Vec<f64>, RatesError> {
     if routes.len() != robots.len() || rates.len() != robots.len() {
         return Err(RatesError::Lengths {

@@ -1,7 +1,15 @@
 //! Link reliability R(x_i, x_j): the share of packets that arrive, as a function of distance.
 //!
-//! The model is interchangeable: everything else in the network sees only [`LinkReliability`].
-//! [`CubicReliability`] is the model of the paper, eq. (27).
+//! The model is interchangeable: routing, motion and acceptance take any [`LinkReliability`], also
+//! behind a pointer, as `Arc<dyn LinkReliability>`.
+//!
+//! | model | what it is |
+//! | --- | --- |
+//! | [`CubicReliability`] | the model of the paper, eq. (27) |
+//! | [`LogisticReliability`] | a plateau, then log-odds that fall evenly: its steepness is a parameter |
+//! | [`WithMargin`] | any model, read at distances that are longer by a margin |
+//!
+//! [`check`] looks for a distance at which a model breaks a requirement.
 //!
 //! ```
 //! use pleach_continuous::network::{CubicReliability, LinkReliability};
@@ -13,10 +21,20 @@
 //! # Ok::<(), pleach_continuous::network::reliability::ReliabilityError>(())
 //! ```
 
+use std::fmt::Debug;
+use std::sync::Arc;
+
 use thiserror::Error;
 
+mod check;
+mod logistic;
+mod margin;
 #[cfg(any(kani, test))]
 mod proofs;
+
+pub use check::{BrokenRequirement, check};
+pub use logistic::LogisticReliability;
+pub use margin::WithMargin;
 
 /// How reliably a link carries packets over a distance.
 ///
@@ -27,7 +45,10 @@ mod proofs;
 /// 3. **1/R is convex and nondecreasing in the distance, where R > 0.** The certified acceptance
 ///    of moves ([`super::acceptance`]) rests on this. It holds wherever 2R'² ≥ R·R''; for the
 ///    cubic model [`CubicReliability`] gives the proof.
-pub trait LinkReliability {
+///
+/// [`check`] tries these requirements at many distances. A model of your own comes with a proof of
+/// the third.
+pub trait LinkReliability: Debug + Send + Sync {
     /// R(d), in [0, 1], at a distance d ≥ 0.
     fn reliability(&self, distance: f64) -> f64;
 
@@ -51,6 +72,32 @@ pub trait LinkReliability {
     fn expected_transmissions(&self, distance: f64) -> f64 {
         let reliability = self.reliability(distance);
         if reliability > 0.0 { reliability.recip() } else { f64::INFINITY }
+    }
+}
+
+impl<L: LinkReliability + ?Sized> LinkReliability for Arc<L> {
+    fn reliability(&self, distance: f64) -> f64 {
+        (**self).reliability(distance)
+    }
+
+    fn slope(&self, distance: f64) -> f64 {
+        (**self).slope(distance)
+    }
+
+    fn range(&self) -> f64 {
+        (**self).range()
+    }
+
+    fn full_range(&self) -> f64 {
+        (**self).full_range()
+    }
+
+    fn distance_at(&self, reliability: f64) -> f64 {
+        (**self).distance_at(reliability)
+    }
+
+    fn expected_transmissions(&self, distance: f64) -> f64 {
+        (**self).expected_transmissions(distance)
     }
 }
 
@@ -103,6 +150,23 @@ pub enum ReliabilityError {
         /// What was given as u.
         max_range: f64,
     },
+    /// A model with this steepness is not continuously differentiable where R becomes 0.
+    #[error("the steepness of the links is {steepness}: it must be a finite number of at least 2")]
+    TooFlat {
+        /// What was given as p.
+        steepness: f64,
+    },
+    /// A margin that is no length, or that leaves no range.
+    #[error(
+        "the margin of the links is {margin}: it must be at least 0 and smaller than their \
+         maximal range (u = {max_range})"
+    )]
+    Margin {
+        /// What was given.
+        margin: f64,
+        /// The maximal range of the model.
+        max_range: f64,
+    },
 }
 
 impl CubicReliability {
@@ -112,29 +176,39 @@ impl CubicReliability {
     ///
     /// [`ReliabilityError`] unless 0 ≤ l < u and both are finite.
     pub fn new(full_range: f64, max_range: f64) -> Result<Self, ReliabilityError> {
-        for (name, value) in [("full range (l)", full_range), ("maximal range (u)", max_range)] {
-            if !value.is_finite() {
-                return Err(ReliabilityError::NotFinite { name, value });
-            }
-        }
-        if full_range < 0.0 {
-            return Err(ReliabilityError::Negative { full_range });
-        }
-        if full_range >= max_range {
-            return Err(ReliabilityError::NotInOrder { full_range, max_range });
-        }
+        check_ranges(full_range, max_range)?;
         Ok(Self { full_range, max_range })
     }
 
-    /// q: how much of the transition from u down to l is left, in [0, 1]; exact at both ends.
     fn remaining(&self, distance: f64) -> f64 {
-        if distance <= self.full_range {
-            1.0
-        } else if distance >= self.max_range {
-            0.0
-        } else {
-            (self.max_range - distance) / (self.max_range - self.full_range)
+        remaining(distance, self.full_range, self.max_range)
+    }
+}
+
+/// Whether 0 ≤ l < u, both finite.
+fn check_ranges(full_range: f64, max_range: f64) -> Result<(), ReliabilityError> {
+    for (name, value) in [("full range (l)", full_range), ("maximal range (u)", max_range)] {
+        if !value.is_finite() {
+            return Err(ReliabilityError::NotFinite { name, value });
         }
+    }
+    if full_range < 0.0 {
+        return Err(ReliabilityError::Negative { full_range });
+    }
+    if full_range >= max_range {
+        return Err(ReliabilityError::NotInOrder { full_range, max_range });
+    }
+    Ok(())
+}
+
+/// q: how much of the transition from u down to l is left, in [0, 1]; exact at both ends.
+fn remaining(distance: f64, full_range: f64, max_range: f64) -> f64 {
+    if distance <= full_range {
+        1.0
+    } else if distance >= max_range {
+        0.0
+    } else {
+        (max_range - distance) / (max_range - full_range)
     }
 }
 

@@ -6,5 +6,7 @@ mod cells;
 mod environments;
 mod free_space;
 mod geodesics;
+mod neighbours;
 mod plain;
+mod reentry;
 mod workspace;

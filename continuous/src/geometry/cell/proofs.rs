@@ -3,7 +3,6 @@
 use nalgebra::Unit;
 
 use super::*;
-use crate::Vector;
 
 /// The clearance ρ.
 const CLEARANCE: f64 = 1.0;

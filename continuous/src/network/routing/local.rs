@@ -28,7 +28,7 @@ impl LinkOffer {
 /// Any w_ij > 0 serves in (6). With equal weights traffic spreads over links whose reliability
 /// falls steeply with distance, and these then forbid motion; `slope_aversion` (κ ≥ 0) keeps
 /// traffic on links that do not change when their ends move.
-pub fn weight(slope_aversion: f64, link: &impl LinkReliability, distance: f64) -> f64 {
+pub fn weight(slope_aversion: f64, link: &(impl LinkReliability + ?Sized), distance: f64) -> f64 {
     let transition = link.range() - link.full_range();
     1.0 + slope_aversion * transition * link.slope(distance).abs()
 }

@@ -125,7 +125,7 @@ impl RoutingProblem {
         robots: &[Point],
         access_points: &[Point],
         rates: &[f64],
-        link: &impl LinkReliability,
+        link: &(impl LinkReliability + ?Sized),
         slope_aversion: f64,
         reserve: f64,
     ) -> Result<Self, ProblemError> {
