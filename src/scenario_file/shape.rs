@@ -52,6 +52,7 @@ pub(super) const SCENARIO: &[Entry] = &[
             optional("model", Shape::OneOf(LinkModel::NAMES)),
             required("full_range", Shape::Number),
             required("max_range", Shape::Number),
+            optional("steepness", Shape::Number),
         ]),
     ),
     optional("control", Shape::Table(&CONTROL_ENTRIES)),

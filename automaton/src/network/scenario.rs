@@ -19,7 +19,7 @@ mod validation;
 pub use control::{CONTROL, Control, ControlKey, MotionSolver, RoutingMethod, Values};
 pub use fault::{Fault, InvalidScenario, Problem};
 pub use key_path::{KeyPath, KeyStep};
-pub use radio::{LinkModel, LinkRanges};
+pub use radio::{LinkModel, LinkRanges, STEEPEST, STEEPNESS};
 pub use remark::{Remark, TaskRemark};
 pub use settings::Settings;
 pub use valid::ValidScenario;

@@ -86,6 +86,9 @@ pub enum Problem {
          full_range to 0 at max_range, so full_range < max_range"
     )]
     RangesReversed { full_range: f64, max_range: f64 },
+    /// A steepness for a model that has none.
+    #[error("only the model \"logistic\" has a steepness: leave it out, or set the model")]
+    SteepnessWithoutUse,
     /// l too close to u for the slope of the reliability to make sense.
     #[error(
         "{full_range} is too close to max_range = {max_range}: reliability needs a distance of \

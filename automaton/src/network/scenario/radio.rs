@@ -1,7 +1,7 @@
 //! `[link]`: how far the radio carries, and how its reliability falls with the distance.
 
 use pleach_continuous::network::reliability::ReliabilityError;
-use pleach_continuous::network::{CubicReliability, LinkReliability};
+use pleach_continuous::network::{CubicReliability, LinkReliability, LogisticReliability};
 use serde::{Deserialize, Serialize};
 
 use crate::network::Link;
@@ -22,7 +22,16 @@ pub struct LinkRanges {
     pub full_range: f64,
     /// u: reliability 0 from here on.
     pub max_range: f64,
+    /// p of the logistic model, from 2 to [`STEEPEST`]. Default [`STEEPNESS`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steepness: Option<f64>,
 }
+
+/// The steepness of the logistic model where none is stated.
+pub const STEEPNESS: f64 = 4.0;
+
+/// The largest steepness: the reliability then falls within a fiftieth of the transition.
+pub const STEEPEST: f64 = 100.0;
 
 /// The link models that a scenario can name.
 #[non_exhaustive]
@@ -32,28 +41,45 @@ pub enum LinkModel {
     /// [`CubicReliability`], eq. (27) of the paper.
     #[default]
     Cubic,
+    /// [`LogisticReliability`], whose steepness is chosen.
+    Logistic,
 }
 
 impl LinkModel {
     /// The names that scenario files use.
-    pub const NAMES: &'static [&'static str] = &["cubic"];
+    pub const NAMES: &'static [&'static str] = &["cubic", "logistic"];
 }
 
 impl LinkRanges {
     /// The cubic model of eq. (27) with these distances.
     pub const fn new(full_range: f64, max_range: f64) -> Self {
-        Self { model: LinkModel::Cubic, full_range, max_range }
+        Self { model: LinkModel::Cubic, full_range, max_range, steepness: None }
     }
 
     /// The link model.
     ///
     /// # Errors
-    /// Unless 0 ≤ `full_range` < `max_range` and both are finite.
+    /// Unless 0 ≤ `full_range` < `max_range` and both are finite, and the steepness is at least 2.
     pub fn link(&self) -> Result<Link, ReliabilityError> {
-        let Self { model, full_range, max_range } = *self;
+        let Self { model, full_range, max_range, steepness } = *self;
         Ok(match model {
             LinkModel::Cubic => Link::new(CubicReliability::new(full_range, max_range)?),
+            LinkModel::Logistic => Link::new(LogisticReliability::new(
+                full_range,
+                max_range,
+                steepness.unwrap_or(STEEPNESS),
+            )?),
         })
+    }
+
+    /// The same with the default written out that its model has.
+    #[must_use]
+    pub fn with_defaults(self) -> Self {
+        let steepness = match self.model {
+            LinkModel::Cubic => None,
+            LinkModel::Logistic => Some(self.steepness.unwrap_or(STEEPNESS)),
+        };
+        Self { steepness, ..self }
     }
 
     /// The distance at which the reliability is `reliability`, a number between 0 and 1; for

@@ -115,10 +115,14 @@ impl From<Settings> for Control {
 }
 
 impl Scenario {
-    /// The same scenario with every default of its control settings written out.
+    /// The same scenario with every default of its radio and control settings written out.
     #[must_use]
     pub fn with_defaults(&self) -> Self {
-        Self { control: Settings::resolve(self).into(), ..self.clone() }
+        Self {
+            link: self.link.with_defaults(),
+            control: Settings::resolve(self).into(),
+            ..self.clone()
+        }
     }
 }
 

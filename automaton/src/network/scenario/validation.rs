@@ -1,7 +1,8 @@
 //! Whether the values of a scenario are in their ranges and fit each other.
 
 use super::control::{CONTROL, FARTHEST, SHORTEST, Values};
-use super::{Fault, KeyPath, LinkRanges, Problem, Scenario, Settings};
+use super::radio::STEEPEST;
+use super::{Fault, KeyPath, LinkModel, LinkRanges, Problem, Scenario, Settings};
 
 /// Two robots 2ρ apart must both be able to service while they hand over a task; they approach
 /// 2ρ without ever reaching it, so δ is at least this many clearances (2 in Remark 5.5).
@@ -82,8 +83,9 @@ fn control_key(name: &str) -> KeyPath {
 
 fn numbers_are_finite(scenario: &Scenario) -> Vec<Fault> {
     let not_finite = |value: f64| (!value.is_finite()).then_some(Problem::NotFinite { value });
-    let link = (scenario.ranges().into_iter())
-        .filter_map(|(name, value)| Some(not_finite(value)?.at(link_key(name))));
+    let stated =
+        scenario.ranges().into_iter().chain(scenario.link.steepness.map(|p| ("steepness", p)));
+    let link = stated.filter_map(|(name, value)| Some(not_finite(value)?.at(link_key(name))));
     let control = CONTROL.iter().filter_map(|key| {
         let value = key.values.number(&scenario.control)?;
         Some(not_finite(value)?.at(control_key(key.name)))
@@ -102,13 +104,15 @@ fn values_are_in_range(scenario: &Scenario) -> Vec<Fault> {
     let link = scenario.ranges().into_iter().filter_map(|(name, value)| {
         Some(length_problem(value, LARGEST_RANGE.recip(), LARGEST_RANGE)?.at(link_key(name)))
     });
+    let steepness = steepness_problem(&scenario.link).map(|p| p.at(link_key("steepness")));
     let control = CONTROL.iter().filter_map(|key| {
         Some(control_problem(key.values, scenario, range)?.at(control_key(key.name)))
     });
     let rates = (scenario.robot.iter().enumerate()).filter_map(|(row, robot)| {
         Some((share_problem(robot.rate)?).at(robot_key(row).key("rate")))
     });
-    let mut faults: Vec<Fault> = name.into_iter().chain(link).chain(control).chain(rates).collect();
+    let mut faults: Vec<Fault> =
+        name.into_iter().chain(link).chain(steepness).chain(control).chain(rates).collect();
     faults.extend(table_faults(scenario));
     faults
 }
@@ -145,6 +149,16 @@ fn length_problem(value: f64, least: f64, most: f64) -> Option<Problem> {
         Some(Problem::OutOfRange { value, least, most })
     } else {
         None
+    }
+}
+
+fn steepness_problem(link: &LinkRanges) -> Option<Problem> {
+    match (link.model, link.steepness?) {
+        (LinkModel::Logistic, value) if (2.0..=STEEPEST).contains(&value) => None,
+        (LinkModel::Logistic, value) => {
+            Some(Problem::OutOfRange { value, least: 2.0, most: STEEPEST })
+        }
+        (LinkModel::Cubic, _) => Some(Problem::SteepnessWithoutUse),
     }
 }
 
