@@ -154,9 +154,15 @@
 //! `docs/model.md` of the repository leads from each equation and algorithm of the paper to the item
 //! that holds it.
 
+#![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
+
 pub mod figures;
+#[cfg(feature = "cli")]
+pub mod import;
 pub mod mission;
 pub mod prelude;
+#[cfg(feature = "mcap")]
+pub mod recording;
 pub mod scenario_file;
 pub mod starts;
 pub mod story;
@@ -173,3 +179,19 @@ pub use pleach_verify as verify;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The examples of the how-tos compile and run.
+#[cfg(doctest)]
+mod how_to {
+    #[doc = include_str!("../docs/how-to/controller.md")]
+    struct Controller;
+    #[doc = include_str!("../docs/how-to/link-model.md")]
+    struct LinkModel;
+    #[cfg(feature = "cli")]
+    #[doc = include_str!("../docs/how-to/map.md")]
+    struct Map;
+    #[doc = include_str!("../docs/how-to/medium.md")]
+    struct Medium;
+    #[doc = include_str!("../docs/how-to/monitor.md")]
+    struct Monitor;
+}

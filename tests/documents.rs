@@ -24,7 +24,7 @@ use pleach::summary::Summary;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 9] = [
+const WRITTEN: [&str; 15] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
@@ -34,6 +34,12 @@ const WRITTEN: [&str; 9] = [
     "docs/automata.md",
     "docs/proofs.md",
     "docs/exploration.md",
+    "docs/how-to/link-model.md",
+    "docs/how-to/medium.md",
+    "docs/how-to/monitor.md",
+    "docs/how-to/trace.md",
+    "docs/how-to/mcap.md",
+    "docs/how-to/python.md",
 ];
 
 fn keep_up_to_date(path: &str, document: &str) {

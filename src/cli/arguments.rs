@@ -4,6 +4,7 @@ use super::sweep::Sweep;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
+use std::str::FromStr;
 use std::thread;
 
 /// Robots grow a network of relays from fixed access points to the places where they are needed.
@@ -46,6 +47,20 @@ pub enum Command {
     /// status 2). Tasks that no robot can service are named (exit status 3), and the links of
     /// the start that cross walls, which the model of the radio does not see, are counted.
     Check(CheckArguments),
+    /// Make a scenario of a map: ROS map server, MovingAI, GeoJSON or SVG
+    ///
+    /// Prints a scenario that runs. Maps of cells are traced and simplified, and no robot gets
+    /// through a wall by it. What was simplified or left out, and passages too narrow for robots,
+    /// are told on the error output.
+    Import(ImportArguments),
+    /// Turn a trace into an MCAP recording, which Foxglove plays
+    #[cfg(feature = "mcap")]
+    Export {
+        /// The trace, as `pleach run --trace` writes it
+        trace: PathBuf,
+        /// The recording
+        recording: PathBuf,
+    },
     /// Draw one of the automata that the robots run
     ///
     /// The drawing is made from the transition table that the robots run, and printed.
@@ -126,6 +141,65 @@ pub struct CheckArguments {
     /// Draw nothing
     #[arg(long)]
     pub no_figures: bool,
+}
+
+/// The arguments of `pleach import`.
+#[derive(Debug, Args)]
+pub struct ImportArguments {
+    /// The map: .yaml with its image, .map, .geojson, .json or .svg
+    pub map: PathBuf,
+    /// Write the scenario to FILE [default: the standard output]
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// The name of the scenario [default: that of the map]
+    #[arg(long)]
+    pub name: Option<String>,
+    /// How far the outline may deviate; the floor is narrowed by as much before, so that it stays
+    /// within free cells [default: one cell, or a thousandth of the extent for curves]
+    #[arg(long, value_name = "LENGTH")]
+    pub tolerance: Option<f64>,
+    /// The length of a unit of the map in the scenario
+    #[arg(long, value_name = "LENGTH", default_value_t = 1.0)]
+    pub scale: f64,
+    /// Coordinates of GeoJSON are lengths, not degrees
+    #[arg(long)]
+    pub planar: bool,
+    /// Links are fully reliable up to here [default: about a sixth of the extent]
+    #[arg(long, value_name = "LENGTH")]
+    pub full_range: Option<f64>,
+    /// Links end here [default: 1.25 times the full range]
+    #[arg(long, value_name = "LENGTH")]
+    pub max_range: Option<f64>,
+    /// The distance that robots keep from walls [default: a fortieth of the full range]
+    #[arg(long, value_name = "LENGTH")]
+    pub clearance: Option<f64>,
+    /// Put an access point here; several are possible [default: in the widest place]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub access_point: Vec<Spot>,
+    /// How many robots start around the access points
+    #[arg(long, value_name = "COUNT", default_value_t = 8)]
+    pub robots: u16,
+    /// Put a task here; several are possible [default: far from the access points]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub task: Vec<Spot>,
+    /// How many tasks are put far from the access points where none are named
+    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    pub far_tasks: u16,
+}
+
+/// A place, written `X,Y`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot(pub [f64; 2]);
+
+impl FromStr for Spot {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{text:?} is no place: write two numbers as X,Y");
+        let (x, y) = text.split_once(',').ok_or_else(wrong)?;
+        let number = |text: &str| text.trim().parse().map_err(|_| wrong());
+        Ok(Spot([number(x)?, number(y)?]))
+    }
 }
 
 /// The arguments of `pleach diagram`.

@@ -4,6 +4,9 @@ mod arguments;
 mod batch;
 mod check;
 mod diagram;
+#[cfg(feature = "mcap")]
+mod export;
+mod import;
 mod interrupt;
 mod job;
 mod manual;
@@ -27,6 +30,9 @@ pub fn carry_out(arguments: Arguments) -> ExitCode {
     let result = match arguments.command {
         Command::Run(run) => run::run(&run),
         Command::Check(check) => check::check(&check),
+        Command::Import(import) => import::import(&import),
+        #[cfg(feature = "mcap")]
+        Command::Export { trace, recording } => export::export(&trace, &recording),
         Command::Diagram(diagram) => diagram::print(&diagram),
         Command::Completions { shell } => manual::print_completions(shell),
         Command::Man { folder } => manual::write_manual(folder.as_deref()),

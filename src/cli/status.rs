@@ -1,6 +1,7 @@
 //! Exit statuses, and the failures behind them.
 
 use pleach::automaton::network::record::Outcome;
+use pleach::import::{ImportError, SkeletonError};
 use pleach::mission::MissionError;
 use pleach::scenario_file::ScenarioError;
 use pleach::starts::NoStarts;
@@ -92,6 +93,21 @@ pub enum Failure {
     /// Robots cannot be placed at random.
     #[error(transparent)]
     Starts(#[from] NoStarts),
+    /// A map cannot be read.
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    /// No scenario comes of a map.
+    #[error(transparent)]
+    Skeleton(#[from] SkeletonError),
+    /// A trace cannot be read or recorded.
+    #[cfg(feature = "mcap")]
+    #[error("{}: {source}", path.display())]
+    Recording {
+        /// The trace.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: pleach::recording::RecordingError,
+    },
     /// A file cannot be created.
     #[error("{}: cannot be created: {source}; choose a path that may be written", path.display())]
     Creation {
@@ -131,7 +147,11 @@ impl Failure {
             | Failure::TooManyRuns { .. }
             | Failure::Usage(_)
             | Failure::Starts(_)
+            | Failure::Import(_)
+            | Failure::Skeleton(_)
             | Failure::Creation { .. } => Status::BadInput,
+            #[cfg(feature = "mcap")]
+            Failure::Recording { .. } => Status::BadInput,
             Failure::Output(_) | Failure::Mission(_) | Failure::Internal(_) => Status::Failed,
         }
     }

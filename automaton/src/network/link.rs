@@ -1,6 +1,5 @@
 //! The link model that the nodes of a network share.
 
-use std::fmt;
 use std::sync::Arc;
 
 use pleach_continuous::network::LinkReliability;
@@ -15,12 +14,12 @@ use pleach_continuous::network::LinkReliability;
 /// assert_eq!(link.range(), 0.5);
 /// # Ok::<(), pleach_continuous::network::reliability::ReliabilityError>(())
 /// ```
-#[derive(Clone)]
-pub struct Link(Arc<dyn LinkReliability + Send + Sync>);
+#[derive(Clone, Debug)]
+pub struct Link(Arc<dyn LinkReliability>);
 
 impl Link {
     /// Links that behave as `model` says, which must satisfy what [`LinkReliability`] asks for.
-    pub fn new(model: impl LinkReliability + Send + Sync + 'static) -> Self {
+    pub fn new(model: impl LinkReliability + 'static) -> Self {
         Link(Arc::new(model))
     }
 }
@@ -48,15 +47,5 @@ impl LinkReliability for Link {
 
     fn expected_transmissions(&self, distance: f64) -> f64 {
         self.0.expected_transmissions(distance)
-    }
-}
-
-impl fmt::Debug for Link {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter
-            .debug_struct("Link")
-            .field("full_range", &self.full_range())
-            .field("range", &self.range())
-            .finish_non_exhaustive()
     }
 }

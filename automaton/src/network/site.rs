@@ -83,7 +83,7 @@ impl Site {
 
     /// The same site where links behave as `model` says. The lengths of links follow.
     #[must_use]
-    pub fn with_link(self, model: impl LinkReliability + Send + Sync + 'static) -> Self {
+    pub fn with_link(self, model: impl LinkReliability + 'static) -> Self {
         let link = Link::new(model);
         let hard_length = link.distance_at(self.settings.tree_reliability);
         let build_length = hard_length - self.settings.service_radius;

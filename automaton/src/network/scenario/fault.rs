@@ -86,6 +86,9 @@ pub enum Problem {
          full_range to 0 at max_range, so full_range < max_range"
     )]
     RangesReversed { full_range: f64, max_range: f64 },
+    /// A link model that is none.
+    #[error("the model of the links cannot be used: {0}")]
+    LinkModel(String),
     /// A steepness for a model that has none.
     #[error("only the model \"logistic\" has a steepness: leave it out, or set the model")]
     SteepnessWithoutUse,

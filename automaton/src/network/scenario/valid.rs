@@ -4,6 +4,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use pleach_continuous::network::LinkReliability;
+use pleach_continuous::network::reliability::check;
 
 use super::{InvalidScenario, KeyPath, Problem, Scenario, Settings, placement};
 use crate::network::Site;
@@ -40,12 +41,16 @@ impl ValidScenario {
     /// Checks a scenario whose links behave as `model` says, instead of as `[link]` does.
     ///
     /// # Errors
-    /// As [`new`](Self::new). `[link]` must state ranges that are valid by themselves.
+    /// As [`new`](Self::new), and when the model is seen to break a requirement of
+    /// [`LinkReliability`]. `[link]` must state ranges that are valid by themselves.
     pub fn with_link(
         scenario: Scenario,
-        model: impl LinkReliability + Send + Sync + 'static,
+        model: impl LinkReliability + 'static,
     ) -> Result<Self, InvalidScenario> {
         scenario.check_values()?;
+        check(&model).map_err(|broken| {
+            vec![Problem::LinkModel(broken.to_string()).at(KeyPath::root().key("link"))]
+        })?;
         let site = placement::site(&scenario).map_err(|fault| vec![fault])?;
         Self::on(scenario, site.with_link(model))
     }
