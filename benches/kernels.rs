@@ -1,7 +1,5 @@
 //! How long each kernel of a control period takes, on a moment of Study I.
 
-mod support;
-
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -14,7 +12,7 @@ use pleach::continuous::network::routing::local::{LinkOffer, local_minimiser, we
 use pleach::continuous::network::routing::repair::{Share, meet_demand};
 use pleach::continuous::network::routing::rounds::{Method, Rounds};
 use pleach::discrete::network::{Bid, Election};
-use support::scene::{Crowd, Scene};
+use pleach_benches::scene::{Crowd, Scene};
 
 /// Discs that detours keep out of are this many ρ wide.
 const KEEP_OUT: f64 = 2.1;
@@ -23,7 +21,7 @@ const ROUNDS_UNTIL_SETTLED: usize = 20;
 
 /// Links and routes.
 fn communication(criterion: &mut Criterion) {
-    let scene = Scene::new();
+    let scene = Scene::of_study_1();
     let (robot, site) = (scene.busiest(), &scene.site);
     let distances: Vec<f64> =
         scene.others(robot).iter().map(|other| (other - scene.position(robot)).norm()).collect();
@@ -73,7 +71,7 @@ fn communication(criterion: &mut Criterion) {
 
 /// Ways, cells and moves.
 fn motion(criterion: &mut Criterion) {
-    let scene = Scene::new();
+    let scene = Scene::of_study_1();
     let (leader, site) = (scene.leader(), &scene.site);
     let (from, goal) = (scene.position(leader), scene.goal());
     let destination = site.free_space.destination(goal);
@@ -118,7 +116,7 @@ fn motion(criterion: &mut Criterion) {
 
 /// What the robots tell each other; one round of all of them.
 fn coordination(criterion: &mut Criterion) {
-    let scene = Scene::new();
+    let scene = Scene::of_study_1();
     let mut crowd = Crowd::new(&scene);
     (0..ROUNDS_UNTIL_SETTLED).for_each(|_| crowd.exchange_beacons());
     criterion.bench_function("beacon_round_with_news", |bencher| {
@@ -152,7 +150,7 @@ fn coordination(criterion: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    config = support::quick();
+    config = pleach_benches::quick();
     targets = communication, motion, coordination
 }
 criterion_main!(benches);

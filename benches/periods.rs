@@ -1,11 +1,9 @@
 //! How long a whole control period takes, and how that grows with the number of robots.
 
-mod support;
-
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use pleach::automaton::network::scenario::ValidScenario;
-use support::course::Course;
-use support::hall::hall;
+use pleach_benches::course::Course;
+use pleach_benches::hall::hall;
 
 /// Robots of the halls.
 const SIZES: [usize; 2] = [100, 1_000];
@@ -16,7 +14,7 @@ const TEAM: usize = 1;
 
 /// Every scenario by its number of robots, with its tasks or without any.
 fn scenarios(with_tasks: bool) -> Vec<ValidScenario> {
-    let mut study = support::study_1().into_scenario();
+    let mut study = pleach_benches::study_1().into_scenario();
     if !with_tasks {
         study.task.clear();
     }
@@ -50,7 +48,7 @@ fn advancing(criterion: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    config = support::quick();
+    config = pleach_benches::quick();
     targets = at_rest, advancing
 }
 criterion_main!(benches);

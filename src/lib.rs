@@ -149,7 +149,7 @@
 //! | [`continuous`] | [flows](continuous::flow), [geometry](continuous::geometry); [of the network](continuous::network): links, routing, motion, certified acceptance |
 //! | [`automaton`] | automaton, composition, executor, trajectories, checks, diagrams; [the network](automaton::network): robots, medium, composition |
 //! | [`verify`] | [temporal logic](verify::temporal) over trajectories; [the properties of the network](verify::network), each stated once, and their monitor |
-//! | this crate | [scenario files](scenario_file), [missions](mission), [traces](trace), [summaries](summary), [stories](story), [figures] |
+//! | this crate | [scenario files](scenario_file), [missions](mission), [traces](trace), [summaries](summary), [stories](story), [figures], [pages](page) |
 //!
 //! `docs/model.md` of the repository leads from each equation and algorithm of the paper to the item
 //! that holds it.
@@ -160,6 +160,7 @@ pub mod figures;
 #[cfg(feature = "cli")]
 pub mod import;
 pub mod mission;
+pub mod page;
 pub mod prelude;
 #[cfg(feature = "mcap")]
 pub mod recording;

@@ -1,58 +1,68 @@
-//! The story of a mission: each event as a sentence.
+//! The story of a mission: each event as a sentence, and the moments that figures mark.
 
 use crate::automaton::network::record::MissionEvent;
 
-/// Tells an event as a sentence without its end, robots and tasks counted from 0.
-pub fn tell(event: &MissionEvent) -> String {
-    match event {
-        MissionEvent::TaskAnnounced { task } => format!("task {task} is announced"),
-        MissionEvent::LeaderElected { task, robot, conflict: false } => {
-            format!("robot {robot} is elected to lead to task {task}")
-        }
-        MissionEvent::LeaderElected { task, robot, conflict: true } => format!(
-            "robot {robot} is elected to lead to task {task} and must first be released from its duties"
-        ),
-        MissionEvent::Stationary { robot, team } => {
-            format!("the primary team {} is at a stationary point, robot {robot} last", list(team))
-        }
-        MissionEvent::RecruitElected { robot, path, break_points } => format!(
-            "robot {robot} is recruited along {}, breaking at {}",
-            list(path),
-            list(break_points)
-        ),
-        MissionEvent::SubgroupStarted { subgroup, robots } => {
-            format!("subgroup {subgroup}, {}, starts", list(robots))
-        }
-        MissionEvent::SubgroupArrived { subgroup, robots } => {
-            format!("subgroup {subgroup}, {}, has arrived", list(robots))
-        }
-        MissionEvent::JoinedPrimary { robot, team } => {
-            format!("robot {robot} joins the primary team, now {}", list(team))
-        }
-        MissionEvent::Released { robot } => format!("robot {robot} is released from its duties"),
-        MissionEvent::RoleChanged { robot, from, to } => {
-            format!("robot {robot} turns from {} to {}", from.name(), to.name())
-        }
-        MissionEvent::TaskServiced { task, robot } => {
-            format!("task {task} is serviced by robot {robot}")
-        }
-        MissionEvent::RouteInfeasible { robot } => {
-            format!("no routing carries what robot {robot} has to send")
-        }
-        MissionEvent::DutiesExchanged { mover, parked } => {
-            format!("robots {mover} and {parked} exchange their duties")
-        }
-        MissionEvent::Reattached { robot, parent } => {
-            format!("robot {robot} hangs itself on node {parent}")
-        }
-        MissionEvent::ElectionRepeated { task } => {
-            format!("no recruit is left for task {task}: the election is repeated among the others")
+/// What makes a moment worth a picture, and a mark across curves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Moment {
+    /// A leader is elected.
+    Elected,
+    /// The primary team is at a stationary point.
+    Stationary,
+    /// A recruit joins the primary team.
+    Joined,
+    /// The leader is released from its past duties.
+    Released,
+    /// A task is serviced.
+    Serviced,
+}
+
+/// A telling event in a few words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Caption {
+    /// What kind of moment it is.
+    pub moment: Moment,
+    /// The robot concerned, or the task that is serviced.
+    pub number: usize,
+    /// What a title says.
+    pub headline: String,
+    /// What the name of a file says.
+    pub slug: String,
+}
+
+impl Moment {
+    /// Every kind of moment, in the order of legends.
+    pub const ALL: [Moment; 5] =
+        [Moment::Elected, Moment::Stationary, Moment::Joined, Moment::Released, Moment::Serviced];
+
+    /// What legends say.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Moment::Elected => "leader elected",
+            Moment::Stationary => "stationary point",
+            Moment::Joined => "recruit joins",
+            Moment::Released => "leader released",
+            Moment::Serviced => "task serviced",
         }
     }
 }
 
+/// Tells an event as a sentence without its end; robots and tasks are numbered from 0.
+#[must_use]
+pub fn tell(event: &MissionEvent) -> String {
+    telling(event).0
+}
+
+/// The few words for an event that makes a moment.
+#[must_use]
+pub fn caption(event: &MissionEvent) -> Option<Caption> {
+    telling(event).1
+}
+
 /// Whether an event moves the story on. Changes of a single robot's role or place in the tree
 /// are details.
+#[must_use]
 pub fn is_telling(event: &MissionEvent) -> bool {
     !matches!(
         event,
@@ -62,7 +72,129 @@ pub fn is_telling(event: &MissionEvent) -> bool {
     )
 }
 
+/// The task that an event names, if it makes a moment.
+pub(crate) fn task_of(event: &MissionEvent) -> Option<usize> {
+    match event {
+        MissionEvent::LeaderElected { task, .. } | MissionEvent::TaskServiced { task, .. } => {
+            Some(*task)
+        }
+        _ => None,
+    }
+}
+
+/// The table of events: the sentence, and for moments the caption.
+fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
+    let moment = |moment, number: &usize, headline: String, slug: String| {
+        Some(Caption { moment, number: *number, headline, slug })
+    };
+    match event {
+        MissionEvent::TaskAnnounced { task } => (format!("task {task} is announced"), None),
+        MissionEvent::LeaderElected { task, robot, conflict } => (
+            match conflict {
+                false => format!("robot {robot} is elected to lead to task {task}"),
+                true => format!(
+                    "robot {robot} is elected to lead to task {task} and must first be released \
+                     from its duties"
+                ),
+            },
+            moment(
+                Moment::Elected,
+                robot,
+                format!("robot {robot} is elected leader"),
+                format!("leader-{robot}-elected"),
+            ),
+        ),
+        MissionEvent::Stationary { robot, team } => (
+            format!("the primary team {} is at a stationary point, robot {robot} last", list(team)),
+            moment(
+                Moment::Stationary,
+                robot,
+                "the primary team is at a stationary point".to_owned(),
+                format!("stationary-at-{robot}"),
+            ),
+        ),
+        MissionEvent::RecruitElected { robot, path, break_points } => (
+            format!(
+                "robot {robot} is recruited along path {}, split at {}",
+                chain(path),
+                enumeration(break_points)
+            ),
+            None,
+        ),
+        MissionEvent::SubgroupStarted { subgroup, robots } => {
+            (format!("subgroup {subgroup}, {}, starts", list(robots)), None)
+        }
+        MissionEvent::SubgroupArrived { subgroup, robots } => {
+            (format!("subgroup {subgroup}, {}, has arrived", list(robots)), None)
+        }
+        MissionEvent::JoinedPrimary { robot, team } => (
+            format!("robot {robot} joins the primary team, now {}", list(team)),
+            moment(
+                Moment::Joined,
+                robot,
+                format!("robot {robot} joins the primary team"),
+                format!("recruit-{robot}-joined"),
+            ),
+        ),
+        MissionEvent::Released { robot } => (
+            format!("robot {robot} is released from its duties"),
+            moment(
+                Moment::Released,
+                robot,
+                format!("robot {robot} is released"),
+                format!("leader-{robot}-released"),
+            ),
+        ),
+        MissionEvent::RoleChanged { robot, from, to } => {
+            (format!("robot {robot} changes from {} to {}", from.name(), to.name()), None)
+        }
+        MissionEvent::TaskServiced { task, robot } => (
+            format!("task {task} is serviced by robot {robot}"),
+            moment(
+                Moment::Serviced,
+                task,
+                format!("serviced by robot {robot}"),
+                "serviced".to_owned(),
+            ),
+        ),
+        MissionEvent::RouteInfeasible { robot } => {
+            (format!("no routing carries the traffic of robot {robot}"), None)
+        }
+        MissionEvent::DutiesExchanged { mover, parked } => {
+            (format!("robots {mover} and {parked} exchange their duties"), None)
+        }
+        MissionEvent::Reattached { robot, parent } => {
+            (format!("robot {robot} attaches to node {parent}"), None)
+        }
+        MissionEvent::ElectionRepeated { task } => (
+            format!(
+                "no recruit is left in the leader's tree for task {task}: the election is repeated \
+                 among the other robots"
+            ),
+            None,
+        ),
+    }
+}
+
+/// "[2 5 7]".
 fn list(robots: &[usize]) -> String {
-    let numbers: Vec<_> = robots.iter().map(usize::to_string).collect();
-    format!("[{}]", numbers.join(" "))
+    format!("[{}]", joined(robots, " "))
+}
+
+/// "2→5→7".
+fn chain(robots: &[usize]) -> String {
+    joined(robots, "→")
+}
+
+/// "2, 5 and 7".
+fn enumeration(robots: &[usize]) -> String {
+    match robots {
+        [] => "no robot".to_owned(),
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", joined(first, ", ")),
+        only => joined(only, ""),
+    }
+}
+
+fn joined(robots: &[usize], between: &str) -> String {
+    robots.iter().map(usize::to_string).collect::<Vec<_>>().join(between)
 }

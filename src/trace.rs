@@ -22,6 +22,7 @@ use crate::automaton::network::record::{End, MissionEvent, Snapshot};
 use crate::automaton::network::scenario::Scenario;
 use crate::mission::Watcher;
 use line::{EndLine, Line, LineOut, StepLine};
+use serde_json::{Map, Value};
 use std::io::{self, BufRead, Lines, Write};
 use thiserror::Error;
 
@@ -143,6 +144,14 @@ impl<R: BufRead> Iterator for TraceReader<R> {
                 }
             }
         }))
+    }
+}
+
+/// The line of a step as an object: what [`TraceWriter`] writes, for other ways to show it.
+pub(crate) fn step_line(snapshot: &Snapshot) -> serde_json::Result<Map<String, Value>> {
+    match serde_json::to_value(StepLine::from(snapshot))? {
+        Value::Object(line) => Ok(line),
+        _ => Ok(Map::new()),
     }
 }
 

@@ -1,7 +1,5 @@
 //! The program as a person or another program starts it.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
 use pleach::automaton::network::record::Outcome;
 use pleach::trace::{TraceEntry, TraceReader};
 use std::path::Path;

@@ -1,10 +1,6 @@
 //! The same scenario gives the same bytes, whatever the settings.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod missions;
-
-use missions::{shipped, valid};
+use crate::missions::{run, shipped, valid};
 use pleach::automaton::network::scenario::{MotionSolver, RoutingMethod, Scenario};
 use pleach::mission;
 use pleach::trace::TraceWriter;
@@ -70,7 +66,7 @@ fn every_motion_solver_and_routing_method_services_the_studies() {
     for name in ["study-1", "study-2"] {
         for solver in [MotionSolver::Exact, MotionSolver::Conic] {
             for method in [RoutingMethod::Dual, RoutingMethod::Adal] {
-                missions::run(with_methods(name, solver, method)).assert_serviced();
+                run(with_methods(name, solver, method)).assert_serviced();
             }
         }
     }

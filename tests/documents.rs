@@ -1,17 +1,13 @@
 //! The documents say what the code says: drawings are regenerated and compared, and what tables
 //! name exists.
 //!
-//! `PLEACH_UPDATE_DOCS=1 cargo test --test documents` writes the generated documents anew.
-
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod generated;
+//! `PLEACH_UPDATE_DOCS=1 cargo test --test it documents` writes the generated documents anew.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use std::{fs, io};
 
-use generated::{is_update, read, root};
+use crate::generated::{is_update, read, root};
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::{Control, Scenario, ValidScenario};
 use pleach::automaton::network::{mission_automaton, role_automaton};
@@ -43,7 +39,7 @@ const WRITTEN: [&str; 15] = [
 ];
 
 fn keep_up_to_date(path: &str, document: &str) {
-    generated::keep_up_to_date(path, document, "documents");
+    crate::generated::keep_up_to_date(path, document, "documents");
 }
 
 // ---- The automata ------------------------------------------------------------------------------
@@ -70,7 +66,7 @@ fn the_page_on_the_automata_is_up_to_date() {
 }
 
 const INTRODUCTION: &str = "\
-<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test documents -->
+<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it documents -->
 
 # The two automata of a robot
 
@@ -162,12 +158,11 @@ fn the_run_in_the_readme_is_up_to_date() {
 }
 
 const BEGIN_OF_RUN: &str =
-    "<!-- begin of the run: PLEACH_UPDATE_DOCS=1 cargo test --test documents -->";
+    "<!-- begin of the run: PLEACH_UPDATE_DOCS=1 cargo test --test it documents -->";
 const END_OF_RUN: &str = "<!-- end of the run -->";
 
 fn album(scenario: &ValidScenario) -> Album {
-    let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-    Album::new(scenario, scenario.site().free_space.outline().iter().map(corners).collect())
+    Album::new(scenario)
 }
 
 /// Copies the picture that is number `which` of those whose name contains `word`.

@@ -1,8 +1,6 @@
 //! Missions that failed once, found by random floor plans. Each file says what went wrong; all
 //! tasks of all of them are serviced, with every property monitored.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
 use pleach::automaton::network::record::Outcome;
 use pleach::{mission, scenario_file};
 use std::path::PathBuf;

@@ -1,7 +1,5 @@
 //! Maps of other programs become scenarios, and no robot gets through their walls.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
 use pleach::automaton::network::record::Outcome;
 use pleach::continuous::Point;
 use pleach::import::{self, Choices, Plan, Reading};

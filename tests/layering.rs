@@ -1,7 +1,5 @@
 //! The layering that `docs/architecture.md` describes, read off manifests and sources.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -133,6 +131,21 @@ fn guards_and_the_discrete_layer_need_the_standard_library_only() {
     // Guards are stored in files by those who ask for it.
     for (name, dependency) in dependency_table("guards") {
         assert!(name == "serde" && is_optional(&dependency), "guards depends on {name}");
+    }
+}
+
+/// The tests of a package are one program, so that a file that it does not name is never run.
+#[test]
+fn every_file_of_tests_is_in_the_program_of_its_package() {
+    for folder in PACKAGES.map(|package| root().join(package).join("tests")) {
+        let Ok(program) = fs::read_to_string(folder.join("main.rs")) else { continue };
+        for entry in fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            let is_module = path.join("mod.rs").exists() || path.extension().is_some();
+            let is_named = name == "main" || program.contains(&format!("mod {name};\n"));
+            assert!(is_named || !is_module, "{} is not in main.rs", path.display());
+        }
     }
 }
 

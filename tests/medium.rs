@@ -1,10 +1,6 @@
 //! Distributed means distributed: what robots do is decided by the messages that reach them.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod missions;
-
-use missions::{Mission, Period, network_over, run, run_over, run_unmonitored, shipped};
+use crate::missions::{Mission, Period, network_over, run, run_over, run_unmonitored, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
 use pleach::automaton::network::scenario::{RobotStart, Scenario, ValidScenario};
 use pleach::automaton::network::{Medium, Radio, Site};

@@ -1,10 +1,6 @@
 //! Every mission ends, with an outcome that says what happened.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod missions;
-
-use missions::{Mission, run, run_over, shipped};
+use crate::missions::{Mission, run, run_over, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Route};
 use pleach::automaton::network::scenario::{
     AccessPoint, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,

@@ -1,14 +1,10 @@
 //! Missions on floor plans that nobody tuned the robots to.
 //!
 //! A few run in every `cargo test`; many with
-//! `cargo test --release --test random_missions -- --ignored --nocapture`. To look at single
+//! `cargo test --release --test it random_missions -- --ignored --nocapture`. To look at single
 //! ones: `cargo run --release --example stress -- FAMILY FIRST_SEED COUNT FOLDER`.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod floor_plans;
-
-use floor_plans::{Family, scenario};
+use crate::floor_plans::{Family, scenario};
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::discrete::network::Role;
@@ -104,7 +100,7 @@ fn a_family_and_a_seed_are_one_scenario() {
 }
 
 #[test]
-#[ignore = "takes minutes: cargo test --release --test random_missions -- --ignored --nocapture"]
+#[ignore = "takes minutes: cargo test --release --test it random_missions -- --ignored --nocapture"]
 fn many_missions_of_every_family() {
     let mut complaints = Vec::new();
     for family in Family::ALL {

@@ -1,8 +1,6 @@
 //! Every mistake that a scenario can hold is told with file, line, column, key and what would be
 //! right. Each file in `tests/scenarios/faulty` holds one, but for the one that holds several.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
 use pleach::scenario_file::{ScenarioError, Setting, parse, parse_with, read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

@@ -1,12 +1,8 @@
 //! The shipped scenarios as whole missions: how each ends, the story it was made to tell, and
 //! what an oracle that knows nothing of the monitor reads out of its trace.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod missions;
-mod oracle;
-
-use missions::{Mission, Period, run, shipped};
+use crate::missions::{Mission, Period, run, shipped};
+use crate::oracle::audit;
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::Settings;
 use pleach::continuous::Point;
@@ -296,7 +292,7 @@ fn the_oracle_agrees_with_the_monitor_on_every_shipped_scenario() {
     for (name, ..) in SHIPPED {
         let mission = mission(name);
         let text = trace(mission);
-        let findings = oracle::audit(TraceReader::new(text.as_slice()).unwrap())
+        let findings = audit(TraceReader::new(text.as_slice()).unwrap())
             .unwrap_or_else(|fault| panic!("{name}: {fault}"));
         let close = |name: &str, measured: f64, extreme: &Option<_>| {
             let monitored: &pleach::verify::network::Extreme = extreme.as_ref().unwrap();
@@ -355,6 +351,6 @@ fn the_oracle_looks_between_two_instants() {
 
 fn assert_fault(mission: &Mission, expected: &str) {
     let text = trace(mission);
-    let fault = oracle::audit(TraceReader::new(text.as_slice()).unwrap()).unwrap_err();
+    let fault = audit(TraceReader::new(text.as_slice()).unwrap()).unwrap_err();
     assert!(fault.starts_with("k = 350: ") && fault.contains(expected), "{expected}: {fault}");
 }

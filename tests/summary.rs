@@ -1,10 +1,6 @@
 //! The summary says what happened, between the instants too.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod common;
-
-use common::{end, room, show};
+use crate::common::{end, room, show};
 use pleach::automaton::network::KernelTimes;
 use pleach::mission::Completed;
 use pleach::summary::Summary;

@@ -1,10 +1,6 @@
 //! What is written into a trace can be read back, and is the same to the byte.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod common;
-
-use common::{end, every_event, reports, room, show};
+use crate::common::{end, every_event, reports, room, show};
 use pleach::automaton::network::record::{End, Outcome};
 use pleach::automaton::network::scenario::Settings;
 use pleach::mission::Watcher;

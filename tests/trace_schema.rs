@@ -1,11 +1,7 @@
 //! The JSON Schema of traces in `docs/trace.schema.json` describes every line, and every key of
 //! every line, that is written.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
-mod common;
-mod missions;
-
+use crate::{common, missions};
 use boon::{Compiler, SchemaIndex, Schemas};
 use pleach::automaton::network::scenario::{LinkModel, ValidScenario};
 use pleach::mission;

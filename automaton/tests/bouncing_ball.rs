@@ -1,9 +1,6 @@
 //! A bouncing ball against its closed form.
 
-#[path = "common/classics.rs"]
-mod classics;
-
-use classics::ball;
+use crate::common::classics::ball;
 use pleach_automaton::Reason;
 
 const GRAVITY: f64 = 9.81;

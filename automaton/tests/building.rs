@@ -1,8 +1,6 @@
 //! What can be wrong with the parts of an automaton, and that the message names the place.
 
-mod common;
-
-use common::{HEATER, Heater, Room, Sensed, at_once, cold, fine, heater, warm};
+use crate::common::{HEATER, Heater, Room, Sensed, at_once, cold, fine, heater, warm};
 use pleach_automaton::{Automaton, Builder, Flow, Reset};
 use pleach_discrete::{Row, TransitionTable, Urgency};
 use pleach_guards::{Guard, variable};

@@ -1,9 +1,6 @@
 //! Coverage counts what runs went through, neither more nor less.
 
-#[path = "common/classics.rs"]
-mod classics;
-
-use classics::{ball, gears, house, thermostat};
+use crate::common::classics::{ball, gears, house, thermostat};
 use pleach_automaton::{Coverage, CoverageError, diagram};
 
 #[test]

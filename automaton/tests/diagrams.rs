@@ -1,8 +1,6 @@
 //! Diagrams show every part of an automaton.
 
-mod common;
-
-use common::{Heater, Room, Sensed, heater, window};
+use crate::common::{Heater, Room, Sensed, heater, window};
 use pleach_automaton::{Automaton, Reset, diagram};
 use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency};
 use pleach_guards::{Guard, always, variable};

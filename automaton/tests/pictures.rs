@@ -1,9 +1,6 @@
 //! Pictures are well-formed, complete, and nothing in them lies on anything else.
 
-#[path = "common/classics.rs"]
-mod classics;
-
-use classics::{Ball, ball, gears, house, thermostat};
+use crate::common::classics::{Ball, ball, gears, house, thermostat};
 use pleach_automaton::{Automaton, Trajectory, diagram, from};
 use pleach_discrete::{self as discrete, Location};
 use pleach_guards::always;

@@ -1,10 +1,8 @@
 //! Components that share a sampling clock, run by the executor and compared with their closed form.
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::{Heater, Room, Sensed, Window, heater, window};
+use crate::common::{Heater, Room, Sensed, Window, heater, window};
 use pleach_automaton::{
     Automaton, Ending, Executor, HybridTime, Jump, Observer, Participants, Reason, Round, System,
     Trace, TransitionError,

@@ -14,7 +14,7 @@ use pleach::continuous::network::motion::MotionProblem;
 use pleach::continuous::network::rates::{Exchange, residual_gradient};
 use pleach::continuous::network::routing::problem::RoutingProblem;
 
-use super::course::Course;
+use crate::course::Course;
 
 /// Members of the primary team at the moment.
 const TEAM: usize = 2;
@@ -31,8 +31,8 @@ pub struct Scene {
 
 impl Scene {
     /// Lets Study I run up to the moment.
-    pub fn new() -> Self {
-        let scenario = super::study_1();
+    pub fn of_study_1() -> Self {
+        let scenario = crate::study_1();
         let mut course = Course::new(&scenario);
         course.reach_advance(TEAM);
         let site = Arc::clone(scenario.site());

@@ -10,7 +10,7 @@ impl Exhibit {
     /// comparison with the answer. Nothing on it is rounded differently from machine to machine.
     pub fn page(&self) -> String {
         let mut page = format!(
-            "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test book -->\n\n{}\n\n\
+            "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it book -->\n\n{}\n\n\
              `cargo run --example {}` runs it.\n\n\
              ## The model\n\n```rust,ignore\n{}\n```\n",
             self.documentation(),

@@ -1,10 +1,8 @@
 //! What the analyses of expressions and predicates say, against values at sampled states.
 
-mod common;
-
 use std::collections::BTreeMap;
 
-use common::{expressions, predicates};
+use crate::common::{expressions, predicates};
 use pleach_guards::{
     Expression, Interval, LinearForm, NoDisjunctiveForm, Predicate, Relation, Substitution, Truth,
     constant, never, not, variable,

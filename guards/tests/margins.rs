@@ -1,8 +1,6 @@
 //! Laws of verdicts and margins.
 
-mod common;
-
-use common::predicates;
+use crate::common::predicates;
 use pleach_guards::not;
 use proptest::prelude::*;
 

@@ -1,8 +1,6 @@
 //! How expressions and predicates print; that they read back is tested with the reader.
 
-mod common;
-
-use common::predicates;
+use crate::common::predicates;
 use pleach_guards::{Predicate, always, constant, not, variable};
 use proptest::prelude::*;
 

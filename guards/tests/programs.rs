@@ -1,8 +1,6 @@
 //! Compiled expressions and predicates against the trees they come from.
 
-mod common;
-
-use common::{expressions, predicates};
+use crate::common::{expressions, predicates};
 use pleach_guards::{EvaluationError, Predicate, Tape, Verdict, constant, variable};
 use proptest::prelude::*;
 

@@ -1,10 +1,8 @@
 //! Reading undoes printing; other spellings; and what a text that cannot be read is told.
 
-mod common;
-
 use std::thread;
 
-use common::{odd_expressions, odd_predicates, predicates};
+use crate::common::{odd_expressions, odd_predicates, predicates};
 use pleach_guards::{
     Expression, ParseError, Predicate, always, constant, never, not, proposition, variable,
 };

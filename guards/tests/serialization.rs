@@ -1,8 +1,6 @@
 //! Expressions, predicates and guards go through JSON and come back the same.
 
-mod common;
-
-use common::{odd_expressions, odd_predicates};
+use crate::common::{odd_expressions, odd_predicates};
 use pleach_guards::{Expression, Guard, Predicate, variable};
 use proptest::prelude::*;
 

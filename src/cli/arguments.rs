@@ -65,6 +65,12 @@ pub enum Command {
     ///
     /// The drawing is made from the transition table that the robots run, and printed.
     Diagram(DiagramArguments),
+    /// Make the page on which a mission plays from its trace
+    ///
+    /// The page is one HTML file that needs no other: the plan with robots, links and tree at every
+    /// control period, curves, the story and a summary. It shows as much as there is of a trace
+    /// that was cut off.
+    Page(PageArguments),
     /// Print a script that completes the arguments of pleach in a shell
     Completions {
         /// The shell
@@ -200,6 +206,16 @@ impl FromStr for Spot {
         let number = |text: &str| text.trim().parse().map_err(|_| wrong());
         Ok(Spot([number(x)?, number(y)?]))
     }
+}
+
+/// The arguments of `pleach page`.
+#[derive(Debug, Args)]
+pub struct PageArguments {
+    /// The trace, a file of JSON lines
+    pub trace: PathBuf,
+    /// Write the page to FILE [default: the trace with the ending .html]
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }
 
 /// The arguments of `pleach diagram`.

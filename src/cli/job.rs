@@ -49,7 +49,7 @@ pub fn run(
     if let Some(folder) = &outputs.figures {
         create_folder(folder)?;
     }
-    let mut album = outputs.figures.as_ref().map(|_| open_album(scenario));
+    let mut album = outputs.figures.as_ref().map(|_| Album::new(scenario));
 
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, progress, &mut interrupt];
     watchers.extend(trace.as_mut().map(|trace| trace as &mut dyn Watcher));
@@ -64,12 +64,6 @@ pub fn run(
         _ => Vec::new(),
     };
     Ok(Finished { record, summary: summary.completed(completed, elapsed), figures })
-}
-
-fn open_album(scenario: &ValidScenario) -> Album {
-    let corners =
-        |outline: &Vec<_>| outline.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-    Album::new(scenario, scenario.site().free_space.outline().iter().map(corners).collect())
 }
 
 fn start_trace(

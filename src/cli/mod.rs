@@ -10,6 +10,7 @@ mod import;
 mod interrupt;
 mod job;
 mod manual;
+mod page;
 mod plan;
 mod progress;
 mod record;
@@ -36,6 +37,7 @@ pub fn carry_out(arguments: Arguments) -> ExitCode {
         Command::Diagram(diagram) => diagram::print(&diagram),
         Command::Completions { shell } => manual::print_completions(shell),
         Command::Man { folder } => manual::write_manual(folder.as_deref()),
+        Command::Page(page) => page::write(&page),
     };
     let status = result.unwrap_or_else(|failure| {
         eprintln!("error: {failure}");

@@ -3,6 +3,7 @@
 use pleach::automaton::network::record::Outcome;
 use pleach::import::{ImportError, SkeletonError};
 use pleach::mission::MissionError;
+use pleach::page::PageError;
 use pleach::scenario_file::ScenarioError;
 use pleach::starts::NoStarts;
 use std::io;
@@ -108,6 +109,14 @@ pub enum Failure {
         /// What is wrong with it.
         source: pleach::recording::RecordingError,
     },
+    /// No page can be made of a trace.
+    #[error("{}: {error}", path.display())]
+    Trace {
+        /// The trace.
+        path: PathBuf,
+        /// What is wrong with it.
+        error: Box<PageError>,
+    },
     /// A file cannot be created.
     #[error("{}: cannot be created: {source}; choose a path that may be written", path.display())]
     Creation {
@@ -149,6 +158,7 @@ impl Failure {
             | Failure::Starts(_)
             | Failure::Import(_)
             | Failure::Skeleton(_)
+            | Failure::Trace { .. }
             | Failure::Creation { .. } => Status::BadInput,
             #[cfg(feature = "mcap")]
             Failure::Recording { .. } => Status::BadInput,

@@ -5,30 +5,31 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use pleach_automaton::network::record::{End, MissionEvent, Snapshot};
-use pleach_automaton::network::scenario::Scenario;
+use pleach_automaton::network::scenario::ValidScenario;
 
 use crate::mission::Watcher;
+use crate::page::MissionPage;
+use crate::story;
 
 use super::canvas::quantity;
 use super::curves::{Chart, Curve, DISTINCT_CURVES, Limit, Sign};
 use super::palette;
-use super::plan::{Plan, sides};
+use super::plan::Plan;
 use super::scene::Scene;
 use super::series::Series;
-use super::spacing::{smallest_clearance, smallest_pair_distance};
-use super::{page, story};
+use super::spacing::Walls;
 
 /// Ways shorter than this share of ρ are not drawn.
 const TRAIL_STEP: f64 = 0.25;
 
-/// Watches a mission period by period and writes its figures at the end.
-#[derive(Clone, Debug)]
+/// Watches a mission period by period and writes its figures at the end, and the page on which it
+/// plays.
+#[derive(Debug)]
 pub struct Album {
     plan: Plan,
-    walls: Vec<([f64; 2], [f64; 2])>,
-    pages: Vec<Page>,
-    /// Sentences since the last page.
-    meanwhile: Vec<String>,
+    walls: Walls,
+    page: MissionPage,
+    pictures: Vec<Picture>,
     trails: Vec<Vec<[f64; 2]>>,
     last: Option<Snapshot>,
     distances: Series,
@@ -40,27 +41,25 @@ pub struct Album {
 
 /// A telling moment.
 #[derive(Clone, Debug)]
-struct Page {
+struct Picture {
     snapshot: Snapshot,
     headlines: Vec<String>,
     slug: String,
-    narration: Vec<String>,
     trails: Vec<Vec<[f64; 2]>>,
 }
 
 impl Album {
-    /// Opens an empty album. `free_space_outline` holds the loops of the boundary of W_f, in any
-    /// orientation; where it is empty the figures leave it out.
+    /// Opens an empty album of a mission of `scenario`.
     #[must_use]
-    pub fn new(scenario: &Scenario, free_space_outline: Vec<Vec<[f64; 2]>>) -> Album {
-        let plan = Plan::new(scenario, free_space_outline);
-        let walls = plan.loops().flat_map(|corners| sides(corners)).collect();
+    pub fn new(scenario: &ValidScenario) -> Album {
+        let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
+        let outline = scenario.site().free_space.outline().iter().map(corners).collect();
         let robots = scenario.robot.len();
         Album {
-            plan,
-            walls,
-            pages: Vec::new(),
-            meanwhile: Vec::new(),
+            plan: Plan::new(scenario, outline),
+            walls: Walls::new(&scenario.workspace),
+            page: MissionPage::new(scenario),
+            pictures: Vec::new(),
             trails: Vec::new(),
             last: None,
             distances: Series::new(2),
@@ -71,77 +70,65 @@ impl Album {
         }
     }
 
-    /// Takes the snapshot of a period and the events that led to it.
-    ///
     /// The start, each election, stationary point, release, arrival of a recruit and serviced
-    /// task becomes a picture; other events become sentences between the pictures.
-    pub fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) {
+    /// task becomes a picture.
+    fn extend_pictures(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) {
         self.extend_curves(snapshot);
         self.extend_trails(snapshot);
         let started = self.last.is_none();
-        let moments = events.iter().filter_map(story::moment);
-        self.signs.extend(moments.map(|(moment, number)| Sign {
+        let captions = || events.iter().filter_map(story::caption);
+        self.signs.extend(captions().map(|caption| Sign {
             step: snapshot.step,
-            moment,
-            number,
+            moment: caption.moment,
+            number: caption.number,
         }));
         if let Some(task) = snapshot.task
             && self.tasks.last().is_none_or(|(_, pursued)| *pursued != task)
         {
             self.tasks.push((snapshot.step, task));
         }
-        self.meanwhile.extend(events.iter().filter_map(|event| {
-            Some(format!("k = {}: {}", snapshot.step, story::sentence(event)?))
-        }));
-        if started || events.iter().any(|event| story::moment(event).is_some()) {
-            self.add_page(snapshot, events, started);
+        if started || captions().next().is_some() {
+            self.add_picture(snapshot, events, started);
         }
         self.last = Some(snapshot.clone());
     }
 
-    /// Writes the pictures, the curves and `index.html` into a folder, which it creates, and
-    /// returns the paths in the order of the story, the index last.
+    /// Writes the pictures, the curves and the page, `index.html`, into a folder, which it
+    /// creates, and returns the paths in the order of the story, the page last.
     ///
     /// # Errors
     ///
     /// When the folder or a file cannot be written; the error of the system is passed on.
     pub fn write(&self, folder: &Path, end: &End) -> io::Result<Vec<PathBuf>> {
         fs::create_dir_all(folder)?;
-        let mut pages = self.pages.clone();
+        let mut pictures = self.pictures.clone();
         if let Some(last) = &self.last {
-            self.add_end(&mut pages, last, end);
+            self.add_end(&mut pictures, last, end);
         }
-        let digits = pages.len().to_string().len().max(2);
-        let mut figures: Vec<page::Figure> = pages
-            .iter()
-            .enumerate()
-            .map(|(index, entry)| page::Figure {
-                file: format!("{index:0digits$}-k{:05}-{}.svg", entry.snapshot.step, entry.slug),
-                narration: entry.narration.clone(),
-                picture: self.plan.render(&Scene {
-                    snapshot: &entry.snapshot,
-                    title: &entry.title(),
-                    trails: &entry.trails,
-                }),
-            })
-            .collect();
-        figures.extend(self.curve_figures());
-        let index = page::render(&self.plan.scenario, &figures, end);
+        let digits = pictures.len().to_string().len().max(2);
+        let drawn = pictures.iter().enumerate().map(|(index, picture)| {
+            let (step, slug) = (picture.snapshot.step, &picture.slug);
+            let scene = Scene {
+                snapshot: &picture.snapshot,
+                title: &picture.title(),
+                trails: &picture.trails,
+            };
+            (format!("{index:0digits$}-k{step:05}-{slug}.svg"), self.plan.render(&scene))
+        });
+        let curves = self.curve_figures().map(|(name, svg)| (name.to_owned(), svg));
+        let page = ("index.html".to_owned(), self.page.render());
         let mut written = Vec::new();
-        for figure in &figures {
-            written.push(folder.join(&figure.file));
-            fs::write(folder.join(&figure.file), &figure.picture)?;
+        for (name, text) in drawn.chain(curves).chain([page]) {
+            let path = folder.join(name);
+            fs::write(&path, text)?;
+            written.push(path);
         }
-        written.push(folder.join("index.html"));
-        fs::write(folder.join("index.html"), index)?;
         Ok(written)
     }
 
     fn extend_curves(&mut self, snapshot: &Snapshot) {
         let points: Vec<[f64; 2]> = snapshot.positions.iter().map(|p| [p.x, p.y]).collect();
-        let pair = smallest_pair_distance(&points);
-        let clearance = smallest_clearance(&points, &self.walls);
-        self.distances.push(snapshot.step, [pair, clearance].into_iter());
+        self.distances.push(snapshot.step, self.walls.distances(&points).into_iter());
         self.residuals.push(snapshot.step, snapshot.residuals.iter().copied());
         self.multipliers.push(snapshot.step, snapshot.multipliers.iter().copied());
     }
@@ -159,7 +146,8 @@ impl Album {
         }
     }
 
-    fn add_page(&mut self, snapshot: &Snapshot, events: &[MissionEvent], started: bool) {
+    fn add_picture(&mut self, snapshot: &Snapshot, events: &[MissionEvent], started: bool) {
+        let captions: Vec<_> = events.iter().filter_map(story::caption).collect();
         let named = events.iter().find_map(story::task_of).or(snapshot.task);
         let mut headlines: Vec<String> = named.iter().map(|task| format!("task {task}")).collect();
         let mut slugs: Vec<String> = named.iter().map(|task| format!("task-{task}")).collect();
@@ -167,38 +155,35 @@ impl Album {
             headlines.push("the start".to_owned());
             slugs.push("start".to_owned());
         }
-        headlines.extend(events.iter().filter_map(story::headline));
-        slugs.extend(events.iter().find_map(story::slug));
+        headlines.extend(captions.iter().map(|caption| caption.headline.clone()));
+        slugs.extend(captions.first().map(|caption| caption.slug.clone()));
         let here = snapshot.positions.iter().map(|point| vec![[point.x, point.y]]).collect();
-        self.pages.push(Page {
+        self.pictures.push(Picture {
             snapshot: snapshot.clone(),
             headlines,
             slug: slugs.join("-"),
-            narration: std::mem::take(&mut self.meanwhile),
             trails: std::mem::replace(&mut self.trails, here),
         });
     }
 
     /// Adds the end, to the last picture if that shows the same period.
-    fn add_end(&self, pages: &mut Vec<Page>, last: &Snapshot, end: &End) {
+    fn add_end(&self, pictures: &mut Vec<Picture>, last: &Snapshot, end: &End) {
         let headline = format!("the end: {}", end.outcome.name().replace('_', " "));
-        match pages.last_mut() {
-            Some(page) if page.snapshot.step == last.step => {
-                page.headlines.push(headline);
-                page.slug.push_str("-end");
-                page.narration.extend(self.meanwhile.iter().cloned());
+        match pictures.last_mut() {
+            Some(picture) if picture.snapshot.step == last.step => {
+                picture.headlines.push(headline);
+                picture.slug.push_str("-end");
             }
-            _ => pages.push(Page {
+            _ => pictures.push(Picture {
                 snapshot: last.clone(),
                 headlines: vec![headline],
                 slug: "end".to_owned(),
-                narration: self.meanwhile.clone(),
                 trails: self.trails.clone(),
             }),
         }
     }
 
-    fn curve_figures(&self) -> [page::Figure; 3] {
+    fn curve_figures(&self) -> [(&'static str, String); 3] {
         let clearance = self.plan.clearance();
         let tolerance = self.plan.scenario.control.residual_tolerance.unwrap_or(0.0);
         let distances = Chart {
@@ -221,9 +206,10 @@ impl Album {
             )
         };
         let residuals = Chart {
-            subtitle: "what a robot can send beyond what it must: the network holds while none \
-                       falls below the dashed line, eq. (5)"
-                .to_owned(),
+            subtitle:
+                "what a robot can send beyond what it must, eq. (5): no curve falls below the \
+                       dashed line while the network carries all traffic"
+                    .to_owned(),
             curves: robot_curves(&self.residuals),
             limits: vec![Limit { value: -tolerance, label: limit_name(tolerance) }],
             ..self.chart("Residuals cᵢ of all robots", "cᵢ (share of the radio's rate)")
@@ -236,27 +222,11 @@ impl Album {
             ..self.chart("Lagrange multipliers λᵢ of all robots", "λᵢ")
         };
         [
-            (
-                "distances.svg",
-                distances,
-                "Nothing touches anything: the curves stay above their limits.",
-            ),
-            (
-                "residuals.svg",
-                residuals,
-                "Every robot can always send on what it makes and receives.",
-            ),
-            (
-                "multipliers.svg",
-                multipliers,
-                "The multipliers of the routing problem, one curve a robot.",
-            ),
+            ("distances.svg", distances),
+            ("residuals.svg", residuals),
+            ("multipliers.svg", multipliers),
         ]
-        .map(|(file, chart, caption)| page::Figure {
-            file: file.to_owned(),
-            narration: vec![caption.to_owned()],
-            picture: chart.render(),
-        })
+        .map(|(name, chart)| (name, chart.render()))
     }
 
     fn chart<'a>(&'a self, title: &'a str, axis: &'a str) -> Chart<'a> {
@@ -275,7 +245,7 @@ impl Album {
     }
 }
 
-impl Page {
+impl Picture {
     fn title(&self) -> String {
         format!("k = {} · {}", self.snapshot.step, self.headlines.join(" · "))
     }
@@ -289,7 +259,7 @@ fn bold_curve(label: &str, colour: &'static str, points: Vec<[f64; 2]>) -> Curve
     Curve { label: label.to_owned(), colour, dashed: false, width: 1.6, opacity: 1.0, points }
 }
 
-/// One curve a robot; in crowds they are faint and without names.
+/// One curve per robot; in crowds they are faint and without names.
 fn robot_curves(series: &Series) -> Vec<Curve> {
     let robots = series.curves();
     let distinct = robots <= DISTINCT_CURVES;
@@ -307,7 +277,11 @@ fn robot_curves(series: &Series) -> Vec<Curve> {
 
 impl Watcher for Album {
     fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
-        Album::observe(self, snapshot, events);
-        Ok(())
+        self.extend_pictures(snapshot, events);
+        self.page.observe(snapshot, events)
+    }
+
+    fn end(&mut self, end: &End) -> io::Result<()> {
+        self.page.end(end)
     }
 }

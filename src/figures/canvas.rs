@@ -6,7 +6,7 @@ use svg::node::element::{Group, Line, Rectangle, Text};
 use super::palette::{CHARACTER_WIDTH, FONT, INK, PAPER, SUBTITLE_SIZE, TITLE_SIZE, WIDTH};
 
 /// A place on the paper, y downwards.
-pub(super) type Spot = [f64; 2];
+pub(crate) type Spot = [f64; 2];
 
 /// Writes a coordinate with two decimals and without a negative zero, so that equal pictures
 /// have equal bytes.
@@ -17,7 +17,7 @@ pub(super) fn number(value: f64) -> String {
 }
 
 /// Writes a quantity with as many decimals as it needs, four at most.
-pub(super) fn quantity(value: f64) -> String {
+pub(crate) fn quantity(value: f64) -> String {
     let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

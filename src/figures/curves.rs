@@ -3,9 +3,10 @@
 use svg::node::element::{Group, Polyline};
 
 use super::canvas::{Spot, corners, layer, quantity, rectangle, sheet, stroke, text, text_width};
+use super::marks::draw_moment;
 use super::palette;
 use super::plan::round_length;
-use super::story::Moment;
+use crate::story::Moment;
 
 /// Upper left corner of the plot.
 const CORNER: Spot = [74.0, 132.0];
@@ -113,7 +114,7 @@ impl Chart<'_> {
             let words = sign.number.to_string();
             occupied[row] = x + 8.0 + text_width(&words, 9.5);
             let tooltip = format!("k = {}: {} ({})", sign.step, sign.moment.name(), sign.number);
-            group.add(sign.moment.mark().draw([x, top], 4.0, &tooltip)).add(text(
+            group.add(draw_moment(sign.moment, [x, top], 3.6, &tooltip)).add(text(
                 words,
                 [x + 7.0, top + 3.5],
                 9.5,
@@ -190,7 +191,7 @@ fn sign_legend() -> Group {
     let mut x = CORNER[0] + 6.0;
     let mut group = layer("legend");
     for moment in Moment::ALL {
-        group = group.add(moment.mark().draw([x, y - 4.0], 4.6, moment.name())).add(text(
+        group = group.add(draw_moment(moment, [x, y - 4.0], 4.2, moment.name())).add(text(
             moment.name(),
             [x + 11.0, y],
             palette::TEXT_SIZE,

@@ -2,10 +2,12 @@
 
 use pleach_automaton::network::record::Snapshot;
 use pleach_discrete::network::Role;
-use svg::node::element::{Circle, Group, Polygon, Title};
+use serde::Serialize;
+use svg::node::element::{Circle, Group, Polygon, Polyline, Title};
 
 use super::canvas::{Spot, corners, number, stroke};
 use super::palette;
+use crate::story::Moment;
 
 /// What a node is drawn as, after the captions of Figs. 8 to 10 and 14.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -86,8 +88,37 @@ impl Mark {
         }
     }
 
+    /// Its name in style sheets and in data.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Mark::AccessPoint => "access-point",
+            Mark::Leader => "leader",
+            Mark::Member => "primary-team",
+            Mark::Recruit => "recruit",
+            Mark::Junction => "junction",
+            Mark::Leaf => "leaf",
+            Mark::Node => "node",
+            Mark::Redundant => "redundant",
+        }
+    }
+
+    /// Its outline for a mark as large as a dot of radius 1; y grows downwards.
+    pub(crate) fn shape(self) -> Shape {
+        match self {
+            Mark::AccessPoint => ring_of_corners(4, &[1.75], 0.0),
+            Mark::Leaf => ring_of_corners(4, &[1.45], 0.0),
+            Mark::Leader => ring_of_corners(10, &[1.75, 0.78], 0.0),
+            Mark::Recruit => ring_of_corners(3, &[1.5], 0.0),
+            Mark::Junction => ring_of_corners(4, &[1.35], 0.5),
+            Mark::Member => Shape::Disc { radius: 1.05, heart: 0.0 },
+            Mark::Redundant => Shape::Disc { radius: 0.8, heart: 0.0 },
+            Mark::Node => Shape::Disc { radius: 0.95, heart: 0.38 },
+        }
+    }
+
     /// Draws the mark so that it looks as large as a dot of this radius.
-    pub(super) fn draw(self, centre: Spot, radius: f64, tooltip: &str) -> Group {
+    pub(super) fn draw(self, [x, y]: Spot, radius: f64, tooltip: &str) -> Group {
         let group = Group::new()
             .set("class", "mark")
             .set("fill", self.colour())
@@ -95,37 +126,56 @@ impl Mark {
             .set("stroke-width", number((radius * 0.14).clamp(0.6, 1.1)))
             .set("stroke-linejoin", "round")
             .add(Title::new(tooltip));
-        match self {
-            Mark::AccessPoint => group.add(ring_of_corners(centre, 4, &[radius * 1.75], 0.0)),
-            Mark::Leaf => group.add(ring_of_corners(centre, 4, &[radius * 1.45], 0.0)),
-            Mark::Leader => {
-                group.add(ring_of_corners(centre, 10, &[radius * 1.75, radius * 0.78], 0.0))
+        match self.shape() {
+            Shape::Polygon(spots) => {
+                let spots = spots.into_iter().map(|[dx, dy]| [x + radius * dx, y + radius * dy]);
+                group.add(Polygon::new().set("points", corners(spots)))
             }
-            Mark::Recruit => group.add(ring_of_corners(centre, 3, &[radius * 1.5], 0.0)),
-            Mark::Junction => group.add(ring_of_corners(centre, 4, &[radius * 1.35], 0.5)),
-            Mark::Member => group.add(disc(centre, radius * 1.05)),
-            Mark::Redundant => group.add(disc(centre, radius * 0.8)),
-            Mark::Node => group
-                .add(disc(centre, radius * 0.95))
-                .add(disc(centre, radius * 0.38).set("fill", palette::FLOOR).set("stroke", "none")),
+            Shape::Disc { radius: share, heart } => {
+                let group = group.add(disc([x, y], radius * share));
+                if heart == 0.0 {
+                    return group;
+                }
+                let heart = disc([x, y], radius * heart);
+                group.add(heart.set("fill", palette::FLOOR).set("stroke", "none"))
+            }
         }
     }
 }
 
+/// The outline of a mark.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Shape {
+    /// Its corners.
+    Polygon(Vec<Spot>),
+    /// A disc, and in it a pale one unless its radius is 0.
+    Disc { radius: f64, heart: f64 },
+}
+
 /// How far a task has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum TaskState {
+pub(crate) enum TaskState {
     Unannounced,
     Pursued,
     Serviced,
 }
 
 impl TaskState {
-    pub(super) const ALL: [TaskState; 3] =
+    pub(crate) const ALL: [TaskState; 3] =
         [TaskState::Pursued, TaskState::Serviced, TaskState::Unannounced];
 
+    /// How far `task` has come at an instant.
+    pub(crate) fn of(snapshot: &Snapshot, task: usize) -> TaskState {
+        match snapshot.serviced.iter().any(|(done, _)| *done == task) {
+            true => TaskState::Serviced,
+            false if snapshot.task == Some(task) => TaskState::Pursued,
+            false => TaskState::Unannounced,
+        }
+    }
+
     /// What the legend says.
-    pub(super) const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             TaskState::Unannounced => "task to come",
             TaskState::Pursued => "task pursued",
@@ -174,11 +224,46 @@ pub(super) fn disc([x, y]: Spot, radius: f64) -> Circle {
 
 /// A regular figure whose corners take turns among `radii`; `turn` counts in corners, from the
 /// top.
-fn ring_of_corners([x, y]: Spot, count: usize, radii: &[f64], turn: f64) -> Polygon {
+fn ring_of_corners(count: usize, radii: &[f64], turn: f64) -> Shape {
     let spots = (0..count).map(|corner| {
         let angle = (corner as f64 + turn) / count as f64 * std::f64::consts::TAU;
         let radius = radii[corner % radii.len()];
-        [x + radius * angle.sin(), y - radius * angle.cos()]
+        [radius * angle.sin(), -radius * angle.cos()]
     });
-    Polygon::new().set("points", corners(spots))
+    Shape::Polygon(spots.collect())
+}
+
+/// The strokes of the mark above the line of a moment, in a box from −1 to 1, y downwards. Moments
+/// have marks of their own: a mark of a role would say what a robot is.
+pub(crate) fn moment_strokes(moment: Moment) -> &'static [&'static [Spot]] {
+    match moment {
+        // A flag.
+        Moment::Elected => &[&[[-0.55, 1.0], [-0.55, -1.0], [0.8, -0.5], [-0.55, 0.05]]],
+        // Two bars, as on the button for a pause.
+        Moment::Stationary => &[&[[-0.45, -0.9], [-0.45, 0.9]], &[[0.45, -0.9], [0.45, 0.9]]],
+        // A plus.
+        Moment::Joined => &[&[[-0.9, 0.0], [0.9, 0.0]], &[[0.0, -0.9], [0.0, 0.9]]],
+        // Two chevrons.
+        Moment::Released => {
+            &[&[[-0.8, -0.8], [-0.05, 0.0], [-0.8, 0.8]], &[[0.1, -0.8], [0.85, 0.0], [0.1, 0.8]]]
+        }
+        // A tick.
+        Moment::Serviced => &[&[[-0.85, 0.1], [-0.25, 0.75], [0.9, -0.75]]],
+    }
+}
+
+/// Draws the mark of a moment in a box of half width `arm`.
+pub(super) fn draw_moment(moment: Moment, [x, y]: Spot, arm: f64, tooltip: &str) -> Group {
+    let group = Group::new()
+        .set("class", "moment")
+        .set("fill", "none")
+        .set("stroke", palette::INK)
+        .set("stroke-width", number(arm * 0.36))
+        .set("stroke-linecap", "round")
+        .set("stroke-linejoin", "round")
+        .add(Title::new(tooltip));
+    moment_strokes(moment).iter().fold(group, |group, stroke| {
+        let spots = stroke.iter().map(|[dx, dy]| [x + arm * dx, y + arm * dy]);
+        group.add(Polyline::new().set("points", corners(spots)))
+    })
 }

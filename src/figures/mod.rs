@@ -22,15 +22,19 @@ mod curves;
 mod labels;
 mod legend;
 mod marks;
-mod page;
-mod palette;
+pub(crate) mod palette;
 mod plan;
 mod scene;
+mod screen;
 mod series;
 mod spacing;
-mod story;
 #[cfg(test)]
 mod tests;
+
+pub(crate) use canvas::quantity;
+pub(crate) use marks::TaskState;
+pub(crate) use screen::{link_data, mark_data, moment_data};
+pub(crate) use spacing::Walls;
 
 pub use album::Album;
 pub use marks::Mark;

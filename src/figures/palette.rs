@@ -5,64 +5,118 @@
 //! differs. No meaning rests on colour alone: every mark has a shape of its own too.
 
 /// Paper around the drawing.
-pub(super) const PAPER: &str = "#ffffff";
+pub(crate) const PAPER: &str = "#ffffff";
 /// Walls and holes.
-pub(super) const WALL: &str = "#454d5c";
+pub(crate) const WALL: &str = "#454d5c";
 /// Space in which robots may be.
-pub(super) const FLOOR: &str = "#fbfaf6";
+pub(crate) const FLOOR: &str = "#fbfaf6";
 /// Titles and marks' outlines.
-pub(super) const INK: &str = "#1b1f27";
+pub(crate) const INK: &str = "#1b1f27";
 /// Text of second rank, axes.
-pub(super) const QUIET: &str = "#5d6573";
+pub(crate) const QUIET: &str = "#5d6573";
 /// Grid lines.
-pub(super) const GRID: &str = "#e3e5e9";
+pub(crate) const GRID: &str = "#e3e5e9";
 /// Background of every second task in the curves.
-pub(super) const BAND: &str = "#f4f5f8";
+pub(crate) const BAND: &str = "#f4f5f8";
 /// The outline of W_f and limits that may not be crossed.
-pub(super) const LIMIT: &str = "#d0342c";
+pub(crate) const LIMIT: &str = "#d0342c";
 /// Communication links.
-pub(super) const LINK: &str = "#6cc79a";
+pub(crate) const LINK: &str = "#6cc79a";
 /// Edges of the tree.
-pub(super) const TREE: &str = "#b8232f";
+pub(crate) const TREE: &str = "#b8232f";
 /// Where robots have been since the picture before.
-pub(super) const TRAIL: &str = "#e0a458";
+pub(crate) const TRAIL: &str = "#e0a458";
 /// Tasks.
-pub(super) const TASK: &str = "#1f6fd0";
+pub(crate) const TASK: &str = "#1f6fd0";
 /// Access points.
-pub(super) const ACCESS_POINT: &str = "#0072b2";
+pub(crate) const ACCESS_POINT: &str = "#0072b2";
 /// Leaders.
-pub(super) const LEADER: &str = "#e3262e";
+pub(crate) const LEADER: &str = "#e3262e";
 /// Members of the primary team.
-pub(super) const MEMBER: &str = "#f08c00";
+pub(crate) const MEMBER: &str = "#f08c00";
 /// Recruits and the path Σ on which they go.
-pub(super) const RECRUIT: &str = "#8e44ad";
+pub(crate) const RECRUIT: &str = "#8e44ad";
 /// Junctions.
-pub(super) const JUNCTION: &str = "#f7dc3b";
+pub(crate) const JUNCTION: &str = "#f7dc3b";
 /// Leaves.
-pub(super) const LEAF: &str = "#009e73";
+pub(crate) const LEAF: &str = "#009e73";
 /// Nodes that relay.
-pub(super) const NODE: &str = "#9aa1ac";
+pub(crate) const NODE: &str = "#9aa1ac";
 /// Redundant robots.
-pub(super) const REDUNDANT: &str = "#14161a";
+pub(crate) const REDUNDANT: &str = "#14161a";
+
+/// Every colour that a screen needs, by its name in style sheets: on light and on dark ground.
+const SCREEN: [(&str, &str, &str); 22] = [
+    ("paper", PAPER, "#171a20"),
+    ("wall", WALL, "#4d5666"),
+    ("floor", FLOOR, "#0f1216"),
+    ("ink", INK, "#e8eaee"),
+    ("quiet", QUIET, "#9aa3b2"),
+    ("grid", GRID, "#2b313b"),
+    ("band", BAND, "#1d2128"),
+    ("limit", LIMIT, "#ff6b5e"),
+    ("link", LINK, "#2f8f63"),
+    ("tree", TREE, "#e8505b"),
+    ("trail", TRAIL, "#c98d3e"),
+    ("task", TASK, "#5b9df0"),
+    ("access-point", ACCESS_POINT, "#3b9be0"),
+    ("leader", LEADER, "#ff4a50"),
+    ("primary-team", MEMBER, "#ff9d1e"),
+    ("recruit", RECRUIT, "#b678d6"),
+    ("junction", JUNCTION, "#f7dc3b"),
+    ("leaf", LEAF, "#17bd8d"),
+    ("node", NODE, "#7d8696"),
+    ("redundant", REDUNDANT, "#d9dde4"),
+    ("outline", INK, "#0b0d10"),
+    ("good", LEAF, "#17bd8d"),
+];
+
+/// The colours as custom properties of a style sheet, for light and dark screens. On paper
+/// everything is light.
+pub(crate) fn style_sheet() -> String {
+    let declared = |dark: bool| {
+        let screen = SCREEN
+            .map(|(name, light, dim)| format!("--{name}: {};", if dark { dim } else { light }));
+        let curves = CURVES.iter().zip(DARK_CURVES).enumerate().map(|(number, (light, dim))| {
+            format!("--curve-{number}: {};", if dark { dim } else { light })
+        });
+        screen.into_iter().chain(curves).collect::<Vec<_>>().join(" ")
+    };
+    let (light, dark) = (declared(false), declared(true));
+    format!(
+        ":root {{ color-scheme: light; --font: {FONT}; {light} }}\n\
+         @media screen and (prefers-color-scheme: dark) {{ :root {{ color-scheme: dark; {dark} }} }}\n\
+         @media screen {{\n\
+         :root[data-theme=\"light\"] {{ color-scheme: light; {light} }}\n\
+         :root[data-theme=\"dark\"] {{ color-scheme: dark; {dark} }}\n\
+         }}"
+    )
+}
 
 /// Colours of curves that belong to robots; beyond them the curves are dashed.
-pub(super) const CURVES: [&str; 12] = [
+pub(crate) const CURVES: [&str; 12] = [
     "#0072b2", "#d55e00", "#009e73", "#8e44ad", "#b8860b", "#56b4e9", "#c0392b", "#117733",
     "#cc79a7", "#5d4037", "#3f51b5", "#7f8c1f",
 ];
 
+/// The same hues, lighter, for curves on dark ground.
+const DARK_CURVES: [&str; 12] = [
+    "#4aa3e0", "#ff8a3d", "#2cc79a", "#b678d6", "#d9a93a", "#8fd0f5", "#ff7466", "#5cb86b",
+    "#e59cc6", "#b08d80", "#8391f0", "#b5c24a",
+];
+
 /// The typefaces, the first that is installed.
-pub(super) const FONT: &str =
+pub(crate) const FONT: &str =
     "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif";
 /// Size of titles.
-pub(super) const TITLE_SIZE: f64 = 20.0;
+pub(crate) const TITLE_SIZE: f64 = 20.0;
 /// Size of subtitles and names of axes.
-pub(super) const SUBTITLE_SIZE: f64 = 13.0;
+pub(crate) const SUBTITLE_SIZE: f64 = 13.0;
 /// Size of the legend and of numbers at axes.
-pub(super) const TEXT_SIZE: f64 = 12.0;
+pub(crate) const TEXT_SIZE: f64 = 12.0;
 /// Size of the numbers beside marks.
-pub(super) const LABEL_SIZE: f64 = 10.5;
+pub(crate) const LABEL_SIZE: f64 = 10.5;
 /// Width of a character relative to the size of its type, on average.
-pub(super) const CHARACTER_WIDTH: f64 = 0.54;
+pub(crate) const CHARACTER_WIDTH: f64 = 0.54;
 /// Width of every figure in its own units, and on paper in pixels.
-pub(super) const WIDTH: f64 = 960.0;
+pub(crate) const WIDTH: f64 = 960.0;

@@ -18,11 +18,11 @@ const CORNER: Spot = [30.0, 84.0];
 /// Space below the drawing.
 const FOOT: f64 = 26.0;
 /// Width of a link that is used all the time, T·R = 1, on the paper.
-const FULL_WIDTH: f64 = 11.0;
+pub(super) const FULL_WIDTH: f64 = 11.0;
 /// Width of the faintest link.
-const FAINT_WIDTH: f64 = 0.9;
+pub(super) const FAINT_WIDTH: f64 = 0.9;
 /// Width of a tree edge relative to the link below it, which stays visible on both sides.
-const TREE_SHARE: f64 = 0.45;
+pub(super) const TREE_SHARE: f64 = 0.45;
 /// Robots up to which each mark carries its number; in larger crowds redundant robots do not.
 const FULLY_LABELLED: usize = 120;
 
@@ -142,13 +142,7 @@ impl Picture<'_> {
     fn task_states(&self) -> impl Iterator<Item = (usize, TaskState, Spot)> {
         let snapshot = self.scene.snapshot;
         self.plan.scenario.task.iter().enumerate().map(move |(task, place)| {
-            let serviced = snapshot.serviced.iter().any(|(done, _)| *done == task);
-            let state = match serviced {
-                true => TaskState::Serviced,
-                false if snapshot.task == Some(task) => TaskState::Pursued,
-                false => TaskState::Unannounced,
-            };
-            (task, state, self.view.spot(place.position))
+            (task, TaskState::of(snapshot, task), self.view.spot(place.position))
         })
     }
 

@@ -1,7 +1,31 @@
 //! The distances of Fig. 11: between the closest robots, and from a robot to the closest wall.
 
+use pleach_automaton::network::scenario::WorkspaceOutline;
+
+use super::plan::sides;
+
+/// The sides of boundary and holes.
+#[derive(Clone, Debug)]
+pub(crate) struct Walls {
+    sides: Vec<([f64; 2], [f64; 2])>,
+}
+
+impl Walls {
+    /// The walls of a workspace.
+    pub fn new(workspace: &WorkspaceOutline) -> Walls {
+        let loops = std::iter::once(&workspace.boundary).chain(&workspace.holes);
+        Walls { sides: loops.flat_map(|corners| sides(corners)).collect() }
+    }
+
+    /// The smallest distance of two of the points, and of a point to a wall; infinite where there
+    /// is none.
+    pub fn distances(&self, points: &[[f64; 2]]) -> [f64; 2] {
+        [smallest_pair_distance(points), smallest_clearance(points, &self.sides)]
+    }
+}
+
 /// The smallest distance between two points, by a sweep along x; infinite for fewer than two.
-pub(super) fn smallest_pair_distance(points: &[[f64; 2]]) -> f64 {
+fn smallest_pair_distance(points: &[[f64; 2]]) -> f64 {
     let mut sorted = points.to_vec();
     sorted.sort_by(|one, other| one[0].total_cmp(&other[0]));
     let mut smallest = f64::INFINITY;
@@ -17,7 +41,7 @@ pub(super) fn smallest_pair_distance(points: &[[f64; 2]]) -> f64 {
 }
 
 /// The smallest distance from a point to a segment; infinite when there are none.
-pub(super) fn smallest_clearance(points: &[[f64; 2]], walls: &[([f64; 2], [f64; 2])]) -> f64 {
+fn smallest_clearance(points: &[[f64; 2]], walls: &[([f64; 2], [f64; 2])]) -> f64 {
     let distances = points
         .iter()
         .flat_map(|point| walls.iter().map(move |(from, to)| to_segment(*point, *from, *to)));

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
-use pleach_automaton::network::scenario::Scenario;
+use pleach_automaton::network::scenario::{Scenario, ValidScenario};
 use pleach_discrete::network::{Phase, Role};
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use super::{Album, Mark, Plan, Scene};
+use crate::mission::Watcher;
 
 const STUDY_ONE: &str = r#"
 name = "study-1"
@@ -46,9 +47,14 @@ const ROBOTS: [[f64; 2]; 13] = [
     [1.29, 1.12],
 ];
 
+/// Where the robots start, around the access point.
+fn starts() -> impl Iterator<Item = [f64; 2]> {
+    (0..13).map(|i| [0.2 + 0.1 * f64::from(i % 5), 0.1 + 0.1 * f64::from(i / 5) + 0.02])
+}
+
 fn study_one() -> Scenario {
     let starts: String =
-        ROBOTS.iter().map(|[x, y]| format!("[[robot]]\nposition = [{x}, {y}]\n")).collect();
+        starts().map(|[x, y]| format!("[[robot]]\nposition = [{x}, {y}]\n")).collect();
     toml::from_str(&format!("{STUDY_ONE}{starts}")).expect("the scenario is well-formed")
 }
 
@@ -110,8 +116,7 @@ fn moment(step: usize, share: f64) -> Snapshot {
 
 fn mission() -> Album {
     let scenario = study_one();
-    let outline = vec![scenario.workspace.boundary.clone()];
-    let mut album = Album::new(&scenario, outline);
+    let mut album = empty_album(&scenario);
     for step in 0..400 {
         let events = match step {
             0 => vec![MissionEvent::TaskAnnounced { task: 1 }],
@@ -127,9 +132,14 @@ fn mission() -> Album {
             398 => vec![MissionEvent::TaskServiced { task: 1, robot: 11 }],
             _ => Vec::new(),
         };
-        album.observe(&moment(step, step as f64 / 400.0), &events);
+        album.observe(&moment(step, step as f64 / 400.0), &events).expect("kept");
     }
     album
+}
+
+fn empty_album(scenario: &Scenario) -> Album {
+    let valid = ValidScenario::new(scenario.clone()).expect("a mission can start");
+    Album::new(&valid)
 }
 
 fn end() -> End {
@@ -237,7 +247,7 @@ fn an_album_tells_its_mission_in_order_and_to_the_byte() {
 #[test]
 fn an_album_without_a_single_period_is_written_too() {
     let folder = folder("empty");
-    let files = Album::new(&study_one(), Vec::new()).write(&folder, &end()).expect("written");
+    let files = empty_album(&study_one()).write(&folder, &end()).expect("written");
     assert_eq!(files.len(), 4);
     std::fs::remove_dir_all(&folder).expect("removable");
 }

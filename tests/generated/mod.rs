@@ -31,6 +31,6 @@ pub fn keep_up_to_date(path: &str, document: &str, test: &str) {
     let kept = fs::read_to_string(&file).unwrap_or_default();
     assert!(
         kept == document,
-        "{path} is out of date; refresh it with `{UPDATE}=1 cargo test --test {test}`"
+        "{path} is out of date; refresh it with `{UPDATE}=1 cargo test --test it {test}`"
     );
 }

@@ -1,8 +1,6 @@
 //! The protocol, explored exhaustively: how many states there are, and that everything holds in
 //! each of them.
 
-#![allow(clippy::unwrap_used)] // a test that panics has failed
-
 use pleach_verify::network::exploration::{
     Campaign, Configuration, Faults, Findings, Medium, Places, QUICK, THOROUGH,
 };
@@ -31,7 +29,7 @@ fn everything_holds_in_every_state_of_the_quick_campaigns() {
 }
 
 #[test]
-#[ignore = "takes minutes: cargo test --release -p pleach-verify --test exploration -- --ignored"]
+#[ignore = "takes minutes: cargo test --release -p pleach-verify --test it exploration -- --ignored"]
 fn everything_holds_in_every_state_of_the_thorough_campaigns() {
     assert_all_met(THOROUGH);
 }

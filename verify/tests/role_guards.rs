@@ -1,7 +1,5 @@
 //! The guards of the role automaton, on every combination of the facts that they speak of.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use pleach_automaton::network::role_automaton;
 use pleach_discrete::Event;
 use pleach_discrete::network::tables::keeps_places_held;

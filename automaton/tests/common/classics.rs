@@ -1,7 +1,5 @@
 //! Small models as textbooks show them, for everything that is drawn.
 
-#![allow(dead_code)] // each test uses a part of it
-
 use pleach_automaton::{Automaton, Composition, coordinates, from};
 use pleach_discrete::vocabulary;
 use pleach_guards::always;

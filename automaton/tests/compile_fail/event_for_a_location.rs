@@ -1,6 +1,6 @@
 //! Flows belong to locations, not to events.
 
-use pleach_automaton::{Automaton, coordinates, from};
+use pleach_automaton::{Automaton, coordinates};
 use pleach_discrete::vocabulary;
 
 vocabulary! {

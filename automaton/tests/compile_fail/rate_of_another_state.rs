@@ -1,6 +1,6 @@
 //! A flow gives rates to coordinates of its own state only.
 
-use pleach_automaton::{Automaton, coordinates, from};
+use pleach_automaton::{Automaton, coordinates};
 use pleach_discrete::vocabulary;
 
 vocabulary! {

@@ -4,7 +4,7 @@ use pleach_automaton::{Automaton, Composition, coordinates, from};
 use pleach_discrete::vocabulary;
 use pleach_guards::always;
 
-use crate::{faults, notes};
+use super::{faults, notes};
 
 vocabulary! {
     enum Door: Location { Open = "open", Shut = "shut", Locked = "locked" }

@@ -5,7 +5,7 @@ use pleach_automaton::{Coordinates, Transition};
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::Predicate;
 
-use crate::{Cue, Machine, Point, Room};
+use super::{Cue, Machine, Point, Room};
 
 /// The faults that need a witness have one, and it shows them.
 pub fn confirm(machine: &Machine, finding: &Finding) {

@@ -4,10 +4,10 @@ use pleach_automaton::check::Severity;
 use pleach_automaton::from;
 use pleach_guards::{always, norm};
 
-use crate::Cue::{Back, Go, On, Turn};
-use crate::Room::{A, B, C};
-use crate::confirm::confirm;
-use crate::{Parts, Point, faults, machine};
+use super::Cue::{Back, Go, On, Turn};
+use super::Room::{A, B, C};
+use super::confirm::confirm;
+use super::{Parts, Point, faults, machine};
 
 /// The model has exactly these errors and warnings, and what they show is so.
 fn check(parts: Parts, expected: &[&str]) {

@@ -3,9 +3,9 @@
 use pleach_automaton::{Automaton, Composition, Flow, Reset, from};
 use pleach_guards::{Predicate, always, constant, norm};
 
-use crate::Cue::{Back, Go, Turn};
-use crate::Room::{A, B, C};
-use crate::{Point, faults, machine, notes};
+use super::Cue::{Back, Go, Turn};
+use super::Room::{A, B, C};
+use super::{Point, faults, machine, notes};
 use pleach_automaton::check::{Kind, Report, Severity};
 
 /// At most so many notes, and nothing worse.

@@ -10,7 +10,7 @@ use pleach_continuous::flow::{
 use pleach_guards::{EvaluationError, Verdict, variable};
 use proptest::prelude::*;
 
-use crate::support::{reached, state};
+use super::support::{reached, state};
 
 /// The first instant at which the margin is not negative; checks what every answer promises.
 fn onset(curve: &impl Curve, from: f64, to: f64, margin: impl Fn(&[f64]) -> f64) -> Option<Onset> {

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, dmatrix};
 use pleach_continuous::flow::{ConstantFlow, Curve, InvalidFlow, LinearFlow};
 use proptest::prelude::*;
 
-use crate::support::{distance, state};
+use super::support::{distance, state};
 
 #[test]
 fn bodies_in_free_flight_follow_their_parabola_exactly() {

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use pleach_continuous::flow::{Curve, IntegrationFailure, Integrator, Tolerances, VectorField};
 
-use crate::support::{compare, distance, state, tolerances};
+use super::support::{compare, distance, state, tolerances};
 
 /// ẍ = −x
 fn oscillator(_time: f64, state: &[f64], rates: &mut [f64]) {

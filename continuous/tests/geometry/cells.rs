@@ -4,8 +4,8 @@ use pleach_continuous::geometry::{
 use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;
 
-use crate::environments::{CLEARANCE, environment, place, ring};
-use crate::plain;
+use super::environments::{CLEARANCE, environment, place, ring};
+use super::plain;
 
 fn admit(region: &[HalfPlane], point: Point) -> bool {
     region.iter().all(|plane| plane.contains(point))

@@ -2,8 +2,8 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace};
 use proptest::prelude::*;
 
-use crate::environments::{CLEARANCE, environment, place, ring};
-use crate::plain;
+use super::environments::{CLEARANCE, environment, place, ring};
+use super::plain;
 
 /// How far a cap with a single corner reaches, in clearances: 1 / cos 50°.
 const MITRE_REACH: f64 = 1.556;

@@ -2,8 +2,8 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{Disc, FreeSpace, Segment, Workspace};
 use proptest::prelude::*;
 
-use crate::environments::{CLEARANCE, environment, place, ring};
-use crate::plain;
+use super::environments::{CLEARANCE, environment, place, ring};
+use super::plain;
 
 fn square_room_with_square_hole() -> FreeSpace {
     let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);

@@ -4,8 +4,8 @@ use pleach_continuous::geometry::{FreeSpace, HalfPlane, Segment, Workspace, conv
 use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;
 
-use crate::environments::{CLEARANCE, Environment, environment, place, ring};
-use crate::plain;
+use super::environments::{CLEARANCE, Environment, environment, place, ring};
+use super::plain;
 
 /// Rounding of a few operations on coordinates of order one.
 const ROUNDING: f64 = 1e-12;

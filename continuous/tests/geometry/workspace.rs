@@ -3,8 +3,8 @@ use pleach_continuous::geometry::workspace::NamedEdge;
 use pleach_continuous::geometry::{Polygon, Workspace, WorkspaceError};
 use proptest::prelude::*;
 
-use crate::environments::{environment, place, ring};
-use crate::plain;
+use super::environments::{environment, place, ring};
+use super::plain;
 
 fn square(low: f64, high: f64) -> Vec<Point> {
     ring(&[(low, low), (high, low), (high, high), (low, high)])

@@ -210,7 +210,7 @@ fn choice() -> impl Strategy<Value = usize> {
     0..1000_usize
 }
 
-/// Draws a plan and steps; the rest of the reference is the [`Mission`](crate::mission::Mission).
+/// Draws a plan and steps; the rest of the reference is the [`Mission`](super::mission::Mission).
 pub struct Reference;
 
 impl ReferenceStateMachine for Reference {

@@ -3,7 +3,7 @@
 use pleach_guards::{Predicate, Verdict};
 use pleach_verify::temporal::{Formula, Window};
 
-use crate::random::{State, Trajectory};
+use super::random::{State, Trajectory};
 
 /// Instants of the grid in a second. Limits are off by at most one step for each temporal
 /// operator around another, which for the depth of 3 is less than ¼.

@@ -1,7 +1,7 @@
 //! The table of duties is deterministic and keeps every fixed post held.
 
 use super::*;
-use crate::Event;
+use crate::{Event, Location};
 
 /// One of `values`: any of them.
 fn any_of<T: Copy>(values: &[T]) -> T {

@@ -6,9 +6,7 @@
 //! mission ends. In every state [`ALWAYS`] holds, and the mission follows.
 //!
 //! A counterexample is shrunk, and told as a story. For more cases:
-//! `PROPTEST_CASES=10000 cargo test --release -p pleach-verify --test protocol -- --nocapture`.
-
-#![allow(clippy::unwrap_used, clippy::expect_used)] // a test that panics has failed
+//! `PROPTEST_CASES=10000 cargo test --release -p pleach-verify --test it protocol -- --nocapture`.
 
 mod mission;
 mod plan;

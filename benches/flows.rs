@@ -11,10 +11,10 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use nalgebra::dmatrix;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dopri5, SVector, System};
-use pleach_continuous::flow::{
+use pleach::continuous::flow::{
     Curve, EventSearch, Integrator, LinearFlow, Tolerances, first_instant,
 };
-use pleach_guards::{EvaluationError, Verdict};
+use pleach::guards::{EvaluationError, Verdict};
 
 /// A problem with its true answer.
 struct Problem<const N: usize> {

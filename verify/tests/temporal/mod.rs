@@ -1,8 +1,6 @@
 //! Signal temporal logic against its definition: random formulas on random trajectories, judged
 //! by brute force.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 mod by_definition;
 mod examples;
 mod random;

@@ -1,7 +1,5 @@
 //! What the benchmarks measure on: Study I, halls of any size, and missions held at a moment.
 
-#![allow(dead_code)] // not every benchmark needs everything
-
 pub mod course;
 pub mod hall;
 pub mod scene;
@@ -14,7 +12,7 @@ use pleach::automaton::network::scenario::ValidScenario;
 
 /// Study I of the paper: 13 robots, 3 tasks.
 pub fn study_1() -> ValidScenario {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/study-1.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/study-1.toml");
     pleach::scenario_file::read(&path).expect("Study I is a valid scenario")
 }
 

@@ -1,0 +1,17 @@
+//! The tests of the package, in one program.
+
+mod common;
+
+mod bouncing_ball;
+mod building;
+mod compile_fail;
+mod coverage;
+mod decisions;
+mod diagrams;
+mod endings;
+mod error_messages;
+mod faulty_models;
+mod many_components;
+mod pictures;
+mod sampled_rooms;
+mod semantics;

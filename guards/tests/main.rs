@@ -1,0 +1,12 @@
+//! The tests of the package, in one program.
+
+mod common;
+
+mod analysis;
+mod depth;
+mod functions;
+mod margins;
+mod printing;
+mod programs;
+mod reading;
+mod serialization;

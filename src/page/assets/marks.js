@@ -1,0 +1,105 @@
+// ---- Marks: nodes and their labels ---------------------------------------------------------------
+
+/** Directions in which labels stand, in eighths of a turn from the right, the best first. */
+const LABEL_DIRECTIONS = [1, 7, 0, 2, 3, 5, 4, 6];
+/** What a label pays for standing on a wall, and what it saves by staying in its direction. */
+const WALL_PRICE = 30, LOYALTY = 12;
+
+/** Writes labels, each in the first free direction; a label keeps its direction where it can. */
+class LabelPlaces {
+  constructor() {
+    this.directions = new Map();
+  }
+
+  /** A label has a `text`, a `key` that stays the same, a `spot` and how far away it stands. */
+  draw(context, labels, floor, radius) {
+    const taken = labels.map(({ spot: [x, y] }) => [x - radius, y - radius, x + radius, y + radius]);
+    const size = labels.length > 36 ? 9.5 : 11;
+    context.save();
+    context.font = `600 ${size}px ${colours.get("font")}`;
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    context.lineJoin = "round";
+    context.lineWidth = 3;
+    context.strokeStyle = colours.get("floor");
+    for (const label of labels) {
+      const half = [context.measureText(label.text).width / 2 + 1, size * 0.45];
+      const priced = LABEL_DIRECTIONS.map((direction, rank) => {
+        const place = this.placed(label, half, direction);
+        const covered = taken.reduce((sum, other) => sum + overlap(place.box, other), 0);
+        const [x, y] = place.centre.map(length => length * devicePixelRatio);
+        const wall = context.isPointInPath(floor, x, y, "evenodd") ? 0 : WALL_PRICE;
+        const loyalty = this.directions.get(label.key) === direction ? LOYALTY : 0;
+        return { ...place, direction, price: covered + rank + wall - loyalty };
+      });
+      const best = priced.reduce((one, other) => other.price < one.price ? other : one);
+      this.directions.set(label.key, best.direction);
+      taken.push(best.box);
+      context.strokeText(label.text, ...best.centre);
+      context.fillStyle = colours.get(label.colour);
+      context.fillText(label.text, ...best.centre);
+    }
+    context.restore();
+  }
+
+  /** Where a label stands in a direction. */
+  placed({ spot: [x, y], reach }, half, direction) {
+    const angle = direction * Math.PI / 4;
+    const cx = x + Math.cos(angle) * (reach + half[0]), cy = y - Math.sin(angle) * (reach + half[1]);
+    return { centre: [cx, cy], box: [cx - half[0], cy - half[1], cx + half[0], cy + half[1]] };
+  }
+}
+
+/** The mark of a role, as large as a dot of a radius. */
+function drawMark(context, { key, shape }, [x, y], radius) {
+  context.beginPath();
+  if (shape.polygon) {
+    shape.polygon.forEach(([dx, dy], index) => context[index ? "lineTo" : "moveTo"](x + radius * dx, y + radius * dy));
+    context.closePath();
+  } else {
+    context.arc(x, y, radius * shape.disc.radius, 0, 2 * Math.PI);
+  }
+  context.fillStyle = colours.get(key);
+  context.fill();
+  context.strokeStyle = colours.get("outline");
+  context.lineWidth = Math.min(1.1, Math.max(0.6, 0.14 * radius));
+  context.stroke();
+  if (shape.disc?.heart) {
+    context.beginPath();
+    context.arc(x, y, radius * shape.disc.heart, 0, 2 * Math.PI);
+    context.fillStyle = colours.get("floor");
+    context.fill();
+  }
+}
+
+function strokeThrough(context, spots) {
+  context.beginPath();
+  spots.forEach((spot, index) => context[index ? "lineTo" : "moveTo"](...spot));
+  context.stroke();
+}
+
+function bounds(points) {
+  const low = [0, 1].map(axis => Math.min(...points.map(point => point[axis])));
+  const high = [0, 1].map(axis => Math.max(...points.map(point => point[axis])));
+  return { low, size: [0, 1].map(axis => high[axis] - low[axis] || 1) };
+}
+
+function overlap(one, other) {
+  const along = axis => Math.max(0, Math.min(one[axis + 2], other[axis + 2]) - Math.max(one[axis], other[axis]));
+  return along(0) * along(1);
+}
+
+/** The part of a polygon on the own side of the bisector with another robot, `clearance` from it. */
+function cutAtBisector(polygon, own, other, clearance) {
+  const way = [other[0] - own[0], other[1] - own[1]], length = Math.hypot(...way);
+  if (length === 0) return polygon;
+  const room = Math.max(0, length / 2 - clearance);
+  const depth = ([x, y]) => ((x - own[0]) * way[0] + (y - own[1]) * way[1]) / length - room;
+  return polygon.flatMap((corner, index) => {
+    const next = polygon[(index + 1) % polygon.length], [here, there] = [depth(corner), depth(next)];
+    const kept = here <= 0 ? [corner] : [];
+    if (here <= 0 === there <= 0) return kept;
+    const share = here / (here - there);
+    return [...kept, [0, 1].map(axis => corner[axis] + share * (next[axis] - corner[axis]))];
+  });
+}

@@ -1,0 +1,114 @@
+//! The page as a document: the parts that all pages share, put together into one file.
+
+use serde_json::Value;
+
+use crate::figures::palette;
+
+const FRAME: &str = include_str!("assets/page.html");
+const STYLE: &str = include_str!("assets/style.css");
+/// In the order in which they use each other.
+const SCRIPTS: [&str; 10] = [
+    include_str!("assets/tables.js"),
+    include_str!("assets/canvas.js"),
+    include_str!("assets/player.js"),
+    include_str!("assets/transport.js"),
+    include_str!("assets/curves.js"),
+    include_str!("assets/strips.js"),
+    include_str!("assets/marks.js"),
+    include_str!("assets/plan.js"),
+    include_str!("assets/mission.js"),
+    include_str!("assets/start.js"),
+];
+
+/// What a page is made of.
+pub(super) struct Document<'a> {
+    /// What it is called.
+    pub title: &'a str,
+    /// What stands below the title.
+    pub lead: Option<&'a str>,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// The table at the end.
+    pub summary: Vec<Row>,
+    /// What the scripts read.
+    pub data: Value,
+}
+
+/// How a run ended.
+pub(super) struct Outcome {
+    /// `good`, `doubtful` or `bad`.
+    pub class: &'static str,
+    /// One or two words.
+    pub headline: String,
+    /// A sentence.
+    pub text: String,
+}
+
+/// A row of the summary.
+pub(super) struct Row {
+    name: String,
+    text: String,
+    /// The instant of which it speaks.
+    at: Option<usize>,
+}
+
+impl Row {
+    /// A row that speaks of the whole run.
+    pub fn new(name: impl Into<String>, text: String) -> Row {
+        Row { name: name.into(), text, at: None }
+    }
+
+    /// A row that speaks of control period `step`.
+    pub fn at(name: impl Into<String>, text: String, step: usize) -> Row {
+        Row { name: name.into(), text, at: Some(step) }
+    }
+
+    fn render(&self) -> String {
+        let instant = self.at.map_or_else(String::new, |at| {
+            format!(" <button class=\"instant\" data-at=\"{at}\">k = {at}</button>")
+        });
+        let (name, text) = (escaped(&self.name), escaped(&self.text));
+        format!("<tr><th scope=\"row\">{name}</th><td>{text}{instant}</td></tr>\n")
+    }
+}
+
+impl Document<'_> {
+    /// The file.
+    pub fn render(&self) -> String {
+        let rows: Vec<String> = self.summary.iter().map(Row::render).collect();
+        // Whatever the data say, they cannot end the element that holds them.
+        let data = self.data.to_string().replace('<', "\\u003c");
+        let script = SCRIPTS.join("\n");
+        let style = format!("{}\n{STYLE}", palette::style_sheet());
+        let parts = [
+            ("title", escaped(self.title)),
+            ("lead", self.lead.map_or_else(String::new, escaped)),
+            ("class", self.outcome.class.to_owned()),
+            ("headline", escaped(&self.outcome.headline)),
+            ("outcome", escaped(&self.outcome.text)),
+            ("summary", rows.concat()),
+            ("style", style),
+            ("script", script),
+            ("data", data),
+        ];
+        filled(FRAME, &parts)
+    }
+}
+
+/// The text with `{{name}}` replaced by the part of this name, and parts left as they are.
+fn filled(frame: &str, parts: &[(&str, String)]) -> String {
+    let mut pieces = frame.split("{{");
+    let mut text = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (name, rest) = piece.split_once("}}").unwrap_or((piece, ""));
+        let part = parts.iter().find(|(known, _)| *known == name);
+        text.push_str(part.map_or("", |(_, part)| part));
+        text.push_str(rest);
+    }
+    text
+}
+
+/// Text as HTML shows it.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

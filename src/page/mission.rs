@@ -1,0 +1,250 @@
+//! The page of a mission: what it shows is collected while the mission runs, or from its trace.
+
+use std::io;
+
+use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use pleach_automaton::network::scenario::{Scenario, Settings, ValidScenario};
+use pleach_continuous::geometry::{Destination, FreeSpace};
+use pleach_discrete::network::ROLES;
+use pleach_verify::network::{Extreme, Monitor, Violation};
+use serde_json::{Map, Value, json};
+
+use crate::figures::{self, Mark, TaskState, Walls};
+use crate::mission::Watcher;
+use crate::story;
+use crate::summary::Summary;
+use crate::trace;
+
+use super::document::{Document, Outcome as Shown, Row};
+use super::steps::Steps;
+
+/// Lengths are kept to a ten-thousandth of ρ or better.
+const LENGTHS_PER_CLEARANCE: f64 = 1e4;
+
+/// Watches a mission and makes the page on which it plays: one HTML file that needs no other.
+///
+/// The page shows the plan with robots, links and tree at every control period, the roles over
+/// time, the curves, the story and a summary. Positions and other numbers are those of the trace,
+/// rounded: lengths to a ten-thousandth of ρ, others to six decimals.
+#[derive(Debug)]
+pub struct MissionPage {
+    scenario: Scenario,
+    settings: Settings,
+    free_space: FreeSpace,
+    walls: Walls,
+    /// By task: where its leader goes.
+    destinations: Vec<Destination>,
+    summary: Summary,
+    monitor: Monitor<'static>,
+    /// What the monitor found; it looks no further.
+    violation: Option<Violation>,
+    steps: Steps,
+    events: Vec<Value>,
+    end: Option<End>,
+}
+
+impl MissionPage {
+    /// The page of a mission of `scenario` that has not begun.
+    pub fn new(scenario: &ValidScenario) -> MissionPage {
+        let settings = *scenario.settings();
+        let free_space = scenario.site().free_space.clone();
+        let goal = |place: [f64; 2]| free_space.destination(free_space.nearest(place.into()));
+        let decimals = (LENGTHS_PER_CLEARANCE / settings.clearance).log10().ceil();
+        let is_transition = |from, to| ROLES.enabled(from).any(|row| row.target == to);
+        MissionPage {
+            destinations: scenario.task.iter().map(|task| goal(task.position)).collect(),
+            walls: Walls::new(&scenario.workspace),
+            summary: Summary::new(scenario),
+            monitor: Monitor::new(scenario, is_transition),
+            violation: None,
+            steps: Steps::new(decimals.clamp(0.0, 9.0) as i32),
+            events: Vec::new(),
+            end: None,
+            scenario: scenario.with_defaults(),
+            settings,
+            free_space,
+        }
+    }
+
+    /// The page so far, as an HTML document.
+    #[must_use]
+    pub fn render(&self) -> String {
+        let document = Document {
+            title: &self.scenario.name,
+            lead: self.scenario.description.as_deref(),
+            outcome: self.outcome(),
+            summary: self.rows(),
+            data: self.data(),
+        };
+        document.render()
+    }
+
+    fn data(&self) -> Value {
+        let outline = self.free_space.outline().iter();
+        let rings: Vec<Vec<[f64; 2]>> =
+            outline.map(|ring| ring.iter().map(|&corner| corner.into()).collect()).collect();
+        json!({
+            "kind": "mission",
+            "scenario": self.scenario,
+            "free_space": rings,
+            "marks": Mark::ALL.map(figures::mark_data),
+            "moments": story::Moment::ALL.map(figures::moment_data),
+            "tasks": TaskState::ALL.map(TaskState::name),
+            "link": figures::link_data(),
+            "steps": self.steps,
+            "events": self.told_events(),
+            "ended": self.end.is_some(),
+        })
+    }
+}
+
+/// What the page says in words.
+impl MissionPage {
+    /// The events, a violated property among them, and last how the mission ended.
+    fn told_events(&self) -> Vec<Value> {
+        let mut events = self.events.clone();
+        let last = self.steps.count().saturating_sub(1);
+        if let Some(violation) = &self.violation {
+            let at = violation.step.min(last);
+            let text = violation.to_string();
+            let place = events.partition_point(|event| event["at"].as_u64() <= Some(at as u64));
+            let told = json!({ "event": "violated", "at": at, "text": text, "telling": true });
+            events.insert(place, told);
+        }
+        if let Some(end) = &self.end {
+            let text = format!("the mission ends: {}", end.outcome.name().replace('_', " "));
+            events.push(json!({ "event": "end", "at": last, "text": text, "telling": true }));
+        }
+        events
+    }
+}
+
+impl Watcher for MissionPage {
+    fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        self.summary.observe(snapshot, events)?;
+        for event in events {
+            self.events.push(event_data(snapshot.step, event)?);
+        }
+        let more = self.derived(snapshot);
+        self.steps.push(trace::step_line(snapshot)?, more);
+        if self.violation.is_none() {
+            self.violation = self.monitor.observe(snapshot).err();
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, end: &End) -> io::Result<()> {
+        self.end = Some(end.clone());
+        Ok(())
+    }
+}
+
+/// What a step shows beside its line in the trace.
+impl MissionPage {
+    fn derived(&self, snapshot: &Snapshot) -> Map<String, Value> {
+        let marks: Vec<&str> =
+            (0..snapshot.positions.len()).map(|robot| Mark::of(snapshot, robot).key()).collect();
+        let tasks: Vec<&str> = (0..self.scenario.task.len())
+            .map(|task| TaskState::of(snapshot, task).name())
+            .collect();
+        let points: Vec<[f64; 2]> = snapshot.positions.iter().map(|&point| point.into()).collect();
+        [
+            ("mark", json!(marks)),
+            ("task_state", json!(tasks)),
+            ("distance", json!(self.walls.distances(&points))),
+            ("geodesic", json!(self.geodesic(snapshot))),
+        ]
+        .map(|(name, value)| (name.to_owned(), value))
+        .into_iter()
+        .collect()
+    }
+
+    /// The waypoints of the shortest way from the leader to its task.
+    fn geodesic(&self, snapshot: &Snapshot) -> Vec<[f64; 2]> {
+        let way = || {
+            let leader = snapshot.positions.get(*snapshot.primary_team.last()?)?;
+            self.free_space.geodesic_to(*leader, self.destinations.get(snapshot.task?)?)
+        };
+        way().map_or_else(Vec::new, |way| way.waypoints.into_iter().map(Into::into).collect())
+    }
+}
+
+/// The summary.
+impl MissionPage {
+    fn outcome(&self) -> Shown {
+        let serviced = self.summary.tasks().iter().filter(|task| task.serviced.is_some()).count();
+        let tally = format!("{serviced} of {} tasks serviced", self.scenario.task.len());
+        let periods = self.steps.count();
+        match &self.end {
+            Some(end) if end.outcome == Outcome::Serviced => Shown {
+                class: "good",
+                headline: "serviced".to_owned(),
+                text: format!("{tally} in {periods} control periods"),
+            },
+            Some(end) => Shown {
+                class: if end.outcome == Outcome::InvariantViolated { "bad" } else { "doubtful" },
+                headline: end.outcome.name().replace('_', " "),
+                text: format!("{tally} in {periods} control periods; {}", end.reason),
+            },
+            None => Shown {
+                class: "doubtful",
+                headline: "no end".to_owned(),
+                text: format!(
+                    "{tally} in {periods} control periods; the trace stops without an outcome"
+                ),
+            },
+        }
+    }
+
+    fn rows(&self) -> Vec<Row> {
+        let mut rows: Vec<Row> = (0..)
+            .zip(self.summary.tasks())
+            .map(|(number, task)| {
+                let [x, y] = task.position;
+                let name = format!("task {number} at ({x}, {y})");
+                match task.serviced {
+                    Some((step, robot)) => {
+                        Row::at(name, format!("serviced by robot {robot}"), step)
+                    }
+                    None => Row::new(name, "not serviced".to_owned()),
+                }
+            })
+            .collect();
+        rows.push(Row::new("recruits elected", self.summary.recruits().to_string()));
+        rows.push(Row::new("stationary points", self.summary.stationary_points().to_string()));
+        let extremes = self.monitor.extremes();
+        let Settings { clearance, residual_tolerance, .. } = self.settings;
+        let measured = [
+            ("smallest distance of two robots", &extremes.pair_distance, "2ρ =", 2.0 * clearance),
+            ("smallest distance from a wall", &extremes.clearance, "ρ =", clearance),
+            ("smallest residual", &extremes.residual, "−c_min =", 0.0 - residual_tolerance),
+            ("largest load", &extremes.load, "at most", 1.0),
+        ];
+        rows.extend(measured.into_iter().filter_map(|(name, extreme, symbol, bound)| {
+            let Extreme { value, instant, robots } = extreme.as_ref()?;
+            let robots: Vec<String> = robots.iter().map(usize::to_string).collect();
+            let noun = if robots.len() == 1 { "robot" } else { "robots" };
+            let bound = figures::quantity(bound);
+            let text = format!("{value:.5} ({noun} {}); {symbol} {bound}", robots.join(" and "));
+            Some(Row::at(name, text, instant.step))
+        }));
+        rows.extend(
+            self.violation
+                .as_ref()
+                .map(|violation| Row::at("violated", violation.to_string(), violation.step)),
+        );
+        rows
+    }
+}
+
+/// An event as the trace writes it, with what the page says of it.
+fn event_data(step: usize, event: &MissionEvent) -> io::Result<Value> {
+    let mut data = serde_json::to_value(event)?;
+    data["at"] = json!(step);
+    data["text"] = json!(story::tell(event));
+    data["telling"] = json!(story::is_telling(event));
+    if let Some(caption) = story::caption(event) {
+        data["moment"] = json!(caption.moment.name());
+    }
+    Ok(data)
+}

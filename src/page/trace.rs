@@ -1,0 +1,61 @@
+//! The page of a trace.
+
+use std::io::{self, BufRead};
+
+use pleach_automaton::network::record::MissionEvent;
+use pleach_automaton::network::scenario::{InvalidScenario, ValidScenario};
+use thiserror::Error;
+
+use super::MissionPage;
+use crate::mission::Watcher;
+use crate::trace::{TraceEntry, TraceError, TraceReader};
+
+/// Why no page can be made of a trace.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PageError {
+    /// The file cannot be opened.
+    #[error("cannot be read: {0}")]
+    Unreadable(#[source] io::Error),
+    /// The text is no trace.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    /// The header holds a scenario that no mission starts from.
+    #[error("the scenario in the header cannot be run: {0}")]
+    Scenario(#[from] InvalidScenario),
+    /// A step cannot be put into the page.
+    #[error("a step cannot be written: {0}")]
+    Step(#[source] io::Error),
+}
+
+/// Makes the page of a trace. A trace whose last line is torn, as a run leaves it that was killed,
+/// is shown up to there, and the page says that no end is recorded.
+///
+/// # Errors
+/// When the text is no trace, or the scenario in its header cannot be run.
+pub fn of_trace(trace: impl BufRead) -> Result<String, PageError> {
+    let mut reader = TraceReader::new(trace)?;
+    let scenario = ValidScenario::new(reader.scenario().clone())?;
+    let mut page = MissionPage::new(&scenario);
+    let mut events: Vec<MissionEvent> = Vec::new();
+    while let Some(entry) = reader.next() {
+        match entry {
+            Ok(TraceEntry::Event { event, .. }) => events.push(event),
+            Ok(TraceEntry::Step(snapshot)) => {
+                page.observe(&snapshot, &events).map_err(PageError::Step)?;
+                events.clear();
+            }
+            Ok(TraceEntry::End(end)) => page.end(&end).map_err(PageError::Step)?,
+            Err(error) => match is_torn(&error) && reader.next().is_none() {
+                true => break,
+                false => return Err(error.into()),
+            },
+        }
+    }
+    Ok(page.render())
+}
+
+/// Whether a line stops before its end.
+fn is_torn(error: &TraceError) -> bool {
+    matches!(error, TraceError::NotALine { source, .. } if source.is_eof())
+}

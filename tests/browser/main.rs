@@ -1,0 +1,8 @@
+//! The pages in a browser: they load without complaints, play, seek, and say what the trace says.
+//!
+//! `tests/browser/check` runs these tests; they need Chromium.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+mod chromium;
+mod missions;

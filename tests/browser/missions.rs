@@ -1,0 +1,288 @@
+//! Pages of missions.
+
+use super::chromium::Page;
+use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::mission::{self, Watcher};
+use pleach::page::{self, MissionPage};
+use pleach::scenario_file;
+use pleach::trace::{TraceEntry, TraceReader, TraceWriter};
+use std::path::{Path, PathBuf};
+
+const DESKTOP: [u32; 2] = [1360, 900];
+const PHONE: [u32; 2] = [400, 820];
+/// How far numbers on the page may be from those of the trace.
+const ROUNDING: f64 = 1e-6;
+
+/// A mission that has been run: its trace.
+struct Run {
+    scenario: ValidScenario,
+    trace: String,
+}
+
+impl Run {
+    fn of(name: &str) -> Run {
+        let path = format!("{}/scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let scenario = scenario_file::read(Path::new(&path)).unwrap();
+        let mut trace = TraceWriter::new(Vec::new(), &scenario).unwrap();
+        mission::run(&scenario, &mut [&mut trace]).unwrap();
+        let trace = String::from_utf8(trace.finish().unwrap()).unwrap();
+        Run { scenario, trace }
+    }
+
+    fn snapshots(&self) -> Vec<Snapshot> {
+        let entries = TraceReader::new(self.trace.as_bytes()).unwrap();
+        let snapshot = |entry| match entry {
+            Ok(TraceEntry::Step(snapshot)) => Some(*snapshot),
+            _ => None,
+        };
+        entries.filter_map(snapshot).collect()
+    }
+}
+
+/// Writes a page where the browser finds it.
+fn kept(name: &str, page: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("pleach-pages-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(format!("{name}.html"));
+    std::fs::write(&path, page).unwrap();
+    path
+}
+
+fn open(name: &str, trace: &str) -> Page {
+    let page = page::of_trace(trace.as_bytes()).unwrap();
+    Page::open(&kept(name, &page), DESKTOP)
+}
+
+fn assert_content(page: &Page) {
+    assert!(page.complaints.is_empty(), "{}", page.complaints.join("\n"));
+}
+
+/// Numbers on the page at control period `step` are those of the trace.
+fn assert_numbers(page: &mut Page, snapshot: &Snapshot) {
+    let step = snapshot.step;
+    page.value(&format!("pleach.player.seek({step})"));
+    assert_eq!(page.number("pleach.player.at"), step as f64);
+    let shown = page.value(
+        "(({ mission, player }) => ({ \
+           position: mission.places(player.at).slice(0, mission.robots), \
+           residual: [...Array(mission.robots).keys()].map(i => mission.residual(i, player.at)), \
+           multiplier: [...Array(mission.robots).keys()].map(i => mission.multiplier(i, player.at)), \
+           role: [...Array(mission.robots).keys()].map(i => mission.role(i, player.at)), \
+           route: mission.linksAt(player.at).map(l => [l.from, l.to, l.share, l.reliability]), \
+           tree: mission.value('tree', player.at), \
+           task: mission.value('task', player.at) }))(pleach)",
+    );
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let close = |one: f64, other: f64| (one - other).abs() <= ROUNDING;
+    for (robot, position) in snapshot.positions.iter().enumerate() {
+        let place = &shown["position"][robot];
+        assert!(close(number(&place[0]), position.x) && close(number(&place[1]), position.y));
+        assert!(close(number(&shown["residual"][robot]), snapshot.residuals[robot]));
+        assert!(close(number(&shown["multiplier"][robot]), snapshot.multipliers[robot]));
+        assert_eq!(shown["role"][robot], snapshot.roles[robot].name());
+    }
+    let tree: Vec<(usize, usize)> = serde_json::from_value(shown["tree"].clone()).unwrap();
+    assert_eq!(tree, snapshot.tree);
+    assert_eq!(shown["task"].as_u64(), snapshot.task.map(|task| task as u64));
+    let mut routes: Vec<(usize, usize, f64, f64)> =
+        serde_json::from_value(shown["route"].clone()).unwrap();
+    routes.sort_by_key(|(from, to, ..)| (*from, *to));
+    // A share that rounds to 0 is not drawn.
+    let visible: Vec<_> = (snapshot.routes.iter()).filter(|route| route.share > ROUNDING).collect();
+    assert!(routes.len() >= visible.len());
+    for route in visible {
+        let found = routes.iter().find(|(from, to, ..)| (*from, *to) == (route.from, route.to));
+        let (_, _, share, reliability) = found.unwrap();
+        assert!(close(*share, route.share) && close(*reliability, route.reliability));
+    }
+}
+
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn study_one_says_what_its_trace_says() {
+    let run = Run::of("study-1");
+    let snapshots = run.snapshots();
+    let mut page = open("study-1", &run.trace);
+    assert_eq!(page.number("pleach.mission.count"), snapshots.len() as f64);
+    for snapshot in snapshots.iter().step_by(37).chain(snapshots.last()) {
+        assert_numbers(&mut page, snapshot);
+    }
+    assert_content(&page);
+}
+
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn study_one_is_played_with_pointer_and_keys() {
+    let run = Run::of("study-1");
+    let mut page = open("study-1-played", &run.trace);
+    assert_eq!(page.number("pleach.player.at"), 0.0);
+
+    page.click("#play", None);
+    page.value("new Promise(done => setTimeout(done, 700))");
+    let played = page.number("pleach.player.at");
+    assert!(played > 1.0, "after 0.7 s the run is at {played}");
+    page.press(" ");
+    assert_eq!(page.value("pleach.player.isPlaying"), false);
+    let paused = page.number("pleach.player.at");
+    assert_eq!(paused.fract(), 0.0, "a paused run is at a line of the trace");
+
+    page.press("ArrowRight");
+    assert_eq!(page.number("pleach.player.at"), paused + 1.0);
+    page.press("End");
+    assert_eq!(page.number("pleach.player.at"), run.snapshots().len() as f64 - 1.0);
+    page.press("Home");
+    page.press("ArrowDown");
+    let told = page.value("pleach.player.events.find(event => event.moment).at");
+    assert_eq!(page.value("pleach.player.at"), told);
+
+    // An event on the time line, and one of the story.
+    page.click(".line .event:nth-of-type(5)", None);
+    let at = "pleach.player.events[document.querySelectorAll('.line .event')[4].dataset.event].at";
+    assert_eq!(page.value("pleach.player.at"), page.value(at));
+    let third =
+        page.number("pleach.player.events.findIndex(event => event.event === 'stationary')");
+    page.click(&format!("#story .told[data-event='{third}']"), None);
+    let at = format!("pleach.player.events[{third}].at");
+    assert_eq!(page.value("pleach.player.at"), page.value(&at));
+
+    // The middle of the time line, and a row of the summary.
+    page.click("#scrubber", None);
+    let middle = (run.snapshots().len() as f64 - 1.0) / 2.0;
+    assert!((page.number("pleach.player.at") - middle).abs() <= 2.0);
+    page.click("#summary button.instant", None);
+    let named = page.value("Number(document.querySelector('#summary button.instant').dataset.at)");
+    assert_eq!(page.value("pleach.player.at"), named);
+    assert_content(&page);
+}
+
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn a_robot_under_the_pointer_tells_its_facts() {
+    let run = Run::of("study-1");
+    let mut page = open("study-1-facts", &run.trace);
+    page.value("pleach.player.seek(358)");
+    let place: [f64; 2] = serde_json::from_value(page.value("pleach.plan.spots[11]")).unwrap();
+    page.point("#plan", Some(place));
+    let facts = page.value("document.getElementById('facts').innerText");
+    let facts = facts.as_str().unwrap();
+    for fact in ["Robot 11", "leader", "task 1", "robot 10"] {
+        assert!(facts.contains(fact), "{fact} is not in {facts}");
+    }
+    page.photograph("study-1-facts");
+    page.click("#plan", Some(place));
+    page.point("h1", None);
+    assert_eq!(page.number("pleach.selection.chosen"), 11.0);
+    page.press("Escape");
+    assert!(page.value("pleach.selection.chosen").is_null());
+
+    // Every layer can be switched, and the plan changes.
+    let pixels = "document.getElementById('plan').toDataURL().length";
+    page.value("pleach.player.seek(240)");
+    for layer in ["links", "tree", "path", "geodesic", "trails", "labels", "free_space", "cells"] {
+        let before = page.number(pixels);
+        page.click(&format!("[data-layer={layer}]"), None);
+        assert_ne!(page.number(pixels), before, "layer {layer} changes nothing");
+    }
+    assert_content(&page);
+}
+
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn pages_are_small_and_seek_in_time() {
+    for (name, megabytes) in [("study-1", 2), ("hall", 6)] {
+        let run = Run::of(name);
+        let text = page::of_trace(run.trace.as_bytes()).unwrap();
+        assert!(text.len() < megabytes << 20, "{name}: {} bytes", text.len());
+        for needed in ["src=\"", "href=\"", "url(", "import ", "fetch("] {
+            assert!(!text.contains(needed), "{name} needs something else: {needed}");
+        }
+        let mut page = Page::open(&kept(name, &text), DESKTOP);
+        // Seeks over the whole run, each with everything drawn at once.
+        let times = page.value(
+            "(() => { const { player } = pleach, times = []; \
+             for (let i = 0; i < 60; i++) { \
+               const begin = performance.now(); \
+               player.seek((i * 31 % 60) / 59 * player.end); \
+               times.push(performance.now() - begin); } \
+             return times.sort((one, other) => one - other); })()",
+        );
+        let times: Vec<f64> = serde_json::from_value(times).unwrap();
+        let (median, worst) = (times[times.len() / 2], times[times.len() - 1]);
+        println!(
+            "{name}: {} bytes, a seek takes {median:.1} ms, at most {worst:.1} ms",
+            text.len()
+        );
+        assert!(median < 50.0, "{name}: a seek takes {median} ms");
+        for snapshot in run.snapshots().iter().step_by(400) {
+            assert_numbers(&mut page, snapshot);
+        }
+        for scheme in ["light", "dark"] {
+            page.prefer(scheme);
+            page.value("pleach.player.seek(pleach.player.end * 0.55)");
+            page.photograph(&format!("{name}-{scheme}"));
+        }
+        page.resize([1360, 2300]);
+        page.photograph(&format!("{name}-whole"));
+        page.resize(PHONE);
+        page.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
+        let width = page.number("document.documentElement.scrollWidth");
+        assert!(width <= f64::from(PHONE[0]), "{name} is {width} pixels wide");
+        page.photograph(&format!("{name}-narrow"));
+        assert!(page.print().starts_with(b"%PDF"));
+        assert_content(&page);
+    }
+}
+
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn a_mission_that_ends_early_is_shown_as_far_as_it_came() {
+    let run = Run::of("too-few");
+    let mut page = open("too-few", &run.trace);
+    let outcome = page.value("document.querySelector('.outcome').innerText");
+    assert!(outcome.as_str().unwrap().starts_with("insufficient robots"), "{outcome}");
+    assert_content(&page);
+
+    // Killed while it wrote a line.
+    let torn = &run.trace[..run.trace.len() * 2 / 3];
+    let whole_lines = torn.lines().filter(|line| line.contains("\"type\":\"step\"")).count() - 1;
+    let mut page = open("torn", torn);
+    let outcome = page.value("document.querySelector('.outcome').innerText");
+    assert!(outcome.as_str().unwrap().starts_with("no end"), "{outcome}");
+    assert!((page.number("pleach.mission.count") - whole_lines as f64).abs() <= 1.0);
+    page.press("End");
+    page.photograph("torn");
+    assert_content(&page);
+
+    // Not a single control period.
+    let mut page = open("empty", run.trace.lines().next().unwrap());
+    assert_eq!(page.number("pleach.mission.count"), 0.0);
+    page.press(" ");
+    page.photograph("empty");
+    assert_content(&page);
+}
+
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn a_violated_invariant_is_told_and_marked() {
+    let run = Run::of("too-few");
+    let mut snapshots = run.snapshots();
+    snapshots.truncate(40);
+    // Robot 0 jumps across the room.
+    let other = snapshots[39].positions[1];
+    snapshots[39].positions[0] = other + nalgebra::Vector2::new(0.001, 0.0);
+    let mut made = MissionPage::new(&run.scenario);
+    for snapshot in &snapshots {
+        made.observe(snapshot, &[] as &[MissionEvent]).unwrap();
+    }
+    let reason = "two robots touch".to_owned();
+    made.end(&End { outcome: Outcome::InvariantViolated, reason, task: None }).unwrap();
+    let mut page = Page::open(&kept("violated", &made.render()), DESKTOP);
+    let outcome = page.value("document.querySelector('.outcome.bad').innerText");
+    assert!(outcome.as_str().unwrap().contains("two robots touch"), "{outcome}");
+    page.click("#summary tr:last-child button.instant", None);
+    let at = page.number("pleach.player.at");
+    assert!((38.0..=39.0).contains(&at), "the violation is at {at}");
+    page.photograph("violated");
+    assert_content(&page);
+}

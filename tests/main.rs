@@ -1,0 +1,27 @@
+//! The tests of the whole, in one program: linking is most of what it takes to build tests.
+
+#![allow(clippy::unwrap_used)] // a test that panics has failed
+
+mod common;
+mod floor_plans;
+mod generated;
+mod missions;
+mod oracle;
+
+mod book;
+mod command_line;
+mod determinism;
+mod documents;
+mod found_missions;
+mod import;
+mod layering;
+mod medium;
+mod outcomes;
+mod proofs;
+mod random_missions;
+mod scenario_faults;
+mod story;
+mod studies;
+mod summary;
+mod trace;
+mod trace_schema;

@@ -1,0 +1,8 @@
+//! The tests of the package, in one program.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod exploration;
+mod protocol;
+mod role_guards;
+mod temporal;
