@@ -13,8 +13,10 @@ use thiserror::Error;
 
 use crate::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::ValidScenario;
-use crate::automaton::network::{KernelTimes, Medium, Network, NetworkError};
+use crate::automaton::network::{KernelTimes, Message, Network, NetworkError};
+use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
+use crate::continuous::Point;
 use crate::discrete::network::ROLES;
 use crate::verify::network::{Extremes, Monitor};
 
@@ -89,7 +91,7 @@ pub fn run(
 ///
 /// # Errors
 /// When a watcher fails.
-pub fn run_network<M: Medium>(
+pub fn run_network<M: Medium<Message, Point>>(
     scenario: &ValidScenario,
     network: &mut Network<M>,
     watchers: &mut [&mut dyn Watcher],
@@ -191,7 +193,7 @@ impl Gallery<'_, '_> {
     }
 }
 
-impl<M: Medium> Observer<Network<M>> for Gallery<'_, '_> {
+impl<M: Medium<Message, Point>> Observer<Network<M>> for Gallery<'_, '_> {
     fn flows(&mut self, network: &Network<M>, _: HybridTime, _: f64) -> ControlFlow<End> {
         let (snapshot, events) = (network.snapshot(), network.events());
         if let Err(error) = self.show(&snapshot, &events) {

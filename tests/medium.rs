@@ -3,7 +3,8 @@
 use crate::missions::{Mission, Period, network_over, run, run_over, run_unmonitored, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
 use pleach::automaton::network::scenario::{RobotStart, Scenario, ValidScenario};
-use pleach::automaton::network::{Medium, Radio, Site};
+use pleach::automaton::network::{Message, Radio, Site};
+use pleach::automaton::node::{Delivery, Envelope, Medium};
 use pleach::continuous::Point;
 use pleach::discrete::network::NodeId;
 use std::sync::OnceLock;
@@ -39,32 +40,47 @@ impl Inspected {
     }
 }
 
-impl Medium for Inspected {
-    fn update(&mut self, positions: &[Point]) {
-        self.positions = positions.to_vec();
-        self.radio.update(positions);
+impl Medium<Message, Point> for Inspected {
+    fn update(&mut self, bodies: &[Point]) {
+        self.positions = bodies.to_vec();
+        self.radio.update(bodies);
     }
 
-    fn audience(&self, sender: NodeId) -> &[NodeId] {
-        self.radio.audience(sender)
+    fn send(&mut self, envelope: Envelope<Message>) {
+        self.radio.send(envelope);
     }
 
-    fn delivers(&mut self, sender: NodeId, receiver: NodeId) -> bool {
-        let is_wire = sender >= self.robots && receiver >= self.robots;
-        if !is_wire {
-            let distance = (self.positions[sender] - self.positions[receiver]).norm();
-            assert!(distance < self.range, "{sender} to {receiver}: R = 0 over {distance}");
-            self.longest = self.longest.max(distance);
-        }
-        assert_ne!(sender, receiver);
-        self.messages += 1;
-        self.radio.delivers(sender, receiver)
+    fn time_to_arrival(&self) -> Option<f64> {
+        self.radio.time_to_arrival()
+    }
+
+    fn flow(&mut self, duration: f64) {
+        self.radio.flow(duration);
+    }
+
+    fn deliver<E>(
+        &mut self,
+        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Inspected { radio, range, robots, positions, messages, longest } = self;
+        radio.deliver(|delivery| {
+            let (sender, receiver) = (delivery.from, delivery.to);
+            let is_wire = sender >= *robots && receiver >= *robots;
+            if !is_wire {
+                let distance = (positions[sender] - positions[receiver]).norm();
+                assert!(distance < *range, "{sender} to {receiver}: R = 0 over {distance}");
+                *longest = longest.max(distance);
+            }
+            assert_ne!(sender, receiver);
+            *messages += 1;
+            hand_over(delivery)
+        })
     }
 }
 
 /// A message on its way.
 #[derive(Clone, Copy, Debug)]
-struct Message {
+struct Arrival {
     /// How many messages were sent before.
     number: u64,
     /// k.
@@ -81,26 +97,41 @@ struct Lossy<F> {
     loses: F,
 }
 
-impl<F: Fn(Message) -> bool> Lossy<F> {
+impl<F: Fn(Arrival) -> bool> Lossy<F> {
     fn new(site: &Site, loses: F) -> Self {
         Lossy { radio: Radio::new(site), messages: 0, periods: 0, loses }
     }
 }
 
-impl<F: Fn(Message) -> bool> Medium for Lossy<F> {
-    fn update(&mut self, positions: &[Point]) {
+impl<F: Fn(Arrival) -> bool> Medium<Message, Point> for Lossy<F> {
+    fn update(&mut self, bodies: &[Point]) {
         self.periods += 1;
-        self.radio.update(positions);
+        self.radio.update(bodies);
     }
 
-    fn audience(&self, sender: NodeId) -> &[NodeId] {
-        self.radio.audience(sender)
+    fn send(&mut self, envelope: Envelope<Message>) {
+        self.radio.send(envelope);
     }
 
-    fn delivers(&mut self, sender: NodeId, receiver: NodeId) -> bool {
-        let (number, period) = (self.messages, self.periods - 1);
-        self.messages += 1;
-        !(self.loses)(Message { number, period, sender, receiver })
+    fn time_to_arrival(&self) -> Option<f64> {
+        self.radio.time_to_arrival()
+    }
+
+    fn flow(&mut self, duration: f64) {
+        self.radio.flow(duration);
+    }
+
+    fn deliver<E>(
+        &mut self,
+        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Lossy { radio, messages, periods, loses } = self;
+        radio.deliver(|delivery| {
+            let (number, period) = (*messages, *periods - 1);
+            *messages += 1;
+            let arrival = Arrival { number, period, sender: delivery.from, receiver: delivery.to };
+            if loses(arrival) { Ok(()) } else { hand_over(delivery) }
+        })
     }
 }
 
@@ -236,14 +267,14 @@ fn one_round_a_period_and_fifty_both_service_study_one() {
 const NOBODY_NEEDS: NodeId = 0;
 
 /// Every message from or to that robot from control period `begin` on.
-fn jammed_from(begin: usize) -> impl Fn(Message) -> bool {
-    move |Message { period, sender, receiver, .. }| {
+fn jammed_from(begin: usize) -> impl Fn(Arrival) -> bool {
+    move |Arrival { period, sender, receiver, .. }| {
         period >= begin && [sender, receiver].contains(&NOBODY_NEEDS)
     }
 }
 
 /// One message of `n`.
-fn one_of(n: u64) -> impl Fn(Message) -> bool {
+fn one_of(n: u64) -> impl Fn(Arrival) -> bool {
     move |message| message.number % n == n - 1
 }
 

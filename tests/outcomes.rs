@@ -5,7 +5,8 @@ use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Route};
 use pleach::automaton::network::scenario::{
     AccessPoint, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
 };
-use pleach::automaton::network::{Medium, Radio, Site};
+use pleach::automaton::network::{Message, Radio, Site};
+use pleach::automaton::node::{Delivery, Envelope, Medium};
 use pleach::continuous::Point;
 use pleach::discrete::network::NodeId;
 use std::path::Path;
@@ -161,18 +162,33 @@ struct Muting {
     from: usize,
 }
 
-impl Medium for Muting {
-    fn update(&mut self, positions: &[Point]) {
+impl Medium<Message, Point> for Muting {
+    fn update(&mut self, bodies: &[Point]) {
         self.periods += 1;
-        self.radio.update(positions);
+        self.radio.update(bodies);
     }
 
-    fn audience(&self, sender: NodeId) -> &[NodeId] {
-        self.radio.audience(sender)
+    fn send(&mut self, envelope: Envelope<Message>) {
+        self.radio.send(envelope);
     }
 
-    fn delivers(&mut self, sender: NodeId, receiver: NodeId) -> bool {
-        self.periods <= self.from || ![sender, receiver].contains(&self.muted)
+    fn time_to_arrival(&self) -> Option<f64> {
+        self.radio.time_to_arrival()
+    }
+
+    fn flow(&mut self, duration: f64) {
+        self.radio.flow(duration);
+    }
+
+    fn deliver<E>(
+        &mut self,
+        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Muting { radio, muted, periods, from } = self;
+        radio.deliver(|delivery| {
+            let arrives = *periods <= *from || ![delivery.from, delivery.to].contains(muted);
+            if arrives { hand_over(delivery) } else { Ok(()) }
+        })
     }
 }
 

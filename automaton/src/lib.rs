@@ -31,6 +31,7 @@ pub mod flow;
 pub mod located;
 #[cfg(feature = "network")]
 pub mod network;
+pub mod node;
 pub mod reset;
 pub mod time;
 pub mod trace;

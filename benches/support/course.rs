@@ -4,7 +4,8 @@ use std::time::{Duration, Instant};
 
 use pleach::automaton::network::record::{End, Snapshot};
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::automaton::network::{Network, NetworkError, NetworkJump};
+use pleach::automaton::network::{Network, NetworkError};
+use pleach::automaton::node::NodeJump;
 use pleach::automaton::{Executor, Round, System};
 use pleach::discrete::network::Phase;
 
@@ -24,7 +25,7 @@ pub struct Course {
 struct Endless(Network);
 
 impl System for Endless {
-    type Jump = NetworkJump;
+    type Jump = NodeJump;
     type Finish = End;
     type Error = NetworkError;
 
@@ -32,7 +33,7 @@ impl System for Endless {
         None
     }
 
-    fn jump(&mut self, round: &mut Round<'_, NetworkJump>) -> Result<(), NetworkError> {
+    fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), NetworkError> {
         self.0.jump(round)
     }
 
@@ -87,7 +88,7 @@ impl Course {
     }
 
     fn rests(&self) -> bool {
-        let mut robots = self.network().robots().iter();
+        let mut robots = self.network().robots().into_iter();
         robots.all(|robot| robot.phase() == Phase::Ended && !robot.is_active())
     }
 
@@ -101,8 +102,8 @@ impl Course {
 
     fn advances(&self, members: usize) -> bool {
         let network = self.network();
-        let moving = network.robots().iter().any(|robot| robot.is_active());
-        let newest = network.robots().iter().max_by_key(|robot| robot.word_number());
+        let moving = network.robots().into_iter().any(|robot| robot.is_active());
+        let newest = network.robots().into_iter().max_by_key(|robot| robot.word_number());
         moving
             && newest.is_some_and(|robot| robot.phase() == Phase::Advance)
             && network.primary_team().len() >= members

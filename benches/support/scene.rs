@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use pleach::automaton::network::Site;
-use pleach::automaton::network::beacon::Beacon;
-use pleach::automaton::network::record::{Route, Snapshot};
-use pleach::automaton::network::robot::Robot;
+use pleach::automaton::network::record::{MissionEvent, Route, Snapshot};
 use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::network::{Message, Robot, Site};
+use pleach::automaton::node::{Input, Node, Outputs};
 use pleach::continuous::Point;
 use pleach::continuous::geometry::{Disc, Segment, convex_region, voronoi_half_planes};
 use pleach::continuous::network::LinkReliability;
@@ -153,35 +152,47 @@ impl Scene {
     }
 }
 
-/// Robots that stand where those of a scene do, and nobody else.
+/// Robots that stand where those of a scene do, and nobody else, in a control period without end.
 pub struct Crowd {
     robots: Vec<Robot>,
+    outputs: Vec<Outputs<Message, MissionEvent>>,
     audiences: Vec<Vec<usize>>,
 }
 
 impl Crowd {
     /// Robots that know nothing of each other yet.
     pub fn new(scene: &Scene) -> Self {
-        let starts = scene.scenario.robot.iter().enumerate();
-        let robots = starts
-            .map(|(id, start)| {
-                Robot::new(id, scene.position(id), start.rate, Arc::clone(&scene.site))
-            })
+        let mut scenario = scene.scenario.clone();
+        scenario.control.rounds_per_period = Some(usize::MAX);
+        let site = Arc::new(Site::new(&scenario).expect("a site"));
+        let starts = scenario.robot.iter().enumerate();
+        let robots: Vec<Robot> = starts
+            .map(|(id, start)| Robot::new(id, scene.position(id), start.rate, Arc::clone(&site)))
             .collect();
-        Crowd { robots, audiences: scene.audiences() }
+        let outputs = (0..robots.len()).map(Outputs::of).collect();
+        Crowd { robots, outputs, audiences: scene.audiences() }
     }
 
     /// A control period begins.
     pub fn begin_period(&mut self) {
-        self.robots.iter_mut().for_each(Robot::begin_period);
+        for robot in &mut self.robots {
+            let still = robot.still_periods();
+            robot.pass_period(still).expect("guards that can be evaluated");
+        }
     }
 
-    /// One round of beacons: everybody speaks, hears and deliberates.
+    /// One round of beacons: every robot speaks, hears and thinks.
     pub fn exchange_beacons(&mut self) {
-        let beacons: Vec<Arc<Beacon>> = self.robots.iter_mut().map(Robot::speak).collect();
-        for (robot, heard) in self.robots.iter_mut().zip(&self.audiences) {
-            robot.hear(heard.iter().map(|&sender| &beacons[sender]));
-            robot.deliberate();
+        let Crowd { robots, outputs, audiences } = self;
+        for (robot, outputs) in robots.iter_mut().zip(outputs.iter_mut()) {
+            robot.step(Input::Tick, outputs).expect("guards that can be evaluated");
+        }
+        let sent: Vec<_> = outputs.iter_mut().flat_map(Outputs::drain_sent).collect();
+        for envelope in &sent {
+            for &to in &audiences[envelope.from] {
+                let input = Input::Heard { from: envelope.from, message: &envelope.message };
+                robots[to].step(input, &mut outputs[to]).expect("guards that can be evaluated");
+            }
         }
     }
 }

@@ -4,8 +4,10 @@
 
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, ValidScenario};
-use pleach::automaton::network::{Medium, Network, Site};
+use pleach::automaton::network::{Message, Network, Site};
+use pleach::automaton::node::Medium;
 use pleach::automaton::{Executor, HybridTime, Observer, Reason};
+use pleach::continuous::Point;
 use pleach::mission::{self, Completed, Watcher};
 use pleach::verify::network::Extremes;
 use pleach::{scenario_file, story};
@@ -51,7 +53,7 @@ pub fn run(scenario: Scenario) -> Mission {
 }
 
 /// The same over a medium of the test's own.
-pub fn run_over<M: Medium>(
+pub fn run_over<M: Medium<Message, Point>>(
     scenario: Scenario,
     medium: impl FnOnce(&Site) -> M,
 ) -> (Mission, Network<M>) {
@@ -64,7 +66,10 @@ pub fn run_over<M: Medium>(
 }
 
 /// The network of a scenario over a medium of the test's own.
-pub fn network_over<M: Medium>(scenario: &Scenario, medium: impl FnOnce(&Site) -> M) -> Network<M> {
+pub fn network_over<M: Medium<Message, Point>>(
+    scenario: &Scenario,
+    medium: impl FnOnce(&Site) -> M,
+) -> Network<M> {
     let site = Arc::new(Site::new(scenario).expect("a valid site"));
     let medium = medium(&site);
     Network::with_medium(scenario, site, medium).expect("a network")
@@ -72,7 +77,7 @@ pub fn network_over<M: Medium>(scenario: &Scenario, medium: impl FnOnce(&Site) -
 
 /// Runs a network for at most `periods` control periods with nobody but a recorder looking on,
 /// so that it may start where the monitor refuses and go on where the monitor stops.
-pub fn run_unmonitored<M: Medium>(
+pub fn run_unmonitored<M: Medium<Message, Point>>(
     network: &mut Network<M>,
     periods: usize,
 ) -> (Vec<Period>, Option<End>) {
@@ -101,7 +106,7 @@ impl Watcher for Recorder {
     }
 }
 
-impl<M: Medium> Observer<Network<M>> for Recorder {
+impl<M: Medium<Message, Point>> Observer<Network<M>> for Recorder {
     fn flows(&mut self, network: &Network<M>, _: HybridTime, _: f64) -> ControlFlow<End> {
         self.periods.push(Period { snapshot: network.snapshot(), events: network.events() });
         ControlFlow::Continue(())

@@ -1,7 +1,7 @@
 //! Access points: fixed sinks of information that relay messages, wired to each other.
 //!
-//! An access point passes on what it hears like a robot does. The first of them also speaks for
-//! the user: it announces the tasks one after another, each when the one before is serviced.
+//! An access point passes on what it hears like a robot does. The first of them also serves the
+//! user: it announces the tasks one after another, each when the one before is serviced.
 
 use std::sync::Arc;
 
@@ -10,9 +10,13 @@ use pleach_discrete::network::{Agreement, Anchor, Bulletin, Election, IdSet, Lin
 
 use super::beacon::{Beacon, Notice, Voice};
 use super::duty::Hop;
+use super::member::Sense;
+use super::message::Message;
 use super::record::{MissionEvent, Outcome};
+use super::robot::RobotError;
 use super::shared::Shared;
 use super::site::Site;
+use crate::node::{Input, Node, Outputs};
 
 /// The first task is announced when the roster has not changed for this many rounds: between two
 /// robots whose links to an access point differ by one, news of them come two rounds apart.
@@ -38,6 +42,12 @@ pub struct AccessPoint {
     crossing: Vec<usize>,
     roster: Arc<IdSet>,
     settled_rounds: usize,
+    /// What the user has asked for.
+    requested: Option<Arc<[Point]>>,
+    /// Rounds of this control period so far; none while time passes.
+    round: Option<usize>,
+    is_new: bool,
+    clock: f64,
     voice: Voice,
     log: Vec<MissionEvent>,
 }
@@ -45,6 +55,7 @@ pub struct AccessPoint {
 impl AccessPoint {
     /// Access point `number` of the site.
     pub fn new(number: usize, site: Arc<Site>) -> Self {
+        let period = site.settings.period;
         AccessPoint {
             number,
             position: site.access_points[number],
@@ -59,6 +70,10 @@ impl AccessPoint {
             crossing: Vec::new(),
             roster: Arc::default(),
             settled_rounds: 0,
+            requested: None,
+            round: None,
+            is_new: true,
+            clock: period,
             voice: Voice::default(),
             log: Vec::new(),
         }
@@ -73,14 +88,9 @@ impl AccessPoint {
         self.site.robots + self.number
     }
 
-    /// Where it stands.
-    pub const fn position(&self) -> Point {
-        self.position
-    }
-
     /// What it tells its neighbours and, over the wire, the other access points: the very same
     /// beacon as before unless something in it has changed.
-    pub fn speak(&mut self) -> Arc<Beacon> {
+    fn speak(&mut self) -> Arc<Beacon> {
         let (beacon, _) = self.voice.say(self.public_state());
         beacon
     }
@@ -113,13 +123,26 @@ impl AccessPoint {
         }
     }
 
-    /// Takes in one round of beacons.
-    pub fn hear<'a>(&mut self, beacons: impl Iterator<Item = &'a Arc<Beacon>>) {
-        self.heard.clear();
-        self.heard.extend(beacons.map(Arc::clone));
+    /// Puts together what it has heard in one round.
+    pub fn think(&mut self) {
         self.hear_word();
         self.find_route();
         self.call_roll();
+        self.heard.clear();
+    }
+
+    /// The first access point tells the user what there is to know.
+    fn tell_user(&self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if self.number == 0 {
+            let user = self.site.robots + self.site.access_points.len();
+            outputs.send(user, Message::News(self.bulletin.clone()));
+        }
+    }
+
+    /// A control period has a fixed number of rounds, the first one as many as the robots take.
+    fn rounds_of_this_period(&self) -> usize {
+        let in_a_period = self.site.settings.rounds_per_period;
+        if self.is_new { in_a_period.max(self.site.rounds_there_and_back()) } else { in_a_period }
     }
 
     fn hear_word(&mut self) {
@@ -209,9 +232,10 @@ impl AccessPoint {
         }
     }
 
-    /// The first access point speaks for the user: announces the next of `tasks` when the one
-    /// before is serviced, and says when the mission has ended.
-    pub fn speak_for_user(&mut self, tasks: &[Point]) {
+    /// Announces the next of the user's tasks when the one before is serviced, and says when the
+    /// mission has ended.
+    pub fn serve(&mut self) {
+        let Some(tasks) = self.requested.clone() else { return };
         let next = match self.bulletin.notice() {
             Notice::Quiet if self.settled_rounds < ROUNDS_UNTIL_ROSTER_SETTLES => return,
             Notice::Quiet => 0,
@@ -305,13 +329,77 @@ impl AccessPoint {
             )
         )
     }
-
-    /// Takes what it has told observers since the last call.
-    pub fn drain_log(&mut self) -> std::vec::Drain<'_, MissionEvent> {
-        self.log.drain(..)
-    }
 }
 
 /// Two access points at most this share of 2 d_build apart let a robot change over from one to
 /// the other without losing both.
 const CHANGEOVER_SHARE: f64 = 0.98;
+
+impl Node for AccessPoint {
+    type Message = Message;
+    type Sense = Sense;
+    type Report = MissionEvent;
+    type Body = Point;
+    type Error = RobotError;
+
+    fn step(
+        &mut self,
+        input: Input<'_, Message, Sense>,
+        outputs: &mut Outputs<Message, MissionEvent>,
+    ) -> Result<(), RobotError> {
+        match input {
+            Input::Heard { message: Message::Beacon(beacon), .. } => {
+                self.heard.push(Arc::clone(beacon));
+            }
+            Input::Heard { message: Message::Request(tasks), .. } => {
+                self.requested = Some(Arc::clone(tasks));
+            }
+            Input::Tick => self.tick(outputs),
+            Input::Heard { .. } | Input::Sensed(_) => {}
+        }
+        self.log.drain(..).for_each(|event| outputs.report(event));
+        Ok(())
+    }
+
+    fn time_to_tick(&self) -> Option<f64> {
+        Some(match self.round {
+            Some(_) => 0.0,
+            None => (self.site.settings.period - self.clock).max(0.0),
+        })
+    }
+
+    fn flow(&mut self, duration: f64) {
+        self.clock += duration;
+    }
+
+    fn body(&self) -> Point {
+        self.position
+    }
+}
+
+impl AccessPoint {
+    /// It speaks in every round of a control period, and thinks after each.
+    fn tick(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        let round = match self.round {
+            Some(round) => {
+                let known = self.bulletin.clone();
+                self.think();
+                self.serve();
+                if self.bulletin != known {
+                    self.tell_user(outputs);
+                }
+                round
+            }
+            None => {
+                self.clock = 0.0;
+                self.tell_user(outputs);
+                0
+            }
+        };
+        self.round = (round < self.rounds_of_this_period()).then_some(round + 1);
+        match self.round {
+            Some(_) => outputs.broadcast(Message::Beacon(self.speak())),
+            None => self.is_new = false,
+        }
+    }
+}

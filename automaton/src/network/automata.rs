@@ -13,6 +13,25 @@ pub type RoleAutomaton = Automaton<Role, RoleEvent, Robot>;
 /// The automaton of the mission as one robot sees it.
 pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
 
+/// The automata of a robot.
+#[derive(Debug)]
+pub struct Automata {
+    /// Of its role.
+    pub role: RoleAutomaton,
+    /// Of the mission as it knows it.
+    pub mission: MissionAutomaton,
+}
+
+impl Automata {
+    /// All of them.
+    ///
+    /// # Errors
+    /// Never with the tables and guards of this crate; they are checked all the same.
+    pub fn new() -> Result<Self, BuildError> {
+        Ok(Automata { role: role_automaton()?, mission: mission_automaton()? })
+    }
+}
+
 /// The role automaton. A role is read off the robot's duty, so that its transitions reset
 /// nothing.
 ///

@@ -1,73 +1,36 @@
-//! The network: N robots, their access points and the medium, composed.
+//! The network: N robots, their access points, the user and the medium, composed.
 //!
-//! All components share the clock that samples control. At t_k a fixed sequence of joint jumps
-//! takes no time: a few rounds of messages, between which each robot takes its own at-once
-//! transitions; then routes; then moves, proposed and certified. Until t_{k+1} every robot flows
-//! with ẋ = u, τ̇ = 1.
+//! It is an [`Ensemble`] of nodes, run by the executor. Control is sampled: at t_k every node takes
+//! the stages of its control period, one at each tick of its clock, and hears messages between
+//! them; none of this takes time. Until t_{k+1} every robot flows with ẋ = u, τ̇ = 1.
 //!
-//! The network passes messages on and never looks into a robot to tell another of it. What
-//! observers see is put together in [`crate::network::observer`].
-
-mod moves;
-mod routes;
+//! The network passes messages on and cannot look into a node to tell another of it. What observers
+//! see is put together in [`crate::network::observer`].
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{MissionStep, NodeId, Phase, Role, RoleEvent};
-
-use crate::automaton::Jump;
-use crate::executor::{Round, System};
 
 use super::access_point::AccessPoint;
-use super::automata::{MissionAutomaton, RoleAutomaton, mission_automaton, role_automaton};
-use super::beacon::{Beacon, Notice};
-use super::medium::{Medium, Radio};
+use super::beacon::Notice;
+use super::medium::Radio;
+use super::member::{Member, MemberView, Sense};
+use super::message::Message;
 use super::record::{End, MissionEvent, Outcome};
-use super::robot::Robot;
+use super::robot::{Robot, RobotError, Stage};
 use super::scenario::{Scenario, ValidScenario};
 use super::site::Site;
-
-/// Where a control period stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
-    /// Messages are exchanged.
-    Exchange,
-    /// Routes are computed.
-    Route,
-    /// Moves are proposed and certified.
-    Move,
-    /// Time passes.
-    Flow,
-}
-
-/// A jump of the network.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NetworkJump {
-    /// A new control period begins: τ = Δt, and τ becomes 0.
-    Sample,
-    /// One round of messages.
-    Exchange,
-    /// The routes of the period.
-    Route,
-    /// The moves of the period.
-    Move,
-    /// A robot changes its role.
-    Role(Jump<Role, RoleEvent>),
-    /// A robot takes a step of the mission.
-    Mission(Jump<Phase, MissionStep>),
-}
+use super::user::User;
+use crate::executor::{Round, System};
+use crate::node::{Ensemble, Medium, NodeJump};
 
 /// What went wrong inside the simulator.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
-    /// An automaton is not well formed.
+    /// A node cannot go on.
     #[error(transparent)]
-    Build(#[from] crate::BuildError),
-    /// A guard speaks of something that robots do not measure.
-    #[error(transparent)]
-    Guard(#[from] crate::TransitionError),
+    Node(#[from] RobotError),
 }
 
 /// Time spent in the parts of a control period.
@@ -83,25 +46,27 @@ pub struct KernelTimes {
     pub acceptance: Duration,
 }
 
+impl KernelTimes {
+    /// The part that a stage belongs to.
+    const fn of(&mut self, stage: Stage) -> &mut Duration {
+        match stage {
+            Stage::Sample | Stage::Beacons(_) => &mut self.coordination,
+            Stage::Move => &mut self.motion,
+            Stage::Proposals(_) | Stage::Objections(_) => &mut self.acceptance,
+            _ => &mut self.routing,
+        }
+    }
+}
+
 /// The network of robots.
 #[derive(Debug)]
 pub struct Network<M = Radio> {
     pub(super) site: Arc<Site>,
-    pub(super) robots: Vec<Robot>,
-    pub(super) access_points: Vec<AccessPoint>,
-    pub(super) step: usize,
+    pub(super) nodes: Ensemble<Member, M>,
     pub(super) events: Vec<MissionEvent>,
-    medium: M,
-    roles: RoleAutomaton,
-    mission: MissionAutomaton,
-    tasks: Vec<Point>,
-    positions: Vec<Point>,
-    /// What each node said in the current round.
-    beacons: Vec<Arc<Beacon>>,
-    /// The senders that each node hears in the current round, ascending.
-    inboxes: Vec<Vec<NodeId>>,
-    stage: Stage,
-    rounds: usize,
+    pub(super) step: usize,
+    /// Whether the current control period is over.
+    has_flowed: bool,
     times: KernelTimes,
 }
 
@@ -117,58 +82,46 @@ impl Network<Radio> {
     }
 }
 
-impl<M: Medium> Network<M> {
-    /// The network of a scenario at its start, with a medium of one's own.
+impl<M: Medium<Message, Point>> Network<M> {
+    /// The network of a scenario at its start, with a medium of one's own. Nodes are numbered from
+    /// 0: robots first, then access points, last the user.
     ///
     /// # Errors
-    /// When an automaton is not well formed.
+    /// When the user cannot say what there is to do.
     pub fn with_medium(
         scenario: &Scenario,
         site: Arc<Site>,
         medium: M,
     ) -> Result<Self, NetworkError> {
-        let robots: Vec<Robot> = scenario
-            .robot
-            .iter()
-            .enumerate()
-            .map(|(id, start)| Robot::new(id, start.position.into(), start.rate, Arc::clone(&site)))
-            .collect();
-        let access_points: Vec<AccessPoint> = (0..site.access_points.len())
+        let robot = |id: usize| {
+            let start = scenario.robot[id];
+            Robot::new(id, start.position.into(), start.rate, Arc::clone(&site))
+        };
+        let robots = (0..scenario.robot.len()).map(|id| Member::Robot(Box::new(robot(id))));
+        let access_points = (0..site.access_points.len())
             .map(|number| AccessPoint::new(number, Arc::clone(&site)))
-            .collect();
-        let nodes = robots.len() + access_points.len();
+            .map(|access_point| Member::AccessPoint(Box::new(access_point)));
+        let user = Member::User(Box::new(User::new(Arc::clone(&site))));
+        let members: Vec<Member> = robots.chain(access_points).chain([user]).collect();
+        let user = members.len() - 1;
+        let mut nodes = Ensemble::new(members, medium);
+        let tasks = scenario.task.iter().map(|task| task.position.into()).collect();
+        nodes.sense(user, Sense::Tasks(tasks))?;
         Ok(Network {
-            step: 0,
-            events: Vec::new(),
-            roles: role_automaton()?,
-            mission: mission_automaton()?,
-            tasks: scenario.task.iter().map(|task| task.position.into()).collect(),
-            positions: Vec::with_capacity(nodes),
-            beacons: Vec::with_capacity(nodes),
-            inboxes: vec![Vec::new(); nodes],
-            stage: Stage::Flow,
-            rounds: 0,
-            times: KernelTimes::default(),
             site,
-            robots,
-            access_points,
-            medium,
+            nodes,
+            events: Vec::new(),
+            step: 0,
+            has_flowed: false,
+            times: KernelTimes::default(),
         })
     }
+}
 
+impl<M> Network<M> {
     /// What the robots know from the beginning.
     pub fn site(&self) -> &Site {
         &self.site
-    }
-
-    /// The robots, for observers.
-    pub fn robots(&self) -> &[Robot] {
-        &self.robots
-    }
-
-    /// The medium.
-    pub const fn medium(&self) -> &M {
-        &self.medium
     }
 
     /// Time spent in each part so far.
@@ -181,138 +134,15 @@ impl<M: Medium> Network<M> {
         self.step
     }
 
-    // ---- The joint jumps of a control period -------------------------------------------------
-
-    fn begin_period(&mut self) {
-        self.events.clear();
-        for robot in &mut self.robots {
-            robot.restart_clock();
-        }
-        self.positions.clear();
-        self.positions.extend(self.robots.iter().map(Robot::position));
-        self.positions.extend(self.access_points.iter().map(AccessPoint::position));
-        self.medium.update(&self.positions);
-        self.rounds = 0;
-        self.stage = Stage::Exchange;
+    /// The robots as observers see them, by number.
+    pub fn robots(&self) -> Vec<&Robot> {
+        self.nodes.views().filter_map(MemberView::robot).collect()
     }
 
-    /// One round: every node repeats its public state to those that hear it.
-    fn exchange_beacons(&mut self) {
-        self.beacons.clear();
-        self.beacons.extend(self.robots.iter_mut().map(Robot::speak));
-        self.beacons.extend(self.access_points.iter_mut().map(AccessPoint::speak));
-        for sender in 0..self.beacons.len() {
-            for at in 0..self.medium.audience(sender).len() {
-                let receiver = self.medium.audience(sender)[at];
-                if self.medium.delivers(sender, receiver) {
-                    self.inboxes[receiver].push(sender);
-                }
-            }
-        }
-        let (to_robots, to_access_points) = self.inboxes.split_at_mut(self.robots.len());
-        for (robot, inbox) in self.robots.iter_mut().zip(to_robots) {
-            robot.hear(inbox.drain(..).map(|sender| &self.beacons[sender]));
-            robot.deliberate();
-        }
-        for (access_point, inbox) in self.access_points.iter_mut().zip(to_access_points) {
-            access_point.hear(inbox.drain(..).map(|sender| &self.beacons[sender]));
-        }
-        if self.step > 0
-            && let Some(first) = self.access_points.first_mut()
-        {
-            first.speak_for_user(&self.tasks);
-        }
-    }
-
-    /// The robots that a message of `sender` reaches.
-    fn audience_of(&mut self, sender: NodeId) -> Vec<NodeId> {
-        let audience: Vec<NodeId> = self.medium.audience(sender).to_vec();
-        audience
-            .into_iter()
-            .filter(|&receiver| {
-                receiver < self.robots.len() && self.medium.delivers(sender, receiver)
-            })
-            .collect()
-    }
-
-    // ---- The robots' own jumps ---------------------------------------------------------------
-
-    /// Every robot takes at most one of its own transitions; says whether any did.
-    fn jump_alone(&mut self, round: &mut Round<'_, NetworkJump>) -> Result<bool, NetworkError> {
-        let mut jumped = false;
-        for (id, robot) in self.robots.iter_mut().enumerate() {
-            if !robot.measure() {
-                continue;
-            }
-            if let Some(jump) = robot.step_mission(&self.mission)? {
-                round.jumped(id, NetworkJump::Mission(jump));
-                jumped = true;
-            } else if let Some(jump) = robot.step_role(&self.roles)? {
-                let (from, to) = (jump.source, jump.target);
-                self.events.push(MissionEvent::RoleChanged { robot: id, from, to });
-                round.jumped(id, NetworkJump::Role(jump));
-                jumped = true;
-            }
-            self.events.extend(robot.drain_log());
-        }
-        for access_point in &mut self.access_points {
-            self.events.extend(access_point.drain_log());
-        }
-        Ok(jumped)
-    }
-
-    fn jump_together(&mut self) -> NetworkJump {
-        let begin = Instant::now();
-        match self.stage {
-            Stage::Flow => {
-                self.begin_period();
-                self.times.coordination += begin.elapsed();
-                NetworkJump::Sample
-            }
-            Stage::Exchange => {
-                if self.rounds == 0 {
-                    self.robots.iter_mut().for_each(Robot::begin_period);
-                }
-                self.exchange_beacons();
-                self.rounds += 1;
-                if self.has_exchanged_enough() {
-                    self.stage = Stage::Route;
-                }
-                self.times.coordination += begin.elapsed();
-                NetworkJump::Exchange
-            }
-            Stage::Route => {
-                self.route();
-                self.stage = Stage::Move;
-                self.times.routing += begin.elapsed();
-                NetworkJump::Route
-            }
-            Stage::Move => {
-                self.negotiate();
-                self.stage = Stage::Flow;
-                NetworkJump::Move
-            }
-        }
-    }
-
-    /// A control period has a fixed number of rounds. Before the first one the robots are given as
-    /// many as news can take to cross the network and come back, so that the tree stands when the
-    /// clock starts.
-    fn has_exchanged_enough(&self) -> bool {
-        let there_and_back = 2 * (self.robots.len() + self.access_points.len());
-        let in_a_period = self.site.settings.rounds_per_period;
-        let enough = if self.step == 0 { in_a_period.max(there_and_back) } else { in_a_period };
-        self.rounds >= enough
-    }
-
-    /// Whether the clocks call for the next sample.
-    fn is_sample_due(&self) -> bool {
-        self.robots.iter().all(|robot| robot.time_to_sample() <= 0.0)
-    }
-
-    /// How the mission has ended, as the first access point knows it.
+    /// How the mission has ended, as the user knows it.
     fn announced_end(&self) -> Option<End> {
-        match self.access_points.first()?.notice() {
+        let user = self.nodes.views().find_map(MemberView::user)?;
+        match user.notice() {
             Notice::Ended { outcome, reason, task } => {
                 Some(End { outcome: *outcome, reason: reason.to_string(), task: *task })
             }
@@ -321,18 +151,25 @@ impl<M: Medium> Network<M> {
     }
 }
 
-impl<M: Medium> System for Network<M> {
-    type Jump = NetworkJump;
+impl<M: Medium<Message, Point>> Network<M> {
+    /// The medium.
+    pub const fn medium(&self) -> &M {
+        self.nodes.medium()
+    }
+}
+
+impl<M: Medium<Message, Point>> System for Network<M> {
+    type Jump = NodeJump;
     type Finish = End;
     type Error = NetworkError;
 
     fn finished(&self) -> Option<End> {
-        if self.stage != Stage::Flow || !self.is_sample_due() || self.step == 0 {
+        if !self.has_flowed {
             return None;
         }
         let limit = self.site.settings.max_steps;
-        let at_rest = !self.robots.iter().any(Robot::is_active);
-        self.announced_end().filter(|_| at_rest).or_else(|| {
+        let is_at_rest = || !self.robots().into_iter().any(Robot::is_active);
+        self.announced_end().filter(|_| is_at_rest()).or_else(|| {
             (self.step >= limit).then(|| End {
                 outcome: Outcome::StepLimit,
                 reason: format!("the mission has taken the {limit} control periods allowed"),
@@ -341,26 +178,27 @@ impl<M: Medium> System for Network<M> {
         })
     }
 
-    fn jump(&mut self, round: &mut Round<'_, NetworkJump>) -> Result<(), NetworkError> {
-        let begin = Instant::now();
-        let jumped = self.jump_alone(round)?;
-        self.times.coordination += begin.elapsed();
-        if !jumped && (self.stage != Stage::Flow || self.is_sample_due()) {
-            let jump = self.jump_together();
-            round.jumped_together(jump);
+    fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), NetworkError> {
+        if std::mem::take(&mut self.has_flowed) {
+            self.events.clear();
         }
+        let first = self.nodes.view(0).and_then(MemberView::robot);
+        let stage = first.map_or(Stage::Sample, Robot::stage);
+        let begin = Instant::now();
+        self.nodes.jump(round)?;
+        *self.times.of(stage) += begin.elapsed();
+        self.events.extend(self.nodes.drain_reports().map(|(_, event)| event));
         Ok(())
     }
 
     fn time_to_jump(&self) -> Result<Option<f64>, NetworkError> {
-        Ok(self.robots.iter().map(Robot::time_to_sample).reduce(f64::min))
+        Ok(self.nodes.time_to_jump()?)
     }
 
     fn flow(&mut self, duration: f64) -> Result<(), NetworkError> {
-        for robot in &mut self.robots {
-            robot.flow(duration);
-        }
+        self.nodes.flow(duration)?;
         self.step += 1;
+        self.has_flowed = true;
         Ok(())
     }
 }

@@ -1,43 +1,36 @@
-//! The medium: who hears whom.
+//! The radio: who hears whom.
 
 use pleach_continuous::Point;
+use pleach_continuous::network::reliability::LinkReliability;
 use pleach_discrete::network::NodeId;
 
+use super::message::Message;
 use super::site::Site;
+use crate::node::{Delivery, Destination, Envelope, Medium};
 
-/// What carries messages between nodes.
+/// A synchronous medium in memory: every message arrives at once, over links with R_ij > 0, over
+/// the wire between access points and over that from the user to the first of them.
 ///
-/// Robots never ask it anything; the network passes every message through it. A medium may lose
-/// messages, but delivers none over a link with R_ij = 0.
-pub trait Medium {
-    /// The nodes have moved: find the links that exist now.
-    fn update(&mut self, positions: &[Point]);
-
-    /// The nodes that may hear `sender`, ascending.
-    fn audience(&self, sender: NodeId) -> &[NodeId];
-
-    /// Whether this message, from `sender` to `receiver`, arrives.
-    fn delivers(&mut self, sender: NodeId, receiver: NodeId) -> bool;
-}
-
-/// A synchronous medium in memory: every message arrives, over links with R_ij > 0 and over the
-/// wire between access points.
+/// Nodes are numbered from 0: robots first, then access points, last the user.
 #[derive(Debug)]
 pub struct Radio {
     range: f64,
     robots: usize,
+    access_points: usize,
     audiences: Vec<Vec<NodeId>>,
+    sent: Vec<Envelope<Message>>,
     delivered: u64,
 }
 
 impl Radio {
     /// The radio of a site.
     pub fn new(site: &Site) -> Self {
-        use pleach_continuous::network::reliability::LinkReliability;
         Radio {
             range: site.link.range(),
             robots: site.robots,
-            audiences: vec![Vec::new(); site.robots + site.access_points.len()],
+            access_points: site.access_points.len(),
+            audiences: Vec::new(),
+            sent: Vec::new(),
             delivered: 0,
         }
     }
@@ -46,33 +39,75 @@ impl Radio {
     pub const fn delivered(&self) -> u64 {
         self.delivered
     }
+
+    /// The nodes that hear `sender`, ascending.
+    pub fn audience(&self, sender: NodeId) -> &[NodeId] {
+        self.audiences.get(sender).map_or(&[], Vec::as_slice)
+    }
+
+    /// The nodes that `node` is wired to.
+    fn wired(&self, node: NodeId) -> std::ops::Range<NodeId> {
+        let (first, user) = (self.robots, self.robots + self.access_points);
+        match node {
+            robot if robot < first => 0..0,
+            // The user talks to the first access point.
+            access_point if access_point == first => first..user + 1,
+            access_point if access_point < user => first..user,
+            _ => first..first + 1,
+        }
+    }
 }
 
-impl Medium for Radio {
-    fn update(&mut self, positions: &[Point]) {
-        let cells = Cells::new(positions, self.range);
-        for (node, audience) in self.audiences.iter_mut().enumerate() {
+impl Medium<Message, Point> for Radio {
+    fn update(&mut self, bodies: &[Point]) {
+        self.audiences.resize_with(bodies.len(), Vec::new);
+        let user = self.robots + self.access_points;
+        let with_radio = &bodies[..user.min(bodies.len())];
+        let cells = Cells::new(with_radio, self.range);
+        for node in 0..bodies.len() {
+            let wired = self.wired(node);
+            let audience = &mut self.audiences[node];
             audience.clear();
-            cells.around(positions[node], |other| {
-                let near = (positions[node] - positions[other]).norm() < self.range;
-                if other != node && near && !(node >= self.robots && other >= self.robots) {
-                    audience.push(other);
-                }
-            });
-            if node >= self.robots {
-                audience.extend((self.robots..positions.len()).filter(|&other| other != node));
+            if node < user {
+                cells.around(bodies[node], |other| {
+                    let near = (bodies[node] - bodies[other]).norm() < self.range;
+                    if other != node && near && !(node >= self.robots && other >= self.robots) {
+                        audience.push(other);
+                    }
+                });
             }
+            audience.extend(wired.filter(|&other| other != node && other < bodies.len()));
             audience.sort_unstable();
         }
     }
 
-    fn audience(&self, sender: NodeId) -> &[NodeId] {
-        &self.audiences[sender]
+    fn send(&mut self, envelope: Envelope<Message>) {
+        self.sent.push(envelope);
     }
 
-    fn delivers(&mut self, _: NodeId, _: NodeId) -> bool {
-        self.delivered += 1;
-        true
+    fn time_to_arrival(&self) -> Option<f64> {
+        (!self.sent.is_empty()).then_some(0.0)
+    }
+
+    fn flow(&mut self, _: f64) {}
+
+    fn deliver<E>(
+        &mut self,
+        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Radio { audiences, sent, delivered, .. } = self;
+        sent.drain(..).try_for_each(|Envelope { from, to, message }| {
+            let audience = audiences.get(from).map_or(&[][..], Vec::as_slice);
+            let receivers = match to {
+                Destination::Everyone => audience,
+                Destination::One(node) => match audience.binary_search(&node) {
+                    Ok(at) => &audience[at..=at],
+                    Err(_) => &[],
+                },
+            };
+            *delivered += receivers.len() as u64;
+            receivers.iter().try_for_each(|&to| hand_over(Delivery { from, to, message: &message }))
+        })
     }
 }
 

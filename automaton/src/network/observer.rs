@@ -6,52 +6,64 @@ use pleach_discrete::network::{NodeId, Phase, PostKind};
 
 use super::beacon::Notice;
 use super::composition::Network;
-use super::medium::Medium;
 use super::record::{MissionEvent, PostView, Route, Snapshot};
 use super::robot::Robot;
 
-impl<M: Medium> Network<M> {
+impl<M> Network<M> {
     /// The observers' view of this instant, just before the robots move.
     pub fn snapshot(&self) -> Snapshot {
+        let overview = self.overview();
+        let robots = || overview.robots.iter().copied();
         Snapshot {
             step: self.step,
             time: self.step as f64 * self.site.settings.period,
-            positions: self.robots.iter().map(Robot::position).collect(),
-            roles: self.robots.iter().map(Robot::role).collect(),
-            phase: self.phase(),
-            active: self.active(),
-            active_team: self.active_team(),
-            primary_team: self.primary_team(),
-            path: self.path(),
-            residuals: self.robots.iter().map(Robot::residual).collect(),
-            multipliers: self.robots.iter().map(Robot::multiplier).collect(),
-            routes: self.routes(),
-            tree: self.tree(),
-            task: self.task(),
-            serviced: self.serviced(),
-            posts: self.posts(),
+            positions: robots().map(Robot::position).collect(),
+            roles: robots().map(Robot::role).collect(),
+            phase: overview.phase(),
+            active: overview.active(),
+            active_team: overview.active_team(),
+            primary_team: overview.primary_team(),
+            path: overview.path(),
+            residuals: robots().map(Robot::residual).collect(),
+            multipliers: robots().map(Robot::multiplier).collect(),
+            routes: overview.routes(),
+            tree: overview.tree(),
+            task: overview.task(),
+            serviced: overview.serviced(),
+            posts: overview.posts(),
         }
     }
 
-    /// What has happened in this control period, in order.
+    /// What has happened in this control period, in order. A robot reports what it knows; the
+    /// members of its team are the observers' knowledge.
     pub fn events(&self) -> Vec<MissionEvent> {
         let mut events = self.events.clone();
         for event in &mut events {
-            self.complete(event);
+            if let MissionEvent::Stationary { team, .. }
+            | MissionEvent::JoinedPrimary { team, .. } = event
+            {
+                *team = self.primary_team();
+            }
         }
         events
     }
 
-    /// A robot reports what it knows; the members of its team are the observers' knowledge.
-    fn complete(&self, event: &mut MissionEvent) {
-        match event {
-            MissionEvent::Stationary { team, .. } | MissionEvent::JoinedPrimary { team, .. } => {
-                *team = self.primary_team();
-            }
-            _ => {}
-        }
+    /// The primary team 𝒫 from p₁ to the leader, or the leader alone before it is released.
+    pub fn primary_team(&self) -> Vec<NodeId> {
+        self.overview().primary_team()
     }
 
+    fn overview(&self) -> Overview<'_> {
+        Overview { robots: self.robots() }
+    }
+}
+
+/// All robots side by side, as nobody but an observer sees them.
+struct Overview<'a> {
+    robots: Vec<&'a Robot>,
+}
+
+impl Overview<'_> {
     /// The active team, and the robots that settle on their posts.
     fn active(&self) -> Vec<NodeId> {
         let team = self.active_team();
@@ -66,7 +78,10 @@ impl<M: Medium> Network<M> {
     }
 
     fn newest(&self) -> Option<&Robot> {
-        self.robots.iter().max_by_key(|robot| (robot.word_number(), robot.subgroups_done()))
+        self.robots
+            .iter()
+            .copied()
+            .max_by_key(|robot| (robot.word_number(), robot.subgroups_done()))
     }
 
     fn task(&self) -> Option<usize> {
@@ -79,20 +94,21 @@ impl<M: Medium> Network<M> {
         }
     }
 
-    /// The primary team 𝒫 from p₁ to the leader, or the leader alone before it is released.
-    pub fn primary_team(&self) -> Vec<NodeId> {
+    fn primary_team(&self) -> Vec<NodeId> {
         let member = |robot: &Robot| robot.duty().post().filter(|post| post.is_primary()).copied();
-        let Some(leader) = self.robots.iter().position(Robot::leads) else { return Vec::new() };
+        let Some(leader) = self.robots.iter().position(|robot| robot.leads()) else {
+            return Vec::new();
+        };
         let mut team = vec![leader];
-        let mut ahead = member(&self.robots[leader]);
+        let mut ahead = member(self.robots[leader]);
         while let Some(post) = ahead {
             let follows = PostKind::Primary { follows: Some(post.id) };
             let next = (0..self.robots.len()).find(|&id| {
                 !team.contains(&id)
-                    && member(&self.robots[id]).is_some_and(|other| other.kind == follows)
+                    && member(self.robots[id]).is_some_and(|other| other.kind == follows)
             });
             team.extend(next);
-            ahead = next.and_then(|id| member(&self.robots[id]));
+            ahead = next.and_then(|id| member(self.robots[id]));
         }
         team.reverse();
         team
@@ -136,18 +152,19 @@ impl<M: Medium> Network<M> {
                 })
                 .collect()
         };
-        self.robots.iter().enumerate().flat_map(of).collect()
+        self.robots.iter().copied().enumerate().flat_map(of).collect()
     }
 
     fn tree(&self) -> Vec<(NodeId, NodeId)> {
         let edge = |(id, robot): (NodeId, &Robot)| Some((id, robot.tree_parent()?));
-        self.robots.iter().enumerate().filter_map(edge).collect()
+        self.robots.iter().copied().enumerate().filter_map(edge).collect()
     }
 
     fn serviced(&self) -> Vec<(usize, NodeId)> {
         let mut serviced: Vec<(usize, NodeId)> = self
             .robots
             .iter()
+            .copied()
             .enumerate()
             .filter_map(|(id, robot)| Some((robot.duty().post()?.task?, id)))
             .collect();
@@ -162,7 +179,7 @@ impl<M: Medium> Network<M> {
             .enumerate()
             .filter_map(|(holder, robot)| {
                 let station = robot.duty().station().filter(|station| station.post.is_fixed())?;
-                let children = self.robots.iter().filter(|child| {
+                let children = self.robots.iter().copied().filter(|child| {
                     child
                         .duty()
                         .post()

@@ -9,7 +9,9 @@ use pleach_continuous::network::LinkReliability;
 use pleach_continuous::network::reliability::ReliabilityError;
 
 use super::Link;
+use super::automata::Automata;
 use super::scenario::{Scenario, Settings};
+use crate::builder::BuildError;
 
 /// Common knowledge of the robots; it does not change during a mission.
 #[derive(Debug)]
@@ -32,6 +34,8 @@ pub struct Site {
     pub hard_length: f64,
     /// Whether links behave as a model of the caller's says, and not as `[link]` does.
     has_own_link: bool,
+    /// The automata that every robot runs.
+    pub automata: Automata,
     /// How ways are measured where they are not those of the floor plan.
     measure: Option<Box<dyn Measure>>,
 }
@@ -55,6 +59,9 @@ pub enum SiteError {
     /// The radio's ranges make no sense.
     #[error(transparent)]
     Range(#[from] ReliabilityError),
+    /// An automaton is not well formed.
+    #[error(transparent)]
+    Build(#[from] BuildError),
 }
 
 impl Site {
@@ -77,6 +84,7 @@ impl Site {
             hard_length: settings.longest_tree_link(),
             settings,
             has_own_link: false,
+            automata: Automata::new()?,
             measure: None,
         })
     }
@@ -99,6 +107,12 @@ impl Site {
     #[must_use]
     pub fn measured_by(self, measure: impl Measure + 'static) -> Self {
         Site { measure: Some(Box::new(measure)), ..self }
+    }
+
+    /// Rounds of messages in which news surely crosses the network and comes back: no message is
+    /// longer under way than there are nodes to pass it on.
+    pub fn rounds_there_and_back(&self) -> usize {
+        2 * (self.robots + self.access_points.len())
     }
 
     /// The length of the shortest way in 𝒲_f; infinite if there is none.

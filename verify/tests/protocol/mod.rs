@@ -17,10 +17,9 @@ use std::sync::Mutex;
 
 use mission::Mission;
 use plan::{Plan, Reference, Step};
+use pleach_automaton::network::robot::RobotError;
 use pleach_verify::exploration::Model;
-use pleach_verify::network::exploration::{
-    ALWAYS, Action, ENDS, NodeError, Protocol, State, has_ended, tell,
-};
+use pleach_verify::network::exploration::{ALWAYS, Action, ENDS, Protocol, State, has_ended, tell};
 use proptest::test_runner::{Config, TestRunner};
 use proptest_state_machine::{ReferenceStateMachine, StateMachineTest};
 
@@ -43,7 +42,7 @@ impl Network {
     }
 
     /// What `find` says may happen now.
-    fn steps(&mut self, find: fn(&mut Protocol, &State) -> Result<Steps, NodeError>) -> Steps {
+    fn steps(&mut self, find: fn(&mut Protocol, &State) -> Result<Steps, RobotError>) -> Steps {
         let state = self.state().clone();
         find(&mut self.protocol, &state).unwrap_or_else(|error| self.fail(&error.to_string()))
     }

@@ -12,8 +12,8 @@ use pleach_discrete::network::{Bid, Election, NodeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Path};
-use super::Robot;
 use super::facts::STATIONARY_WINDOW;
+use super::{Robot, RobotError};
 
 impl Robot {
     /// In place of the flow: the robot stands at `position`, and has not got on for
@@ -24,18 +24,36 @@ impl Robot {
         self.stir();
     }
 
-    /// Measures anew how far its neighbours are.
-    pub fn look_round(&mut self) {
+    /// The robot finds that it stands at `position`, and how far its neighbours are from there.
+    pub(super) fn find_itself_at(&mut self, position: Point) {
+        self.stand_at(position, 0);
         for known in &mut self.neighbours {
-            *known = known.seen_from(self.position, &self.site);
+            *known = known.seen_from(position, &self.site);
         }
     }
 
-    /// In place of a round of messages: thinks over what it knows, without counting a round.
-    pub fn think(&mut self) {
+    /// In place of a round of messages: thinks over what it has heard, without counting a round.
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated, or transitions do not come to an end.
+    pub fn think(&mut self) -> Result<(), RobotError> {
+        self.end_round();
         self.reflect();
         self.stir();
         self.is_quiet = false;
+        self.jump()
+    }
+
+    /// In place of the last stages of a control period and the beginning of the next: the robot
+    /// has not got on for `still_periods` control periods.
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated, or transitions do not come to an end.
+    pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
+        self.stand_at(self.position, still_periods);
+        self.begin_period();
+        self.deliberate();
+        self.jump()
     }
 
     /// What the robot would tell its neighbours now.

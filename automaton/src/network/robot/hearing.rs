@@ -1,7 +1,6 @@
 //! Listening: the table of neighbours and what each of them last said.
 
-use std::cell::OnceCell;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use pleach_continuous::Point;
 use pleach_continuous::network::reliability::LinkReliability;
@@ -18,8 +17,10 @@ pub(super) struct Neighbour {
     pub beacon: Arc<Beacon>,
     pub distance: f64,
     pub reliability: f64,
-    walk: OnceCell<f64>,
+    walk: OnceLock<f64>,
     measured: (Point, Point),
+    /// Whether it has been heard in this round.
+    is_heard: bool,
     /// Rounds since it was heard.
     silent_rounds: u8,
 }
@@ -36,16 +37,17 @@ impl Neighbour {
             beacon: Arc::clone(beacon),
             distance,
             reliability: site.link.reliability(distance),
-            walk: OnceCell::new(),
+            walk: OnceLock::new(),
             measured: (own, beacon.position),
+            is_heard: true,
             silent_rounds: 0,
         }
     }
 
     /// The same node, as last heard, seen from elsewhere.
     pub fn seen_from(&self, own: Point, site: &Site) -> Self {
-        let silent_rounds = self.silent_rounds;
-        Neighbour { silent_rounds, ..Neighbour::new(&self.beacon, own, site) }
+        let (is_heard, silent_rounds) = (self.is_heard, self.silent_rounds);
+        Neighbour { is_heard, silent_rounds, ..Neighbour::new(&self.beacon, own, site) }
     }
 
     pub fn id(&self) -> NodeId {
@@ -70,48 +72,66 @@ impl Neighbour {
 }
 
 impl Robot {
-    /// Takes in the beacons heard in one round, in ascending order of their senders.
-    ///
-    /// A message may be lost: who is not heard for a round or two is taken to be where it was. One
-    /// that is overtaken by a newer one of its sender says nothing.
-    pub fn hear<'a>(&mut self, beacons: impl Iterator<Item = &'a Arc<Beacon>>) {
-        let mut at = 0;
-        for beacon in beacons {
-            while self.neighbours.get(at).is_some_and(|known| known.id() < beacon.sender) {
-                at = self.miss(at);
+    /// Takes in a beacon. One that is overtaken by a newer one of its sender says nothing.
+    pub(super) fn hear_beacon(&mut self, beacon: &Arc<Beacon>) {
+        // Beacons of a round mostly come in the order of their senders, and say nothing new.
+        let expected = self.neighbours.get_mut(self.heard_up_to);
+        if let Some(known) = expected
+            && Arc::ptr_eq(&known.beacon, beacon)
+            && known.measured.0 == self.position
+        {
+            (known.is_heard, known.silent_rounds) = (true, 0);
+            self.heard_up_to += 1;
+        } else {
+            self.hear_news(beacon);
+        }
+    }
+
+    #[inline(never)]
+    fn hear_news(&mut self, beacon: &Arc<Beacon>) {
+        let known = self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id);
+        match known {
+            Ok(at) => self.renew(at, beacon),
+            Err(at) => {
+                self.neighbours.insert(at, Neighbour::new(beacon, self.position, &self.site));
+                self.receive_news();
             }
-            at = match self.neighbours.get(at).filter(|known| known.id() == beacon.sender) {
-                Some(known) if beacon.is_older_than(&known.beacon) => self.miss(at),
-                Some(_) => self.renew(at, beacon),
-                None => self.meet(at, beacon),
-            };
         }
-        while at < self.neighbours.len() {
-            at = self.miss(at);
-        }
+        let (Ok(at) | Err(at)) = known;
+        self.heard_up_to = at + 1;
     }
 
-    /// A node is heard that the robot does not know; says where the next neighbour stands.
-    fn meet(&mut self, at: usize, beacon: &Arc<Beacon>) -> usize {
-        self.neighbours.insert(at, Neighbour::new(beacon, self.position, &self.site));
-        self.receive_news();
-        at + 1
-    }
-
-    /// A neighbour that the robot knows is heard again; says where the next one stands.
-    fn renew(&mut self, at: usize, beacon: &Arc<Beacon>) -> usize {
+    /// A neighbour that the robot knows is heard again.
+    fn renew(&mut self, at: usize, beacon: &Arc<Beacon>) {
         let known = &mut self.neighbours[at];
-        known.silent_rounds = 0;
-        let has_moved = known.measured != (self.position, beacon.position);
-        if has_moved {
+        let is_same = Arc::ptr_eq(&known.beacon, beacon);
+        if !is_same && beacon.is_older_than(&known.beacon) {
+            return;
+        }
+        (known.is_heard, known.silent_rounds) = (true, 0);
+        if known.measured != (self.position, beacon.position) {
             *known = Neighbour::new(beacon, self.position, &self.site);
-        } else if !Arc::ptr_eq(&known.beacon, beacon) {
+        } else if !is_same {
             known.beacon = Arc::clone(beacon);
         } else {
-            return at + 1;
+            return;
         }
         self.receive_news();
-        at + 1
+    }
+
+    /// A round of beacons is over.
+    ///
+    /// A message may be lost: a neighbour that is not heard for a round or two is taken to be
+    /// where it was.
+    pub(super) fn end_round(&mut self) {
+        self.heard_up_to = 0;
+        let mut at = 0;
+        while at < self.neighbours.len() {
+            at = match std::mem::take(&mut self.neighbours[at].is_heard) {
+                true => at + 1,
+                false => self.miss(at),
+            };
+        }
     }
 
     /// A neighbour that the robot knows is not heard; says where the next one stands.

@@ -1,8 +1,9 @@
 //! One robot: its own state, and what it makes of the messages it hears.
 //!
 //! Everything here is local. A robot knows its own position and duty, what every robot knows
-//! from the beginning ([`Site`]), and the beacons of the neighbours that it hears. The chapters
-//! follow the day of a robot: it listens (`hearing`), keeps its place in the tree (`attachment`,
+//! from the beginning ([`Site`]), and the messages of the neighbours that it hears. It is a
+//! [`Node`](crate::node::Node): `step` says what it does with each input, stage by stage of a
+//! control period. The chapters follow that period: it listens (`hearing`), keeps its place in the tree (`attachment`,
 //! `links`), takes part in the mission (`mission`,
 //! `leader`, `recruit`, `path`, `team`), exchanges duties with a robot in its way
 //! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
@@ -20,6 +21,7 @@ mod motion;
 mod path;
 mod recruit;
 mod routing;
+mod step;
 mod team;
 mod yielding;
 
@@ -36,8 +38,8 @@ use pleach_discrete::network::{
 
 pub use facts::{Facts, VARIABLES};
 pub use links::TreeLink;
-pub use motion::{Objection, Proposal};
-pub use routing::{FlowReport, RouteLink};
+pub use routing::RouteLink;
+pub use step::{RobotError, Stage};
 
 use crate::automaton::{Jump, TransitionError};
 
@@ -56,6 +58,10 @@ pub struct Robot {
     id: NodeId,
     rate: f64,
     site: Arc<Site>,
+
+    // Where it stands in its control period, and whether that is its first.
+    stage: Stage,
+    is_new: bool,
 
     // Its continuous state: x, u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
     position: Point,
@@ -84,6 +90,8 @@ pub struct Robot {
 
     // What it hears and where it hangs.
     neighbours: Vec<Neighbour>,
+    /// Where in the table of neighbours the next beacon is expected.
+    heard_up_to: usize,
     parent: Option<NodeId>,
     lineage: Option<Arc<Lineage>>,
     below: Arc<IdSet>,
@@ -110,16 +118,26 @@ pub struct Robot {
     // Communication variables.
     routing: routing::RoutingState,
     links: Vec<RouteLink>,
+    /// The link whose other end is expected to tell its multiplier next.
+    expected_link: usize,
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
+    /// The robots that send their demand here in a sweep, ascending, each with what has been heard
+    /// of it.
+    demands: Vec<(NodeId, Option<f64>)>,
     residual: f64,
+    has_swept: bool,
     is_frugal: bool,
+    has_shortage_news: bool,
+    has_untold_flows: bool,
+    is_unsettled: bool,
 
     // Motion.
     destination: Option<Destination>,
     waypoint: Option<Point>,
-    proposal: Option<Proposal>,
+    proposal: Option<Segment>,
     heard_moves: Vec<(NodeId, Segment)>,
+    must_judge_moves: bool,
     arrival: Point,
     resting_place: Point,
     still_periods: u32,
@@ -144,6 +162,8 @@ impl Robot {
         Robot {
             id,
             rate,
+            stage: Stage::Sample,
+            is_new: true,
             position,
             velocity: Vector::zeros(),
             clock: site.settings.period,
@@ -161,6 +181,7 @@ impl Robot {
             last_partner: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
+            heard_up_to: 0,
             parent: None,
             lineage: None,
             below: Arc::new(IdSet::singleton(id)),
@@ -182,14 +203,21 @@ impl Robot {
             team: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
+            expected_link: 0,
             inflow: 0.0,
             inflows: Vec::new(),
+            demands: Vec::new(),
             residual: 0.0,
+            has_swept: false,
             is_frugal: false,
+            has_shortage_news: false,
+            has_untold_flows: false,
+            is_unsettled: true,
             destination: None,
             waypoint: None,
             proposal: None,
             heard_moves: Vec::new(),
+            must_judge_moves: false,
             arrival: position,
             resting_place: position,
             still_periods: 0,
@@ -200,7 +228,7 @@ impl Robot {
 
     /// What the robot tells its neighbours now: the very same beacon as before unless something
     /// in it has changed.
-    pub fn speak(&mut self) -> Arc<Beacon> {
+    fn next_beacon(&mut self) -> Arc<Beacon> {
         if !std::mem::take(&mut self.is_unspoken)
             && let Some(beacon) = self.voice.last()
         {
@@ -232,21 +260,6 @@ impl Robot {
             reply: self.dealings.reply().cloned(),
             team: self.team,
         }
-    }
-
-    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; at the sample the robot is where
-    /// its certified move ends, to the last bit.
-    pub fn flow(&mut self, duration: f64) {
-        self.clock += duration;
-        self.position = match self.time_to_sample() > 0.0 {
-            true => self.position + self.velocity * duration,
-            false => self.arrival,
-        };
-    }
-
-    /// Time until the clock calls for the next sample.
-    pub fn time_to_sample(&self) -> f64 {
-        (self.site.settings.period - self.clock).max(0.0)
     }
 
     /// x_i.
@@ -290,7 +303,7 @@ impl Robot {
     }
 
     /// A control period begins: what is looked at once a period.
-    pub fn begin_period(&mut self) {
+    fn begin_period(&mut self) {
         self.stir();
         self.retire_if_barren();
         self.consider_exchange();
@@ -300,7 +313,7 @@ impl Robot {
     ///
     /// What comes of it depends on nothing but what the robot hears and its own state. Where
     /// neither has changed, and no wait is over, there is nothing to do.
-    pub fn deliberate(&mut self) {
+    fn deliberate(&mut self) {
         let is_due = self.count_round();
         if !std::mem::take(&mut self.has_news) && !is_due {
             return;
@@ -318,10 +331,7 @@ impl Robot {
     }
 
     /// Takes at most one transition of the mission automaton.
-    ///
-    /// # Errors
-    /// When a guard cannot be evaluated.
-    pub fn step_mission(
+    fn step_mission(
         &mut self,
         automaton: &MissionAutomaton,
     ) -> Result<Option<Jump<Phase, MissionStep>>, TransitionError> {
@@ -336,10 +346,7 @@ impl Robot {
     }
 
     /// Takes at most one transition of the role automaton.
-    ///
-    /// # Errors
-    /// When a guard cannot be evaluated.
-    pub fn step_role(
+    fn step_role(
         &mut self,
         automaton: &RoleAutomaton,
     ) -> Result<Option<Jump<Role, RoleEvent>>, TransitionError> {
@@ -351,11 +358,6 @@ impl Robot {
             self.stir();
         }
         Ok(jump)
-    }
-
-    /// Takes what it has told observers since the last call.
-    pub fn drain_log(&mut self) -> std::vec::Drain<'_, MissionEvent> {
-        self.log.drain(..)
     }
 
     /// The robot's state has changed: it has something to think over, to say and to measure.

@@ -15,10 +15,13 @@ use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{NodeId, Phase};
 
 use super::super::duty::Duty;
+use super::super::message::Message;
+use super::super::record::MissionEvent;
 use super::super::scenario::MotionSolver;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::links::TreeLink;
+use crate::node::Outputs;
 
 /// A robot this share of ρ from the reference of its post has settled.
 const SETTLED: f64 = 0.02;
@@ -45,20 +48,6 @@ const LEAST_MOVE: f64 = 1e-6;
 pub(super) const ROUNDING: f64 = 1e-9;
 /// How much of a load a sender may be given, just short of all its time.
 const FULL_LOAD: f64 = 1.0 - 1e-9;
-
-/// A move that a robot intends to make.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Proposal {
-    /// From where to where.
-    pub segment: Segment,
-}
-
-/// A robot cannot accept the moves proposed around it; those named should shorten theirs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Objection {
-    /// The movers concerned.
-    pub movers: Vec<NodeId>,
-}
 
 impl Robot {
     /// Whether the robot stands still unless it is asked for; robots that settle on their post
@@ -154,8 +143,10 @@ impl Robot {
     }
 
     /// Lines 4 to 7 of Algorithm 5: the next position, if the robot moves.
-    pub fn propose(&mut self) {
+    pub(super) fn propose(&mut self) {
         self.proposal = None;
+        self.heard_moves.clear();
+        self.must_judge_moves = true;
         let Some(goal) = self.goal() else {
             self.waypoint = None;
             return;
@@ -174,7 +165,7 @@ impl Robot {
         if segment.length() > LEAST_MOVE * self.site.settings.step_radius
             && self.site.free_space.sees(segment.from, segment.to)
         {
-            self.proposal = Some(Proposal { segment });
+            self.proposal = Some(segment);
         }
     }
 
@@ -299,24 +290,26 @@ impl Robot {
         Some(Disc { center: corner, radius: (corner - self.position).norm() + spare })
     }
 
-    /// The move that this robot intends.
-    pub const fn proposal(&self) -> Option<&Proposal> {
-        self.proposal.as_ref()
+    /// Tells the move that it intends, if it intends one.
+    pub(super) fn tell_proposal(&self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if let Some(segment) = self.proposal {
+            outputs.broadcast(Message::Proposal(segment));
+        }
     }
 
     /// Where this robot would be.
     fn own_move(&self) -> Segment {
-        self.proposal.map_or(Segment::still(self.position), |proposal| proposal.segment)
-    }
-
-    /// Forgets the proposals heard in the round before.
-    pub fn clear_proposals(&mut self) {
-        self.heard_moves.clear();
+        self.proposal.unwrap_or(Segment::still(self.position))
     }
 
     /// A neighbour tells its proposal.
-    pub fn hear_proposal(&mut self, from: NodeId, proposal: &Proposal) {
-        self.heard_moves.push((from, proposal.segment));
+    pub(super) fn hear_proposal(&mut self, from: NodeId, segment: Segment) {
+        match self.heard_moves.iter_mut().find(|(mover, _)| *mover == from) {
+            Some((_, known)) if *known == segment => return,
+            Some((_, known)) => *known = segment,
+            None => self.heard_moves.push((from, segment)),
+        }
+        self.must_judge_moves = true;
     }
 
     fn move_of(&self, node: NodeId) -> Segment {
@@ -328,25 +321,28 @@ impl Robot {
         }
     }
 
-    /// The movers whose moves this robot cannot accept, whichever of them are carried out.
-    pub fn objection(&self) -> Option<Objection> {
-        if self.heard_moves.is_empty() && self.proposal.is_none() {
-            return None;
+    /// Asks the movers whose moves this robot cannot accept, whichever of them are carried out, to
+    /// shorten theirs; it may be one of them. Moves that are as they were when it accepted them
+    /// are not judged again.
+    pub(super) fn object(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if !std::mem::take(&mut self.must_judge_moves)
+            || self.heard_moves.is_empty() && self.proposal.is_none()
+        {
+            return;
         }
-        let mut movers = Vec::new();
-        if self.is_overloaded() {
-            movers.extend(self.routes().map(|link| link.to).filter(|&to| self.is_mover(to)));
-            movers.extend(self.proposal.map(|_| self.id));
+        let is_overloaded = self.is_overloaded();
+        let overstretched = self.overstretched_parent();
+        if !is_overloaded && overstretched.is_none() {
+            return;
         }
-        if let Some(parent) = self.overstretched_parent() {
-            movers.extend(Some(parent).filter(|&parent| self.is_mover(parent)));
-            movers.extend(self.proposal.map(|_| self.id));
+        self.must_judge_moves = true;
+        let receives = |node| is_overloaded && self.routes().any(|link| link.to == node);
+        for &(mover, _) in &self.heard_moves {
+            if overstretched == Some(mover) || receives(mover) {
+                outputs.send(mover, Message::Objection);
+            }
         }
-        (!movers.is_empty()).then_some(Objection { movers })
-    }
-
-    fn is_mover(&self, node: NodeId) -> bool {
-        self.heard_moves.iter().any(|(from, _)| *from == node)
+        self.yield_to_objection();
     }
 
     fn is_overloaded(&self) -> bool {
@@ -372,19 +368,20 @@ impl Robot {
         (longest > limit).then_some(link.to)
     }
 
-    /// A neighbour, or the robot itself, objects to its move: it halves it, or gives it up.
-    pub fn yield_to(&mut self, objection: &Objection, give_up: bool) {
-        if !objection.movers.contains(&self.id) {
-            return;
+    /// A neighbour, or the robot itself, objects to its move: it halves it or, in the last round,
+    /// gives it up.
+    pub(super) fn yield_to_objection(&mut self) {
+        if self.proposal.is_some() {
+            self.must_judge_moves = true;
         }
-        self.proposal = match self.proposal {
-            Some(proposal) if !give_up => Some(Proposal { segment: proposal.segment.halved() }),
-            _ => None,
+        self.proposal = match self.is_last_chance() {
+            false => self.proposal.map(|segment| segment.halved()),
+            true => None,
         };
     }
 
     /// The move is certified: eq. (23) until the next sample.
-    pub fn set_off(&mut self) {
+    pub(super) fn set_off(&mut self) {
         let segment = self.own_move();
         let step = self.site.settings.step_radius;
         // Going to and fro is standing still as well.
@@ -401,7 +398,7 @@ impl Robot {
     }
 
     /// A new control period begins.
-    pub fn restart_clock(&mut self) {
+    pub(super) fn restart_clock(&mut self) {
         self.stir();
         self.velocity = Vector::zeros();
         self.clock = 0.0;

@@ -15,8 +15,11 @@ use pleach_continuous::network::routing::local::{LinkOffer, local_minimiser, wei
 use pleach_continuous::network::routing::repair::{Share, meet_demand};
 use pleach_discrete::network::NodeId;
 
+use super::super::message::Message;
+use super::super::record::MissionEvent;
 use super::super::scenario::RoutingMethod;
 use super::Robot;
+use crate::node::Outputs;
 
 /// Links with less reliability than this carry nothing unless they belong to the tree: a step of
 /// both ends must not be able to break a link in use.
@@ -65,6 +68,8 @@ pub struct RouteLink {
     pub share: f64,
     /// T_ij as the routing method left it, before the sweep.
     iterate: f64,
+    /// F_ij as the receiver has been told in this period.
+    told: f64,
 }
 
 impl RouteLink {
@@ -74,17 +79,11 @@ impl RouteLink {
     }
 }
 
-/// What a robot sends about its routes: its flows by receiver.
-#[derive(Clone, Debug, Default)]
-pub struct FlowReport {
-    /// F_ij for the links in use.
-    pub flows: Vec<(NodeId, f64)>,
-}
-
 impl Robot {
     /// Finds the links over which the robot may send from here, keeping what it knows of them.
-    pub fn survey_links(&mut self) {
-        self.is_frugal = false;
+    pub(super) fn survey_links(&mut self) {
+        (self.is_frugal, self.has_shortage_news) = (false, false);
+        (self.has_untold_flows, self.is_unsettled) = (true, true);
         let old = std::mem::take(&mut self.links);
         let tree = self.tree_links();
         let aversion = self.site.settings.slope_aversion;
@@ -104,8 +103,12 @@ impl Robot {
                 report: known.and_then(|link| link.report),
                 share: iterate,
                 iterate,
+                told: 0.0,
             });
         }
+        self.inflow = 0.0;
+        self.inflows.clear();
+        self.demands.clear();
     }
 
     /// λ_i.
@@ -117,7 +120,8 @@ impl Robot {
     }
 
     /// The flows of the period before are known over the links as they are now.
-    pub fn begin_routing(&mut self) {
+    pub(super) fn begin_routing(&mut self) {
+        self.add_up_inflow();
         let (residual, reserve) = (self.balance(), self.site.settings.routing_reserve);
         let robots = self.site.robots;
         if let RoutingState::Adal(state) = &mut self.routing {
@@ -127,25 +131,43 @@ impl Robot {
         }
     }
 
-    /// What the robot says of its equation c_i ≥ η.
-    pub fn routing_report(&self) -> NeighbourReport {
-        match &self.routing {
+    /// Says how its equation c_i ≥ η stands.
+    pub(super) fn tell_multiplier(&self, outputs: &mut Outputs<Message, MissionEvent>) {
+        let report = match &self.routing {
             RoutingState::Adal(state) => state.report(),
             RoutingState::Dual(state) => {
                 NeighbourReport { multiplier: state.multiplier(), mismatch: 0.0, crowding: 1.0 }
             }
-        }
+        };
+        outputs.broadcast(Message::Multiplier { report, parent: self.tree_parent() });
     }
 
-    /// A neighbour says how its equation stands.
-    pub fn hear_routing_report(&mut self, from: NodeId, report: NeighbourReport) {
-        if let Ok(at) = self.links.binary_search_by_key(&from, |link| link.to) {
-            self.links[at].report = Some(report);
+    /// A neighbour says how its equation stands, and where its demand will go.
+    pub(super) fn hear_multiplier(
+        &mut self,
+        from: NodeId,
+        report: NeighbourReport,
+        parent: Option<NodeId>,
+    ) {
+        // Multipliers of an iteration mostly come in the order of their senders.
+        if self.links.get(self.expected_link).is_none_or(|link| link.to != from) {
+            self.expected_link = self.links.partition_point(|link| link.to < from);
+        }
+        if let Some(link) = self.links.get_mut(self.expected_link)
+            && link.to == from
+        {
+            link.report = Some(report);
+            self.expected_link += 1;
+        }
+        if parent == Some(self.id)
+            && let Err(at) = self.demands.binary_search_by_key(&from, |&(child, _)| child)
+        {
+            self.demands.insert(at, (from, None));
         }
     }
 
     /// The primal iteration (13), or that of ADAL.
-    pub fn primal_step(&mut self) {
+    pub(super) fn primal_step(&mut self) {
         match self.routing {
             RoutingState::Dual(_) => self.minimise_locally(),
             RoutingState::Adal(state) => self.approach_minimiser(state),
@@ -156,6 +178,7 @@ impl Robot {
             }
             link.iterate = link.share;
         }
+        self.has_untold_flows = true;
     }
 
     /// The shares that minimise the local Lagrangian, eq. (13).
@@ -195,30 +218,43 @@ impl Robot {
         self.routing = RoutingState::Adal(state);
     }
 
-    /// What the robot sends to each neighbour now.
-    pub fn flow_report(&self) -> FlowReport {
-        let flows = self.routes().map(|link| (link.to, link.flow())).collect();
-        FlowReport { flows }
-    }
-
     /// The links in use.
     pub fn routes(&self) -> impl Iterator<Item = &RouteLink> {
         self.links.iter().filter(|link| link.share > 0.0)
     }
 
-    /// Forgets what it heard of its inflow.
-    pub fn clear_inflow(&mut self) {
-        self.inflow = 0.0;
-        self.inflows.clear();
+    /// Tells its flows to their receivers, where they have changed.
+    pub(super) fn tell_flows(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if !std::mem::take(&mut self.has_untold_flows) {
+            return;
+        }
+        self.is_unsettled = true;
+        let robots = self.site.robots;
+        for link in self.links.iter_mut().filter(|link| link.to < robots) {
+            let flow = link.flow();
+            if flow != link.told {
+                link.told = flow;
+                outputs.send(link.to, Message::Flow(flow));
+            }
+        }
     }
 
-    /// A neighbour tells its flows.
-    pub fn hear_flows(&mut self, from: NodeId, report: &FlowReport) {
-        let own = self.id;
-        if let Some(&(_, flow)) = report.flows.iter().find(|(to, _)| *to == own) {
-            self.inflow += flow;
-            self.inflows.push((from, flow));
+    /// A neighbour tells the flow that it sends to this robot.
+    pub(super) fn hear_flow(&mut self, from: NodeId, flow: f64) {
+        self.is_unsettled = true;
+        match self.inflows.binary_search_by_key(&from, |&(sender, _)| sender) {
+            Ok(at) if flow > 0.0 => self.inflows[at].1 = flow,
+            Ok(at) => {
+                self.inflows.remove(at);
+            }
+            Err(at) if flow > 0.0 => self.inflows.insert(at, (from, flow)),
+            Err(_) => {}
         }
+    }
+
+    /// What flows in, as far as the senders have told.
+    fn add_up_inflow(&mut self) {
+        self.inflow = self.inflows.iter().map(|(_, flow)| flow).sum();
     }
 
     fn outflow(&self) -> f64 {
@@ -231,7 +267,8 @@ impl Robot {
     }
 
     /// The dual iteration (14), or that of ADAL.
-    pub fn dual_step(&mut self) {
+    pub(super) fn dual_step(&mut self) {
+        self.add_up_inflow();
         let (residual, reserve) = (self.balance(), self.site.settings.routing_reserve);
         let step = self.safe_dual_step();
         match &mut self.routing {
@@ -259,11 +296,78 @@ impl Robot {
         }))
     }
 
-    /// The sweep: sends what c_i = η takes. What is missing goes over the tree link; in the first
-    /// sweep, what is too much, because the iteration has not converged, is taken off all links
-    /// alike, so that nobody is asked to pass on what is not there. Returns by how much the flow to
-    /// the parent has changed.
-    pub fn meet_demand(&mut self, is_first: bool) -> f64 {
+    /// The sweep begins at the robots that no other sends its demand to.
+    pub(super) fn begin_sweep(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        self.has_swept = false;
+        if self.demands.is_empty() {
+            self.pass_demand_on(true, outputs);
+        }
+    }
+
+    /// A tree child tells by how much its flow changes. In the first sweep of a period the robot
+    /// waits for all of them, so that one message goes over each link; later ones begin where there
+    /// is news, and every message is passed on.
+    pub(super) fn hear_demand(
+        &mut self,
+        from: NodeId,
+        more: f64,
+        outputs: &mut Outputs<Message, MissionEvent>,
+    ) {
+        if self.has_swept {
+            self.inflow += more;
+            self.pass_demand_on(false, outputs);
+            return;
+        }
+        match self.demands.binary_search_by_key(&from, |&(child, _)| child) {
+            Ok(at) => self.demands[at].1 = Some(more),
+            Err(at) => self.demands.insert(at, (from, Some(more))),
+        }
+        if self.demands.iter().all(|(_, heard)| heard.is_some()) {
+            self.take_demands();
+            self.pass_demand_on(true, outputs);
+        }
+    }
+
+    fn take_demands(&mut self) {
+        self.demands.iter().filter_map(|&(_, more)| more).for_each(|more| self.inflow += more);
+    }
+
+    fn pass_demand_on(&mut self, is_first: bool, outputs: &mut Outputs<Message, MissionEvent>) {
+        self.has_swept = true;
+        let more = self.meet_demand(is_first);
+        if let Some(parent) = self.tree_parent()
+            && parent < self.site.robots
+            && (is_first || more != 0.0)
+        {
+            outputs.send(parent, Message::Demand(more));
+        }
+    }
+
+    /// The sweep is over: a robot that is still waiting meets the demand that it has heard.
+    pub(super) fn end_sweep(&mut self) {
+        if !std::mem::replace(&mut self.has_swept, true) {
+            self.take_demands();
+            self.meet_demand(true);
+        }
+    }
+
+    /// A further sweep begins where shortages have changed something.
+    pub(super) fn sweep_again(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if !self.has_shortage_news && !self.is_unsettled {
+            return;
+        }
+        let before = self.inflow;
+        self.add_up_inflow();
+        if std::mem::take(&mut self.has_shortage_news) || self.inflow != before {
+            self.pass_demand_on(false, outputs);
+        }
+    }
+
+    /// Sends what c_i = η takes. What is missing goes over the tree link; in the first sweep, what
+    /// is too much, because the iteration has not converged, is taken off all links alike, so that
+    /// nobody is asked to pass on what is not there. Returns by how much the flow to the parent
+    /// has changed.
+    fn meet_demand(&mut self, is_first: bool) -> f64 {
         let Some(parent) = self.tree_parent() else { return 0.0 };
         let Some(tree_link) = self.links.iter().position(|link| link.to == parent) else {
             return 0.0;
@@ -275,7 +379,10 @@ impl Robot {
             self.links.iter_mut().for_each(|link| link.share *= demand / outflow);
         } else if demand - outflow > RESIDUAL_ROUNDING {
             self.raise_outflow(demand, tree_link);
+        } else {
+            return 0.0;
         }
+        self.has_untold_flows = true;
         self.links[tree_link].flow() - before
     }
 
@@ -291,33 +398,41 @@ impl Robot {
         }
     }
 
-    /// A neighbour cannot pass on what it is sent. Whoever hangs on it does without its reserve
-    /// from now on, and so must those behind; everybody else sends it nothing more. Says whether
-    /// this robot has to tell those that hang on it.
-    pub fn hear_shortage(&mut self, overloaded: NodeId) -> bool {
-        if self.tree_parent() == Some(overloaded) {
-            return !std::mem::replace(&mut self.is_frugal, true);
+    /// This robot may find that it cannot pass on what it is sent: it does without its reserve,
+    /// and says so once in a period.
+    pub(super) fn admit_shortage(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if self.is_infeasible() {
+            self.economise(outputs);
         }
-        if let Ok(at) = self.links.binary_search_by_key(&overloaded, |link| link.to) {
-            self.links[at].share = 0.0;
-        }
-        false
     }
 
-    /// This robot cannot pass on what it is sent: it does without its reserve. Says whether that
-    /// is new in this period.
-    pub fn admit_shortage(&mut self) -> bool {
-        self.is_infeasible() && !std::mem::replace(&mut self.is_frugal, true)
+    /// A neighbour cannot pass on what it is sent. A robot whose parent it is does without its
+    /// reserve from now on, and so must those behind; every other sends it nothing more.
+    pub(super) fn hear_shortage(
+        &mut self,
+        overloaded: NodeId,
+        outputs: &mut Outputs<Message, MissionEvent>,
+    ) {
+        if self.tree_parent() == Some(overloaded) {
+            self.economise(outputs);
+        } else if let Ok(at) = self.links.binary_search_by_key(&overloaded, |link| link.to) {
+            let had_share = self.links[at].share > 0.0;
+            self.has_shortage_news |= had_share;
+            self.has_untold_flows |= had_share;
+            self.links[at].share = 0.0;
+        }
+    }
+
+    fn economise(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if !std::mem::replace(&mut self.is_frugal, true) {
+            self.has_shortage_news = true;
+            outputs.broadcast(Message::Shortage);
+        }
     }
 
     /// η, or nothing when the tree can carry no more than the rates.
     fn reserve(&self) -> f64 {
         if self.is_frugal { 0.0 } else { self.site.settings.routing_reserve }
-    }
-
-    /// A tree child has changed its flow by so much in the sweep.
-    pub fn expect_more(&mut self, flow: f64) {
-        self.inflow += flow;
     }
 
     /// Whether the routes cannot carry the rates: c_i < −c_min.
@@ -326,8 +441,18 @@ impl Robot {
     }
 
     /// All flows are known: eq. (5).
-    pub fn settle_residual(&mut self) {
-        self.residual = self.balance();
+    pub(super) fn settle_residual(&mut self) {
+        if std::mem::take(&mut self.is_unsettled) {
+            self.add_up_inflow();
+            self.residual = self.balance();
+        }
+    }
+
+    /// The routes of the period stand.
+    pub(super) fn end_routes(&mut self) {
+        if self.is_infeasible() {
+            self.report(MissionEvent::RouteInfeasible { robot: self.id });
+        }
     }
 
     /// The worst load h_i whichever of the proposed moves are carried out.

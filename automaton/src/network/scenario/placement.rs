@@ -25,6 +25,7 @@ pub(super) fn site(scenario: &Scenario) -> Result<Site, Fault> {
             SiteError::Workspace(error) => key_of_outline(error),
             SiteError::FreeSpace(_) => KeyPath::root().key("control").key("clearance"),
             SiteError::Range(_) => KeyPath::root().key("link"),
+            SiteError::Build(_) => KeyPath::root(),
         };
         Problem::Outline(error.to_string()).at(key)
     })

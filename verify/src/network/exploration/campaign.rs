@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use pleach_automaton::network::beacon::Notice;
+use pleach_automaton::network::robot::RobotError;
 use rayon::prelude::*;
 
+use super::Action;
 use super::graphs::{Graph, graphs, numbered_graphs};
 use super::medium::Medium;
 use super::places::{Place, Places, PlacesError};
 use super::properties::{ALWAYS, has_ended};
 use super::protocol::{Configuration, Protocol, ProtocolError, State};
 use super::story::story;
-use super::{Action, NodeError};
 use crate::exploration::{Exploration, ExplorationError, Fairness, StateId, explore};
 
 /// Which graphs of a number of robots and access points are explored.
@@ -108,7 +109,7 @@ pub enum CampaignError {
         /// The graph and the branches.
         configuration: String,
         /// Why.
-        source: ExplorationError<NodeError>,
+        source: ExplorationError<RobotError>,
     },
 }
 

@@ -1,9 +1,10 @@
 //! How messages go from node to node, and what may become of them on the way.
 
 use pleach_automaton::network::Robot;
+use pleach_automaton::network::robot::RobotError;
 use pleach_discrete::network::NodeId;
 
-use super::node::{BeaconId, NodeError, Stimulus};
+use super::node::{BeaconId, Stimulus};
 use super::protocol::{Action, Protocol, State};
 
 /// How messages go from node to node.
@@ -80,7 +81,7 @@ impl Medium {
 
 impl Protocol {
     /// What may be heard, if anything comes of it.
-    pub(super) fn messages(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
+    pub(super) fn messages(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let nodes = state.locals.len();
         let mut found = Vec::new();
         match self.configuration().medium {
@@ -131,7 +132,7 @@ impl Protocol {
     ///
     /// # Errors
     /// When a node cannot go on.
-    pub fn faulty_rounds(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
+    pub fn faulty_rounds(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let mut found = Vec::new();
         if state.faults.are_over() && state.copies.is_empty() {
             return Ok(found);
@@ -186,7 +187,7 @@ impl Protocol {
     }
 
     /// A round in which every node hears this.
-    fn round(&mut self, state: &State, heard: &[Vec<BeaconId>]) -> Result<State, NodeError> {
+    fn round(&mut self, state: &State, heard: &[Vec<BeaconId>]) -> Result<State, RobotError> {
         let mut next = state.clone();
         next.locals = self.each(state, |node| Stimulus::Round(heard[node].clone()))?;
         next.copies.retain_mut(|copy| {

@@ -3,12 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use pleach_automaton::BuildError;
-use pleach_automaton::TransitionError;
-use pleach_automaton::network::access_point::AccessPoint;
-use pleach_automaton::network::automata::{MissionAutomaton, RoleAutomaton};
 use pleach_automaton::network::beacon::{Beacon, Notice};
-use pleach_automaton::network::{Robot, mission_automaton, role_automaton};
+use pleach_automaton::network::robot::RobotError;
+use pleach_automaton::network::{AccessPoint, Message, Robot, Sense};
+use pleach_automaton::node::{Input, Node as _, Outputs};
 use pleach_continuous::Point;
 
 /// The number of a beacon among all those ever said.
@@ -25,6 +23,25 @@ pub enum Node {
     AccessPoint(Box<AccessPoint>),
 }
 
+impl Node {
+    /// One step. What the node says is read off its state, and nobody needs its reports.
+    pub(super) fn step(&mut self, input: Input<'_, Message, Sense>) -> Result<(), RobotError> {
+        let mut outputs = Outputs::of(0);
+        match self {
+            Node::Robot(robot) => robot.step(input, &mut outputs),
+            Node::AccessPoint(access_point) => access_point.step(input, &mut outputs),
+        }
+    }
+
+    /// The robot, unless it is an access point.
+    pub fn robot(&self) -> Option<&Robot> {
+        match self {
+            Node::Robot(robot) => Some(robot),
+            Node::AccessPoint(_) => None,
+        }
+    }
+}
+
 /// The state of one node: itself, what it says, and what it heard last from whom.
 #[derive(Clone, Debug)]
 pub struct Local {
@@ -39,10 +56,7 @@ pub struct Local {
 impl Local {
     /// The robot, unless it is an access point.
     pub fn robot(&self) -> Option<&Robot> {
-        match &self.node {
-            Node::Robot(robot) => Some(robot),
-            Node::AccessPoint(_) => None,
-        }
+        self.node.robot()
     }
 
     /// The newest word on the mission that it knows.
@@ -57,38 +71,18 @@ impl Local {
 /// Something that happens to one node.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stimulus {
-    /// It hears these beacons, and thinks.
+    /// It hears these beacons, and thinks, before its clock ticks.
     Hear(Vec<BeaconId>),
-    /// The same, as one of the rounds that it counts; an access point then speaks for the user.
+    /// It hears these beacons, and its clock ticks: it counts a round. An access point then serves
+    /// the user.
     Round(Vec<BeaconId>),
     /// It has moved to this place, given by number.
     Move(usize),
     /// It has not got on for so many control periods, and another one begins.
     Period(u32),
-    /// An access point speaks for the user.
+    /// An access point serves the user.
     Announce,
 }
-
-/// Why a node cannot go on.
-#[derive(Debug, thiserror::Error)]
-pub enum NodeError {
-    /// An automaton is not well formed.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// A guard speaks of something that robots do not measure.
-    #[error(transparent)]
-    Guard(#[from] TransitionError),
-    /// A robot jumps and jumps, and no time passes.
-    #[error("robot {robot} takes more than {MOST_JUMPS} transitions at one instant")]
-    Zeno {
-        /// Which.
-        robot: usize,
-    },
-}
-
-/// More transitions than this at one instant are taken for endless; a mission has about ten
-/// steps, and a robot takes a few of them at a time.
-const MOST_JUMPS: usize = 32;
 
 /// Every beacon and every state of a node met so far, each once, and what came of what.
 ///
@@ -97,9 +91,6 @@ const MOST_JUMPS: usize = 32;
 /// lists of numbers.
 #[derive(Debug)]
 pub struct Nodes {
-    roles: RoleAutomaton,
-    mission: MissionAutomaton,
-    tasks: Vec<Point>,
     positions: Vec<Point>,
     beacons: Vec<Arc<Beacon>>,
     beacon_ids: BTreeMap<String, BeaconId>,
@@ -109,22 +100,16 @@ pub struct Nodes {
 }
 
 impl Nodes {
-    /// No node yet; `positions` are those of the places, `tasks` those of the tasks.
-    ///
-    /// # Errors
-    /// When an automaton is not well formed.
-    pub fn new(positions: Vec<Point>, tasks: Vec<Point>) -> Result<Self, NodeError> {
-        Ok(Nodes {
-            roles: role_automaton()?,
-            mission: mission_automaton()?,
-            tasks,
+    /// No node yet; `positions` are those of the places.
+    pub fn new(positions: Vec<Point>) -> Self {
+        Nodes {
             positions,
             beacons: Vec::new(),
             beacon_ids: BTreeMap::new(),
             locals: Vec::new(),
             local_ids: BTreeMap::new(),
             outcomes: BTreeMap::new(),
-        })
+        }
     }
 
     /// The state with this number.
@@ -149,18 +134,14 @@ impl Nodes {
 
     /// Takes up a node that has heard the beacons given.
     pub fn take_up(&mut self, node: Node, heard: Vec<BeaconId>) -> LocalId {
-        let account = match &node {
-            Node::Robot(robot) => robot.account(),
-            Node::AccessPoint(access_point) => access_point.account(),
+        let (account, beacon) = match &node {
+            Node::Robot(robot) => (robot.account(), robot.beacon()),
+            Node::AccessPoint(access_point) => (access_point.account(), access_point.beacon()),
         };
         let key = (account, heard);
         if let Some(&id) = self.local_ids.get(&key) {
             return id;
         }
-        let beacon = match &node {
-            Node::Robot(robot) => robot.beacon(),
-            Node::AccessPoint(access_point) => access_point.beacon(),
-        };
         let beacon = self.take_down(beacon);
         let id = self.locals.len() as LocalId;
         self.locals.push(Local { node, beacon, heard: key.1.clone() });
@@ -181,92 +162,59 @@ impl Nodes {
     ///
     /// # Errors
     /// When a guard cannot be evaluated, or transitions do not come to an end.
-    pub fn after(&mut self, local: LocalId, stimulus: Stimulus) -> Result<LocalId, NodeError> {
+    pub fn after(&mut self, local: LocalId, stimulus: Stimulus) -> Result<LocalId, RobotError> {
         let key = (local, stimulus);
         if let Some(&known) = self.outcomes.get(&key) {
             return Ok(known);
         }
-        let Local { node, heard, .. } = self.local(local).clone();
-        let (node, heard) = match node {
-            Node::Robot(robot) => self.stir_robot(robot, heard, &key.1)?,
-            Node::AccessPoint(it) => self.stir_access_point(it, heard, &key.1),
-        };
+        let Local { mut node, mut heard, .. } = self.local(local).clone();
+        if let Stimulus::Hear(beacons) | Stimulus::Round(beacons) = &key.1 {
+            self.hear(&mut node, beacons)?;
+            self.stir(&mut node, &key.1)?;
+            heard = self.last_heard(&node, &heard, beacons);
+        } else {
+            self.stir(&mut node, &key.1)?;
+        }
         let outcome = self.take_up(node, heard);
         self.outcomes.insert(key, outcome);
         Ok(outcome)
     }
 
-    fn stir_robot(
-        &self,
-        mut robot: Box<Robot>,
-        mut heard: Vec<BeaconId>,
-        stimulus: &Stimulus,
-    ) -> Result<(Node, Vec<BeaconId>), NodeError> {
-        match stimulus {
-            Stimulus::Hear(beacons) => {
-                heard = self.listen(&mut robot, &heard, beacons);
-                robot.think();
-            }
-            Stimulus::Round(beacons) => {
-                heard = self.listen(&mut robot, &heard, beacons);
-                let (position, still) = (robot.position(), robot.still_periods());
-                robot.stand_at(position, still);
-                robot.deliberate();
-            }
-            Stimulus::Move(place) => {
-                robot.stand_at(self.positions[*place], 0);
-                robot.look_round();
-            }
-            Stimulus::Period(still) => {
-                let position = robot.position();
-                robot.stand_at(position, *still);
-                robot.begin_period();
-                robot.deliberate();
-            }
-            Stimulus::Announce => {}
-        }
-        self.jump(&mut robot)?;
-        robot.drain_log();
-        Ok((Node::Robot(robot), heard))
+    fn hear(&self, node: &mut Node, beacons: &[BeaconId]) -> Result<(), RobotError> {
+        beacons.iter().try_for_each(|&id| {
+            let beacon = &self.beacons[id as usize];
+            let message = Message::Beacon(Arc::clone(beacon));
+            node.step(Input::Heard { from: beacon.sender, message: &message })
+        })
     }
 
-    /// The robot hears these beacons; what it then knows of its neighbours.
-    fn listen(&self, robot: &mut Robot, known: &[BeaconId], heard: &[BeaconId]) -> Vec<BeaconId> {
-        robot.hear(heard.iter().map(|&beacon| &self.beacons[beacon as usize]));
+    fn stir(&self, node: &mut Node, stimulus: &Stimulus) -> Result<(), RobotError> {
+        match (node, stimulus) {
+            (Node::Robot(robot), Stimulus::Hear(_)) => robot.think(),
+            (Node::AccessPoint(access_point), Stimulus::Hear(_)) => {
+                access_point.think();
+                Ok(())
+            }
+            (node @ Node::Robot(_), &Stimulus::Move(place)) => {
+                node.step(Input::Sensed(Sense::Position(self.positions[place])))
+            }
+            (Node::Robot(robot), &Stimulus::Period(still)) => robot.pass_period(still),
+            (Node::AccessPoint(access_point), Stimulus::Period(_) | Stimulus::Announce) => {
+                access_point.serve();
+                Ok(())
+            }
+            (node, Stimulus::Round(_)) => node.step(Input::Tick),
+            _ => Ok(()),
+        }
+    }
+
+    /// What a node has heard last of each of those that it knows now.
+    fn last_heard(&self, node: &Node, known: &[BeaconId], heard: &[BeaconId]) -> Vec<BeaconId> {
+        let Some(robot) = node.robot() else { return heard.to_vec() };
         let last = |node| {
             let from = |&&id: &&BeaconId| self.beacon(id).sender == node;
             heard.iter().find(from).or_else(|| known.iter().find(from)).copied()
         };
         robot.audible().filter_map(|(node, _)| last(node)).collect()
-    }
-
-    /// The robot's own transitions, which are taken at once.
-    fn jump(&self, robot: &mut Robot) -> Result<(), NodeError> {
-        for _ in 0..MOST_JUMPS {
-            robot.measure();
-            if robot.step_mission(&self.mission)?.is_none()
-                && robot.step_role(&self.roles)?.is_none()
-            {
-                return Ok(());
-            }
-        }
-        Err(NodeError::Zeno { robot: robot.beacon().sender })
-    }
-
-    fn stir_access_point(
-        &self,
-        mut access_point: Box<AccessPoint>,
-        mut heard: Vec<BeaconId>,
-        stimulus: &Stimulus,
-    ) -> (Node, Vec<BeaconId>) {
-        if let Stimulus::Hear(beacons) | Stimulus::Round(beacons) = stimulus {
-            heard.clone_from(beacons);
-            access_point.hear(heard.iter().map(|&beacon| &self.beacons[beacon as usize]));
-        }
-        if !matches!(stimulus, Stimulus::Hear(_)) && access_point.number() == 0 {
-            access_point.speak_for_user(&self.tasks);
-        }
-        access_point.drain_log();
-        (Node::AccessPoint(access_point), heard)
     }
 }

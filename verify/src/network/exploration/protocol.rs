@@ -3,13 +3,14 @@
 use std::fmt;
 use std::sync::Arc;
 
-use pleach_automaton::network::access_point::AccessPoint;
 use pleach_automaton::network::beacon::Notice;
-use pleach_automaton::network::{Robot, Site, SiteError};
+use pleach_automaton::network::robot::RobotError;
+use pleach_automaton::network::{AccessPoint, Message, Robot, Site, SiteError};
+use pleach_automaton::node::Input;
 use pleach_discrete::network::NodeId;
 
 use super::medium::{Copied, Faults, Medium};
-use super::node::{BeaconId, Local, LocalId, Node, NodeError, Nodes, Stimulus};
+use super::node::{BeaconId, Local, LocalId, Node, Nodes, Stimulus};
 use super::places::{Place, Places};
 use crate::exploration::Model;
 
@@ -129,7 +130,7 @@ pub enum ProtocolError {
     Site(#[from] SiteError),
     /// A node cannot go on.
     #[error(transparent)]
-    Node(#[from] NodeError),
+    Node(#[from] RobotError),
 }
 
 /// The composed protocol as a model to explore.
@@ -151,15 +152,26 @@ impl Protocol {
         let scenario = places.scenario();
         let site = Arc::new(Site::new(&scenario)?.measured_by(places.clone()));
         let positions = (0..places.count()).map(|place| places.position(place)).collect();
-        let mut nodes = Nodes::new(positions, places.task_positions())?;
+        let mut nodes = Nodes::new(positions);
         let robots = scenario.robot.iter().enumerate().map(|(id, start)| {
             let robot = Robot::new(id, start.position.into(), start.rate, Arc::clone(&site));
             Node::Robot(Box::new(robot))
         });
         let access_points = (0..scenario.access_point.len())
-            .map(|number| Node::AccessPoint(Box::new(AccessPoint::new(number, Arc::clone(&site)))));
-        let locals =
-            robots.chain(access_points).map(|node| nodes.take_up(node, Vec::new())).collect();
+            .map(|number| AccessPoint::new(number, Arc::clone(&site)))
+            .map(|access_point| Node::AccessPoint(Box::new(access_point)));
+        let user = scenario.robot.len() + scenario.access_point.len();
+        let request = Message::Request(places.task_positions().into());
+        let mut locals = Vec::with_capacity(user);
+        for mut node in robots.chain(access_points) {
+            // The first control period begins, and has no end until the explorer says so.
+            node.step(Input::Tick)?;
+            if locals.len() == scenario.robot.len() {
+                node.step(Input::Heard { from: user, message: &request })?;
+            }
+            locals.push(nodes.take_up(node, Vec::new()));
+        }
+        let locals = locals.into();
         let Configuration { medium, contacts, .. } = configuration;
         let round = medium.period().unwrap_or(0);
         let faults = medium.faults();
@@ -170,7 +182,7 @@ impl Protocol {
     }
 
     /// Rounds until nobody has anything new to say.
-    fn settle(&mut self) -> Result<(), NodeError> {
+    fn settle(&mut self) -> Result<(), RobotError> {
         loop {
             let mut next = self.initial.clone();
             let heard = self.all_heard(&next);
@@ -259,7 +271,7 @@ impl Protocol {
         &mut self,
         state: &State,
         stimulus: impl Fn(NodeId) -> Stimulus,
-    ) -> Result<Arc<[LocalId]>, NodeError> {
+    ) -> Result<Arc<[LocalId]>, RobotError> {
         state
             .locals
             .iter()
@@ -273,7 +285,7 @@ impl Protocol {
         state: &State,
         node: NodeId,
         stimulus: Stimulus,
-    ) -> Result<State, NodeError> {
+    ) -> Result<State, RobotError> {
         let mut next = state.clone();
         let local = self.nodes.after(state.locals[node], stimulus)?;
         if local != state.locals[node] {
@@ -327,7 +339,7 @@ impl Protocol {
 
     // ---- What may happen ---------------------------------------------------------------------
 
-    fn bodies(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
+    fn bodies(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let mut found = Vec::new();
         let period = self.configuration.medium.period();
         if period.is_some_and(|rounds| state.round < rounds) {
@@ -354,7 +366,7 @@ impl Protocol {
     }
 
     /// A control period: long enough for all news to be heard.
-    fn period(&mut self, state: &State) -> Result<State, NodeError> {
+    fn period(&mut self, state: &State) -> Result<State, RobotError> {
         let robots = self.configuration.places.robots();
         let still: Vec<u32> = (0..robots).map(|robot| self.stillness(state, robot)).collect();
         let mut next = state.clone();
@@ -366,7 +378,7 @@ impl Protocol {
     }
 
     /// The user speaks when nothing is under way.
-    fn announcement(&mut self, state: &State) -> Result<Option<State>, NodeError> {
+    fn announcement(&mut self, state: &State) -> Result<Option<State>, RobotError> {
         let first = self.configuration.places.robots();
         let is_due = matches!(
             self.nodes.local(state.locals[first]).notice(),
@@ -382,7 +394,7 @@ impl Protocol {
     ///
     /// # Errors
     /// When a node cannot go on.
-    pub fn faultless_steps(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
+    pub fn faultless_steps(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let mut found = self.messages(state)?;
         let everything_is_known = found.is_empty();
         found.extend(self.bodies(state)?);
@@ -402,13 +414,13 @@ impl Protocol {
 impl Model for Protocol {
     type State = State;
     type Action = Action;
-    type Error = NodeError;
+    type Error = RobotError;
 
-    fn initial(&mut self) -> Result<Vec<State>, NodeError> {
+    fn initial(&mut self) -> Result<Vec<State>, RobotError> {
         Ok(vec![self.initial.clone()])
     }
 
-    fn successors(&mut self, state: &State) -> Result<Vec<(Action, State)>, NodeError> {
+    fn successors(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let mut found = self.faultless_steps(state)?;
         found.extend(self.faulty_rounds(state)?);
         Ok(found)

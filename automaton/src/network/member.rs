@@ -1,0 +1,117 @@
+//! The nodes of the network: robots, access points and the user.
+
+use std::sync::Arc;
+
+use pleach_continuous::Point;
+
+use super::access_point::AccessPoint;
+use super::message::Message;
+use super::record::MissionEvent;
+use super::robot::{Robot, RobotError};
+use super::user::User;
+use crate::node::{Input, Node, Observed, Outputs};
+
+/// A node of the network.
+#[derive(Clone, Debug)]
+pub enum Member {
+    /// A robot.
+    Robot(Box<Robot>),
+    /// An access point.
+    AccessPoint(Box<AccessPoint>),
+    /// The user.
+    User(Box<User>),
+}
+
+/// What a node senses, or is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sense {
+    /// A robot finds itself here.
+    Position(Point),
+    /// A person wants these tasks done, in their order.
+    Tasks(Arc<[Point]>),
+}
+
+/// A node as observers see it.
+#[derive(Clone, Copy, Debug)]
+pub enum MemberView<'a> {
+    /// A robot.
+    Robot(&'a Robot),
+    /// An access point.
+    AccessPoint(&'a AccessPoint),
+    /// The user.
+    User(&'a User),
+}
+
+impl<'a> MemberView<'a> {
+    /// The robot, if it is one.
+    pub const fn robot(self) -> Option<&'a Robot> {
+        match self {
+            MemberView::Robot(robot) => Some(robot),
+            _ => None,
+        }
+    }
+
+    /// The user, if it is one.
+    pub const fn user(self) -> Option<&'a User> {
+        match self {
+            MemberView::User(user) => Some(user),
+            _ => None,
+        }
+    }
+}
+
+impl Node for Member {
+    type Message = Message;
+    type Sense = Sense;
+    type Report = MissionEvent;
+    type Body = Point;
+    type Error = RobotError;
+
+    fn step(
+        &mut self,
+        input: Input<'_, Message, Sense>,
+        outputs: &mut Outputs<Message, MissionEvent>,
+    ) -> Result<(), RobotError> {
+        match self {
+            Member::Robot(robot) => robot.step(input, outputs),
+            Member::AccessPoint(access_point) => access_point.step(input, outputs),
+            Member::User(user) => user.step(input, outputs),
+        }
+    }
+
+    fn time_to_tick(&self) -> Option<f64> {
+        match self {
+            Member::Robot(robot) => robot.time_to_tick(),
+            Member::AccessPoint(access_point) => access_point.time_to_tick(),
+            Member::User(user) => user.time_to_tick(),
+        }
+    }
+
+    fn flow(&mut self, duration: f64) {
+        match self {
+            Member::Robot(robot) => robot.flow(duration),
+            Member::AccessPoint(access_point) => access_point.flow(duration),
+            Member::User(user) => user.flow(duration),
+        }
+    }
+
+    fn body(&self) -> Point {
+        match self {
+            Member::Robot(robot) => robot.body(),
+            Member::AccessPoint(access_point) => access_point.body(),
+            Member::User(user) => user.body(),
+        }
+    }
+}
+
+impl Observed for Member {
+    type View<'a> = MemberView<'a>;
+
+    fn view(&self) -> MemberView<'_> {
+        match self {
+            Member::Robot(robot) => MemberView::Robot(robot),
+            Member::AccessPoint(access_point) => MemberView::AccessPoint(access_point),
+            Member::User(user) => MemberView::User(user),
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! Nodes and the medium between them, composed to a system.
+//!
+//! # Rounds
+//!
+//! A round of jumps is the delivery of all messages that arrive now; if none does, because none is
+//! on its way or the medium has lost them, it is the tick
+//! of every node whose clock is due, in ascending order. Messages that are sent in a round are
+//! given to the medium at its end. So a message that takes no time is heard, and all that is said
+//! in answer, before any clock ticks again. Steps of different nodes in one round do not see each
+//! other: the ticks of a round are one joint jump, and so are its deliveries.
+
+use std::convert::Infallible;
+
+use super::{Input, Medium, Node, NodeId, Observed, Outputs};
+use crate::executor::{Round, System};
+
+/// A joint jump of an ensemble; who takes part stands in the trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum NodeJump {
+    /// Clocks tick.
+    Ticked,
+    /// Messages arrive.
+    Heard,
+}
+
+/// Nodes of one type, with the medium that carries their messages.
+///
+/// It knows of its nodes nothing but that they are nodes, so that nothing goes from one to
+/// another past the medium.
+#[derive(Debug)]
+pub struct Ensemble<N: Node, M> {
+    nodes: Vec<N>,
+    medium: M,
+    outputs: Outputs<N::Message, N::Report>,
+    bodies: Vec<N::Body>,
+    has_moved: bool,
+    /// Who takes part in the current jump.
+    takes_part: Vec<bool>,
+}
+
+impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
+    /// These nodes, numbered from 0, over this medium.
+    pub fn new(nodes: Vec<N>, medium: M) -> Self {
+        Ensemble {
+            bodies: Vec::with_capacity(nodes.len()),
+            takes_part: vec![false; nodes.len()],
+            outputs: Outputs::of(0),
+            has_moved: true,
+            nodes,
+            medium,
+        }
+    }
+
+    /// The number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there is no node.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// The medium.
+    pub const fn medium(&self) -> &M {
+        &self.medium
+    }
+
+    /// A node senses something, or a person asks it for something; nothing if there is no such
+    /// node.
+    ///
+    /// # Errors
+    ///
+    /// The error of the node.
+    pub fn sense(&mut self, node: NodeId, sensed: N::Sense) -> Result<(), N::Error> {
+        self.look_round();
+        if let Some(known) = self.nodes.get_mut(node) {
+            known.step(Input::Sensed(sensed), self.outputs.now_of(node))?;
+            self.send();
+        }
+        Ok(())
+    }
+
+    /// What the nodes have told observers since the last call, in its order.
+    pub fn drain_reports(&mut self) -> std::vec::Drain<'_, (NodeId, N::Report)> {
+        self.outputs.drain_reports()
+    }
+
+    /// Tells the medium where the nodes are, if time has passed.
+    fn look_round(&mut self) {
+        if std::mem::take(&mut self.has_moved) {
+            self.bodies.clear();
+            self.bodies.extend(self.nodes.iter().map(Node::body));
+            self.medium.update(&self.bodies);
+        }
+    }
+
+    fn send(&mut self) {
+        for envelope in self.outputs.drain_sent() {
+            self.medium.send(envelope);
+        }
+    }
+
+    /// Says whether anything was heard.
+    fn deliver(&mut self) -> Result<bool, N::Error> {
+        let Ensemble { nodes, medium, outputs, takes_part, .. } = self;
+        let mut is_heard = false;
+        medium.deliver(|delivery| {
+            let Some(node) = nodes.get_mut(delivery.to) else { return Ok(()) };
+            is_heard = true;
+            takes_part[delivery.to] = true;
+            let input = Input::Heard { from: delivery.from, message: delivery.message };
+            node.step(input, outputs.now_of(delivery.to))
+        })?;
+        Ok(is_heard)
+    }
+
+    /// Says whether any clock was due.
+    fn tick(&mut self) -> Result<bool, N::Error> {
+        let mut was_due = false;
+        for (id, node) in self.nodes.iter_mut().enumerate() {
+            if node.time_to_tick().is_some_and(|wait| wait <= 0.0) {
+                node.step(Input::Tick, self.outputs.now_of(id))?;
+                (was_due, self.takes_part[id]) = (true, true);
+            }
+        }
+        Ok(was_due)
+    }
+
+    fn record(&mut self, round: &mut Round<'_, NodeJump>, jump: NodeJump) {
+        if self.takes_part.iter().all(|&takes_part| takes_part) {
+            round.jumped_together(jump);
+        } else {
+            let took_part = |&id: &NodeId| self.takes_part[id];
+            round.jumped_some((0..self.nodes.len()).filter(took_part).collect(), jump);
+        }
+        self.takes_part.fill(false);
+    }
+}
+
+impl<N: Node + Observed, M> Ensemble<N, M> {
+    /// What observers see of each node, by number.
+    pub fn views(&self) -> impl ExactSizeIterator<Item = N::View<'_>> {
+        self.nodes.iter().map(Observed::view)
+    }
+
+    /// What observers see of one node, if there is one with this number.
+    pub fn view(&self, node: NodeId) -> Option<N::View<'_>> {
+        self.nodes.get(node).map(Observed::view)
+    }
+}
+
+impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
+    type Jump = NodeJump;
+    type Finish = Infallible;
+    type Error = N::Error;
+
+    fn finished(&self) -> Option<Infallible> {
+        None
+    }
+
+    fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), N::Error> {
+        self.look_round();
+        let arrives = self.medium.time_to_arrival().is_some_and(|wait| wait <= 0.0);
+        if arrives && self.deliver()? {
+            self.send();
+            self.record(round, NodeJump::Heard);
+        } else if self.tick()? {
+            self.send();
+            self.record(round, NodeJump::Ticked);
+        }
+        Ok(())
+    }
+
+    fn time_to_jump(&self) -> Result<Option<f64>, N::Error> {
+        let ticks = self.nodes.iter().filter_map(Node::time_to_tick);
+        Ok(ticks.chain(self.medium.time_to_arrival()).reduce(f64::min))
+    }
+
+    fn flow(&mut self, duration: f64) -> Result<(), N::Error> {
+        self.nodes.iter_mut().for_each(|node| node.flow(duration));
+        self.medium.flow(duration);
+        self.has_moved = true;
+        Ok(())
+    }
+}
