@@ -125,17 +125,18 @@
 //!
 //! # An automaton
 //!
-//! The discrete behaviour of a robot is two automata over its state. They are values too: the same
+//! The discrete behaviour of a robot is a few automata over its state. They are values too: the same
 //! tables that run can be asked and drawn.
 //!
 //! ```
-//! use pleach::automaton::{diagram, network::role_automaton};
-//! use pleach::discrete::network::{Role, RoleEvent};
+//! use pleach::automaton::{diagram, network::duty_automaton};
+//! use pleach::discrete::network::{Activity, DutyEvent};
 //!
-//! let automaton = role_automaton()?;
-//! assert_eq!(automaton.table().next(Role::Node, RoleEvent::Elected), Ok(Role::Leader));
-//! // A leaf services a task: it goes only where another robot has come in its place, or to lead.
-//! assert!(automaton.table().next(Role::Leaf, RoleEvent::Retired).is_err());
+//! let automaton = duty_automaton()?;
+//! let duties = automaton.table();
+//! assert_eq!(duties.next(Activity::Standby, DutyEvent::Elected), Ok(Activity::Leading));
+//! // A leaf services a task: it goes only where another robot has come in its place.
+//! assert!(duties.next(Activity::Leaf, DutyEvent::Retired).is_err());
 //! assert!(diagram::mermaid(&automaton).starts_with("stateDiagram-v2"));
 //! # Ok::<(), pleach::automaton::BuildError>(())
 //! ```

@@ -17,7 +17,7 @@ use crate::automaton::network::{KernelTimes, Message, Network, NetworkError};
 use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use crate::continuous::Point;
-use crate::discrete::network::ROLES;
+use crate::discrete::network::activity::may_follow;
 use crate::verify::network::{Extremes, Monitor};
 
 /// Something that watches a mission.
@@ -96,9 +96,8 @@ pub fn run_network<M: Medium<Message, Point>>(
     network: &mut Network<M>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    let is_transition = |from, to| ROLES.enabled(from).any(|row| row.target == to);
     let mut gallery = Gallery {
-        monitor: Monitor::new(scenario, is_transition),
+        monitor: Monitor::new(scenario, may_follow),
         watchers,
         failure: None,
         saturated: Vec::new(),

@@ -9,8 +9,9 @@ use std::{fs, io};
 
 use crate::generated::{is_update, read, root};
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
+use pleach::automaton::network::robot::GLOSSARY;
 use pleach::automaton::network::scenario::{Control, Scenario, ValidScenario};
-use pleach::automaton::network::{mission_automaton, role_automaton};
+use pleach::automaton::network::{dealing_automaton, duty_automaton, mission_automaton};
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::figures::Album;
@@ -45,8 +46,8 @@ fn keep_up_to_date(path: &str, document: &str) {
 // ---- The automata ------------------------------------------------------------------------------
 
 #[test]
-fn the_drawing_of_the_role_automaton_is_up_to_date() {
-    keep_up_to_date("docs/pictures/role.svg", &diagram::svg(&role_automaton().unwrap()));
+fn the_drawing_of_the_duty_automaton_is_up_to_date() {
+    keep_up_to_date("docs/pictures/duty.svg", &diagram::svg(&duty_automaton().unwrap()));
 }
 
 #[test]
@@ -55,12 +56,20 @@ fn the_drawing_of_the_mission_automaton_is_up_to_date() {
 }
 
 #[test]
+fn the_drawing_of_the_exchange_automaton_is_up_to_date() {
+    keep_up_to_date("docs/pictures/exchange.svg", &diagram::svg(&dealing_automaton().unwrap()));
+}
+
+#[test]
 fn the_page_on_the_automata_is_up_to_date() {
-    let (role, mission) = (role_automaton().unwrap(), mission_automaton().unwrap());
+    let (duty, mission) = (duty_automaton().unwrap(), mission_automaton().unwrap());
+    let dealing = dealing_automaton().unwrap();
     let page = format!(
-        "{INTRODUCTION}\n{}\n{}",
-        chapter("The role of a robot", "role", ROLE, &role),
+        "{INTRODUCTION}\n{}\n{}\n{}\n{}",
+        chapter("The duty of a robot", "duty", DUTY, &duty),
         chapter("The mission as one robot sees it", "mission", MISSION, &mission),
+        chapter("The exchange of duties", "exchange", EXCHANGE, &dealing),
+        glossary(),
     );
     keep_up_to_date("docs/automata.md", &page);
 }
@@ -68,19 +77,24 @@ fn the_page_on_the_automata_is_up_to_date() {
 const INTRODUCTION: &str = "\
 <!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it documents -->
 
-# The two automata of a robot
+# The automata of a robot
 
-Every robot runs two automata over its own state. This page is written by the library from the
+Every robot runs these automata over its own state. This page is written by the library from the
 transition tables, guards and resets that the robots run. A transition reads `event [guard] /
 reset (urgency, priority)`; all of them are taken *at once*, and where several could be, the
-smaller priority goes first. The words in the guards are the facts that a robot measures of
-itself; yes-or-no facts are 0 or 1. They are explained where they are measured, in
-[`facts.rs`](../automaton/src/network/robot/facts.rs).
+smaller priority goes first. The names in the guards are quantities and propositions that a robot
+measures of itself; the last section lists them.
 ";
 
-const ROLE: &str = "\
-The role says what a robot is for the network. It is read off the robot's duty, so that its
-transitions reset nothing.
+const DUTY: &str = "\
+The duty says what a robot does for the network. Each location owns the data that it needs, and a
+reset is a function from the data of one location to that of the next. The paper's role follows from
+the duty: a robot on standby is *redundant*; a relay, a follower and a robot that shifts along Σ are
+*nodes*, the first of Σ the *recruit*; junction, leaf and leader are called as they are.
+";
+
+const EXCHANGE: &str = "\
+A mover that cannot pass a parked robot exchanges duties with it: it offers its own, the parked robot\ngives its duty in return, the mover takes that, and the parked robot takes the one offered. From the\noffer to the end neither takes a step of the mission. Where a transition takes a duty, the duty\nautomaton jumps with it.
 ";
 
 const MISSION: &str = "\
@@ -88,6 +102,12 @@ The phase says where the mission stands for this robot. Transitions of priority 
 word that the robot has heard; those of priority 1 are what it finds out itself, and their resets
 issue the next word. Robots are in different phases while a word spreads.
 ";
+
+fn glossary() -> String {
+    let rows = GLOSSARY.iter().map(|(name, text)| format!("| `{name}` | {} |\n", text.trim()));
+    let rows: String = rows.collect();
+    format!("## What the guards speak of\n\n| name | meaning |\n| --- | --- |\n{rows}")
+}
 
 fn chapter<L: Location, E: Event, S: Valuation>(
     title: &str,

@@ -64,7 +64,7 @@ pub enum BuildError {
         /// The location.
         location: &'static str,
     },
-    /// Two rows share source and event.
+    /// Two rows share source and event, and do not both have a guard of their own.
     #[error("two rows of the table leave location `{location}` on event `{event}`: keep one")]
     Nondeterministic {
         /// The source of the rows.
@@ -209,7 +209,8 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         self
     }
 
-    /// One more transition, with a guard and a reset of its own.
+    /// One more transition, with a guard and a reset of its own. Several may leave one location on
+    /// one event; where the guards of more than one hold, priority and order of declaration decide.
     pub fn transition(mut self, edge: Edge<L, E, S>) -> Self {
         self.edges.push((self.rows.len(), edge.guard, edge.reset));
         self.rows.push(edge.row);
@@ -334,9 +335,15 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     }
 
     fn check_table(&self) -> Result<(), BuildError> {
-        if let Some(row) = self.table().conflict() {
-            let (location, event) = (row.source.name(), row.event.name());
-            return Err(BuildError::Nondeterministic { location, event });
+        let has_own = |number: usize| self.edges.iter().any(|(edge, ..)| *edge == number);
+        for (number, row) in self.rows.iter().enumerate() {
+            let same =
+                |earlier: &Row<L, E>| (earlier.source, earlier.event) == (row.source, row.event);
+            let mut earlier = (0..number).filter(|&earlier| same(&self.rows[earlier]));
+            if earlier.any(|earlier| !(has_own(earlier) && has_own(number))) {
+                let (location, event) = (row.source.name(), row.event.name());
+                return Err(BuildError::Nondeterministic { location, event });
+            }
         }
         let rows = &self.rows;
         let occurs = rows.iter().any(|row| [row.source, row.target].contains(&self.initial));
@@ -420,10 +427,6 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             parts.push(Part::reading(location.name(), "invariant", invariant));
         }
         parts
-    }
-
-    fn table(&self) -> TransitionTable<'_, L, E> {
-        TransitionTable::new(&self.rows)
     }
 
     fn transition_of(

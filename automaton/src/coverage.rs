@@ -142,7 +142,7 @@ impl Coverage {
         for (number, component) in components.iter_mut().enumerate() {
             component.enter_initial(trajectory, number);
             for phase in trajectory.phases() {
-                component.see(phase, number)?;
+                component.see(&phase, number)?;
             }
         }
         for one in trajectory.jumps().iter().flat_map(|jump| &jump.moves) {
@@ -261,7 +261,7 @@ impl ComponentCoverage {
     }
 
     fn enter_initial(&mut self, trajectory: &Trajectory, number: usize) {
-        let first = trajectory.phases().first().and_then(|phase| phase.locations.get(number));
+        let first = trajectory.initial.get(number);
         if let Some(location) = first.and_then(|&first| self.locations.get_mut(first)) {
             location.entered += 1;
         }

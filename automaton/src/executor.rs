@@ -79,6 +79,7 @@ use std::ops::ControlFlow;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::moment::Moment;
 use crate::time::HybridTime;
 use crate::trace::{Participants, TraceEntry};
 use crate::zeno::{Zeno, ZenoDetector};
@@ -111,6 +112,16 @@ pub trait System {
     ///
     /// Whatever keeps the system from going on.
     fn time_to_jump(&self) -> Result<Option<f64>, Self::Error>;
+
+    /// The instant of that jump, where `now` is the present: [`time_to_jump`](Self::time_to_jump)
+    /// from now, unless the system knows it better than to the rounding of a duration.
+    ///
+    /// # Errors
+    ///
+    /// Whatever keeps the system from going on.
+    fn next_jump(&self, now: Moment) -> Result<Option<Moment>, Self::Error> {
+        Ok(self.time_to_jump()?.map(|wait| now + Moment::from(wait)))
+    }
 
     /// Lets `duration` > 0 seconds pass, at most [`time_to_jump`](Self::time_to_jump). If it is
     /// exactly that, the transition must be enabled afterwards, whatever rounding does: the flow
@@ -175,7 +186,12 @@ impl<J> Round<'_, J> {
 pub struct Executor {
     horizon: f64,
     round_limit: u32,
+    detects_zeno: bool,
 }
+
+/// Jumps closer than so many spacings of the numbers around the present time count as jumps at one
+/// instant: what is measured of the time between them is mostly rounding.
+const SPACINGS: f64 = 16.0;
 
 /// When and why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -199,10 +215,45 @@ pub enum Reason<F> {
     /// A timelock: a transition is due, so that time cannot pass, and none can be taken. It also
     /// stands for a time to the next jump that is too short to change t, negative, or NaN.
     Blocked,
-    /// More rounds of jumps at one instant than allowed.
+    /// More rounds of jumps at one instant than allowed, or at instants only a few spacings of the
+    /// numbers apart.
     JumpLimit,
+    /// As for a jump limit, in a composition of which it is known why: the flows of two locations
+    /// lead to the boundary between them, so that neither can be followed.
+    Sliding(Sliding),
+    /// The run is as long or as large as the settings allow.
+    Limit(Limit),
     /// Jumps come ever faster and add up at an instant before the horizon.
     Zeno(Zeno),
+}
+
+/// Two locations of a component whose flows both lead to the boundary between them. A solution in
+/// the sense of Filippov (1988, doi:10.1007/978-94-015-7793-9) would slide along the boundary by a
+/// mixture of the two flows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sliding {
+    /// The component.
+    pub component: usize,
+    /// The locations, as numbers.
+    pub locations: [usize; 2],
+    /// The share of the second location's flow in the mixture that stays on the boundary, between 0
+    /// and 1.
+    pub share: f64,
+}
+
+/// What a run was allowed to use up, and has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Error)]
+#[non_exhaustive]
+pub enum Limit {
+    /// Jumps.
+    #[error("the run has taken all {0} jumps that it may")]
+    Jumps(u64),
+    /// Pieces of flows and spans of time examined for events.
+    #[error("the run has taken all {0} steps that it may")]
+    Steps(u64),
+    /// Memory for the trajectory, in bytes.
+    #[error("the trajectory has filled all {0} bytes that it may")]
+    Memory(u64),
 }
 
 impl Reason<Infallible> {
@@ -213,6 +264,8 @@ impl Reason<Infallible> {
             Reason::Horizon => Reason::Horizon,
             Reason::Blocked => Reason::Blocked,
             Reason::JumpLimit => Reason::JumpLimit,
+            Reason::Sliding(sliding) => Reason::Sliding(sliding),
+            Reason::Limit(limit) => Reason::Limit(limit),
             Reason::Zeno(zeno) => Reason::Zeno(zeno),
         }
     }
@@ -249,7 +302,13 @@ impl Executor {
         if round_limit == 0 {
             return Err(InvalidLimit::NoRound);
         }
-        Ok(Executor { horizon, round_limit })
+        Ok(Executor { horizon, round_limit, detects_zeno: true })
+    }
+
+    /// The same, without looking at whether jumps accumulate: for systems that do so themselves.
+    #[must_use]
+    pub fn without_zeno_detection(self) -> Self {
+        Executor { detects_zeno: false, ..self }
     }
 
     /// Runs `system` from hybrid time (0, 0) to its end, by the semantics of the [module](self).
@@ -263,7 +322,10 @@ impl Executor {
         observer: &mut impl Observer<S>,
     ) -> Result<Ending<S::Finish>, S::Error> {
         let mut now = HybridTime::START;
+        // t is the number nearest to this; summing durations loses nothing.
+        let mut clock = Moment::default();
         let mut rounds = 0;
+        let mut has_jumped = false;
         let mut zeno = ZenoDetector::new(self.horizon);
         let reason = loop {
             if let Some(finish) = system.finished() {
@@ -272,19 +334,23 @@ impl Executor {
             let before = now;
             now = take_round(system, observer, now)?;
             if now > before {
+                has_jumped = true;
                 rounds += 1;
                 if rounds > self.round_limit {
                     break Reason::JumpLimit;
                 }
                 continue;
             }
-            let left = self.horizon - now.t;
-            if left <= 0.0 {
+            if now.t >= self.horizon {
                 break Reason::Horizon;
             }
-            let wait = system.time_to_jump()?.unwrap_or(f64::INFINITY);
-            let duration = wait.min(left);
-            let passes = wait > 0.0 && now.t + duration > now.t;
+            let due = system.next_jump(clock)?.unwrap_or(Moment::from(f64::INFINITY));
+            // Jumps whose instant is nearest to the horizon are taken.
+            let next = if due.seconds() > self.horizon { Moment::from(self.horizon) } else { due };
+            let duration = (next - clock).seconds();
+            let t = next.seconds();
+            // Too short a time to change t may pass between jumps, but not twice in a row.
+            let passes = t > now.t || duration > 0.0 && t == now.t && has_jumped;
             if !passes {
                 break Reason::Blocked;
             }
@@ -292,18 +358,16 @@ impl Executor {
                 break Reason::Interrupted(finish);
             }
             system.flow(duration)?;
-            now = if wait < left { now.after_flow(wait) } else { self.at_horizon(now) };
-            rounds = 0;
-            if let Some(zeno) = zeno.after_flow(now.t, duration) {
+            has_jumped = false;
+            if t - now.t > SPACINGS * f64::EPSILON * t {
+                rounds = 0;
+            }
+            (clock, now) = (next, HybridTime { t, ..now });
+            if let Some(zeno) = zeno.after_flow(now.t, duration).filter(|_| self.detects_zeno) {
                 break Reason::Zeno(zeno);
             }
         };
         Ok(Ending { at: now, reason })
-    }
-
-    /// Set and not added up, so that rounding cannot leave a rest.
-    fn at_horizon(&self, now: HybridTime) -> HybridTime {
-        HybridTime { t: self.horizon, ..now }
     }
 }
 

@@ -29,6 +29,7 @@ pub mod edge;
 pub mod executor;
 pub mod flow;
 pub mod located;
+pub mod moment;
 #[cfg(feature = "network")]
 pub mod network;
 pub mod node;
@@ -42,20 +43,23 @@ pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
 pub use builder::{BuildError, Builder};
 pub use check::{Finding, Report};
 pub use composition::{
-    Composition, CompositionBuilder, CompositionError, Exploration, ExplorationError, Failure,
-    Policy, ReplayError, Settings, Simulation, SimulationError,
+    Accumulation, Composition, CompositionBuilder, CompositionError, Exploration, ExplorationError,
+    Failure, Halt, Policy, ReplayError, Settings, Simulation, SimulationError,
 };
 pub use coordinates::{Coordinate, Coordinates, Vector};
 pub use coverage::{Coverage, CoverageError};
 pub use edge::{Edge, from};
-pub use executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
+pub use executor::{
+    Ending, Executor, InvalidLimit, Limit, Observer, Reason, Round, Sliding, System,
+};
 pub use flow::{Flow, Rate};
 pub use located::{Current, DataOf, Holds, Place, Transfer};
+pub use moment::Moment;
 pub use reset::{Assignment, Reset};
 pub use time::HybridTime;
 
 pub use trace::{Participants, Trace, TraceEntry};
-pub use trajectory::Trajectory;
+pub use trajectory::{Doubt, Trajectory, Why};
 pub use zeno::Zeno;
 
 // For the macros.

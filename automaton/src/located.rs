@@ -71,7 +71,7 @@
 use std::ops::Deref;
 
 use pleach_discrete::{Event, Location};
-use pleach_guards::{Guard, Valuation};
+use pleach_guards::{EvaluationError, Guard, Valuation};
 
 use crate::reset::Reset;
 
@@ -161,13 +161,38 @@ impl<L: Location, E: Event, S: 'static> Transfer<L, E, S> {
         B: DataOf<P>,
         S: Holds<P> + Valuation,
     {
-        let reset = Reset::new(name, move |state: &mut S| {
+        let total = move |data: &A, state: &S, effects: &mut S::Effects| {
+            Some(carry_over(data, state, effects))
+        };
+        Transfer::where_known(event, guard, name, total)
+    }
+
+    /// As [`new`](Self::new), where the state may lack the data that the target needs although the
+    /// guard holds: to take the transition then is an error, and the state is as before.
+    pub fn where_known<P, A, B>(
+        event: E,
+        guard: impl Into<Guard>,
+        name: &str,
+        carry_over: impl Fn(&A, &S, &mut S::Effects) -> Option<B> + Send + Sync + 'static,
+    ) -> Self
+    where
+        P: Place<Location = L>,
+        A: DataOf<P>,
+        B: DataOf<P>,
+        S: Holds<P> + Valuation,
+    {
+        let missing = |location: P::Location| {
+            let location = location.name();
+            move || EvaluationError::MissingData { location }
+        };
+        let reset = Reset::fallible(name, move |state: &mut S| {
             let mut effects = S::Effects::default();
-            // The table has led here from this very location.
-            let Some(data) = A::of(state.current()) else { return };
-            let target = carry_over(data, state, &mut effects).into_place();
+            let data = A::of(state.current()).ok_or_else(missing(A::LOCATION))?;
+            let target = carry_over(data, state, &mut effects);
+            let target = target.ok_or_else(missing(B::LOCATION))?.into_place();
             *state.current_mut() = Current(target);
             state.carry_out(effects);
+            Ok(())
         });
         Transfer { source: A::LOCATION, event, target: B::LOCATION, guard: guard.into(), reset }
     }

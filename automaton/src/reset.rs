@@ -73,6 +73,14 @@ impl<S> Reset<S> {
         Reset { form: Form::Function(name.into()), apply: Arc::new(apply) }
     }
 
+    /// The reset that `apply` carries out, which leaves the state as it is where it fails.
+    pub(crate) fn fallible(
+        name: &str,
+        apply: impl Fn(&mut S) -> Result<(), EvaluationError> + Send + Sync + 'static,
+    ) -> Self {
+        Reset { form: Form::Function(name.into()), apply: Arc::new(apply) }
+    }
+
     /// The reset that changes nothing, x⁺ = x⁻.
     pub fn identity() -> Self {
         Reset { form: Form::Assignments(Arc::new([])), apply: Arc::new(|_| Ok(())) }

@@ -1,5 +1,9 @@
 //! Trajectories: what a run went through, in full.
 
+mod doubt;
+mod strand;
+mod telling;
+
 use std::fmt;
 use std::io;
 
@@ -7,16 +11,21 @@ use pleach_guards::Valuation;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+pub use doubt::{Doubt, Why};
+pub(crate) use strand::{Strand, Stretch};
+
 use crate::composition::Move;
-use crate::composition::{Failure, Settings, Taken};
+use crate::composition::{Failure, Settings};
 use crate::executor::Ending;
 use crate::time::HybridTime;
 
 /// The run of a composition: a hybrid arc x(t, j) with the locations along it.
 ///
 /// It is a list of phases with a jump between any two: in phase j, between jump j − 1 and jump j,
-/// the locations rest and the state flows. What is written to a file and read back is equal to the
-/// bit.
+/// the locations rest and the state flows. The flows are kept as they were solved, in pieces that
+/// are polynomials in time, so that values can be read at every instant as exactly as at any other.
+/// Where it could not be told whether something happens, there is a [`Doubt`]. What is written to a
+/// file and read back is equal to the bit.
 ///
 /// ```
 /// use pleach_automaton::{coordinates, from, Automaton, Trajectory};
@@ -49,10 +58,13 @@ use crate::time::HybridTime;
 pub struct Trajectory {
     pub(crate) variables: Vec<String>,
     pub(crate) components: Vec<Participant>,
+    /// The locations at the start, by component.
+    pub(crate) initial: Vec<usize>,
     pub(crate) settings: Settings,
     pub(crate) horizon: f64,
-    pub(crate) phases: Vec<Phase>,
+    pub(crate) strands: Vec<Strand>,
     pub(crate) jumps: Vec<JumpRecord>,
+    pub(crate) doubts: Vec<Doubt>,
     pub(crate) ending: Ending<Failure>,
 }
 
@@ -66,17 +78,18 @@ pub struct Participant {
 }
 
 /// What lies between two jumps.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
     /// The locations of the components, as numbers in their lists.
     pub locations: Vec<usize>,
     /// At least one: the first is x⁺ of the jump before, the last x⁻ of the jump after. If no time
-    /// passes there is one only.
+    /// passes there is one only. They are close enough for cubics through them to look like the
+    /// trajectory.
     pub samples: Vec<Sample>,
 }
 
 /// The state at an instant.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     /// The instant, in seconds.
     pub t: f64,
@@ -120,8 +133,69 @@ impl Trajectory {
     }
 
     /// The phases in their order, one more than there are jumps.
-    pub fn phases(&self) -> &[Phase] {
-        &self.phases
+    ///
+    /// They are put together one by one from what each component went through; with many components
+    /// and jumps, [`values_at`](Self::values_at) and [`jumps`](Self::jumps) cost less.
+    pub fn phases(&self) -> impl ExactSizeIterator<Item = Phase> {
+        let mut locations = self.initial.clone();
+        (0..self.jumps.len() + 1).map(move |number| {
+            if let Some(jump) = number.checked_sub(1).and_then(|last| self.jumps.get(last)) {
+                for one in &jump.moves {
+                    locations[one.component] = one.target;
+                }
+            }
+            Phase { locations: locations.clone(), samples: self.samples_of(number) }
+        })
+    }
+
+    fn samples_of(&self, phase: usize) -> Vec<Sample> {
+        let [from, _] = self.ends_of(phase);
+        let instants = self.instants_of(phase).into_iter();
+        instants.map(|t| self.sample(HybridTime { t, ..from })).collect()
+    }
+
+    /// When the samples of a phase are taken.
+    fn instants_of(&self, phase: usize) -> Vec<f64> {
+        let [from, to] = self.ends_of(phase);
+        let mut instants = vec![from.t];
+        if to.t > from.t {
+            for strand in &self.strands {
+                let stretches = strand.during(from, to).iter();
+                stretches.for_each(|stretch| stretch.instants(from.t, to.t, &mut instants));
+            }
+            instants.sort_by(f64::total_cmp);
+            instants.dedup();
+            instants.push(to.t);
+        }
+        instants
+    }
+
+    /// The hybrid times between which a phase lies.
+    fn ends_of(&self, phase: usize) -> [HybridTime; 2] {
+        let j = u32::try_from(phase).unwrap_or(u32::MAX);
+        let from = phase.checked_sub(1).map_or(0.0, |last| self.jumps[last].at.t);
+        let to = self.jumps.get(phase).map_or(self.ending.at.t, |jump| jump.at.t);
+        [HybridTime { t: from, j }, HybridTime { t: to, j }]
+    }
+
+    /// The state at a hybrid time within the run.
+    fn sample(&self, at: HybridTime) -> Sample {
+        let (mut values, mut rates) =
+            (vec![0.0; self.variables.len()], vec![0.0; self.variables.len()]);
+        let mut own = Vec::new();
+        for strand in &self.strands {
+            let stretch = strand.stretch(at);
+            stretch.values(at.t, &mut own);
+            strand.slots.iter().zip(&own).for_each(|(&slot, &value)| values[slot] = value);
+            stretch.rates(at.t, &mut own);
+            strand.slots.iter().zip(&own).for_each(|(&slot, &rate)| rates[slot] = rate);
+        }
+        Sample { t: at.t, values, rates }
+    }
+
+    /// Where it could not be told whether something happens; see [`Doubt`].
+    pub fn doubts(&self) -> &[Doubt] {
+        &self.doubts
     }
 
     /// The jumps in their order: the discrete projection, or trace, of the run.
@@ -140,9 +214,10 @@ impl Trajectory {
     }
 
     /// Every sample in the order of hybrid time, with that time.
-    pub fn samples(&self) -> impl Iterator<Item = (HybridTime, &Sample)> {
-        (0..).zip(&self.phases).flat_map(|(j, phase)| {
-            phase.samples.iter().map(move |sample| (HybridTime { t: sample.t, j }, sample))
+    pub fn samples(&self) -> impl Iterator<Item = (HybridTime, Sample)> {
+        (0..).zip(self.phases()).flat_map(|(j, phase)| {
+            let samples = phase.samples.into_iter();
+            samples.map(move |sample| (HybridTime { t: sample.t, j }, sample))
         })
     }
 
@@ -152,28 +227,36 @@ impl Trajectory {
     }
 
     /// The values at instant `t`, after all jumps there; `None` outside the run.
-    ///
-    /// Between samples it is the cubic that has their values and rates.
     pub fn values_at(&self, t: f64) -> Option<Vec<f64>> {
-        let phase = self.phase_at(t)?;
-        let after = phase.samples.partition_point(|sample| sample.t <= t);
-        let before = phase.samples.get(after.checked_sub(1)?)?;
-        Some(match phase.samples.get(after) {
-            Some(after) => between(before, after, t),
-            None => before.values.clone(),
-        })
+        let at = self.last_at(t)?;
+        let mut values = vec![0.0; self.variables.len()];
+        let mut own = Vec::new();
+        for strand in &self.strands {
+            strand.stretch(at).values(t, &mut own);
+            strand.slots.iter().zip(&own).for_each(|(&slot, &value)| values[slot] = value);
+        }
+        Some(values)
     }
 
     /// The value of `variable` at instant `t`, after all jumps there; `None` outside the run and
     /// for a variable that does not exist.
     pub fn value(&self, variable: &str, t: f64) -> Option<f64> {
-        let place = self.variables.iter().position(|name| name == variable)?;
-        self.values_at(t).map(|values| values[place])
+        let slot = self.variables.iter().position(|name| name == variable)?;
+        let at = self.last_at(t)?;
+        let strand = self.strands.iter().find(|strand| strand.slots.contains(&slot))?;
+        let place = strand.slots.iter().position(|one| *one == slot)?;
+        let mut own = Vec::new();
+        strand.stretch(at).values(t, &mut own);
+        own.get(place).copied()
     }
 
     /// The location of a component at instant `t`, after all jumps there.
     pub fn location(&self, component: usize, t: f64) -> Option<&str> {
-        let location = *self.phase_at(t)?.locations.get(component)?;
+        let at = self.last_at(t)?;
+        let taken = self.jumps.iter().take(at.j as usize).rev();
+        let mut moves = taken.flat_map(|jump| &jump.moves);
+        let last = moves.find(|one| one.component == component).map(|one| one.target);
+        let location = last.or(self.initial.get(component).copied())?;
         self.components.get(component)?.locations.get(location).map(String::as_str)
     }
 
@@ -194,7 +277,7 @@ impl Trajectory {
     ///
     /// [`FileError::Json`] if the writer fails.
     pub fn write(&self, writer: impl io::Write) -> Result<(), FileError> {
-        Ok(serde_json::to_writer(writer, self)?)
+        Ok(serde_json::to_writer(io::BufWriter::new(writer), self)?)
     }
 
     /// Reads what [`write`](Self::write) has written.
@@ -203,7 +286,7 @@ impl Trajectory {
     ///
     /// [`FileError`] if it is something else.
     pub fn read(reader: impl io::Read) -> Result<Trajectory, FileError> {
-        let trajectory: Trajectory = serde_json::from_reader(reader)?;
+        let trajectory: Trajectory = serde_json::from_reader(io::BufReader::new(reader))?;
         trajectory.check()?;
         Ok(trajectory)
     }
@@ -211,45 +294,39 @@ impl Trajectory {
     /// What all other functions rely on.
     fn check(&self) -> Result<(), FileError> {
         let wrong = FileError::Inconsistent;
-        if self.phases.len() != self.jumps.len() + 1 {
-            return Err(wrong("between any two phases there must be a jump"));
+        let (variables, components) = (self.variables.len(), self.components.len());
+        if !self.strands.iter().all(|strand| strand.is_consistent(variables, components)) {
+            return Err(wrong(
+                "every flow needs a value for each of its variables, in order of time",
+            ));
         }
-        let width = self.variables.len();
-        for phase in &self.phases {
-            let sizes = phase.samples.iter().map(|one| (one.values.len(), one.rates.len()));
-            if phase.samples.is_empty() || sizes.into_iter().any(|sizes| sizes != (width, width)) {
-                return Err(wrong("every phase needs samples with a value for each variable"));
-            }
-            if !phase.samples.is_sorted_by(|one, next| one.t <= next.t) {
-                return Err(wrong("samples must be in the order of time"));
-            }
-            let known = phase.locations.iter().zip(&self.components);
-            if phase.locations.len() != self.components.len()
-                || known.into_iter().any(|(one, component)| *one >= component.locations.len())
-            {
-                return Err(wrong("every phase needs a location for each component"));
-            }
+        let mut slots: Vec<usize> =
+            self.strands.iter().flat_map(|strand| strand.slots.iter().copied()).collect();
+        slots.sort_unstable();
+        if !slots.into_iter().eq(0..variables) {
+            return Err(wrong("every variable needs one course"));
+        }
+        if !self.jumps.is_sorted_by(|one, next| one.at <= next.at) {
+            return Err(wrong("jumps must be in the order of time"));
+        }
+        let known = |component: usize, location: usize| {
+            self.components.get(component).is_some_and(|one| location < one.locations.len())
+        };
+        let mut moves = self.jumps.iter().flat_map(|jump| &jump.moves);
+        let initial = self.initial.iter().enumerate();
+        let starts = initial.clone().count() == components
+            && initial.into_iter().all(|(component, &location)| known(component, location));
+        if !(starts && moves.all(|one| known(one.component, one.target))) {
+            return Err(wrong("every component needs a location that it has"));
         }
         Ok(())
     }
 
-    /// The last phase that has begun at `t`.
-    fn phase_at(&self, t: f64) -> Option<&Phase> {
+    /// The last hybrid time of the run at `t`.
+    fn last_at(&self, t: f64) -> Option<HybridTime> {
         let within = t >= 0.0 && t <= self.ending.at.t;
-        let begun = self.phases.partition_point(|phase| phase.samples[0].t <= t);
-        within.then(|| self.phases.get(begun.checked_sub(1)?)).flatten()
-    }
-
-    pub(crate) fn jumped(&mut self, at: HybridTime, taken: Taken) {
-        let mut locations =
-            self.phases.last().map(|phase| phase.locations.clone()).unwrap_or_default();
-        for one in &taken.moves {
-            locations[one.component] = one.target;
-        }
-        let rates = vec![0.0; taken.values.len()];
-        let first = Sample { t: at.t, values: taken.values, rates };
-        self.phases.push(Phase { locations, samples: vec![first] });
-        self.jumps.push(JumpRecord { at, label: taken.label, moves: taken.moves });
+        let taken = self.jumps.partition_point(|jump| jump.at.t <= t);
+        within.then(|| HybridTime { t, j: u32::try_from(taken).unwrap_or(u32::MAX) })
     }
 }
 

@@ -67,7 +67,7 @@ fn automata_say_what_does_not_fit() {
             "the initial location `broken` occurs in no row of the table".into(),
         ),
         (
-            lamp().transition(from(Lamp::Off).on(Press::Push).to(Lamp::Broken).may(always())),
+            table(&[off_push, row(Lamp::Off, Press::Push, Lamp::Broken)], Lamp::Off),
             "two rows of the table leave location `off` on event `push`: keep one".into(),
         ),
         (
@@ -183,11 +183,7 @@ fn compositions_say_what_does_not_fit() {
                 .into(),
         ),
         (pair().label("knock"), "label `knock` is an event of no component".into()),
-        (
-            pair().rename("knock", "push"),
-            "event `knock` cannot be renamed: the component added last has none of that name"
-                .into(),
-        ),
+        (pair().rename("knock", "push"), "the component added last has no event `knock`".into()),
         (
             pair().connect("left.q", "right.noise"),
             "no component has the variable `right.noise`: write `component.coordinate`".into(),

@@ -11,6 +11,7 @@ mod diagrams;
 mod endings;
 mod error_messages;
 mod faulty_models;
+mod guarantees;
 mod many_components;
 mod pictures;
 mod sampled_rooms;

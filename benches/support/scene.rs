@@ -162,7 +162,7 @@ pub struct Crowd {
 impl Crowd {
     /// Robots that know nothing of each other yet.
     pub fn new(scene: &Scene) -> Self {
-        let mut scenario = scene.scenario.clone();
+        let mut scenario = scene.scenario.clone().into_scenario();
         scenario.control.rounds_per_period = Some(usize::MAX);
         let site = Arc::new(Site::new(&scenario).expect("a site"));
         let starts = scenario.robot.iter().enumerate();

@@ -75,10 +75,13 @@
 //! predicates over whole boxes of states by [`interval`] arithmetic; [`linear`] reads off the
 //! coefficients of affine expressions, [`derivative`] differentiates, [`substitution`] renames
 //! variables and applies resets, and [`normal_form`] resolves negations and lists alternatives.
-//! [`program`] compiles all of it for hot loops, and [`tape`] lists of expressions together.
+//! [`program`] compiles all of it for hot loops, and [`tape`] lists of expressions together;
+//! [`course`] follows predicates over time, with [`enclosure`]s of moving quantities.
 
+pub mod course;
 pub mod crossing;
 pub mod derivative;
+pub mod enclosure;
 pub mod expression;
 mod fold;
 pub mod function;
@@ -101,7 +104,9 @@ pub mod table;
 pub mod tape;
 pub mod valuation;
 
+pub use course::{Affine, Course, Tracked, Tracker};
 pub use crossing::{Crossing, Hysteresis, InvertedBand};
+pub use enclosure::Enclosure;
 pub use expression::{Expression, constant, maximum, minimum, norm, piecewise, variable};
 pub use function::NamedFunction;
 pub use guard::Guard;

@@ -193,7 +193,7 @@ impl Comparison {
 
 impl Relation {
     /// What is known about it between any numbers of two intervals.
-    fn truth(self, left: Interval, right: Interval) -> Truth {
+    pub(crate) fn truth(self, left: Interval, right: Interval) -> Truth {
         match self {
             Relation::AtMost => at_most(left, right),
             Relation::LessThan => at_most(right, left).opposite(),

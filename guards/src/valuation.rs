@@ -88,6 +88,11 @@ pub enum EvaluationError {
         /// The name asked for.
         proposition: String,
     },
+    /// The state lacks the data that a location needs to be entered.
+    MissingData {
+        /// The location.
+        location: &'static str,
+    },
     /// A part of an expression is not a number, such as 0 ÷ 0, ∞ − ∞ or √−1.
     ///
     /// This is an error and not a verdict: if a comparison with such a part did "not hold", its
@@ -106,6 +111,9 @@ impl fmt::Display for EvaluationError {
             }
             Self::UnknownProposition { proposition } => {
                 write!(formatter, "the state has no proposition `{proposition}`")
+            }
+            Self::MissingData { location } => {
+                write!(formatter, "the state lacks the data that location `{location}` needs")
             }
             Self::NotANumber { expression } => {
                 write!(formatter, "`{expression}` is not a number in this state")

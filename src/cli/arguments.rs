@@ -231,8 +231,10 @@ pub struct DiagramArguments {
 /// The automata that can be drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Automaton {
-    /// What a robot is for the network: redundant, recruit, node, junction, leaf, leader
-    Role,
+    /// What a robot does for the network, with the roles of the paper
+    Duty,
+    /// Where a robot stands in the exchange of duties with a robot in its way
+    Exchange,
     /// Where the mission stands: elections, advance, shifts of the secondary team
     Mission,
 }

@@ -2,7 +2,7 @@
 
 use super::arguments::{Automaton as Which, DiagramArguments, DiagramFormat};
 use super::status::{Failure, Status};
-use pleach::automaton::network::{mission_automaton, role_automaton};
+use pleach::automaton::network::{dealing_automaton, duty_automaton, mission_automaton};
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::guards::Valuation;
@@ -11,7 +11,8 @@ use pleach::guards::Valuation;
 pub fn print(arguments: &DiagramArguments) -> Result<Status, Failure> {
     let internal = |error: pleach::automaton::BuildError| Failure::Internal(error.to_string());
     let drawing = match arguments.automaton {
-        Which::Role => draw(&role_automaton().map_err(internal)?, arguments.format),
+        Which::Duty => draw(&duty_automaton().map_err(internal)?, arguments.format),
+        Which::Exchange => draw(&dealing_automaton().map_err(internal)?, arguments.format),
         Which::Mission => draw(&mission_automaton().map_err(internal)?, arguments.format),
     };
     println!("{}", drawing.trim_end());

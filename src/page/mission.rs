@@ -5,7 +5,7 @@ use std::io;
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach_automaton::network::scenario::{Scenario, Settings, ValidScenario};
 use pleach_continuous::geometry::{Destination, FreeSpace};
-use pleach_discrete::network::ROLES;
+use pleach_discrete::network::activity::may_follow;
 use pleach_verify::network::{Extreme, Monitor, Violation};
 use serde_json::{Map, Value, json};
 
@@ -50,12 +50,11 @@ impl MissionPage {
         let free_space = scenario.site().free_space.clone();
         let goal = |place: [f64; 2]| free_space.destination(free_space.nearest(place.into()));
         let decimals = (LENGTHS_PER_CLEARANCE / settings.clearance).log10().ceil();
-        let is_transition = |from, to| ROLES.enabled(from).any(|row| row.target == to);
         MissionPage {
             destinations: scenario.task.iter().map(|task| goal(task.position)).collect(),
             walls: Walls::new(&scenario.workspace),
             summary: Summary::new(scenario),
-            monitor: Monitor::new(scenario, is_transition),
+            monitor: Monitor::new(scenario, may_follow),
             violation: None,
             steps: Steps::new(decimals.clamp(0.0, 9.0) as i32),
             events: Vec::new(),

@@ -48,7 +48,7 @@ fn everything_holds_in_every_order_of_single_messages() {
     let places = Places::with_branches(2, 1, &[(0, 2), (1, 2)], &[(1, 1)]).unwrap();
     let medium = Medium::MessagesInAnyOrder;
     let states = states_of_sound(Configuration { places, medium, contacts: 0 });
-    assert_eq!(states, 208_278);
+    assert_eq!(states, 149_710);
 }
 
 /// Two access points, a leader that hangs on one of them and a recruit that hangs on the other and
@@ -58,7 +58,7 @@ fn who_joins_from_another_tree_and_does_not_get_there_says_why_not() {
     let graph = [(0, 1), (0, 3), (1, 2), (2, 3), (2, 4)];
     let places = Places::with_branches(3, 2, &graph, &[(4, 2)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
-    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 557);
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 522);
 }
 
 /// p₁ exchanges duties with a robot of a lower number, on whose post the one hangs that p₁ hangs
@@ -68,7 +68,7 @@ fn an_exchange_across_a_link_keeps_the_tree() {
     let graph = [(0, 1), (0, 3), (1, 4), (2, 3), (3, 4)];
     let places = Places::with_branches(4, 1, &graph, &[(1, 1)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
-    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 1_341);
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 1_332);
 }
 
 /// Two robots that hang on a third, which becomes the leader, and hear each other: they look for

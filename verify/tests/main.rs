@@ -4,5 +4,4 @@
 
 mod exploration;
 mod protocol;
-mod role_guards;
 mod temporal;

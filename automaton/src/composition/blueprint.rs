@@ -1,9 +1,14 @@
 //! An automaton without its types: what a composition of different automata runs.
 
+use std::fmt;
 use std::sync::Arc;
 
 use pleach_discrete::{Event, Location, Urgency};
-use pleach_guards::{CompiledPredicate, EvaluationError, LinearForm, Program};
+use pleach_guards::expression::{BinaryOperator, UnaryOperator};
+use pleach_guards::{
+    CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program, Tracker,
+    Verdict,
+};
 
 use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
@@ -26,7 +31,7 @@ pub(crate) struct Blueprint {
 pub(crate) struct Place {
     pub(crate) name: &'static str,
     pub(crate) motion: PlaceMotion,
-    pub(crate) invariant: Option<CompiledPredicate>,
+    pub(crate) invariant: Option<Condition>,
     /// In their total order.
     pub(crate) leaving: Vec<Leaving>,
 }
@@ -36,16 +41,31 @@ pub(crate) struct Leaving {
     pub(crate) event: usize,
     pub(crate) target: usize,
     pub(crate) urgency: Urgency,
-    pub(crate) guard: CompiledPredicate,
+    pub(crate) guard: Condition,
     pub(crate) change: Change,
 }
 
 /// A flow.
 pub(crate) enum PlaceMotion {
-    /// Coordinate, and its rate as a program and, where it is one, as a linear form.
-    Rates(Vec<(usize, Program, Option<LinearForm>)>),
+    Rates(Vec<RateProgram>),
     Field(Arc<FieldFunction>),
     Exact(Arc<Solution>),
+}
+
+/// A predicate ready to be evaluated in a state, and to be followed over time.
+pub(crate) struct Condition {
+    predicate: CompiledPredicate,
+    pub(crate) tracker: Tracker,
+}
+
+/// The rate of a coordinate.
+pub(crate) struct RateProgram {
+    pub(crate) coordinate: usize,
+    pub(crate) program: Program,
+    /// Where it is one.
+    pub(crate) form: Option<LinearForm>,
+    /// Follows the rate, where it could grow without bound.
+    pub(crate) tracker: Option<Tracker>,
 }
 
 /// A reset.
@@ -79,14 +99,18 @@ impl Blueprint {
                     event: position(E::ALL, transition.event),
                     target: target.index(),
                     urgency: transition.urgency,
-                    guard: transition.guard.predicate().compile(S::NAMES)?,
+                    guard: Condition::of(transition.guard.predicate(), S::NAMES)?,
                     change: change(&transition.reset)?,
                 })
             });
             places.push(Place {
                 name: location.name(),
                 motion: mode.flow.as_ref().map_or(Ok(PlaceMotion::Rates(Vec::new())), motion)?,
-                invariant: mode.invariant.as_ref().map(|it| it.compile(S::NAMES)).transpose()?,
+                invariant: mode
+                    .invariant
+                    .as_ref()
+                    .map(|invariant| Condition::of(invariant, S::NAMES))
+                    .transpose()?,
                 leaving: leaving.collect::<Result<_, EvaluationError>>()?,
             });
         }
@@ -95,6 +119,65 @@ impl Blueprint {
         let sketch = Sketch::of(automaton);
         Ok(Blueprint { places, events, coordinates: S::NAMES, initial, sketch })
     }
+}
+
+impl Condition {
+    fn of(predicate: &Predicate, names: &[&str]) -> Result<Condition, EvaluationError> {
+        Ok(Condition { predicate: predicate.compile(names)?, tracker: predicate.track(names)? })
+    }
+
+    pub(crate) fn predicate(&self) -> &Predicate {
+        self.predicate.predicate()
+    }
+
+    pub(crate) fn evaluate_at(
+        &self,
+        values: &[f64],
+        slots: &[usize],
+    ) -> Result<Verdict, EvaluationError> {
+        self.predicate.evaluate_at(values, slots)
+    }
+}
+
+impl fmt::Display for Condition {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.predicate.fmt(formatter)
+    }
+}
+
+impl RateProgram {
+    fn of(
+        coordinate: usize,
+        rate: &Expression,
+        names: &[&str],
+    ) -> Result<RateProgram, EvaluationError> {
+        let form = rate.linear_form();
+        let tracker =
+            may_be_unbounded(rate).then(|| rate.at_least(0.0).track(names)).transpose()?;
+        Ok(RateProgram { coordinate, program: rate.compile(names)?, form, tracker })
+    }
+}
+
+/// Whether the expression may grow without bound where its variables do not.
+fn may_be_unbounded(expression: &Expression) -> bool {
+    let mut parts = vec![expression];
+    while let Some(part) = parts.pop() {
+        match part {
+            Expression::Constant(_) | Expression::Variable(_) => {}
+            Expression::Unary(UnaryOperator::Logarithm | UnaryOperator::Tangent, _) => return true,
+            Expression::Unary(_, operand) => parts.push(operand),
+            Expression::Power(base, exponent) if *exponent >= 0.0 => parts.push(base),
+            Expression::Binary(BinaryOperator::Quotient, dividend, divisor) => match &**divisor {
+                Expression::Constant(value) if *value != 0.0 => parts.push(dividend),
+                _ => return true,
+            },
+            Expression::Binary(_, left, right) => parts.extend([&**left, &**right]),
+            Expression::Choice(choice) => parts.extend([&choice.then, &choice.otherwise]),
+            Expression::Lookup(..) => {}
+            _ => return true,
+        }
+    }
+    false
 }
 
 fn position<T: PartialEq>(all: &[T], one: T) -> usize {
@@ -106,8 +189,7 @@ fn motion<S: Coordinates>(flow: &Flow<S>) -> Result<PlaceMotion, EvaluationError
     Ok(match flow.motion() {
         Motion::Rates(rates) => {
             let compile = |rate: &crate::flow::Rate<S>| {
-                let coordinate = place_of::<S>(rate.coordinate())?;
-                Ok((coordinate, rate.rate().compile(S::NAMES)?, rate.rate().linear_form()))
+                RateProgram::of(place_of::<S>(rate.coordinate())?, rate.rate(), S::NAMES)
             };
             PlaceMotion::Rates(rates.iter().map(compile).collect::<Result<_, EvaluationError>>()?)
         }

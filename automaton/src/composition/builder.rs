@@ -7,7 +7,7 @@ use pleach_guards::EvaluationError;
 use thiserror::Error;
 
 use super::blueprint::{Blueprint, Change, PlaceMotion};
-use super::{Component, Composition, Label};
+use super::{Accumulation, Component, Composition, Label};
 use crate::automaton::Automaton;
 use crate::check::model::Model;
 use crate::coordinates::Coordinates;
@@ -20,16 +20,21 @@ pub struct CompositionBuilder {
     labels: Vec<String>,
     /// From an output to an input.
     connections: Vec<(String, String)>,
+    /// Whether the part added last is the first of many that are alike.
+    is_each: bool,
     /// The first thing that was wrong with a part.
     fault: Option<CompositionError>,
 }
 
+#[derive(Clone)]
 struct Part {
     name: String,
     blueprint: Arc<Blueprint>,
     model: Arc<Model>,
     initial: Vec<f64>,
     renamed: Vec<(String, String)>,
+    accumulation: Option<Accumulation>,
+    continuation: Option<usize>,
 }
 
 /// Why the parts do not make a composition.
@@ -65,8 +70,8 @@ pub enum CompositionError {
         /// The label.
         label: String,
     },
-    /// An event is renamed before any component is added, or the component has no such event.
-    #[error("event `{event}` cannot be renamed: the component added last has none of that name")]
+    /// An event is spoken of before any component is added, or the component has no such event.
+    #[error("the component added last has no event `{event}`")]
     UnknownEvent {
         /// The name before.
         event: String,
@@ -138,10 +143,52 @@ impl CompositionBuilder {
                 model: Arc::new(Model::of(automaton)),
                 initial: state.to_values(),
                 renamed: Vec::new(),
+                accumulation: None,
+                continuation: None,
             }),
             Err(source) => {
                 self.fault(CompositionError::Formula { component: name.to_owned(), source });
             }
+        }
+        self
+    }
+
+    /// Adds a component of `automaton` for each name, in its initial state: with many of them, in
+    /// much less time and memory than one by one.
+    pub fn add_each<L: Location, E: Event, S: Coordinates>(
+        mut self,
+        names: impl IntoIterator<Item = impl Into<String>>,
+        automaton: &Automaton<L, E, S>,
+    ) -> Self {
+        for name in names {
+            let name = name.into();
+            let Some(like) = self.parts.last().filter(|_| self.is_each).cloned() else {
+                self = self.add(&name, automaton);
+                self.is_each = true;
+                continue;
+            };
+            self.parts.push(Part { name, ..like });
+        }
+        self.is_each = false;
+        self
+    }
+
+    /// What happens where jumps of the component added last accumulate.
+    pub fn at_accumulation(mut self, accumulation: Accumulation) -> Self {
+        if let Some(part) = self.parts.last_mut() {
+            part.accumulation = Some(accumulation);
+        }
+        self
+    }
+
+    /// Where jumps of the component added last accumulate, time goes on to the limit point and the
+    /// component takes `event` there, whatever the guard of the transition says: the model knows
+    /// what comes after infinitely many jumps.
+    pub fn past_accumulation(mut self, event: &str) -> Self {
+        let part = self.parts.last_mut();
+        match part.and_then(|part| Some((part.event(event)?, part))) {
+            Some((number, part)) => part.continuation = Some(number),
+            None => self.fault(CompositionError::UnknownEvent { event: event.to_owned() }),
         }
         self
     }
@@ -185,6 +232,7 @@ impl CompositionBuilder {
             labels: Vec::new(),
             variables: Vec::new(),
             initial: Vec::new(),
+            groups: Vec::new(),
         };
         let slots = self.lay_out(&sources, &mut composition);
         let labels = self.labels()?;
@@ -202,11 +250,16 @@ impl CompositionBuilder {
                 labels: (0..part.blueprint.events.len()).map(own_label).collect(),
                 blueprint: part.blueprint,
                 model: part.model,
+                group: 0,
+                places: Vec::new(),
+                accumulation: part.accumulation,
+                continuation: part.continuation,
             };
             component.check_inputs()?;
             composition.components.push(component);
         }
         composition.labels = labels;
+        composition.form_groups();
         Ok(composition)
     }
 
@@ -342,9 +395,7 @@ impl Component {
     fn check_inputs(&self) -> Result<(), CompositionError> {
         for place in &self.blueprint.places {
             let moved: Vec<usize> = match &place.motion {
-                PlaceMotion::Rates(rates) => {
-                    rates.iter().map(|(coordinate, ..)| *coordinate).collect()
-                }
+                PlaceMotion::Rates(rates) => rates.iter().map(|rate| rate.coordinate).collect(),
                 PlaceMotion::Field(_) | PlaceMotion::Exact(_) => Vec::new(),
             };
             let set = place.leaving.iter().flat_map(|leaving| match &leaving.change {

@@ -51,7 +51,6 @@ use pleach_guards::{EvaluationError, Predicate, Valuation};
 use thiserror::Error;
 
 use super::Composition;
-use super::field::Field;
 use super::jumps::{Joint, Standing};
 use super::simulation::Failure;
 
@@ -162,9 +161,10 @@ impl Explorer<'_> {
         if self.states.len() >= self.limit {
             return Err(ExplorationError::TooManyStates { limit: self.limit });
         }
-        if let Some(mover) = Field::of(self.composition, &locations, &values).mover() {
-            let standing = Standing { composition: self.composition, locations: &locations };
-            return Err(ExplorationError::Moves { mover, locations: standing.names() });
+        if let Some(mover) = self.composition.mover(&locations, &values) {
+            let standing = Standing::new(self.composition, &locations);
+            let all: Vec<usize> = (0..locations.len()).collect();
+            return Err(ExplorationError::Moves { mover, locations: standing.names(&all) });
         }
         self.numbers.insert(key, self.states.len());
         self.states.push(State { locations, values, origin, leaving: 0 });
@@ -174,7 +174,7 @@ impl Explorer<'_> {
     /// Takes every jump from the state of that number.
     fn leave(&mut self, number: usize) -> Result<(), ExplorationError> {
         let State { locations, values, .. } = self.states[number].clone();
-        let standing = Standing { composition: self.composition, locations: &locations };
+        let standing = Standing::new(self.composition, &locations);
         let mut jumps = standing.all(&values)?;
         let is_forced =
             |jump: &Joint| standing.parts(jump).any(|leaving| leaving.urgency.is_forced());
@@ -189,7 +189,9 @@ impl Explorer<'_> {
             for one in &taken.moves {
                 target[one.component] = one.target;
             }
-            self.find(target, taken.values.into(), Some((number, jump)))?;
+            let mut reached = values.clone();
+            taken.changes.iter().for_each(|&(slot, value)| reached[slot] = value);
+            self.find(target, reached, Some((number, jump)))?;
         }
         Ok(())
     }
@@ -287,7 +289,7 @@ impl Composition {
         if let Some(label) = jump.label {
             return self.labels[label].name.clone();
         }
-        let standing = Standing { composition: self, locations };
+        let standing = Standing::new(self, locations);
         let named = jump.parts.iter().zip(standing.parts(jump)).map(|((index, _), leaving)| {
             let component = &self.components[*index];
             let event = &component.events[leaving.event];

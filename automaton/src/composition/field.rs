@@ -1,222 +1,222 @@
-//! The vector field of a composition: the flows of all components in their locations, as one.
+//! The vector field of a group: the flows of its components in their locations, as one.
 
 use std::cell::RefCell;
 
 use nalgebra::{DMatrix, DVector};
-use pleach_continuous::flow::Curve;
+use pleach_continuous::flow::VectorField;
 
-use super::blueprint::{Place, PlaceMotion, Solution};
+use super::blueprint::{Place, PlaceMotion, RateProgram, Solution};
+use super::group::Group;
 use super::{Component, Composition};
-use crate::trajectory::Sample;
 
 /// The most variables for which the matrix exponential is cheaper than an integrator.
 const LARGEST_LINEAR: usize = 16;
 
-/// What the rates are made of.
-pub(super) enum Kind {
-    /// ẋ = c
-    Constant(Vec<f64>),
-    /// ẋ = A x + b
-    Linear(DMatrix<f64>, DVector<f64>),
-    General,
+/// How a variable moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Row {
+    /// At this rate, also 0: x = x₀ + c t.
+    Line(f64),
+    /// By a rate that depends on variables.
+    Curved,
+    /// By a component that solves its flow itself.
+    Solved,
 }
 
-/// The flow of all components in their locations.
+/// The flow of a group in its locations, from a state on.
 pub(super) struct Field<'a> {
-    composition: &'a Composition,
     /// With their place, and whether they solve their flow themselves.
     moving: Vec<(&'a Component, &'a Place)>,
-    exact: Vec<(&'a Component, &'a Solution)>,
-    start: &'a [f64],
-    /// Room for the coordinates of a component and their rates.
-    scratch: RefCell<(Vec<f64>, Vec<f64>)>,
+    solved: Vec<(&'a Component, &'a Solution)>,
+    /// By variable of the group.
+    pub(super) rows: Vec<Row>,
+    pub(super) start: Vec<f64>,
+    /// Room for the coordinates of a component and their rates, and for a state.
+    scratch: RefCell<[Vec<f64>; 3]>,
+}
+
+/// ẋ = A x + b of some variables.
+pub(super) struct LinearPart {
+    /// The variables, by their place in the group.
+    pub(super) variables: Vec<usize>,
+    pub(super) matrix: DMatrix<f64>,
+    pub(super) offset: DVector<f64>,
 }
 
 impl<'a> Field<'a> {
-    pub(super) fn of(composition: &'a Composition, locations: &[usize], start: &'a [f64]) -> Self {
-        let (mut moving, mut exact) = (Vec::new(), Vec::new());
-        for (component, &location) in composition.components.iter().zip(locations) {
-            let place = component.place(location);
+    pub(super) fn of(
+        composition: &'a Composition,
+        group: &Group,
+        locations: &[usize],
+        start: Vec<f64>,
+    ) -> Self {
+        let (mut moving, mut solved) = (Vec::new(), Vec::new());
+        let mut rows = vec![Row::Line(0.0); start.len()];
+        for &index in &group.components {
+            let component = &composition.components[index];
+            let place = component.place(locations[index]);
             match &place.motion {
-                PlaceMotion::Exact(advance) => exact.push((component, &**advance)),
+                PlaceMotion::Exact(advance) => {
+                    component.owned_places().for_each(|place| rows[place] = Row::Solved);
+                    solved.push((component, &**advance));
+                }
                 PlaceMotion::Rates(rates) if rates.is_empty() => {}
-                PlaceMotion::Rates(_) | PlaceMotion::Field(_) => moving.push((component, place)),
-            }
-        }
-        Field { composition, moving, exact, start, scratch: RefCell::default() }
-    }
-
-    pub(super) fn kind(&self) -> Kind {
-        match self.linear() {
-            Some((matrix, offset)) if matrix.iter().all(|entry| *entry == 0.0) => {
-                Kind::Constant(offset.iter().copied().collect())
-            }
-            Some((matrix, offset)) if offset.len() <= LARGEST_LINEAR => {
-                Kind::Linear(matrix, offset)
-            }
-            _ => Kind::General,
-        }
-    }
-
-    /// A and b, if the rates are linear. What is solved by itself has no rate here.
-    fn linear(&self) -> Option<(DMatrix<f64>, DVector<f64>)> {
-        let size = self.start.len();
-        let mut entries = Vec::new();
-        let mut offset = DVector::zeros(size);
-        for (component, place) in &self.moving {
-            let PlaceMotion::Rates(rates) = &place.motion else { return None };
-            for (coordinate, _, form) in rates {
-                let (form, row) = (form.as_ref()?, component.slots[*coordinate]);
-                offset[row] = *form.constant();
-                for (name, coefficient) in form.coefficients() {
-                    let named =
-                        component.blueprint.coordinates.iter().position(|one| *one == name)?;
-                    let column = component.slots[named];
-                    // What a component reads of one that solves its flow itself changes in a way
-                    // that no matrix knows.
-                    if self.is_exact(column) {
-                        return None;
+                PlaceMotion::Rates(rates) => {
+                    for rate in rates {
+                        rows[component.places[rate.coordinate]] = rate.row();
                     }
-                    entries.push((row, column, *coefficient));
+                    moving.push((component, place));
+                }
+                PlaceMotion::Field(_) => {
+                    component.owned_places().for_each(|place| rows[place] = Row::Curved);
+                    moving.push((component, place));
                 }
             }
         }
-        // A large system of constant rates needs no matrix.
-        if size > LARGEST_LINEAR {
-            return entries.is_empty().then(|| (DMatrix::zeros(0, 0), offset));
+        Field { moving, solved, rows, start, scratch: RefCell::default() }
+    }
+
+    /// Whether all variables move along lines, or are solved by themselves.
+    pub(super) fn is_straight(&self) -> bool {
+        !self.rows.contains(&Row::Curved)
+    }
+
+    /// Whether a component solves its flow itself.
+    pub(super) fn has_solutions(&self) -> bool {
+        !self.solved.is_empty()
+    }
+
+    /// The variables with curved rows and what they read, if all their rates are linear and they
+    /// are few. What rests is no variable of it.
+    pub(super) fn linear(&self) -> Option<LinearPart> {
+        let mut entries = Vec::new();
+        let mut offsets = vec![0.0; self.rows.len()];
+        let mut is_read = vec![false; self.rows.len()];
+        for (component, place) in &self.moving {
+            let PlaceMotion::Rates(rates) = &place.motion else { return None };
+            for rate in rates {
+                let (form, row) = (rate.form.as_ref()?, component.places[rate.coordinate]);
+                offsets[row] = *form.constant();
+                for (name, coefficient) in form.coefficients() {
+                    let names = component.blueprint.coordinates;
+                    let column = component.places[names.iter().position(|one| *one == name)?];
+                    match self.rows[column] {
+                        Row::Line(0.0) => offsets[row] += coefficient * self.start[column],
+                        // It changes in a way that no matrix knows.
+                        Row::Solved => return None,
+                        Row::Line(_) | Row::Curved => {
+                            is_read[column] = true;
+                            entries.push((row, column, *coefficient));
+                        }
+                    }
+                }
+            }
         }
+        let belongs = |&place: &usize| self.rows[place] == Row::Curved || is_read[place];
+        let variables: Vec<usize> = (0..self.rows.len()).filter(belongs).collect();
+        if variables.len() > LARGEST_LINEAR {
+            return None;
+        }
+        let number = |place: usize| variables.partition_point(|one| *one < place);
+        let size = variables.len();
         let mut matrix = DMatrix::zeros(size, size);
         for (row, column, coefficient) in entries {
             // Several inputs may read one coordinate.
-            matrix[(row, column)] += coefficient;
+            matrix[(number(row), number(column))] += coefficient;
         }
-        Some((matrix, offset))
-    }
-
-    fn is_exact(&self, slot: usize) -> bool {
-        self.exact.iter().any(|(component, _)| {
-            component.slots.iter().zip(&component.owned).any(|(one, owned)| *one == slot && *owned)
-        })
-    }
-
-    /// ẋ, at `time` after the start. What is solved by itself has rate 0 here, and others see it
-    /// where it is at `time`.
-    pub(super) fn rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
-        rates.fill(0.0);
-        if self.exact.is_empty() {
-            return self.add_rates(state, rates);
-        }
-        let mut state = state.to_vec();
-        self.overlay(time, &mut state);
-        self.add_rates(&state, rates);
+        let offset = variables.iter().map(|&place| offsets[place]);
+        let offset = DVector::from_iterator(size, offset);
+        Some(LinearPart { variables, matrix, offset })
     }
 
     fn add_rates(&self, state: &[f64], rates: &mut [f64]) {
         for (component, place) in &self.moving {
             match &place.motion {
                 PlaceMotion::Rates(formulas) => {
-                    for (coordinate, rate, _) in formulas {
-                        rates[component.slots[*coordinate]] =
-                            rate.evaluate_at(state, &component.slots);
+                    for rate in formulas {
+                        rates[component.places[rate.coordinate]] =
+                            rate.program.evaluate_at(state, &component.places);
                     }
                 }
                 PlaceMotion::Field(field) => {
-                    let (own, change) = &mut *self.scratch.borrow_mut();
-                    component.gather(state, own);
+                    let [own, change, _] = &mut *self.scratch.borrow_mut();
+                    component.gather(state, &component.places, own);
                     change.resize(own.len(), 0.0);
                     field(own, change);
-                    component.scatter(change, rates);
+                    component.scatter(change, &component.places, rates);
                 }
                 PlaceMotion::Exact(_) => {}
             }
         }
     }
 
-    /// The name of what changes while time passes, if anything does: a variable that has a rate,
-    /// or a component that solves its flow itself.
-    pub(super) fn mover(&self) -> Option<String> {
-        let mut rates = vec![0.0; self.start.len()];
-        self.rates(0.0, self.start, &mut rates);
-        let moving = rates.iter().position(|rate| *rate != 0.0);
-        let variable = moving.map(|slot| self.composition.variables[slot].clone());
-        variable.or_else(|| self.exact.first().map(|(component, _)| component.name.clone()))
-    }
-
     /// Puts what is solved by itself where it is at `time`.
-    fn overlay(&self, time: f64, state: &mut [f64]) {
-        for (component, advance) in &self.exact {
-            let (own, _) = &mut *self.scratch.borrow_mut();
-            component.gather(self.start, own);
+    pub(super) fn overlay(&self, time: f64, state: &mut [f64]) {
+        for (component, advance) in &self.solved {
+            let [own, ..] = &mut *self.scratch.borrow_mut();
+            component.gather(&self.start, &component.places, own);
             advance(own, time);
-            component.scatter(own, state);
+            component.scatter(own, &component.places, state);
         }
     }
 
-    pub(super) fn sample(&self, curve: &impl Curve, time: f64) -> Sample {
-        let mut values = vec![0.0; self.start.len()];
-        curve.state_at(time, &mut values);
-        let mut rates = vec![0.0; values.len()];
-        self.rates(time, &values, &mut rates);
-        Sample { t: time, values, rates }
-    }
-
-    pub(super) fn at_start(&self) -> Sample {
-        let mut rates = vec![0.0; self.start.len()];
-        self.rates(0.0, self.start, &mut rates);
-        Sample { t: 0.0, values: self.start.to_vec(), rates }
+    /// Rates that could grow without bound, with where their variables are.
+    pub(super) fn unbounded_rates(&self) -> impl Iterator<Item = (&'a Component, &'a RateProgram)> {
+        self.moving.iter().flat_map(|(component, place)| {
+            let rates: &[RateProgram] = match &place.motion {
+                PlaceMotion::Rates(rates) => rates,
+                PlaceMotion::Field(_) | PlaceMotion::Exact(_) => &[],
+            };
+            rates.iter().filter(|rate| rate.tracker.is_some()).map(|rate| (*component, rate))
+        })
     }
 }
 
-/// A curve on which components that solve their flow themselves are put where they are.
-pub(super) struct Overlaid<'a, C> {
-    pub(super) curve: C,
-    pub(super) field: &'a Field<'a>,
+impl VectorField for Field<'_> {
+    /// What is solved by itself has rate 0 here, and others see it where it is at `time`.
+    fn rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
+        rates.fill(0.0);
+        if self.solved.is_empty() {
+            return self.add_rates(state, rates);
+        }
+        let mut overlaid = std::mem::take(&mut self.scratch.borrow_mut()[2]);
+        overlaid.clear();
+        overlaid.extend_from_slice(state);
+        self.overlay(time, &mut overlaid);
+        self.add_rates(&overlaid, rates);
+        self.scratch.borrow_mut()[2] = overlaid;
+    }
 }
 
-/// What solves itself may bend as it likes: it is looked at this often in a flow.
-const LOOKS_AT_THE_UNKNOWN: f64 = 64.0;
-
-impl<C: Curve> Curve for Overlaid<'_, C> {
-    fn start(&self) -> f64 {
-        self.curve.start()
-    }
-
-    fn end(&self) -> f64 {
-        self.curve.end()
-    }
-
-    fn dimension(&self) -> usize {
-        self.curve.dimension()
-    }
-
-    fn state_at(&self, time: f64, state: &mut [f64]) {
-        self.curve.state_at(time, state);
-        self.field.overlay(time, state);
-    }
-
-    fn time_scale(&self, time: f64) -> f64 {
-        let scale = self.curve.time_scale(time);
-        if self.field.exact.is_empty() {
-            scale
-        } else {
-            scale.min((self.end() - self.start()) / LOOKS_AT_THE_UNKNOWN)
+impl RateProgram {
+    fn row(&self) -> Row {
+        match &self.form {
+            Some(form) if form.coefficients().next().is_none() => Row::Line(*form.constant()),
+            _ => Row::Curved,
         }
     }
 }
 
 impl Component {
-    /// The coordinates as the component sees them.
-    pub(super) fn gather(&self, values: &[f64], own: &mut Vec<f64>) {
-        own.clear();
-        own.extend(self.slots.iter().map(|&slot| values[slot]));
+    /// Where the coordinates are that belong to it, among those of its group.
+    fn owned_places(&self) -> impl Iterator<Item = usize> {
+        let places = self.places.iter().zip(&self.owned);
+        places.filter(|(_, owned)| **owned).map(|(place, _)| *place)
     }
+}
 
-    /// Writes back the coordinates that belong to the component.
-    pub(super) fn scatter(&self, own: &[f64], values: &mut [f64]) {
-        for ((&slot, &value), &owned) in self.slots.iter().zip(own).zip(&self.owned) {
-            if owned {
-                values[slot] = value;
-            }
-        }
+impl Composition {
+    /// The name of what changes while time passes, if anything does: a variable that has a rate,
+    /// or a component that solves its flow itself.
+    pub(super) fn mover(&self, locations: &[usize], values: &[f64]) -> Option<String> {
+        self.groups.iter().find_map(|group| {
+            let start: Vec<f64> = group.slots.iter().map(|&slot| values[slot]).collect();
+            let field = Field::of(self, group, locations, start.clone());
+            let mut rates = vec![0.0; start.len()];
+            field.rates(0.0, &start, &mut rates);
+            let moving = rates.iter().position(|rate| *rate != 0.0);
+            let variable = moving.map(|place| self.variables[group.slots[place]].clone());
+            variable.or_else(|| field.solved.first().map(|(component, _)| component.name.clone()))
+        })
     }
 }

@@ -14,6 +14,8 @@ pub(super) struct Standing<'a> {
     pub(super) composition: &'a Composition,
     /// By component.
     pub(super) locations: &'a [usize],
+    /// Whether states hold the variables of one group alone.
+    pub(super) is_local: bool,
 }
 
 /// A jump that can be taken: components, each with one of its transitions.
@@ -24,9 +26,29 @@ pub(super) struct Joint {
 }
 
 impl<'a> Standing<'a> {
+    /// The composition with its components in these locations.
+    pub(super) fn new(composition: &'a Composition, locations: &'a [usize]) -> Self {
+        Standing { composition, locations, is_local: false }
+    }
+
+    /// Where states hold the coordinates of a component.
+    pub(super) fn slots(self, component: usize) -> &'a [usize] {
+        let component = &self.composition.components[component];
+        if self.is_local { &component.places } else { &component.slots }
+    }
+
     /// The transitions that leave the location of `component`, in their total order.
     pub(super) fn leaving(self, component: usize) -> &'a [Leaving] {
         &self.composition.components[component].place(self.locations[component]).leaving
+    }
+
+    /// Those of them on an event.
+    pub(super) fn on_event(
+        self,
+        component: usize,
+        event: usize,
+    ) -> impl Iterator<Item = &'a Leaving> {
+        self.leaving(component).iter().filter(move |leaving| leaving.event == event)
     }
 
     /// Whether the guard of a transition of `component` holds in `state`.
@@ -37,10 +59,9 @@ impl<'a> Standing<'a> {
         state: &[f64],
     ) -> Result<Verdict, Failure> {
         let part = || format!("the guard `{}`", leaving.guard);
-        let slots = &self.composition.components[component].slots;
         leaving
             .guard
-            .evaluate_at(state, slots)
+            .evaluate_at(state, self.slots(component))
             .map_err(|fault| self.formula(component, self.locations[component], part(), &fault))
     }
 
@@ -102,12 +123,12 @@ impl<'a> Standing<'a> {
     /// What a jump does in `state`. All parts find x⁻ and change only what belongs to them, so that
     /// their order is no matter.
     pub(super) fn taken(self, jump: &Joint, state: &[f64]) -> Result<Taken, Failure> {
-        let mut values = state.to_vec();
+        let mut changes = Vec::new();
         let mut moves = Vec::with_capacity(jump.parts.len());
         for (&(component, transition), leaving) in jump.parts.iter().zip(self.parts(jump)) {
             let source = self.locations[component];
             self.composition.components[component]
-                .change(&leaving.change, state, &mut values)
+                .change(&leaving.change, state, &mut changes)
                 .map_err(|fault| self.formula(component, source, "the reset".into(), &fault))?;
             moves.push(Move { component, source, target: leaving.target, transition });
         }
@@ -115,7 +136,7 @@ impl<'a> Standing<'a> {
             Some(label) => self.composition.labels[label].name.clone(),
             None => self.composition.event_of(&moves[0]),
         };
-        Ok(Taken { label, moves, values })
+        Ok(Taken { label, moves, changes })
     }
 
     /// A formula of `component` that has no value.
@@ -135,22 +156,24 @@ impl<'a> Standing<'a> {
         }
     }
 
-    /// The locations by name, for messages.
-    pub(super) fn names(self) -> String {
-        let components = self.composition.components.iter().zip(self.locations);
-        let places = components.map(|(component, &location)| {
-            format!("`{}` of `{}`", component.place(location).name, component.name)
+    /// The locations of some components by name, for messages.
+    pub(super) fn names(self, components: &[usize]) -> String {
+        let places = components.iter().map(|&index| {
+            let component = &self.composition.components[index];
+            let place = component.place(self.locations[index]);
+            format!("`{}` of `{}`", place.name, component.name)
         });
         places.collect::<Vec<_>>().join(", ")
     }
 }
 
 impl Component {
+    /// Adds what becomes of the coordinates that are assigned to.
     fn change(
         &self,
         change: &Change,
         before: &[f64],
-        after: &mut [f64],
+        changes: &mut Vec<(usize, f64)>,
     ) -> Result<(), EvaluationError> {
         match change {
             Change::Assignments(assignments) => {
@@ -161,16 +184,32 @@ impl Component {
                             format!("the new {}", self.blueprint.coordinates[*coordinate]);
                         return Err(EvaluationError::NotANumber { expression });
                     }
-                    after[self.slots[*coordinate]] = new;
+                    changes.push((self.slots[*coordinate], new));
                 }
             }
             Change::Function(function) => {
                 let mut own = Vec::with_capacity(self.slots.len());
-                self.gather(before, &mut own);
+                self.gather(before, &self.slots, &mut own);
                 function(&mut own)?;
-                self.scatter(&own, after);
+                let places = self.slots.iter().zip(&own).zip(&self.owned);
+                changes.extend(places.filter(|(_, owned)| **owned).map(|((&s, &x), _)| (s, x)));
             }
         }
         Ok(())
+    }
+
+    /// The coordinates as the component sees them.
+    pub(super) fn gather(&self, values: &[f64], slots: &[usize], own: &mut Vec<f64>) {
+        own.clear();
+        own.extend(slots.iter().map(|&slot| values[slot]));
+    }
+
+    /// Writes back the coordinates that belong to the component.
+    pub(super) fn scatter(&self, own: &[f64], slots: &[usize], values: &mut [f64]) {
+        for ((&slot, &value), &owned) in slots.iter().zip(own).zip(&self.owned) {
+            if owned {
+                values[slot] = value;
+            }
+        }
     }
 }

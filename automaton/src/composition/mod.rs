@@ -64,25 +64,31 @@
 
 pub(crate) mod blueprint;
 mod builder;
+mod chance;
 mod exploration;
 mod field;
 mod flight;
+mod group;
 mod jumps;
 mod models;
 mod picture;
+mod record;
 mod replay;
 mod settings;
 mod simulation;
+mod solver;
+mod tension;
 
 use std::sync::Arc;
 
 pub use builder::{CompositionBuilder, CompositionError};
 pub use exploration::{Exploration, ExplorationError, Reached};
 pub use replay::ReplayError;
-pub use settings::{Policy, Settings};
-pub use simulation::{Failure, Move, Simulation, SimulationError, Taken};
+pub use settings::{Accumulation, Policy, Settings};
+pub use simulation::{Failure, Halt, Move, Simulation, SimulationError, Taken};
 
 use blueprint::Blueprint;
+use group::Group;
 
 use crate::check::model::Model;
 
@@ -95,6 +101,8 @@ pub struct Composition {
     variables: Vec<String>,
     /// By slot: the values at the start.
     initial: Vec<f64>,
+    /// What moves and jumps by itself.
+    groups: Vec<Group>,
 }
 
 #[derive(Clone)]
@@ -111,6 +119,14 @@ pub(crate) struct Component {
     owned: Vec<bool>,
     /// By event: the label, if the event is one.
     labels: Vec<Option<usize>>,
+    /// The group that the component belongs to.
+    group: usize,
+    /// By coordinate: where its value is among those of the group.
+    places: Vec<usize>,
+    /// What happens where its jumps accumulate, if it says so itself.
+    accumulation: Option<Accumulation>,
+    /// The event that is taken beyond an accumulation of its jumps.
+    continuation: Option<usize>,
 }
 
 #[derive(Clone)]

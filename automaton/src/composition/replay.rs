@@ -33,13 +33,13 @@ impl Composition {
     pub fn replay(&self, recorded: &Trajectory) -> Result<(), ReplayError> {
         self.check_origin(recorded)?;
         let again = self.run_with(recorded.settings, recorded.horizon)?;
+        if again == *recorded {
+            return Ok(());
+        }
         let mut pairs = again.samples().zip(recorded.samples());
         let samples = again.samples().count().min(recorded.samples().count());
         if let Some((_, (at, _))) = pairs.find(|(new, old)| new != old) {
             return Err(ReplayError::Diverged { at });
-        }
-        if again == *recorded {
-            return Ok(());
         }
         let last = recorded.samples().nth(samples.saturating_sub(1));
         Err(ReplayError::Diverged { at: last.map_or(HybridTime::START, |(at, _)| at) })

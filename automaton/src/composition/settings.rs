@@ -22,6 +22,27 @@ pub struct Settings {
     pub resolution: f64,
     /// The most rounds of jumps at one instant, at least 1; 1,000 by default.
     pub round_limit: u32,
+    /// The most jumps in all; 10⁷ by default.
+    pub jump_limit: u64,
+    /// The most pieces of flows and spans of time examined for events; 10⁸ by default.
+    pub step_limit: u64,
+    /// The most memory for the trajectory, in bytes; 2³¹ by default. Names and the like come to it.
+    pub memory_limit: u64,
+    /// What happens where jumps accumulate, unless a component says otherwise.
+    pub accumulation: Accumulation,
+}
+
+/// What happens where infinitely many jumps of a group would happen before an instant that time
+/// never reaches. A composition can say it for [each
+/// component](crate::CompositionBuilder::at_accumulation), and [how to go
+/// on](crate::CompositionBuilder::past_accumulation) beyond that instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Accumulation {
+    /// The run ends, with an estimate of the instant.
+    #[default]
+    End,
+    /// Nothing: jumps go on until a transition, a limit of the run or the horizon ends them.
+    Off,
 }
 
 /// When a transition is taken that only may be.
@@ -31,6 +52,14 @@ pub enum Policy {
     Late,
     /// As soon as its guard holds.
     Early,
+    /// At an instant drawn evenly from those between the first at which a guard holds and the last
+    /// at which time can pass, or as soon after it as a guard holds again; of the transitions that
+    /// can be taken one is drawn, each as likely as the others. Equal seeds give equal runs, and what one
+    /// group draws is no matter to another.
+    Random {
+        /// Where the sequence of draws begins.
+        seed: u64,
+    },
 }
 
 impl Default for Settings {
@@ -42,6 +71,10 @@ impl Default for Settings {
             largest_step: f64::INFINITY,
             resolution: 0.0,
             round_limit: 1000,
+            jump_limit: 10_000_000,
+            step_limit: 100_000_000,
+            memory_limit: 1 << 31,
+            accumulation: Accumulation::End,
         }
     }
 }

@@ -1,21 +1,28 @@
 //! Running a composition.
 
+use std::collections::BTreeSet;
+
+use pleach_continuous::flow::VectorField;
 use pleach_discrete::{Event, Location};
-use pleach_guards::Verdict;
+use pleach_guards::{Enclosure, Interval};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::blueprint::Leaving;
-use super::flight::Flight;
+use super::chance::Chance;
+use super::field::Field;
+use super::flight::{Flight, Plan};
 use super::jumps::{Joint, Standing};
-use super::settings::{Policy, Settings};
-use super::{Component, Composition, CompositionError};
+use super::record::Record;
+use super::settings::{Accumulation, Policy, Settings};
+use super::tension::{Conditions, Readiness};
+use super::{Composition, CompositionError};
 use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
-use crate::executor::{Ending, Executor, InvalidLimit, Observer, Reason, Round, System};
+use crate::executor::{Ending, Executor, InvalidLimit, Limit, Reason, Round, Sliding, System};
+use crate::moment::Moment;
 use crate::time::HybridTime;
-use crate::trace::TraceEntry;
-use crate::trajectory::{Participant, Phase, Sample, Trajectory};
+use crate::trajectory::Trajectory;
+use crate::zeno::{Zeno, ZenoDetector};
 
 /// Why a simulation cannot begin.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -58,6 +65,31 @@ pub enum Failure {
     },
 }
 
+/// Why a simulation stops by itself.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Halt {
+    /// A formula has no value, or a flow cannot be followed.
+    #[error(transparent)]
+    Failure(#[from] Failure),
+    /// It has used up what it may.
+    #[error(transparent)]
+    Limit(#[from] Limit),
+    /// Jumps accumulate.
+    #[error("jumps accumulate at {} s", .0.accumulation)]
+    Zeno(Zeno),
+}
+
+impl From<Halt> for Reason<Failure> {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Failure(failure) => Reason::Finished(failure),
+            Halt::Limit(limit) => Reason::Limit(limit),
+            Halt::Zeno(zeno) => Reason::Zeno(zeno),
+        }
+    }
+}
+
 /// A jump as a simulation reports it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Taken {
@@ -65,8 +97,8 @@ pub struct Taken {
     pub label: String,
     /// Who goes where, by ascending component.
     pub moves: Vec<Move>,
-    /// The values of all variables afterwards, x⁺.
-    pub values: Vec<f64>,
+    /// The variables that are assigned to, by their number, and what they become.
+    pub changes: Vec<(usize, f64)>,
 }
 
 /// What a component does in a jump.
@@ -83,20 +115,65 @@ pub struct Move {
 }
 
 /// A composition with locations and a state: a [`System`] for the executor.
+///
+/// Each group of components is followed by itself, from one of its jumps to the next; a queue says
+/// which comes first. What happens in one group costs nothing in others.
 pub struct Simulation<'a> {
-    pub(super) composition: &'a Composition,
-    pub(super) settings: Settings,
+    composition: &'a Composition,
+    settings: Settings,
     horizon: f64,
-    pub(super) now: HybridTime,
-    pub(super) locations: Vec<usize>,
-    pub(super) values: Vec<f64>,
-    /// The flow to come, once no jump is left to be taken.
+    now: Moment,
+    jumps: u64,
+    locations: Vec<usize>,
+    /// By slot: those of a group are what they were when it landed or jumped last.
+    values: Vec<f64>,
+    groups: Vec<GroupState>,
+    /// The groups in flight, by the end of their flights.
+    queue: BTreeSet<Due>,
+    /// The groups that are looked at now.
+    awake: BTreeSet<usize>,
+    /// By component: the number of the round in which it has jumped last.
+    jumped: Vec<u64>,
+    round: u64,
+    /// What was done in the last two jumps, by the first who took part.
+    latest: [Option<Move>; 2],
+    /// How many more pieces and spans may be looked at.
+    steps: u64,
+    record: Option<Record>,
+}
+
+struct GroupState {
     flight: Option<Flight>,
+    /// Whether what may be taken is waited for no longer; only by the policy of chance.
+    is_eager: bool,
+    chance: Chance,
+    /// What has to be taken now, whatever its guard says: a component and an event.
+    compelled: Option<(usize, usize)>,
     /// How far, in the margin of a guard, the last flow has landed beyond the boundary: the state
     /// may be outside an invariant by as much. It is a rounding error of the instant of the event.
     allowance: f64,
-    /// By component: whether it has jumped in this round.
-    jumped: Vec<bool>,
+    zeno: ZenoDetector,
+}
+
+/// When a group's flight ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Due {
+    at: Moment,
+    group: usize,
+}
+
+impl Eq for Due {}
+
+impl Ord for Due {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.at.total_cmp(&other.at).then(self.group.cmp(&other.group))
+    }
+}
+
+impl PartialOrd for Due {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 /// The largest part of the state by which a landing may be outside an invariant. Margins of smooth
@@ -157,16 +234,20 @@ impl Composition {
         settings: Settings,
         horizon: f64,
     ) -> Result<Trajectory, SimulationError> {
-        let executor = Executor::new(horizon, settings.round_limit)?;
+        let executor = Executor::new(horizon, settings.round_limit)?.without_zeno_detection();
         let mut simulation = Simulation::new(self, settings, horizon)?;
-        let mut recorder = Recorder(simulation.beginning());
-        let ending = executor.run(&mut simulation, &mut recorder);
-        let Recorder(mut trajectory) = recorder;
-        trajectory.ending = match ending {
-            Ok(Ending { at, reason }) => Ending { at, reason: reason.without_finish() },
-            Err(failure) => Ending { at: simulation.now, reason: Reason::Finished(failure) },
+        simulation.record = Some(Record::of(self));
+        let ending = match executor.run(&mut simulation, &mut ()) {
+            Ok(Ending { at, reason }) => {
+                let reason = match (reason.without_finish(), simulation.sliding()) {
+                    (Reason::JumpLimit, Some(sliding)) => Reason::Sliding(sliding),
+                    (reason, _) => reason,
+                };
+                Ending { at, reason }
+            }
+            Err(halt) => Ending { at: simulation.hybrid_time(), reason: halt.into() },
         };
-        Ok(trajectory)
+        Ok(simulation.into_trajectory(ending))
     }
 }
 
@@ -183,16 +264,34 @@ impl<'a> Simulation<'a> {
     ) -> Result<Self, SimulationError> {
         settings.check()?;
         let initial = composition.components.iter().map(|component| component.blueprint.initial);
+        let seed = match settings.policy {
+            Policy::Random { seed } => seed,
+            Policy::Late | Policy::Early => 0,
+        };
+        let group = |number: usize| GroupState {
+            flight: None,
+            is_eager: false,
+            chance: Chance::new(seed, number),
+            compelled: None,
+            allowance: 0.0,
+            zeno: ZenoDetector::new(horizon),
+        };
         Ok(Simulation {
             composition,
             settings,
             horizon,
-            now: HybridTime::START,
+            now: Moment::default(),
+            jumps: 0,
             locations: initial.collect(),
             values: composition.initial.clone(),
-            flight: None,
-            allowance: 0.0,
-            jumped: vec![false; composition.components.len()],
+            groups: (0..composition.groups.len()).map(group).collect(),
+            queue: BTreeSet::new(),
+            awake: (0..composition.groups.len()).collect(),
+            jumped: vec![0; composition.components.len()],
+            round: 0,
+            latest: [None; 2],
+            steps: settings.step_limit,
+            record: None,
         })
     }
 
@@ -201,41 +300,55 @@ impl<'a> Simulation<'a> {
         &self.locations
     }
 
-    /// The values of the variables.
-    pub fn values(&self) -> &[f64] {
-        &self.values
+    /// The values of the variables now.
+    pub fn values(&self) -> Vec<f64> {
+        let mut values = self.values.clone();
+        for (state, group) in self.groups.iter().zip(&self.composition.groups) {
+            if let Some(flight) = &state.flight {
+                let now = flight.state_at((self.now - flight.since).seconds());
+                group.slots.iter().zip(now).for_each(|(&slot, value)| values[slot] = value);
+            }
+        }
+        values
     }
 
-    fn beginning(&self) -> Trajectory {
-        let participant = |(index, component): (usize, &Component)| Participant {
-            name: component.name.clone(),
-            locations: self.composition.locations(index).map(str::to_owned).collect(),
-        };
-        let rates = vec![0.0; self.values.len()];
-        let first = Sample { t: 0.0, values: self.values.clone(), rates };
-        Trajectory {
-            variables: self.composition.variables.clone(),
-            components: self.composition.components.iter().enumerate().map(participant).collect(),
-            settings: self.settings,
-            horizon: self.horizon,
-            phases: vec![Phase { locations: self.locations.clone(), samples: vec![first] }],
-            jumps: Vec::new(),
-            ending: Ending { at: HybridTime::START, reason: Reason::Horizon },
+    fn hybrid_time(&self) -> HybridTime {
+        let j = u32::try_from(self.jumps).unwrap_or(u32::MAX);
+        HybridTime { t: self.now.seconds(), j }
+    }
+
+    fn into_trajectory(mut self, ending: Ending<Failure>) -> Trajectory {
+        let mut record = self.record.take().unwrap_or_else(|| Record::of(self.composition));
+        let end = Moment::from(ending.at.t);
+        for (number, state) in self.groups.into_iter().enumerate() {
+            if let Some(flight) = state.flight {
+                let lasted = (end - flight.since).seconds();
+                if lasted > 0.0 {
+                    record.flown(number, flight.cut(lasted));
+                }
+            }
         }
+        record.into_trajectory(self.composition, self.settings, self.horizon, ending)
     }
 
     // ---- Jumps -----------------------------------------------------------------------------
 
-    /// Takes one round of jumps; says whether there was one.
+    /// Takes one round of jumps of these groups; says whether there was one.
     fn take_round(
         &mut self,
         round: &mut Round<'_, Taken>,
+        groups: &BTreeSet<usize>,
         readiness: Readiness,
-    ) -> Result<bool, Failure> {
-        self.jumped.fill(false);
+    ) -> Result<bool, Halt> {
+        self.round += 1;
+        let members = groups.iter().map(|&group| &self.composition.groups[group].components);
+        let mut components: Vec<usize> = members.flatten().copied().collect();
+        if groups.len() > 1 {
+            components.sort_unstable();
+        }
         let mut any = false;
-        for component in 0..self.locations.len() {
-            if self.jumped[component] {
+        for component in components {
+            if self.jumped[component] == self.round {
                 continue;
             }
             if let Some(jump) = self.next_of(component, readiness)? {
@@ -247,45 +360,106 @@ impl<'a> Simulation<'a> {
     }
 
     /// The first jump in total order that `component` can take part in.
-    fn next_of(&self, component: usize, readiness: Readiness) -> Result<Option<Joint>, Failure> {
+    fn next_of(
+        &mut self,
+        component: usize,
+        readiness: Readiness,
+    ) -> Result<Option<Joint>, Failure> {
+        let group = self.composition.components[component].group;
+        if let Some(joint) = self.compelled(group, component) {
+            return Ok(Some(joint));
+        }
+        if !matches!(self.settings.policy, Policy::Random { .. }) {
+            return Ok(self.candidates(component, readiness, 1)?.pop());
+        }
+        let mut candidates = self.candidates(component, readiness, usize::MAX)?;
+        if candidates.is_empty() {
+            return Ok(None);
+        }
+        let drawn = self.groups[group].chance.below(candidates.len());
+        Ok(Some(candidates.swap_remove(drawn)))
+    }
+
+    /// The jump that a component is made to take beyond an accumulation of jumps.
+    fn compelled(&mut self, group: usize, component: usize) -> Option<Joint> {
+        let compelled = self.groups[group].compelled;
+        let (_, event) = compelled.filter(|(compelled, _)| *compelled == component)?;
+        self.groups[group].compelled = None;
+        let mut leaving = self.standing().leaving(component).iter();
+        let transition = leaving.position(|leaving| leaving.event == event)?;
+        Some(Joint { label: None, parts: vec![(component, transition)] })
+    }
+
+    /// The first jumps in total order that `component` can take part in, `most` of them.
+    fn candidates(
+        &self,
+        component: usize,
+        readiness: Readiness,
+        most: usize,
+    ) -> Result<Vec<Joint>, Failure> {
+        let conditions = self.conditions(self.composition.components[component].group);
+        let mut candidates = Vec::new();
         for (transition, leaving) in self.standing().leaving(component).iter().enumerate() {
             let label = self.composition.components[component].labels[leaving.event];
             let joint = match label {
-                None if !self.is_wanted(leaving, readiness) => None,
+                None if !conditions.is_wanted(leaving, readiness) => None,
                 None => self.standing().alone(component, transition, &self.values)?,
-                Some(label) => self.joint(label, readiness)?,
+                Some(label) => self.joint(label, &conditions, readiness)?,
             };
-            if joint.is_some() {
-                return Ok(joint);
+            candidates.extend(joint);
+            if candidates.len() >= most {
+                break;
             }
         }
-        Ok(None)
+        Ok(candidates)
     }
 
     /// The jump that all participants of a label take together, if they can and one of them wants.
-    fn joint(&self, label: usize, readiness: Readiness) -> Result<Option<Joint>, Failure> {
+    fn joint(
+        &self,
+        label: usize,
+        conditions: &Conditions<'_>,
+        readiness: Readiness,
+    ) -> Result<Option<Joint>, Failure> {
         let participants = &self.composition.labels[label].participants;
-        if participants.iter().any(|(component, _)| self.jumped[*component]) {
+        if participants.iter().any(|(component, _)| self.jumped[*component] == self.round) {
             return Ok(None);
         }
         let joint = self.standing().together(label, &self.values)?;
         Ok(joint.filter(|joint| {
-            self.standing().parts(joint).any(|leaving| self.is_wanted(leaving, readiness))
+            let mut parts = self.standing().parts(joint);
+            parts.any(|leaving| conditions.is_wanted(leaving, readiness))
         }))
     }
 
-    fn is_wanted(&self, leaving: &Leaving, readiness: Readiness) -> bool {
-        leaving.urgency.is_forced()
-            || readiness == Readiness::Possible
-            || self.settings.policy == Policy::Early
-    }
-
-    fn take(&mut self, jump: &Joint, round: &mut Round<'_, Taken>) -> Result<(), Failure> {
+    fn take(&mut self, jump: &Joint, round: &mut Round<'_, Taken>) -> Result<(), Halt> {
+        if self.jumps >= self.settings.jump_limit {
+            return Err(Limit::Jumps(self.settings.jump_limit).into());
+        }
         let taken = self.standing().taken(jump, &self.values)?;
-        self.values.clone_from(&taken.values);
+        taken.changes.iter().for_each(|&(slot, value)| self.values[slot] = value);
         for one in &taken.moves {
             self.locations[one.component] = one.target;
-            self.jumped[one.component] = true;
+            self.jumped[one.component] = self.round;
+        }
+        self.jumps += 1;
+        self.latest = [self.latest[1], taken.moves.first().copied()];
+        let group = self.composition.components[taken.moves[0].component].group;
+        // What was planned was planned for other locations.
+        self.ground(group);
+        self.groups[group].is_eager = false;
+        if let Some(record) = &mut self.record {
+            record.jumped(
+                round.now(),
+                group,
+                &taken,
+                &self.composition.groups[group],
+                &self.values,
+            );
+            let memory = self.settings.memory_limit;
+            if record.size() > memory {
+                return Err(Limit::Memory(memory).into());
+            }
         }
         let participants: Box<[usize]> = taken.moves.iter().map(|one| one.component).collect();
         match &*participants {
@@ -297,166 +471,231 @@ impl<'a> Simulation<'a> {
     }
 
     fn standing(&self) -> Standing<'_> {
-        Standing { composition: self.composition, locations: &self.locations }
+        Standing::new(self.composition, &self.locations)
     }
 
-    // ---- Verdicts --------------------------------------------------------------------------
-
-    /// Holds where a transition has to be taken.
-    pub(super) fn forced(&self, state: &[f64]) -> Result<Verdict, Failure> {
-        self.any_transition(state, Readiness::Forced)
+    fn conditions(&self, group: usize) -> Conditions<'_> {
+        Conditions {
+            standing: self.standing(),
+            group: &self.composition.groups[group],
+            policy: self.policy_of(group),
+            allowance: self.groups[group].allowance,
+        }
     }
 
-    /// Whether any transition can be taken, forced or not.
-    pub(super) fn can_jump(&self, state: &[f64]) -> Result<bool, Failure> {
-        Ok(self.any_transition(state, Readiness::Possible)?.holds)
+    /// Whether what may be taken is taken as soon as it can be, or as late.
+    fn policy_of(&self, group: usize) -> Policy {
+        match self.settings.policy {
+            Policy::Random { .. } if self.groups[group].is_eager => Policy::Early,
+            Policy::Random { .. } => Policy::Late,
+            policy => policy,
+        }
     }
 
-    /// Holds where all components are within their invariants, but for what the last landing may
-    /// have lost to rounding.
-    pub(super) fn invariants(&self, state: &[f64]) -> Result<Verdict, Failure> {
-        let mut verdict = Verdict::ALWAYS;
-        for (index, component) in self.composition.components.iter().enumerate() {
-            let location = self.locations[index];
-            if let Some(invariant) = &component.place(location).invariant {
-                let part = || format!("the invariant `{invariant}`");
-                let own = invariant
-                    .evaluate_at(state, &component.slots)
-                    .map_err(|fault| self.standing().formula(index, location, part(), &fault))?;
-                verdict = verdict.and(own);
+    // ---- Flights ---------------------------------------------------------------------------
+
+    /// Plans the flow of a group from here on, unless that is done.
+    fn plan(&mut self, group: usize) -> Result<(), Halt> {
+        if self.groups[group].flight.is_some() {
+            return Ok(());
+        }
+        let policy = self.policy_of(group);
+        let mut flight = self.fly(group, policy)?;
+        let draws = matches!(self.settings.policy, Policy::Random { .. });
+        if draws && policy == Policy::Late && flight.halt.is_none() {
+            let first = self.fly(group, Policy::Early)?.duration.seconds();
+            let last = flight.duration.seconds();
+            if first < last {
+                let share = self.groups[group].chance.share();
+                flight = flight.cut(first + share * (last - first));
+                self.groups[group].is_eager = true;
             }
         }
-        let margin = verdict.margin + self.allowance;
-        let holds = verdict.holds || (self.allowance > 0.0 && margin >= 0.0);
-        Ok(Verdict { margin, holds })
+        self.queue.insert(Due { at: flight.due(), group });
+        self.groups[group].flight = Some(flight);
+        Ok(())
+    }
+
+    /// The flow of a group from here on.
+    fn fly(&mut self, group: usize, policy: Policy) -> Result<Flight, Halt> {
+        let parts = &self.composition.groups[group];
+        let left = Moment::from(self.horizon) - self.now;
+        let plan = Plan {
+            group: parts,
+            standing: Standing { is_local: true, ..self.standing() },
+            settings: &self.settings,
+            policy,
+            allowance: self.groups[group].allowance,
+            since: self.now,
+            start: parts.slots.iter().map(|&slot| self.values[slot]).collect(),
+            // A little more, for what happens at the instant nearest to the horizon.
+            limit: left.seconds() + f64::EPSILON * self.horizon,
+        };
+        let mut steps = self.steps;
+        let flight = plan.fly(&mut steps);
+        self.steps = steps;
+        flight
+    }
+
+    /// Forgets the flight that is planned.
+    fn ground(&mut self, group: usize) {
+        if let Some(flight) = self.groups[group].flight.take() {
+            self.queue.remove(&Due { at: flight.due(), group });
+        }
+    }
+
+    /// Ends the flight of a group now.
+    fn land(&mut self, group: usize) -> Result<(), Halt> {
+        let Some(flight) = self.groups[group].flight.take() else { return Ok(()) };
+        let parts = &self.composition.groups[group];
+        for (&slot, &value) in parts.slots.iter().zip(&flight.landing) {
+            self.values[slot] = value;
+        }
+        self.groups[group].allowance = self.allowance_of(group, &flight.landing)?;
+        self.awake.insert(group);
+        let duration = flight.duration.seconds();
+        let halt = flight.halt.clone();
+        if let Some(record) = &mut self.record {
+            record.flown(group, flight);
+        }
+        if let Some(halt) = halt {
+            return Err(halt);
+        }
+        match self.groups[group].zeno.after_flow(self.now.seconds(), duration) {
+            Some(zeno) => self.accumulate(group, zeno),
+            None => Ok(()),
+        }
+    }
+
+    /// Does what the model or the settings say where jumps of a group accumulate.
+    fn accumulate(&mut self, group: usize, zeno: Zeno) -> Result<(), Halt> {
+        let components = &self.composition.components;
+        let members = || self.composition.groups[group].components.iter();
+        let going_on = members().find_map(|&one| Some((one, components[one].continuation?)));
+        let own = members().find_map(|&one| components[one].accumulation);
+        match (going_on, own.unwrap_or(self.settings.accumulation)) {
+            (Some(continuation), _) => self.pass_limit(group, zeno, continuation),
+            (None, Accumulation::End) => return Err(Halt::Zeno(zeno)),
+            (None, Accumulation::Off) => {}
+        }
+        Ok(())
+    }
+
+    /// Lets time go on to the limit point of the group's jumps, where it takes what it is made to.
+    fn pass_limit(&mut self, group: usize, zeno: Zeno, continuation: (usize, usize)) {
+        let field = self.field(group, &self.locations);
+        let rest = zeno.accumulation - self.now.seconds();
+        self.groups[group].zeno = ZenoDetector::new(self.horizon);
+        self.groups[group].compelled = Some(continuation);
+        if rest > 0.0 {
+            let flight = Flight::of_lines(self.now, rest, &field);
+            self.awake.remove(&group);
+            self.queue.insert(Due { at: flight.due(), group });
+            self.groups[group].flight = Some(flight);
+        }
+    }
+
+    /// The flows of a group in these locations, from the present state on.
+    fn field(&self, group: usize, locations: &[usize]) -> Field<'a> {
+        let parts = &self.composition.groups[group];
+        let start = parts.slots.iter().map(|&slot| self.values[slot]).collect();
+        Field::of(self.composition, parts, locations, start)
+    }
+
+    /// Whether the last two jumps go back and forth over a boundary to which the flows of both
+    /// sides lead.
+    fn sliding(&self) -> Option<Sliding> {
+        let [Some(there), Some(back)] = self.latest else { return None };
+        let returns = (there.source, there.target) == (back.target, back.source);
+        if there.component != back.component || !returns || there.source == there.target {
+            return None;
+        }
+        let component = &self.composition.components[there.component];
+        let guard = &component.place(there.source).leaving[there.transition].guard;
+        let margins = |location: usize| -> Vec<f64> {
+            let mut locations = self.locations.clone();
+            locations[there.component] = location;
+            let field = self.field(component.group, &locations);
+            let mut rates = vec![0.0; field.start.len()];
+            field.rates(0.0, &field.start, &mut rates);
+            let point = |(value, rate): (&f64, &f64)| {
+                let value = Interval::point(*value);
+                Enclosure { middle: value, range: value, rate: Interval::point(*rate) }
+            };
+            let states: Vec<Enclosure> = field.start.iter().zip(&rates).map(point).collect();
+            let comparisons = guard.tracker.comparisons().iter();
+            comparisons
+                .map(|one| one.margin(&states, &component.places, 0.0).rate.midpoint())
+                .collect()
+        };
+        let sides = margins(there.source).into_iter().zip(margins(there.target));
+        let (here, beyond) =
+            sides.into_iter().find(|(here, beyond)| *here > 0.0 && *beyond < 0.0)?;
+        Some(Sliding {
+            component: there.component,
+            locations: [there.source, there.target],
+            share: here / (here - beyond),
+        })
     }
 
     /// How far beyond the boundary of its guard a flow has landed, as far as that is rounding.
-    fn allowance_at(&self, landing: &[f64]) -> Result<f64, Failure> {
-        let beyond = self.forced(landing)?.margin.max(0.0);
+    fn allowance_of(&self, group: usize, landing: &[f64]) -> Result<f64, Failure> {
+        let forced = self.conditions(group).any_transition(&self.values, Readiness::Forced)?;
+        let beyond = forced.margin.max(0.0);
         let largest = landing.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
         Ok(if beyond.is_finite() { beyond.min(LARGEST_ALLOWANCE * largest) } else { 0.0 })
     }
-
-    fn any_transition(&self, state: &[f64], readiness: Readiness) -> Result<Verdict, Failure> {
-        let mut verdict = Verdict::NEVER;
-        for (index, component) in self.composition.components.iter().enumerate() {
-            for leaving in &component.place(self.locations[index]).leaving {
-                let is_own = component.labels[leaving.event].is_none();
-                if is_own && self.is_wanted(leaving, readiness) {
-                    verdict = verdict.or(self.standing().allows(index, leaving, state)?);
-                }
-            }
-        }
-        for label in 0..self.composition.labels.len() {
-            verdict = verdict.or(self.label_verdict(label, state, readiness)?);
-        }
-        Ok(verdict)
-    }
-
-    /// Holds where the label can be taken, if any participant wants it.
-    fn label_verdict(
-        &self,
-        label: usize,
-        state: &[f64],
-        readiness: Readiness,
-    ) -> Result<Verdict, Failure> {
-        let mut all = Verdict::ALWAYS;
-        // Which part of the participants makes the label forced, depends on the state, too.
-        let mut wanted = Verdict::NEVER;
-        for &(index, event) in &self.composition.labels[label].participants {
-            let component = &self.composition.components[index];
-            let mut any = Verdict::NEVER;
-            let leaving = &component.place(self.locations[index]).leaving;
-            for leaving in leaving.iter().filter(|leaving| leaving.event == event) {
-                let allowed = self.standing().allows(index, leaving, state)?;
-                any = any.or(allowed);
-                if self.is_wanted(leaving, readiness) {
-                    wanted = wanted.or(allowed);
-                }
-            }
-            all = all.and(any);
-        }
-        Ok(all.and(wanted))
-    }
-
-    pub(super) fn failure(&self, reason: String) -> Failure {
-        Failure::Flow { locations: self.standing().names(), reason }
-    }
-}
-
-/// Which transitions are looked for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Readiness {
-    /// Those that have to be taken.
-    Forced,
-    /// All.
-    Possible,
 }
 
 impl System for Simulation<'_> {
     type Jump = Taken;
     type Finish = std::convert::Infallible;
-    type Error = Failure;
+    type Error = Halt;
 
     fn finished(&self) -> Option<Self::Finish> {
         None
     }
 
-    fn jump(&mut self, round: &mut Round<'_, Taken>) -> Result<(), Failure> {
-        self.now = round.now();
-        self.flight = None;
-        let mut jumped = self.take_round(round, Readiness::Forced)?;
-        let left = self.horizon - self.now.t;
+    fn jump(&mut self, round: &mut Round<'_, Taken>) -> Result<(), Halt> {
+        let awake = self.awake.clone();
+        let mut jumped = self.take_round(round, &awake, Readiness::Forced)?;
         // At the horizon there is no flow to come.
-        if !jumped && left > 0.0 {
-            let flight = self.plan(left)?;
-            if flight.duration <= 0.0 {
-                jumped = self.take_round(round, Readiness::Possible)?;
+        if !jumped && self.now.seconds() < self.horizon {
+            let mut stuck = BTreeSet::new();
+            for &group in &awake {
+                self.plan(group)?;
+                let flight = self.groups[group].flight.as_ref();
+                if flight.is_some_and(|flight| flight.duration <= Moment::default()) {
+                    stuck.insert(group);
+                }
             }
-            self.flight = (!jumped).then_some(flight);
+            if !stuck.is_empty() {
+                jumped = self.take_round(round, &stuck, Readiness::Possible)?;
+            }
+            if !jumped {
+                self.awake.clear();
+            }
         }
-        self.now = round.now();
         Ok(())
     }
 
-    fn time_to_jump(&self) -> Result<Option<f64>, Failure> {
-        Ok(self.flight.as_ref().filter(|flight| flight.is_eventful).map(|flight| flight.duration))
+    fn time_to_jump(&self) -> Result<Option<f64>, Halt> {
+        let due = self.queue.first().map(|due| (due.at - self.now).seconds());
+        Ok(due)
     }
 
-    fn flow(&mut self, duration: f64) -> Result<(), Failure> {
-        let planned = match self.flight.take() {
-            Some(flight) if flight.duration == duration => flight,
-            _ => self.plan(duration)?,
-        };
-        if let Some(landing) = planned.samples.into_iter().next_back() {
-            self.values = landing.values;
+    fn next_jump(&self, _now: Moment) -> Result<Option<Moment>, Halt> {
+        Ok(self.queue.first().map(|due| due.at))
+    }
+
+    fn flow(&mut self, duration: f64) -> Result<(), Halt> {
+        let first = self.queue.first().map(|due| due.at);
+        let planned = first.filter(|at| (*at - self.now).seconds() == duration);
+        self.now = planned.unwrap_or(self.now + Moment::from(duration));
+        while let Some(due) = self.queue.first().copied().filter(|due| due.at <= self.now) {
+            self.queue.pop_first();
+            self.land(due.group)?;
         }
-        self.allowance = self.allowance_at(&self.values)?;
-        self.now = self.now.after_flow(duration);
         Ok(())
-    }
-}
-
-/// Writes the trajectory while the simulation runs.
-struct Recorder(Trajectory);
-
-impl Observer<Simulation<'_>> for Recorder {
-    fn jumped(&mut self, entry: TraceEntry<Taken>) {
-        self.0.jumped(entry.at, entry.jump);
-    }
-
-    fn flows(
-        &mut self,
-        simulation: &Simulation<'_>,
-        now: HybridTime,
-        _duration: f64,
-    ) -> std::ops::ControlFlow<std::convert::Infallible> {
-        if let (Some(flight), Some(phase)) = (&simulation.flight, self.0.phases.last_mut()) {
-            phase.samples.clear();
-            let shifted = |sample: &Sample| Sample { t: now.t + sample.t, ..sample.clone() };
-            phase.samples.extend(flight.samples.iter().map(shifted));
-        }
-        std::ops::ControlFlow::Continue(())
     }
 }

@@ -8,7 +8,7 @@ mod sheet;
 use pleach_guards::constant;
 
 use crate::executor::{Ending, Reason};
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Phase, Trajectory};
 use axis::{Axis, power_of_ten};
 use curve::Quantity;
 use sheet::{Sheet, WIDTH, area_colour, text_width};
@@ -121,7 +121,8 @@ fn draw_panel(
     top: f64,
 ) {
     let quantity = Quantity::Variable(variable);
-    let values = trajectory.phases().iter().flat_map(|phase| quantity.values(&phase.samples));
+    let phases: Vec<Phase> = trajectory.phases().collect();
+    let values = phases.iter().flat_map(|phase| quantity.values(&phase.samples));
     let vertical = Axis::roomy(values, top + PANEL, top);
     let right = WIDTH - RIGHT;
     sheet.panel([LEFT, top], [right - LEFT, PANEL]);
@@ -140,9 +141,8 @@ fn draw_panel(
     }
 
     let place = |t: f64, value: f64| [time.place(t), vertical.place(value)];
-    let phases = trajectory.phases();
     let mut path = String::new();
-    for phase in phases {
+    for phase in &phases {
         path.push_str(&curve::path(&phase.samples, (Quantity::Time, time), (quantity, &vertical)));
         path.push(' ');
     }

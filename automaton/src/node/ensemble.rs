@@ -36,6 +36,7 @@ pub struct Ensemble<N: Node, M> {
     has_moved: bool,
     /// Who takes part in the current jump.
     takes_part: Vec<bool>,
+    participants: Vec<NodeId>,
 }
 
 impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
@@ -44,6 +45,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         Ensemble {
             bodies: Vec::with_capacity(nodes.len()),
             takes_part: vec![false; nodes.len()],
+            participants: Vec::with_capacity(nodes.len()),
             outputs: Outputs::of(0),
             has_moved: true,
             nodes,
@@ -128,11 +130,12 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     }
 
     fn record(&mut self, round: &mut Round<'_, NodeJump>, jump: NodeJump) {
-        if self.takes_part.iter().all(|&takes_part| takes_part) {
-            round.jumped_together(jump);
-        } else {
-            let took_part = |&id: &NodeId| self.takes_part[id];
-            round.jumped_some((0..self.nodes.len()).filter(took_part).collect(), jump);
+        let took_part = |&id: &NodeId| self.takes_part[id];
+        self.participants.clear();
+        self.participants.extend((0..self.nodes.len()).filter(took_part));
+        match self.participants.len() == self.nodes.len() {
+            true => round.jumped_together(jump),
+            false => round.jumped_some(self.participants.as_slice().into(), jump),
         }
         self.takes_part.fill(false);
     }
@@ -182,5 +185,110 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
         self.medium.flow(duration);
         self.has_moved = true;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)] // a test that panics has failed
+mod tests {
+    use super::*;
+    use crate::node::FullMesh;
+    use crate::{Executor, Reason, Trace};
+
+    /// Passes a number on to the next node, one more each time, and rests at a limit; the first
+    /// node begins once a second.
+    struct Counter {
+        next: NodeId,
+        begins: bool,
+        clock: f64,
+        heard: Vec<(NodeId, u32)>,
+    }
+
+    impl Node for Counter {
+        type Message = u32;
+        type Sense = u32;
+        type Report = u32;
+        type Body = ();
+        type Error = Infallible;
+
+        fn step(
+            &mut self,
+            input: Input<'_, u32, u32>,
+            outputs: &mut Outputs<u32, u32>,
+        ) -> Result<(), Infallible> {
+            match input {
+                Input::Heard { from, message } => {
+                    self.heard.push((from, *message));
+                    outputs.report(*message);
+                    if *message < 4 {
+                        outputs.send(self.next, message + 1);
+                    }
+                }
+                Input::Sensed(number) => outputs.broadcast(number),
+                Input::Tick => {
+                    self.clock = 0.0;
+                    outputs.send(self.next, 1);
+                }
+            }
+            Ok(())
+        }
+
+        fn time_to_tick(&self) -> Option<f64> {
+            self.begins.then_some((1.0 - self.clock).max(0.0))
+        }
+
+        fn flow(&mut self, duration: f64) {
+            self.clock += duration;
+        }
+
+        fn body(&self) {}
+    }
+
+    impl Observed for Counter {
+        type View<'a> = &'a [(NodeId, u32)];
+
+        fn view(&self) -> &[(NodeId, u32)] {
+            &self.heard
+        }
+    }
+
+    fn three() -> Ensemble<Counter, FullMesh<u32>> {
+        let counter = |id: NodeId| Counter {
+            next: (id + 1) % 3,
+            begins: id == 0,
+            clock: 0.0,
+            heard: Vec::new(),
+        };
+        Ensemble::new((0..3).map(counter).collect(), FullMesh::new())
+    }
+
+    /// A tick, and all that is said in answer, at each of the instants 1 and 2.
+    #[test]
+    fn messages_are_heard_before_time_passes() {
+        let (mut ensemble, mut trace) = (three(), Trace::new());
+        let ending = Executor::new(2.0, 10).unwrap().run(&mut ensemble, &mut trace).unwrap();
+        assert_eq!(ending.reason, Reason::Horizon);
+        let jumps: Vec<_> = trace.entries().iter().map(|entry| (entry.at.t, entry.jump)).collect();
+        let at = |t: f64| {
+            let heard = std::iter::repeat_n((t, NodeJump::Heard), 4);
+            std::iter::once((t, NodeJump::Ticked)).chain(heard)
+        };
+        assert_eq!(jumps, at(1.0).chain(at(2.0)).collect::<Vec<_>>());
+        let seen: Vec<_> = ensemble.views().map(<[_]>::to_vec).collect();
+        assert_eq!(seen[0], [(2, 3), (2, 3)]);
+        assert_eq!(seen[1], [(0, 1), (0, 4), (0, 1), (0, 4)]);
+        assert_eq!(seen[2], [(1, 2), (1, 2)]);
+    }
+
+    /// What a person asks of a node is told to every other, and observers hear of it in order.
+    #[test]
+    fn what_is_sensed_is_broadcast() {
+        let mut ensemble = three();
+        ensemble.sense(1, 4).unwrap();
+        ensemble.sense(7, 4).unwrap();
+        Executor::new(0.5, 10).unwrap().run(&mut ensemble, &mut ()).unwrap();
+        assert_eq!(ensemble.drain_reports().collect::<Vec<_>>(), [(0, 4), (2, 4)]);
+        assert_eq!(ensemble.view(1), Some(&[][..]));
+        assert_eq!(ensemble.view(3), None);
     }
 }

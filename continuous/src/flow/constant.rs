@@ -1,6 +1,6 @@
 //! The flow ẋ = c.
 
-use super::{Curve, InvalidFlow};
+use super::{Curve, InvalidFlow, Piece};
 
 /// A state that moves in a straight line at constant speed: x(t) = x₀ + c t, exactly.
 ///
@@ -58,5 +58,13 @@ impl Curve for ConstantFlow {
 
     fn time_scale(&self, _time: f64) -> f64 {
         f64::INFINITY
+    }
+
+    fn piece(&self, _time: f64) -> Option<Piece> {
+        let mut piece = Piece::new(0.0, self.duration, 0.0, 1.0);
+        for (first, rate) in self.state.iter().zip(&self.rates) {
+            piece.push([*first, *rate], 0.0);
+        }
+        Some(piece)
     }
 }

@@ -221,6 +221,7 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
             last: &self.state,
             stages: [k1, k3, k4, k5, k6, k7],
             inside: &self.inside,
+            tolerances: self.tolerances,
         }
     }
 

@@ -4,7 +4,9 @@ use nalgebra::linalg::Schur;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use super::Curve;
+use super::{Curve, Piece};
+
+mod pieces;
 
 /// A solution of ẋ = A x + b, by the exponential of the matrix and not by steps.
 ///
@@ -148,6 +150,10 @@ impl Curve for LinearFlow {
             Solution::Polynomial(_) => f64::INFINITY,
             Solution::Exponential(exponential) => exponential.time_scale(time),
         }
+    }
+
+    fn piece(&self, time: f64) -> Option<Piece> {
+        Some(self.piece_from(time))
     }
 }
 

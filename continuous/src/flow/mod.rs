@@ -9,8 +9,10 @@
 //! | ẋ = f(t, x) | the [`Step`]s of an [`Integrator`] | to stated [`Tolerances`] |
 //!
 //! All three are [`Curve`]s: they can be evaluated at every instant, not only where a step ends.
-//! That is what makes events precise. [`first_instant`] finds the first instant of a curve at
-//! which a predicate holds, and lands on the side on which it does.
+//! That is what makes events precise. A curve comes in [`Piece`]s, polynomials with a bound on their
+//! error, and on each of them [`isolate`] encloses what a predicate can do: it finds the first
+//! instant at which it holds, proves that there is none, or says where it cannot tell. Where a
+//! predicate is a function of which nothing is known, [`first_instant`] looks at states instead.
 //!
 //! A ball falls from a height of 20 m and hits the ground after 2 s:
 //!
@@ -32,12 +34,15 @@
 //! ```
 
 mod bend;
+mod chebyshev;
 mod constant;
 mod controller;
 mod dormand_prince;
 mod event;
 mod integrator;
+mod isolation;
 mod linear;
+mod piece;
 mod root;
 mod step;
 mod tolerances;
@@ -45,7 +50,9 @@ mod tolerances;
 pub use constant::ConstantFlow;
 pub use event::{EventSearch, InvalidSearch, Onset, first_instant};
 pub use integrator::{IntegrationFailure, Integrator};
+pub use isolation::{Doubt, Finding, Lost, Uncertainty, Watch, isolate};
 pub use linear::{InvalidFlow, LinearFlow};
+pub use piece::Piece;
 pub use step::Step;
 pub use tolerances::{InvalidTolerances, Tolerances};
 
@@ -99,5 +106,10 @@ pub trait Curve {
     /// looks several times in that span sees what it does. Infinite if it bends only once or so.
     fn time_scale(&self, _time: f64) -> f64 {
         self.end() - self.start()
+    }
+    /// The piece of the curve that begins at `time` or holds it, as polynomials; none where nothing
+    /// is known but values.
+    fn piece(&self, _time: f64) -> Option<Piece> {
+        None
     }
 }

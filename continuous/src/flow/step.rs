@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use super::dormand_prince::{QUARTIC, combine};
-use super::{Curve, VectorField};
+use super::{Curve, Piece, Tolerances, VectorField};
 
 /// One step of an [`Integrator`](super::Integrator): a curve that joins the steps beside it with
 /// continuous first derivative.
@@ -25,6 +25,7 @@ pub struct Step<'a, F: ?Sized> {
     /// Stages 1, 3, 4, 5, 6 and 7.
     pub(super) stages: [&'a [f64]; 6],
     pub(super) inside: &'a RefCell<Inside>,
+    pub(super) tolerances: Tolerances,
 }
 
 /// The rates at the two instants inside a step.
@@ -89,6 +90,25 @@ impl<F: VectorField + ?Sized> Curve for Step<'_, F> {
             }
         }
     }
+
+    /// The whole step. Its error is that which the tolerances allow at the ends.
+    fn piece(&self, _time: f64) -> Option<Piece> {
+        let mut inside = self.inside.borrow_mut();
+        self.explore(&mut inside);
+        let duration = self.end - self.start;
+        let mut piece = Piece::new(self.start, self.end, self.start, duration);
+        for (component, (first, last)) in self.first.iter().zip(self.last).enumerate() {
+            let weighted = match inside.knowledge {
+                Knowledge::Known => self.quintic_terms(component, &inside.rates),
+                _ => self.quartic_terms(component),
+            };
+            let mut terms = weighted.map(|term| duration * term);
+            terms[0] += first;
+            let error = self.tolerances.allowed(first.abs().max(last.abs()));
+            piece.push(terms, error);
+        }
+        Some(piece)
+    }
 }
 
 impl<F: VectorField + ?Sized> Step<'_, F> {
@@ -129,12 +149,56 @@ impl<F: VectorField + ?Sized> Step<'_, F> {
         self.add_change(theta - weights.iter().sum::<f64>(), state);
     }
 
+    /// The polynomial of degree 5 of a component, less the state at the start, per second.
+    fn quintic_terms(&self, component: usize, inside: &[Vec<f64>; 2]) -> [f64; 6] {
+        let [at_start, .., at_end] = self.stages;
+        let rates =
+            [at_start[component], inside[0][component], inside[1][component], at_end[component]];
+        self.terms(component, QUINTIC_TERMS, rates)
+    }
+
+    /// The polynomial of degree 4 of a component, less the state at the start, per second.
+    fn quartic_terms(&self, component: usize) -> [f64; 6] {
+        let mut table = QUARTIC.map(|weight| [0.0, 0.0, weight, -2.0 * weight, weight, 0.0]);
+        // θφ − θ²φ for the first stage, −θ²φ for the last.
+        for (power, [first, last]) in [(1, [1.0, 0.0]), (2, [-2.0, -1.0]), (3, [1.0, 1.0])] {
+            table[0][power] += first;
+            table[5][power] += last;
+        }
+        self.terms(component, table, self.stages.map(|stage| stage[component]))
+    }
+
+    /// The sum of rates, each times its polynomial, and of the mean rate times what these leave.
+    fn terms<const N: usize>(
+        &self,
+        component: usize,
+        table: [[f64; 6]; N],
+        rates: [f64; N],
+    ) -> [f64; 6] {
+        let mean = (self.last[component] - self.first[component]) / (self.end - self.start);
+        let mut terms = [0.0, mean, 0.0, 0.0, 0.0, 0.0];
+        for (weights, rate) in table.iter().zip(rates) {
+            for (term, weight) in terms.iter_mut().zip(weights) {
+                *term += weight * (rate - mean);
+            }
+        }
+        terms
+    }
+
     fn add_change(&self, weight: f64, state: &mut [f64]) {
         for ((x, first), last) in state.iter_mut().zip(self.first).zip(self.last) {
             *x += weight * (last - first);
         }
     }
 }
+
+/// The polynomials of [`quintic_weights`] by their coefficients, the constant first.
+const QUINTIC_TERMS: [[f64; 6]; 4] = [
+    [0.0, 1.0, -71.0 / 12.0, 77.0 / 6.0, -143.0 / 12.0, 4.0],
+    [0.0, 0.0, -9.0, 34.0, -41.0, 16.0],
+    [0.0, 0.0, -16.0 / 3.0, 32.0 / 3.0, -16.0 / 3.0, 0.0],
+    [0.0, 0.0, -9.0 / 4.0, 15.0 / 2.0, -37.0 / 4.0, 4.0],
+];
 
 /// The weights of the rates at 0, 1/2, 3/4 and 1 in the polynomial of degree 5.
 ///
@@ -155,6 +219,17 @@ fn quintic_weights(theta: f64) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn terms_make_up_the_weights() {
+        for tenth in 0..=10 {
+            let theta = 0.1 * f64::from(tenth);
+            for (terms, weight) in QUINTIC_TERMS.iter().zip(quintic_weights(theta)) {
+                let sum = terms.iter().rev().fold(0.0, |sum, term| sum * theta + term);
+                assert!((sum - weight).abs() < 1e-14, "{sum} for {weight} at {theta}");
+            }
+        }
+    }
 
     #[test]
     fn weights_meet_what_defines_them() {

@@ -3,4 +3,5 @@
 mod events;
 mod exact;
 mod integration;
+mod isolation;
 mod support;

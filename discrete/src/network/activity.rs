@@ -214,12 +214,13 @@ const fn later(source: Activity, event: DutyEvent, target: Activity) -> Row<Acti
     Row { source, event, target, urgency: Urgency::AtOnce, priority: 1 }
 }
 
-/// A robot that is under way and one that is parked exchange their duties: both transitions.
+/// Two robots exchange their duties: both transitions.
 const fn exchange(mover: Activity, parked: Activity) -> [Row<Activity, DutyEvent>; 2] {
     [row(mover, parked.taken_over(), parked), row(parked, mover.taken_over(), mover)]
 }
 
-/// The exchanges of a robot that is under way with every kind of parked one.
+/// The exchanges of a robot that is under way with every kind of robot that it may meet at rest: the
+/// primary team rests while a secondary team is active, or has not heard yet that it is over.
 macro_rules! rows {
     ($($row:expr,)* ; exchanges $($mover:ident: [$($parked:ident),*]),*) => {
         &[$($row,)* $($(
@@ -253,6 +254,8 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         row(Waiting, On::RelayKept, Relay),
         row(Waiting, On::LeafKept, Leaf),
         row(AwaitingRelease, On::BoundKept, Bound),
+        row(AwaitingRelease, On::RelayResumed, Relay),
+        row(AwaitingRelease, On::LeafResumed, Leaf),
         row(Waiting, On::TeamJoined, Following),
         row(AwaitingRelease, On::Released, Leading),
         row(Shifting, On::StandbyReached, Standby),
@@ -270,10 +273,12 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         later(Relay, On::Branched, Junction),
         later(Relay, On::Retired, Standby),
         later(Junction, On::Merged, Relay),
+        row(Following, On::TakesFollowing, Following),
         ;
         exchanges
-        Shifting: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease],
-        Following: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease],
+        Shifting: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Following,
+            Leading],
+        Following: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Leading],
         Leading: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease]
     ])
 };

@@ -36,9 +36,14 @@ impl<N: Clone> Bulletin<N> {
         Bulletin { sequence: self.sequence + 1, notice }
     }
 
+    /// Whether it was issued after `other`.
+    pub const fn is_newer_than(&self, other: &Self) -> bool {
+        self.sequence > other.sequence
+    }
+
     /// Takes over `heard` if it is newer; says whether it was.
     pub fn merge(&mut self, heard: &Self) -> bool {
-        let newer = heard.sequence > self.sequence;
+        let newer = heard.is_newer_than(self);
         if newer {
             *self = heard.clone();
         }

@@ -111,6 +111,16 @@ impl<D> Dealings<D> {
     }
 }
 
+impl<D> Dealings<D> {
+    /// Whether the mover, which has this offer and has made so many, has heard the reply.
+    pub fn has_heard_reply(&self, offer: Option<&Exchange<D>>, offers_made: u32) -> bool {
+        // What the mover said before it made the offer may be heard again.
+        self.reply
+            .as_ref()
+            .is_some_and(|reply| reply.is_heard(offer) && offers_made >= reply.number)
+    }
+}
+
 impl<D: Copy> Dealings<D> {
     /// The mover offers its `duty`.
     pub fn make_offer(&mut self, to: NodeId, duty: D) {
@@ -139,10 +149,7 @@ impl<D: Copy> Dealings<D> {
     /// The parked robot hears of the mover, which has this offer and has made so many: the duty
     /// that it has now, if it has given its own and the mover has taken that.
     pub fn conclude(&mut self, offer: Option<&Exchange<D>>, offers_made: u32) -> Option<D> {
-        let reply = self.reply.as_ref()?;
-        // What the mover said before it made the offer may be heard again.
-        let concluded = reply.is_heard(offer) && offers_made >= reply.number;
-        if !concluded {
+        if !self.has_heard_reply(offer, offers_made) {
             return None;
         }
         self.reply = None;

@@ -4,6 +4,7 @@
 pub mod activity;
 pub mod agreement;
 pub mod bulletin;
+pub mod dealing;
 pub mod election;
 pub mod exchange;
 pub mod id_set;
@@ -16,6 +17,7 @@ pub mod tables;
 pub use activity::{Activity, DUTIES, DutyEvent};
 pub use agreement::Agreement;
 pub use bulletin::Bulletin;
+pub use dealing::{DEALINGS, Dealing, DealingEvent};
 pub use election::{Bid, Election};
 pub use exchange::{Dealings, Exchange, Reply};
 pub use id_set::IdSet;
@@ -23,7 +25,7 @@ pub use lineage::Lineage;
 pub use path::{Hop, Path, Subgroup};
 pub use post::{Anchor, Post, PostId, PostKind};
 pub use role::{Phase, Role};
-pub use tables::{MISSION, MissionStep, ROLES, RoleEvent};
+pub use tables::{MISSION, MissionStep};
 
 /// A node of the network: robots are numbered first, from 0, then access points.
 pub type NodeId = usize;

@@ -1,21 +1,13 @@
-//! The transition tables of the two automata of a robot: its role and its view of the mission.
+//! The transition table of the mission as one robot knows it.
 //!
-//! These tables are the single source of the discrete behaviour. The guards that turn facts into
-//! events, and the resets, are attached to the events where numbers are known.
+//! Tables are the single source of the discrete behaviour. The guards that turn what is measured
+//! into events, and the resets, are attached to the rows where numbers are known.
 
-use super::{Phase, Role};
+use super::Phase;
 use crate::{Event, Location, Row, TransitionTable, Urgency};
 
 #[cfg(any(kani, test))]
 mod proofs;
-
-impl Location for Role {
-    const ALL: &'static [Self] = &Role::ALL;
-
-    fn name(self) -> &'static str {
-        Role::name(self)
-    }
-}
 
 impl Location for Phase {
     const ALL: &'static [Self] = &Phase::ALL;
@@ -24,114 +16,6 @@ impl Location for Phase {
         Phase::name(self)
     }
 }
-
-/// What changes the role of a robot (Algorithm 4 and Remark 5.6).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum RoleEvent {
-    /// It wins a leader election, or takes over the leader's duty.
-    Elected,
-    /// It wins a recruit election, or takes over the recruit's duty.
-    Recruited,
-    /// It services a task, from now on or in the place of another.
-    Entrusted,
-    /// It holds a fixed post from which several branches part.
-    Parted,
-    /// It holds a fixed post on one branch.
-    Posted,
-    /// It moves with a team, and what it held before is held by another.
-    Relieved,
-    /// Nothing depends on it.
-    Retired,
-}
-
-impl Event for RoleEvent {
-    const ALL: &'static [Self] = &[
-        RoleEvent::Elected,
-        RoleEvent::Recruited,
-        RoleEvent::Entrusted,
-        RoleEvent::Parted,
-        RoleEvent::Posted,
-        RoleEvent::Relieved,
-        RoleEvent::Retired,
-    ];
-
-    fn name(self) -> &'static str {
-        match self {
-            RoleEvent::Elected => "elected",
-            RoleEvent::Recruited => "recruited",
-            RoleEvent::Entrusted => "entrusted",
-            RoleEvent::Parted => "parted",
-            RoleEvent::Posted => "posted",
-            RoleEvent::Relieved => "relieved",
-            RoleEvent::Retired => "retired",
-        }
-    }
-}
-
-impl RoleEvent {
-    /// Whether the robot goes away from the place that it held, which another must hold by then:
-    /// the guards of these events ask for it.
-    pub const fn needs_replacement(self) -> bool {
-        matches!(self, RoleEvent::Recruited | RoleEvent::Relieved)
-    }
-}
-
-/// Whether a transition leaves no place that matters without a robot (Algorithm 4).
-///
-/// A leaf goes when another robot is at its place, or leads: as a leader it stays where it is
-/// until it is released (L_b = 1). So does a junction; and it is none any more when its place
-/// services a task, when one branch is left, and when none is.
-pub const fn keeps_places_held(source: Role, event: RoleEvent, target: Role) -> bool {
-    let goes_on = event.needs_replacement() || matches!(target, Role::Leader);
-    match source {
-        Role::Leaf => goes_on,
-        Role::Junction => {
-            goes_on
-                || matches!(event, RoleEvent::Entrusted | RoleEvent::Posted | RoleEvent::Retired)
-        }
-        _ => true,
-    }
-}
-
-const fn role(source: Role, event: RoleEvent, target: Role) -> Row<Role, RoleEvent> {
-    Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
-}
-
-/// The table of the role automaton.
-pub const ROLES: TransitionTable<Role, RoleEvent> = TransitionTable::new(&[
-    role(Role::Redundant, RoleEvent::Elected, Role::Leader),
-    role(Role::Redundant, RoleEvent::Recruited, Role::Recruit),
-    role(Role::Redundant, RoleEvent::Entrusted, Role::Leaf),
-    role(Role::Redundant, RoleEvent::Parted, Role::Junction),
-    role(Role::Redundant, RoleEvent::Posted, Role::Node),
-    role(Role::Redundant, RoleEvent::Relieved, Role::Node),
-    role(Role::Recruit, RoleEvent::Elected, Role::Leader),
-    role(Role::Recruit, RoleEvent::Entrusted, Role::Leaf),
-    role(Role::Recruit, RoleEvent::Parted, Role::Junction),
-    role(Role::Recruit, RoleEvent::Posted, Role::Node),
-    role(Role::Recruit, RoleEvent::Relieved, Role::Node),
-    role(Role::Recruit, RoleEvent::Retired, Role::Redundant),
-    role(Role::Node, RoleEvent::Elected, Role::Leader),
-    role(Role::Node, RoleEvent::Recruited, Role::Recruit),
-    role(Role::Node, RoleEvent::Entrusted, Role::Leaf),
-    role(Role::Node, RoleEvent::Parted, Role::Junction),
-    role(Role::Node, RoleEvent::Retired, Role::Redundant),
-    role(Role::Junction, RoleEvent::Elected, Role::Leader),
-    role(Role::Junction, RoleEvent::Recruited, Role::Recruit),
-    role(Role::Junction, RoleEvent::Entrusted, Role::Leaf),
-    role(Role::Junction, RoleEvent::Posted, Role::Node),
-    role(Role::Junction, RoleEvent::Relieved, Role::Node),
-    role(Role::Junction, RoleEvent::Retired, Role::Redundant),
-    role(Role::Leaf, RoleEvent::Elected, Role::Leader),
-    role(Role::Leaf, RoleEvent::Recruited, Role::Recruit),
-    role(Role::Leaf, RoleEvent::Relieved, Role::Node),
-    role(Role::Leader, RoleEvent::Recruited, Role::Recruit),
-    role(Role::Leader, RoleEvent::Entrusted, Role::Leaf),
-    role(Role::Leader, RoleEvent::Parted, Role::Junction),
-    role(Role::Leader, RoleEvent::Posted, Role::Node),
-    role(Role::Leader, RoleEvent::Relieved, Role::Node),
-    role(Role::Leader, RoleEvent::Retired, Role::Redundant),
-]);
 
 /// What moves the mission on, in the eyes of one robot (Algorithms 1, 3 and 5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -262,43 +146,13 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Activity, DutyEvent};
     use super::*;
 
     #[test]
-    fn the_tables_are_deterministic_and_every_location_is_reached() {
-        assert!(ROLES.is_deterministic());
-        assert_eq!(ROLES.unreachable_from(Role::Redundant), vec![]);
+    fn the_table_is_deterministic_and_every_location_is_reached() {
         assert!(MISSION.is_deterministic());
         assert_eq!(MISSION.unreachable_from(Phase::Idle), vec![]);
-    }
-
-    #[test]
-    fn a_leaf_leaves_its_role_only_when_it_is_relieved_or_leads() {
-        for row in ROLES.rows() {
-            assert!(keeps_places_held(row.source, row.event, row.target), "{row:?}");
-        }
-    }
-
-    /// Held places against a table: of a leaf and of a junction, the events on which it may go.
-    #[test]
-    fn places_are_left_only_as_the_algorithm_allows() {
-        use RoleEvent::{Entrusted, Posted, Recruited, Relieved, Retired};
-        let replaced = RoleEvent::ALL.iter().filter(|event| event.needs_replacement());
-        assert!(replaced.eq(&[Recruited, Relieved]));
-        for source in Role::ALL {
-            let ways_out: &[RoleEvent] = match source {
-                Role::Leaf => &[Recruited, Relieved],
-                Role::Junction => &[Recruited, Relieved, Entrusted, Posted, Retired],
-                _ => RoleEvent::ALL,
-            };
-            for &event in RoleEvent::ALL {
-                for target in Role::ALL {
-                    let allowed = ways_out.contains(&event) || target == Role::Leader;
-                    let found = keeps_places_held(source, event, target);
-                    assert_eq!(found, allowed, "{source:?} {event:?} {target:?}");
-                }
-            }
-        }
     }
 
     #[test]
@@ -310,9 +164,9 @@ mod tests {
             };
             assert!(names.iter().all(|name| name.split(' ').all(is_word)), "{names:?}");
         };
-        names(Role::ALL.iter().map(|&role| Location::name(role)).collect());
+        names(Activity::ALL.iter().map(|activity| activity.name()).collect());
+        names(DutyEvent::ALL.iter().map(|event| event.name()).collect());
         names(Phase::ALL.iter().map(|&phase| Location::name(phase)).collect());
-        names(RoleEvent::ALL.iter().map(|event| event.name()).collect());
         names(MissionStep::ALL.iter().map(|step| step.name()).collect());
     }
 

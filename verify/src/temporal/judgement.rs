@@ -61,8 +61,14 @@ impl Formula {
     /// Judges a trajectory from its first instant.
     ///
     /// The margin of each comparison is taken to be linear between samples, so they must be as
-    /// close as that is true. The judgement is then
-    /// exact, but for rounding: it takes account of all instants and not only of the samples.
+    /// close as that is true. The judgement is then exact, but for rounding: it takes account of all
+    /// instants and not only of the samples.
+    ///
+    /// Of a [`Trajectory`](pleach_automaton::Trajectory) the samples are chosen such that between
+    /// two of them no comparison of the formula turns or changes
+    /// ([`samples_for`](pleach_automaton::Trajectory::samples_for)). The status rests on these
+    /// changes and is exact; the robustness is where an extremum decides, and elsewhere differs by as
+    /// much as the margins bend between two samples.
     ///
     /// ```
     /// use pleach_guards::variable;
@@ -95,10 +101,8 @@ impl Formula {
         };
         let margins = bounds(Reading::Margin);
         let robustness = Robustness::between(margins.0.margin, margins.1.margin);
-        // On the boundary the margins do not tell, but the truth of the comparisons does.
-        let on_boundary = robustness.lower == 0.0 || robustness.upper == 0.0;
-        let deciding = if on_boundary { bounds(Reading::Truth) } else { margins };
-        let (status, value) = match deciding {
+        // The truth of the comparisons decides: on the boundary the margins do not tell.
+        let (status, value) = match bounds(Reading::Truth) {
             (lower, _) if lower.margin > 0.0 => (Status::Satisfied, Some(margins.0)),
             (_, upper) if upper.margin < 0.0 => (Status::Violated, Some(margins.1)),
             _ => (Status::Inconclusive, None),

@@ -27,6 +27,21 @@ use super::signal::{Flow, Knot, Origin, Signal, Span, Time, Value};
 pub trait Samples {
     /// Calls `visit` with the time and the state of every sample, in order.
     fn for_each(&self, visit: &mut dyn FnMut(f64, &dyn Valuation));
+
+    /// The same with the samples that tell about these predicates, where a choice can be made: all
+    /// instants at which one of them may change.
+    ///
+    /// # Errors
+    ///
+    /// [`EvaluationError`] if a predicate names a variable that no state has.
+    fn for_each_that_tells(
+        &self,
+        _predicates: &[Predicate],
+        visit: &mut dyn FnMut(f64, &dyn Valuation),
+    ) -> Result<(), EvaluationError> {
+        self.for_each(visit);
+        Ok(())
+    }
 }
 
 impl<V: Valuation> Samples for [(f64, V)] {
@@ -47,10 +62,22 @@ impl<V: Valuation> Samples for Vec<(f64, V)> {
     }
 }
 
-/// The samples of every phase; the margins are linear between them, and not cubic as the states.
+/// The samples of every phase; for a formula, also those at which the margins of its predicates turn
+/// or pass zero, so that none of them changes between two samples.
 impl Samples for Trajectory {
     fn for_each(&self, visit: &mut dyn FnMut(f64, &dyn Valuation)) {
-        self.samples().for_each(|(at, sample)| visit(at.t, &self.state(sample)));
+        self.samples().for_each(|(at, sample)| visit(at.t, &self.state(&sample)));
+    }
+
+    fn for_each_that_tells(
+        &self,
+        predicates: &[Predicate],
+        visit: &mut dyn FnMut(f64, &dyn Valuation),
+    ) -> Result<(), EvaluationError> {
+        for (at, sample) in self.samples_for(predicates)? {
+            visit(at.t, &self.state(&sample));
+        }
+        Ok(())
     }
 }
 
@@ -146,11 +173,12 @@ impl Recording {
         let literals = predicates.iter().map(literal).collect();
         let mut recording = Recording { instants: Vec::new(), literals };
         let mut outcome = Ok(());
-        samples.for_each(&mut |t, state| {
+        let told = samples.for_each_that_tells(predicates, &mut |t, state| {
             if outcome.is_ok() {
                 outcome = recording.record(t, state);
             }
         });
+        told.map_err(|error| TemporalError::Evaluation { time: 0.0, error })?;
         outcome?;
         if recording.instants.is_empty() { Err(TemporalError::NoSamples) } else { Ok(recording) }
     }

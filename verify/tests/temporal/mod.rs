@@ -4,6 +4,7 @@
 mod by_definition;
 mod examples;
 mod random;
+mod trajectories;
 
 use pleach_verify::temporal::{Formula, Status, always, eventually, not};
 use proptest::prelude::*;

@@ -64,7 +64,7 @@ fn variable(trajectory: &Trajectory, name: &str) -> Result<Quantity, UnknownVari
 }
 
 fn axis(trajectory: &Trajectory, quantity: Quantity, [from, to]: [f64; 2]) -> Axis {
-    let phases = trajectory.phases().iter();
+    let phases = trajectory.phases();
     Axis::roomy(phases.flat_map(|phase| quantity.values(&phase.samples)), from, to)
 }
 
@@ -105,7 +105,7 @@ impl Portrait<'_> {
     }
 
     fn draw_curves(&self, sheet: &mut Sheet) {
-        let phases = self.trajectory.phases();
+        let phases: Vec<Phase> = self.trajectory.phases().collect();
         let mut jumps = Vec::new();
         for pair in phases.windows(2) {
             if let (Some(before), Some(after)) = (pair[0].samples.last(), pair[1].samples.first()) {
@@ -135,7 +135,7 @@ impl Portrait<'_> {
     fn draw_legend(&self, sheet: &mut Sheet) {
         let Some(participant) = self.trajectory.components().get(self.component) else { return };
         let mut present: Vec<usize> =
-            self.trajectory.phases().iter().map(|phase| self.location(phase)).collect();
+            self.trajectory.phases().map(|phase| self.location(&phase)).collect();
         present.sort_unstable();
         present.dedup();
         let (mut x, y) = (LEFT, TOP + PANEL + FOOT - 22.0);

@@ -5,8 +5,6 @@
 //! stands, and for how long it has not got on. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
-use std::fmt::Write;
-
 use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Election, NodeId, Phase, Subgroup};
 
@@ -38,7 +36,7 @@ impl Robot {
     /// When a guard cannot be evaluated, or transitions do not come to an end.
     pub fn think(&mut self) -> Result<(), RobotError> {
         self.end_round();
-        self.reflect();
+        self.reflect()?;
         self.stir();
         self.is_quiet = false;
         self.jump()
@@ -51,8 +49,8 @@ impl Robot {
     /// When a guard cannot be evaluated, or transitions do not come to an end.
     pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
         self.stand_at(self.position, still_periods);
-        self.begin_period();
-        self.deliberate();
+        self.begin_period()?;
+        self.deliberate()?;
         self.jump()
     }
 
@@ -62,18 +60,18 @@ impl Robot {
     }
 
     /// The duty that it takes over once the mover that offered it has taken its own.
-    pub const fn taking(&self) -> Option<&Duty> {
-        self.dealings.taking()
+    pub fn taking(&self) -> Option<&Duty> {
+        self.dealings().taking()
     }
 
     /// The path Σ that it was told of last.
     pub fn path(&self) -> Option<&Path> {
-        self.path.as_deref()
+        self.mission.path().map(|path| &**path)
     }
 
     /// The subgroups that it has computed from the break points.
     pub fn subgroups(&self) -> &[Subgroup] {
-        &self.subgroups
+        self.mission.shift().map_or(&[], |shift| &shift.subgroups)
     }
 
     /// The number of the election that it knows to be over, and the winner with its bid.
@@ -104,37 +102,95 @@ impl Robot {
         [STATIONARY_WINDOW, super::exchange::LAST_RESORT, self.patience().ceil() as u32]
     }
 
-    /// Everything, apart from what it hears, that decides what the robot says and does from now
-    /// on: robots with equal accounts that hear the same have the same future, as long as they
-    /// are moved alike. Left out are routes and motion, which the explorer stands for, and how
-    /// long a wait has been over.
+    /// Everything, apart from the beacons that it goes by, that decides what the robot says and does
+    /// from now on: robots with equal accounts that go by the same beacons have the same future, as
+    /// long as they are moved alike.
+    ///
+    /// Left out is what the explorer stands for, routes and motion, and what follows from the rest;
+    /// how long a wait has been over does not matter. A field that is neither told nor left out does
+    /// not compile.
     pub fn account(&self) -> String {
-        let mut account = String::new();
-        let waited = match self.phase {
-            Phase::RecruitElection => self.waited_rounds.min(2 * self.longest_wait() + 1),
+        let Robot {
+            // Told.
+            id,
+            position,
+            still_periods,
+            duty,
+            mission,
+            deal,
+            last_partner,
+            answered,
+            parent,
+            lineage,
+            below,
+            can_detach,
+            barren_periods,
+            bulletin,
+            tasks,
+            roster,
+            eligible,
+            election,
+            bid,
+            waited_rounds,
+            route,
+            agreement,
+            team,
+            neighbours: _, // by their beacons and their silence
+            // Constant.
+            rate: _,
+            site: _,
+            // Between two stimuli a robot is at rest and has nothing left to do.
+            stage: _,
+            is_new: _,
+            label: _,
+            facts: _,
+            is_quiet: _,
+            has_news: _,
+            is_unspoken: _,
+            is_unmeasured: _,
+            voice: _,
+            heard_up_to: _,
+            desired_parent: _,
+            reattaches_to: _,
+            partner: _,
+            taking_over: _,
+            log: _,
+            // Routes and motion.
+            velocity: _,
+            clock: _,
+            routing: _,
+            links: _,
+            expected_link: _,
+            inflow: _,
+            inflows: _,
+            demands: _,
+            residual: _,
+            has_swept: _,
+            is_frugal: _,
+            has_shortage_news: _,
+            has_untold_flows: _,
+            is_unsettled: _,
+            destination: _,
+            waypoint: _,
+            proposal: _,
+            heard_moves: _,
+            must_judge_moves: _,
+            arrival: _,
+            resting_place: _,
+        } = self;
+        let waited = match self.phase() {
+            Phase::RecruitElection => (*waited_rounds).min(2 * self.longest_wait() + 1),
             _ => 0,
         };
-        // Writing into a string does not fail.
-        let _ = write!(
-            account,
+        let silences: Vec<u8> = self.audible().map(|(_, silent)| silent).collect();
+        format!(
             "{:?}",
             (
-                (self.id, self.position, self.still_periods, self.role, self.phase),
-                (self.duty, self.left_post, &self.dealings, &self.answered, self.last_partner),
-                (self.parent, &self.lineage, &self.below),
-                (self.can_detach, self.barren_periods, &self.bulletin, &self.tasks, &self.roster),
-                (
-                    &self.eligible,
-                    &self.election,
-                    self.bid,
-                    waited,
-                    &self.route,
-                    self.awaits_release
-                ),
-                (&self.path, &self.agreement, &self.subgroups, self.subgroup, self.team),
-                self.audible().map(|(_, silent)| silent).collect::<Vec<_>>(),
+                (id, position, still_periods, &**duty, &**mission, barren_periods),
+                (&**deal, answered, last_partner, parent, lineage, below, can_detach),
+                (bulletin, tasks, roster, eligible, election, bid, waited, route),
+                (agreement, team, silences),
             )
-        );
-        account
+        )
     }
 }

@@ -8,9 +8,10 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use pleach_discrete::network::{Anchor, IdSet, Lineage, Phase, PostId, PostKind};
+use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, Phase, PostId, PostKind};
 
-use super::super::record::MissionEvent;
+use crate::located::Place as _;
+
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
@@ -19,44 +20,51 @@ use super::motion::ROUNDING;
 const REATTACHMENT_GAIN: f64 = 0.05;
 
 /// A node without a branch becomes redundant after this many control periods.
-const PATIENCE_WITH_BARREN_POSTS: u32 = 2;
+pub(super) const PATIENCE_WITH_BARREN_POSTS: u32 = 2;
 
 impl Robot {
     /// Renews the robot's place in the tree from what it has heard.
     pub fn keep_place(&mut self) {
+        (self.desired_parent, self.reattaches_to) = (None, None);
         if self.is_engaged() {
             // The place goes with the duty that is being handed over.
             self.trace_lineage();
             return self.collect_below();
         }
-        if self.duty.is_redundant() && (!self.tree_is_frozen() || self.anchor().is_none()) {
-            self.choose_parent();
-        }
-        self.reattach();
-        self.trace_lineage();
-        self.can_detach = self.duty.is_redundant() && self.finds_other_parent();
-        self.collect_below();
-        self.promote_if_bearing();
+        self.desired_parent = match self.duty.location() {
+            Activity::Standby if !self.tree_is_frozen() || self.anchor().is_none() => {
+                self.choose_parent()
+            }
+            Activity::Following | Activity::Leading => self.reattach(),
+            _ => None,
+        };
+        self.look_after_place();
     }
 
-    /// Once a period: Remark 5.6 (ii), a node that bears no branch becomes redundant.
-    pub fn retire_if_barren(&mut self) {
+    /// What follows from its duty and what it hears: its way to the access point, what is attached
+    /// to it, and its parent.
+    pub(super) fn look_after_place(&mut self) {
+        self.trace_lineage();
+        self.can_detach =
+            !self.is_engaged() && self.duty.is_redundant() && self.finds_other_parent();
+        self.collect_below();
+        self.remember_parent();
+    }
+
+    /// Once a period: for how long no branch has depended on the post, Remark 5.6 (ii).
+    pub(super) fn count_barren_periods(&mut self) {
         let barren = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
             && !self.bears_branch()
             && !self.tree_is_frozen()
             && !self.is_engaged()
-            && !self.awaits_release;
+            && !self.duty.is_bound();
         self.barren_periods = if barren { self.barren_periods + 1 } else { 0 };
-        if self.barren_periods >= PATIENCE_WITH_BARREN_POSTS
-            && let Some(station) = self.duty.station_mut()
-        {
-            station.post.kind = PostKind::Redundant;
-        }
+        self.is_quiet &= self.barren_periods < PATIENCE_WITH_BARREN_POSTS;
     }
 
     /// While a path Σ is being sought or walked, nobody changes its parent.
     pub(super) fn tree_is_frozen(&self) -> bool {
-        matches!(self.phase, Phase::RecruitElection | Phase::PathAgreement | Phase::Shift)
+        matches!(self.phase(), Phase::RecruitElection | Phase::PathAgreement | Phase::Shift)
     }
 
     /// Whether a fixed post or one of the primary team hangs on this robot's post.
@@ -67,7 +75,12 @@ impl Robot {
     /// The number of branches that hang on this robot's post. A member of the primary team that
     /// is about to hang itself on the newcomer behind it counts with the newcomer.
     pub(super) fn branches(&self) -> usize {
-        let posts = || self.children().filter_map(Neighbour::post);
+        self.duty.post().map_or(0, |post| self.branches_of(post.id))
+    }
+
+    /// The number of branches attached to `post`.
+    pub(super) fn branches_of(&self, post: PostId) -> usize {
+        let posts = || self.children_of(post).filter_map(Neighbour::post);
         let is_followed = |post: PostId| {
             posts().any(|other| other.kind == PostKind::Primary { follows: Some(post) })
         };
@@ -88,8 +101,8 @@ impl Robot {
         length <= self.site.build_length * (1.0 + ROUNDING)
     }
 
-    fn choose_parent(&mut self) {
-        let Some(&post) = self.duty.post() else { return };
+    fn choose_parent(&self) -> Option<Option<Anchor>> {
+        let post = *self.duty.post()?;
         let current = post.parent.and_then(|anchor| {
             let bearer = self.bearer(anchor)?;
             let lineage = bearer.beacon.lineage.as_ref()?;
@@ -99,14 +112,11 @@ impl Robot {
             usable.then_some((lineage.hops(), anchor))
         });
         let best = self.best_parent(post.id, None);
-        let parent = match (current, best) {
+        Some(match (current, best) {
             (Some((hops, anchor)), Some((fewer, _))) if hops <= fewer => Some(anchor),
             (Some((_, anchor)), None) => Some(anchor),
             (_, best) => best.map(|(_, anchor)| anchor),
-        };
-        if let Some(station) = self.duty.station_mut() {
-            station.post.parent = parent;
-        }
+        })
     }
 
     /// The best node to hang on, with its number of links to the access point; ways through
@@ -204,31 +214,20 @@ impl Robot {
         }
     }
 
-    /// Remark 5.6 (i): a redundant robot on which a branch hangs becomes a node.
-    fn promote_if_bearing(&mut self) {
-        if self.duty.is_redundant()
-            && self.bears_branch()
-            && let Some(station) = self.duty.station_mut()
-        {
-            station.post.kind = PostKind::Fixed;
-        }
-    }
-
     /// Remark 5.6: p₁ hangs itself on a fixed or redundant robot or an access point that is
     /// nearer to its target, if there is one within d_build.
-    fn reattach(&mut self) {
-        if self.phase != Phase::Advance || !self.is_first() && self.awaited_parent().is_none() {
-            return;
+    fn reattach(&mut self) -> Option<Option<Anchor>> {
+        if self.phase() != Phase::Advance || !self.is_first() && self.awaited_parent().is_none() {
+            return None;
         }
         if let Some(awaited) = self.awaited_parent()
             && let Some(newcomer) = self.holder(awaited)
             && self.may_build(self.walk_to(newcomer))
         {
-            self.hang_on(Anchor::Post(awaited));
-            return;
+            return Some(Some(Anchor::Post(awaited)));
         }
-        let (Some(goal), Some(anchor)) = (self.team_goal(), self.anchor()) else { return };
-        let Some(parent) = self.bearer(anchor) else { return };
+        let (goal, anchor) = (self.team_goal()?, self.anchor()?);
+        let parent = self.bearer(anchor)?;
         let own = self.duty.post().map(|post| post.id);
         let gain = REATTACHMENT_GAIN * self.site.build_length;
         let mut nearest = self.site.distance(parent.position(), goal) - gain;
@@ -252,16 +251,8 @@ impl Robot {
                 (nearest, better) = (distance, Some((candidate, neighbour.id())));
             }
         }
-        if let Some((anchor, parent)) = better {
-            self.hang_on(anchor);
-            self.still_periods = 0;
-            self.report(MissionEvent::Reattached { robot: self.id, parent });
-        }
-    }
-
-    fn hang_on(&mut self, anchor: Anchor) {
-        if let Some(station) = self.duty.station_mut() {
-            station.post.parent = Some(anchor);
-        }
+        let (anchor, parent) = better?;
+        self.reattaches_to = Some(parent);
+        Some(Some(anchor))
     }
 }

@@ -10,10 +10,9 @@
 //!
 //! [`Dealings`]: pleach_discrete::network::Dealings
 
-use pleach_discrete::network::{NodeId, Phase, PostKind};
+use pleach_discrete::network::{Exchange, NodeId, Phase, PostKind, Reply};
 
-use super::super::duty::Duty;
-use super::super::record::MissionEvent;
+use super::super::duty::{Duty, Shifting};
 use super::Robot;
 use super::hearing::Neighbour;
 
@@ -30,8 +29,9 @@ pub(super) const LAST_RESORT: u32 = 10;
 const CONCESSION: f64 = 4.0;
 
 impl Robot {
-    /// Once a period: a mover that does not get on offers its duty to the robot in its way.
-    pub fn consider_exchange(&mut self) {
+    /// Once a period: a mover that does not get on looks for a partner among the robots in its way.
+    pub(super) fn consider_exchange(&mut self) {
+        self.partner = None;
         if self.is_engaged() || self.still_periods < PATIENCE || !self.may_hand_over() {
             return;
         }
@@ -49,20 +49,18 @@ impl Robot {
                 }
             }
         }
-        if let Some(to) = partner {
-            self.dealings.make_offer(to, self.duty);
-        }
+        self.partner = partner;
     }
 
     /// Whether this robot is on a way that another could go on with.
     fn may_hand_over(&self) -> bool {
-        match self.duty {
-            Duty::Shift { place } => {
+        match *self.duty {
+            Duty::Shifting(Shifting { place, .. }) => {
                 let active = self.active_subgroup();
                 active.is_some_and(|active| active.places().contains(&place)) && !self.has_arrived()
             }
-            Duty::Hold(_) => self.duty.is_primary() && self.phase == Phase::Advance,
-            Duty::Wait { .. } => false,
+            Duty::Following(_) | Duty::Leading(_) => self.phase() == Phase::Advance,
+            _ => false,
         }
     }
 
@@ -111,73 +109,40 @@ impl Robot {
         self.tasks.iter().find(|known| known.number == task).map(|known| known.position)
     }
 
-    /// One round of the protocol: answer offers, complete exchanges.
-    pub fn handle_exchange(&mut self) {
-        self.complete_own_offer();
-        self.conclude_reply();
-        self.answer_offer();
+    // ---- What the guards ask -----------------------------------------------------------------
+
+    /// The partner's answer to its offer.
+    pub(super) fn answer_to_offer(&self) -> Option<&Reply<Duty>> {
+        let offer = self.dealings().offer()?;
+        let reply = self.neighbour(offer.to)?.beacon.reply.as_ref()?;
+        (reply.to == self.id && reply.number == offer.number).then_some(reply)
     }
 
-    fn complete_own_offer(&mut self) {
-        let Some(partner) = self.dealings.offer().map(|offer| offer.to) else { return };
-        let heard = self.neighbour(partner).and_then(|parked| parked.beacon.reply.clone());
-        let Some(reply) = heard else { return };
-        let Some(duty) = self.dealings.hear(self.id, &reply) else { return };
-        self.left_post = self.duty.post().map(|post| post.id);
-        self.take_over(duty, partner);
-        self.report(MissionEvent::DutiesExchanged { mover: self.id, parked: partner });
-    }
-
-    /// The reply stands until the mover's offer is gone: then it has taken the post, and this
-    /// robot takes the duty.
-    fn conclude_reply(&mut self) {
-        let Some(to) = self.dealings.reply().map(|reply| reply.to) else { return };
-        let Some(mover) = self.neighbour(to) else { return };
-        let (offer, offers_made) = (mover.beacon.offer.clone(), mover.beacon.offers_made);
-        if let Some(duty) = self.dealings.conclude(offer.as_ref(), offers_made) {
-            self.left_post = self.duty.post().map(|post| post.id);
-            self.take_over(duty, to);
-        }
-    }
-
-    fn answer_offer(&mut self) {
-        if self.dealings.reply().is_some() {
-            return;
-        }
-        let offered = self.neighbours.iter().find_map(|neighbour| {
+    /// The first offer to this robot that it has not answered, with the mover.
+    pub(super) fn offer_to_answer(&self) -> Option<(NodeId, &Exchange<Duty>)> {
+        self.neighbours.iter().find_map(|neighbour| {
             let offer = neighbour.beacon.offer.as_ref()?;
             let answered = self.answered.get(&neighbour.id()).copied();
-            offer.asks(self.id, answered).then(|| (neighbour.id(), offer.clone()))
-        });
-        let Some((mover, offer)) = offered else { return };
-        let given = self.may_be_relieved().then_some(self.duty);
-        self.answered.insert(mover, offer.number);
-        self.dealings.answer(mover, &offer, given);
+            offer.asks(self.id, answered).then(|| (neighbour.id(), offer))
+        })
     }
 
-    fn take_over(&mut self, duty: Duty, partner: NodeId) {
-        self.duty = duty;
-        self.awaits_release = self.waits_as_leader();
-        self.last_partner = Some(partner);
-        self.lineage = None;
-        self.still_periods = 0;
+    /// Whether the mover has given its offer up, so that it has heard the reply.
+    pub(super) fn is_reply_heard(&self) -> bool {
+        self.dealings().reply().and_then(|reply| self.neighbour(reply.to)).is_some_and(|mover| {
+            let (offer, made) = (mover.beacon.offer.as_ref(), mover.beacon.offers_made);
+            self.dealings().has_heard_reply(offer, made)
+        })
     }
 
     /// Whether this robot may leave its post to a mover.
-    fn may_be_relieved(&self) -> bool {
-        self.is_parked() && self.dealings.offer().is_none() && self.duty.station().is_some()
-    }
-
-    /// Whether its duty is that of the leader who is to be released: the last place of Σ.
-    fn waits_as_leader(&self) -> bool {
-        let last =
-            self.path.as_ref().filter(|path| path.releases_leader).map(|path| path.len() - 1);
-        matches!(self.duty, Duty::Wait { place, .. } if Some(place) == last)
+    pub(super) fn may_be_relieved(&self) -> bool {
+        self.is_parked() && self.dealings().offer().is_none() && self.duty.station().is_some()
     }
 
     /// Whether an exchange is under way. The robot then stands still, and what it does stays what
     /// it is: a duty that changed after it was offered would be taken over as it had been.
     pub(super) fn is_engaged(&self) -> bool {
-        self.dealings.are_under_way()
+        self.dealings().are_under_way()
     }
 }

@@ -1,31 +1,79 @@
-//! What the guards of a robot see: a few named quantities, measured from its own state.
+//! What the guards of a robot see: named quantities and propositions, measured from its own state.
 //!
-//! Numbers end here. The guards turn facts into events, and the tables of the role and mission
-//! automata know events only. Yes-or-no facts are 0 or 1.
+//! Numbers end here. The guards turn what is measured into events, and the tables of the duty and
+//! mission automata know events only.
 
-use pleach_discrete::network::Phase;
+use pleach_discrete::network::{MissionStep, Phase, Post};
 use pleach_guards::Valuation;
 
 use super::super::beacon::Notice;
-use super::super::duty::Duty;
+use super::super::duty::{AwaitingRelease, Duty, Waiting};
 use super::Robot;
+use super::attachment::PATIENCE_WITH_BARREN_POSTS;
 
 macro_rules! facts {
-    ($($(#[doc = $text:literal])+ $name:ident,)+) => {
-        /// The quantities that a robot's guards may speak of.
+    (
+        quantities { $($(#[doc = $measure:literal])+ $quantity:ident,)+ }
+        propositions { $($(#[doc = $text:literal])+ $name:ident,)+ }
+        of the robot $robot:ident {
+            quantities { $($(#[doc = $live_measure:literal])+ $live_quantity:ident: $number:expr,)+ }
+            propositions { $($(#[doc = $live_text:literal])+ $live:ident: $holds:expr,)+ }
+        }
+    ) => {
+        /// What a robot measures of itself once a round.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Facts {
-            $($(#[doc = $text])+ pub $name: f64,)+
+            $($(#[doc = $measure])+ pub $quantity: f64,)+
+            $($(#[doc = $text])+ pub $name: bool,)+
         }
 
-        /// The names of the facts, in the order of their declaration.
-        pub const VARIABLES: &[&str] = &[$(stringify!($name)),+];
+        /// The names of the quantities that guards may speak of.
+        pub const VARIABLES: &[&str] =
+            &[$(stringify!($quantity),)+ $(stringify!($live_quantity)),+];
+
+        /// The names of the propositions that guards may speak of.
+        pub const PROPOSITIONS: &[&str] = &[
+            $(stringify!($name),)+
+            $(stringify!($live),)+
+            "takes standby",
+            "takes relay",
+            "takes junction",
+            "takes leaf",
+            "takes bound leader",
+            "takes waiting on the path",
+            "takes awaiting release",
+            "takes shifting along the path",
+            "takes following the team",
+            "takes leading the team",
+        ];
+
+        /// Quantities and propositions with what they say, in the order of their declaration.
+        pub const GLOSSARY: &[(&str, &str)] = &[
+            $((stringify!($quantity), concat!($($measure),+)),)+
+            $((stringify!($live_quantity), concat!($($live_measure),+)),)+
+            $((stringify!($name), concat!($($text),+)),)+
+            $((stringify!($live), concat!($($live_text),+)),)+
+        ];
 
         impl Valuation for Robot {
             fn value(&self, variable: &str) -> Option<f64> {
+                let $robot = self;
                 match variable {
-                    $(stringify!($name) => Some(self.facts.$name),)+
+                    $(stringify!($quantity) => Some($robot.facts.$quantity),)+
+                    $(stringify!($live_quantity) => Some($number),)+
                     _ => None,
+                }
+            }
+
+            fn truth(&self, proposition: &str) -> Option<bool> {
+                let $robot = self;
+                match proposition {
+                    $(stringify!($name) => Some($robot.facts.$name),)+
+                    $(stringify!($live) => Some($holds),)+
+                    _ => {
+                        let activity = proposition.strip_prefix("takes ")?;
+                        Some($robot.takes_over_duty_called(activity))
+                    }
                 }
             }
         }
@@ -33,70 +81,116 @@ macro_rules! facts {
 }
 
 facts! {
-    /// A task is announced whose election this robot has not begun.
-    announced,
-    /// The token of every robot of the roster is known.
-    election_over,
-    /// This robot won the recruit election.
-    won,
-    /// This robot called for a recruit, and none can come.
-    unaided,
-    /// A recruit is called for in an election that this robot has not begun.
-    called,
-    /// A path Σ is announced that this robot has not taken up.
-    path_announced,
-    /// Every place of Σ has said whether it is a break point.
-    points_agreed,
-    /// Every member of the active subgroup has arrived.
-    subgroup_arrived,
-    /// This robot is the last that Σ relieves, and its post is held by another.
-    relieved,
-    /// The primary team is said to be the active team.
-    resumed,
-    /// The task is said to be serviced.
-    service_announced,
-    /// The mission is said to have ended.
-    end_announced,
-    /// The elected leader has past duties.
-    bound,
-    /// It is exchanging duties with another robot.
-    engaged,
-    /// This robot leads.
-    leads,
-    /// This robot is p₁.
-    first,
-    /// Control periods for which the primary team has stood still.
-    still,
-    /// Control periods after which a team that stands still is at a stationary point.
-    window,
-    /// Control periods for which this robot has been kept from going on, other than by its links.
-    stalled,
-    /// Control periods after which a robot that is kept from going on gives up.
-    patience,
-    /// A member of the team has room to move.
-    slack,
-    /// p₁ is still on its way to the robot that it joined.
-    pending,
-    /// Euclidean distance to the announced task.
-    distance,
-    /// The distance at which the leader stops.
-    reach,
-    /// δ: the distance that counts as servicing it.
-    radius,
-    /// This robot is the recruit on its way.
-    recruited,
-    /// It holds the post of a redundant robot.
-    free,
-    /// It holds a fixed post.
-    fixed,
-    /// It holds a post from which a task is serviced.
-    serves,
-    /// The number of branches that hang on its post.
-    branches,
-    /// It moves with a team, without a fixed post.
-    underway,
-    /// The post that it held last is held by another robot.
-    replaced,
+    quantities {
+        /// Control periods for which the primary team has stood still.
+        still,
+        /// Control periods after which a team that stands still is at a stationary point.
+        window,
+        /// Control periods for which this robot has been kept from going on, other than by its links.
+        stalled,
+        /// Control periods after which a robot that is kept from going on gives up.
+        patience,
+        /// Euclidean distance to the announced task.
+        distance,
+        /// The distance at which the leader stops.
+        reach,
+        /// δ: the distance that counts as servicing it.
+        radius,
+        /// The number of branches attached to its post.
+        branches,
+    }
+    propositions {
+        /// A task is announced whose election this robot has not begun.
+        announced,
+        /// The token of every robot of the roster is known.
+        election_over,
+        /// This robot won the recruit election.
+        won,
+        /// This robot called for a recruit, and none can come.
+        unaided,
+        /// A recruit is called for in an election that this robot has not begun.
+        called,
+        /// A path Σ is announced that this robot has not taken up.
+        path_announced,
+        /// Every place of Σ has said whether it is a break point.
+        points_agreed,
+        /// Every member of the active subgroup has arrived.
+        subgroup_arrived,
+        /// This robot is the last that Σ relieves, and its post is held by another.
+        relieved,
+        /// The primary team is said to be the active team.
+        resumed,
+        /// The task is said to be serviced.
+        service_announced,
+        /// The mission is said to have ended.
+        end_announced,
+        /// This robot is p₁.
+        first,
+        /// A member of the team has room to move.
+        slack,
+        /// p₁ is still on its way to the robot that it joined.
+        pending,
+        /// Its turn on Σ has come.
+        may_set_out,
+        /// Another parent in the tree is better than its own.
+        finds_better_parent,
+    }
+    of the robot robot {
+        quantities {
+            /// The number of branches attached to the post ahead on Σ.
+            branches_ahead: robot.post_ahead().map_or(0, |post| robot.branches_of(post.id)) as f64,
+            /// Control periods for which no branch has depended on its post.
+            barren: f64::from(robot.barren_periods),
+            /// Control periods after which a post without a branch is given up.
+            barren_patience: f64::from(PATIENCE_WITH_BARREN_POSTS),
+        }
+        propositions {
+            /// It is exchanging duties with another robot.
+            engaged: robot.is_engaged(),
+            /// It is the elected leader.
+            leads: robot.duty.leads(),
+            /// It is the elected leader and has yet to be released from past duties.
+            bound: robot.duty.is_bound(),
+            /// It holds the post of a redundant robot.
+            free: robot.duty.is_redundant(),
+            /// A task is serviced from its post.
+            serves: robot.duty.post().is_some_and(|post| post.task.is_some()),
+            /// It holds a fixed post, or robots attached to it find no other parent.
+            has_past_duties: robot.has_past_duties(),
+            /// The leader election is over now, and it has won it.
+            wins: robot.wins_now(),
+            /// It learns now that Σ passes its post.
+            on_coming_path: robot.is_on_coming_path(),
+            /// It learns now that Σ is given up or done.
+            called_off: robot.is_called_off(),
+            /// It learns now that another task is announced.
+            superseded: robot.is_superseded(),
+            /// It learns now that the primary team is dissolved.
+            dissolved: robot.is_dissolved(),
+            /// It is relieved now of the last post of Σ.
+            is_relieved: robot.takes_step(MissionStep::Relieved),
+            /// It takes the post ahead now.
+            takes_post_ahead: robot.takes_post_ahead(),
+            /// The post ahead is that of a redundant robot.
+            ahead_is_free: robot.post_ahead().as_ref().is_some_and(Post::is_redundant),
+            /// A task is serviced from the post ahead.
+            ahead_serves: robot.post_ahead().is_some_and(|post| post.task.is_some()),
+            /// It has found a robot in its way with which to exchange duties.
+            finds_partner: robot.partner.is_some(),
+            /// The partner has answered its offer.
+            offer_answered: robot.answer_to_offer().is_some(),
+            /// The partner has accepted its offer.
+            offer_accepted: robot.answer_to_offer().is_some_and(|reply| reply.accepted.is_some()),
+            /// Another robot has made it an offer that it has not answered.
+            asked: robot.offer_to_answer().is_some(),
+            /// It may leave its post to a mover.
+            may_give: robot.may_be_relieved(),
+            /// The mover has heard its reply.
+            reply_heard: robot.is_reply_heard(),
+            /// It finds now that it has reached its task.
+            reaches_task: robot.takes_step(MissionStep::Reached),
+        }
+    }
 }
 
 impl Robot {
@@ -113,7 +207,6 @@ impl Robot {
     }
 
     fn facts_now(&self) -> Facts {
-        let yes = |holds: bool| if holds { 1.0 } else { 0.0 };
         let mut facts = Facts {
             window: f64::from(STATIONARY_WINDOW),
             patience: self.patience(),
@@ -127,29 +220,21 @@ impl Robot {
         let won = best.is_some_and(|(bid, robot)| robot == self.id && bid.rank > 0);
         let over =
             self.election.as_ref().is_some_and(|election| election.is_complete(&self.roster));
-        facts.election_over = yes(over);
-        match self.phase {
+        facts.election_over = over;
+        match self.phase() {
             Phase::RecruitElection => {
-                facts.won = yes(over && won);
+                facts.won = over && won;
                 let aided = best.is_some_and(|(bid, _)| bid.rank > 0);
-                facts.unaided = yes(over && !aided && self.is_caller());
+                facts.unaided = over && !aided && self.is_caller();
             }
-            Phase::PathAgreement => facts.points_agreed = yes(self.break_points().is_some()),
+            Phase::PathAgreement => facts.points_agreed = self.break_points().is_some(),
             Phase::Shift => self.measure_shift(&mut facts),
             Phase::Advance => self.measure_team(&mut facts),
             _ => {}
         }
-        facts.bound = yes(self.awaits_release);
-        facts.engaged = yes(self.is_engaged());
-        facts.leads = yes(self.leads());
-        facts.recruited =
-            yes(matches!(self.duty, Duty::Wait { place: 0, .. } | Duty::Shift { place: 0 }));
-        facts.free = yes(self.duty.is_redundant());
-        facts.fixed = yes(self.duty.is_fixed());
-        facts.serves = yes(self.duty.post().is_some_and(|post| post.task.is_some()));
         facts.branches = self.branches() as f64;
-        facts.underway = yes(self.duty.post().is_none() || self.duty.is_primary());
-        facts.replaced = yes(self.left_post.is_none_or(|post| self.is_relieved_of(post)));
+        facts.may_set_out = self.may_set_out();
+        facts.finds_better_parent = self.finds_better_parent();
         facts
     }
 
@@ -159,12 +244,12 @@ impl Robot {
         let election = self.election.as_ref().map(|election| election.number());
         let path = self.agreement.as_ref().map(|agreement| agreement.number());
         match self.bulletin.notice() {
-            Notice::Task { .. } if election != Some(number) => facts.announced = 1.0,
-            Notice::Call { .. } if election != Some(number) => facts.called = 1.0,
-            Notice::Path(_) if path != Some(number) => facts.path_announced = 1.0,
-            Notice::Advance { .. } => facts.resumed = 1.0,
-            Notice::Serviced { .. } => facts.service_announced = 1.0,
-            Notice::Ended { .. } => facts.end_announced = 1.0,
+            Notice::Task { .. } if election != Some(number) => facts.announced = true,
+            Notice::Call { .. } if election != Some(number) => facts.called = true,
+            Notice::Path(_) if path != Some(number) => facts.path_announced = true,
+            Notice::Advance { .. } => facts.resumed = true,
+            Notice::Serviced { .. } => facts.service_announced = true,
+            Notice::Ended { .. } => facts.end_announced = true,
             _ => {}
         }
     }
@@ -174,22 +259,24 @@ impl Robot {
     }
 
     fn measure_shift(&self, facts: &mut Facts) {
-        match (self.subgroups.get(self.subgroup), self.duty, &self.path) {
-            (Some(active), duty, _) => {
-                if matches!(duty, Duty::Shift { .. }) && !self.has_arrived() {
+        let Some(shift) = self.mission.shift() else { return };
+        match (shift.active(), &*self.duty) {
+            (Some(active), duty) => {
+                if matches!(duty, Duty::Shifting(_)) && !self.has_arrived() {
                     facts.stalled = f64::from(self.still_periods);
                 }
-                let arrived = self
+                facts.subgroup_arrived = self
                     .agreement
                     .as_ref()
                     .is_some_and(|agreement| agreement.have_arrived(active.places()));
-                facts.subgroup_arrived = if arrived { 1.0 } else { 0.0 };
             }
-            (None, Duty::Wait { station, place }, Some(path))
-                if place == path.last_break_point()
-                    && (self.subgroups.is_empty() || self.is_relieved_of(station.post.id)) =>
-            {
-                facts.relieved = 1.0;
+            (
+                None,
+                Duty::Waiting(Waiting { held, place, .. })
+                | Duty::AwaitingRelease(AwaitingRelease { held, place }),
+            ) => {
+                facts.relieved = *place == shift.path.last_break_point()
+                    && (shift.subgroups.is_empty() || self.is_relieved_of(held.station.post.id));
             }
             _ => {}
         }
@@ -198,11 +285,11 @@ impl Robot {
     fn measure_team(&self, facts: &mut Facts) {
         if let Some(team) = self.team {
             facts.still = f64::from(team.still);
-            facts.slack = if team.slack.is_some() { 1.0 } else { 0.0 };
+            facts.slack = team.slack.is_some();
         }
-        facts.first = if self.is_first() { 1.0 } else { 0.0 };
-        facts.pending = if self.is_pending() { 1.0 } else { 0.0 };
-        if facts.first > 0.0 && facts.slack + facts.pending > 0.0 {
+        facts.first = self.is_first();
+        facts.pending = self.is_pending();
+        if facts.first && (facts.slack || facts.pending) {
             // Who has joined from afar hears nothing of the team until it is there; if it never
             // comes there, nobody else notices.
             facts.stalled = match self.team {

@@ -155,6 +155,11 @@ impl Robot {
         self.neighbours.iter().map(|neighbour| (neighbour.id(), neighbour.silent_rounds))
     }
 
+    /// The beacon that the robot goes by of each of its neighbours, ascending.
+    pub fn held_beacons(&self) -> impl Iterator<Item = &Arc<Beacon>> {
+        self.neighbours.iter().map(|neighbour| &neighbour.beacon)
+    }
+
     /// What the robot hears has changed.
     fn receive_news(&mut self) {
         (self.has_news, self.is_unmeasured) = (true, true);
@@ -191,8 +196,12 @@ impl Robot {
     /// The neighbours whose posts hang on the post that this robot holds.
     pub(super) fn children(&self) -> impl Iterator<Item = &Neighbour> {
         let own = self.duty.post().map(|post| post.id);
-        self.neighbours.iter().filter(move |neighbour| {
-            own.is_some_and(|own| neighbour.post().is_some_and(|post| post.hangs_on(own)))
-        })
+        own.into_iter().flat_map(|own| self.children_of(own))
+    }
+
+    /// The neighbours whose posts are attached to `post`.
+    pub(super) fn children_of(&self, post: PostId) -> impl Iterator<Item = &Neighbour> {
+        let is_child = move |held: &Post| held.hangs_on(post);
+        self.neighbours.iter().filter(move |neighbour| neighbour.post().is_some_and(is_child))
     }
 }

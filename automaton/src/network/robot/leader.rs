@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Bid, Election, NodeId, PostKind};
+use pleach_discrete::network::{Bid, Election, NodeId};
 
 use super::super::beacon::Notice;
+use super::super::mission::{Advance, LeaderElection};
 use super::super::record::MissionEvent;
+use super::mission::{Effects, MissionEffect};
 use super::{Robot, TaskNotice};
 
 /// Distances in bids are compared in units of this share of the full range l: finer differences
@@ -14,37 +16,44 @@ const BID_RESOLUTION: f64 = 1e-6;
 /// A replacer stands this many ρ beside the robot that it relieves.
 const BESIDE: f64 = 2.1;
 
-impl Robot {
-    /// A task is announced: place a bid for it (Remark 5.3).
-    pub fn begin_leader_election(&mut self) {
-        // A released leader may service its task at once: the others then hear of the next task
-        // before they have heard that the team advances.
-        self.resume();
-        self.leave_team();
-        self.awaits_release = false;
-        self.path = None;
-        self.agreement = None;
-        self.route = None;
-        let bulletin = self.bulletin.clone();
-        let Notice::Task { task, position, roster, eligible } = bulletin.notice() else { return };
-        let (task, position) = (*task, *position);
-        self.roster = Arc::clone(roster);
-        self.eligible = Arc::clone(eligible);
-        let target = self.site.free_space.nearest(position);
-        if self.tasks.last().is_none_or(|known| known.number != task) {
-            self.tasks.push(TaskNotice { number: task, position, target });
-        }
-        let competes =
-            self.lineage.as_ref().is_some_and(|lineage| self.eligible.contains(lineage.root()));
-        let mut election = Election::new(self.bulletin.sequence());
-        self.bid = competes.then(|| self.leader_bid()).flatten();
-        election.place(self.id, self.bid);
-        self.election = Some(election);
-    }
+/// A task is announced: the robot places a bid for it (Remark 5.3).
+pub(super) fn place_bid<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<LeaderElection> {
+    let Notice::Task { task, position, roster, eligible } = robot.bulletin.notice() else {
+        return None;
+    };
+    let target = robot.site.free_space.nearest(*position);
+    let task = TaskNotice { number: *task, position: *position, target };
+    let competes = robot.lineage.as_ref().is_some_and(|lineage| eligible.contains(lineage.root()));
+    let bid = competes.then(|| robot.leader_bid(&task)).flatten();
+    let mut election = Election::new(robot.bulletin.sequence());
+    election.place(robot.id, bid);
+    effects.extend([
+        MissionEffect::Restart,
+        MissionEffect::Learn(task, Arc::clone(roster), Arc::clone(eligible)),
+        MissionEffect::Elect(election, bid, None),
+        MissionEffect::Agree(None),
+    ]);
+    Some(LeaderElection)
+}
 
+/// Every token is known: the winner leads, at once or after it has been released.
+pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects) -> Advance {
+    if robot.winner() == Some(robot.id) {
+        let conflict = robot.duty.is_bound();
+        if let Some(task) = robot.current_task() {
+            let event = MissionEvent::LeaderElected { task, robot: robot.id, conflict };
+            effects.push(MissionEffect::Report(event));
+        }
+        if !conflict {
+            effects.push(MissionEffect::Issue(Notice::Advance { joined: None }));
+        }
+    }
+    Advance { path: None }
+}
+
+impl Robot {
     /// The nearer to the task along the geodesic, the better; none if the task is out of reach.
-    fn leader_bid(&self) -> Option<Bid> {
-        let task = self.tasks.last()?;
+    fn leader_bid(&self, task: &TaskNotice) -> Option<Bid> {
         let gap = (task.target - task.position).norm();
         let distance = self.site.distance(self.position, task.target);
         let unit = BID_RESOLUTION * self.site.build_length;
@@ -64,30 +73,6 @@ impl Robot {
             let away = (self.position - place).norm();
             away.hypot(BESIDE * self.clearance()) <= self.site.settings.service_radius
         })
-    }
-
-    /// Every token is known: the winner leads, at once or after it has been released.
-    pub fn conclude_leader_election(&mut self) {
-        if self.winner() != Some(self.id) {
-            return;
-        }
-        let conflict =
-            !self.duty.is_redundant() || self.children().any(|child| !child.beacon.can_detach);
-        if let Some(station) = self.duty.station_mut() {
-            match (conflict, station.post.kind) {
-                (false, _) => station.post.kind = PostKind::Primary { follows: None },
-                (true, PostKind::Redundant) => station.post.kind = PostKind::Fixed,
-                (true, _) => {}
-            }
-        }
-        if let Some(task) = self.tasks.last().map(|task| task.number) {
-            self.report(MissionEvent::LeaderElected { task, robot: self.id, conflict });
-        }
-        self.awaits_release = conflict;
-        self.still_periods = 0;
-        if !conflict {
-            self.issue(Notice::Advance { joined: None });
-        }
     }
 
     /// Who won the election that this robot takes part in, as far as it knows.

@@ -6,7 +6,7 @@
 
 use pleach_discrete::network::{Anchor, NodeId};
 
-use super::super::duty::Duty;
+use super::super::duty::{Duty, Shifting};
 use super::Robot;
 use super::hearing::Neighbour;
 
@@ -46,7 +46,7 @@ impl Robot {
 
     pub(super) fn parent_link(&self) -> Option<TreeLink> {
         let to = self.tree_parent()?;
-        Some(TreeLink { to, limit: self.limit_of(Some(&self.duty)) })
+        Some(TreeLink { to, limit: self.limit_of(Some(&*self.duty)) })
     }
 
     /// The robots that say that they hang on this one.
@@ -64,21 +64,21 @@ impl Robot {
     }
 
     fn named_parent(&self) -> Option<NodeId> {
-        match &self.duty {
-            Duty::Shift { place } => self.parent_under_way(*place),
-            Duty::Hold(station) | Duty::Wait { station, .. } => match station.post.parent? {
-                Anchor::Access(access) => Some(self.site.robots + access),
-                Anchor::Post(post) => {
-                    self.holder(post).map(Neighbour::id).or_else(|| self.stand_in_for(post))
-                }
-            },
+        if let Duty::Shifting(Shifting { place, .. }) = *self.duty {
+            return self.parent_under_way(place);
+        }
+        match self.anchor()? {
+            Anchor::Access(access) => Some(self.site.robots + access),
+            Anchor::Post(post) => {
+                self.holder(post).map(Neighbour::id).or_else(|| self.stand_in_for(post))
+            }
         }
     }
 
     /// The parent of the robot that has left `place`.
     fn parent_under_way(&self, place: usize) -> Option<NodeId> {
-        let path = self.path.as_ref()?;
-        let active = self.subgroups.get(self.subgroup)?;
+        let shift = self.mission.shift()?;
+        let (path, active) = (&shift.path, shift.active()?);
         let hop = path.hops.get(place)?;
         if path.descends(active.first) {
             return match place == active.first {
@@ -100,8 +100,8 @@ impl Robot {
 
     /// The robot of the chain that stands for a post whose holder has left it.
     fn stand_in_for(&self, post: pleach_discrete::network::PostId) -> Option<NodeId> {
-        let path = self.path.as_ref()?;
-        let active = self.subgroups.get(self.subgroup)?;
+        let shift = self.mission.shift()?;
+        let (path, active) = (&shift.path, shift.active()?);
         let place = path.place_of(post)?;
         match path.descends(active.first) {
             true => self.robot_at(place),

@@ -1,30 +1,120 @@
-//! The robot's part in the mission: what it hears of it, and what it makes known.
+//! The mission automaton: what each step of the mission carries over, and when (Algorithms 1, 3
+//! and 5).
 //!
-//! The mission automaton decides *when* each step is taken; its table and guards are in
-//! [`crate::network::automata`]. What its transitions do stands in the chapters that follow: the
-//! election of a leader (`leader`) and of a recruit (`recruit`), the path Σ and its subgroups
-//! (`path`), and the primary team (`team`).
+//! Resets are functions from the data of one phase to that of the next. They read the robot as it
+//! was before the jump, with the duty that it has taken in the same jump, and change nothing; what
+//! a step does beside is a [`MissionEffect`]. The steps themselves stand in the chapters on the
+//! election of a leader (`leader`) and of a recruit (`recruit`), on the path Σ and its subgroups
+//! (`path`), and on the primary team (`team`).
 
-use pleach_discrete::network::Phase;
+use std::sync::Arc;
+
+use pleach_discrete::network::{Agreement, Bid, Election, IdSet, MISSION, MissionStep, Phase};
+use pleach_guards::network::mission as guards;
+
+use crate::located::{Current, DataOf, Holds, Place as _};
+use crate::{Automaton, BuildError, Transfer, TransitionError};
 
 use super::super::beacon::Notice;
+use super::super::duty::Hop;
+use super::super::mission::{
+    Advance, Ended, Idle, KnowsPath, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
+};
+use super::super::record::MissionEvent;
 use super::super::shared::Shared;
-use super::Robot;
+use super::duties::Label;
+use super::facts::{PROPOSITIONS, VARIABLES};
+use super::{Robot, TaskNotice, leader, path, recruit, team};
+
+/// The automaton of the mission as one robot sees it.
+pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
+
+/// What a step of the mission does beside entering another phase.
+#[derive(Clone, Debug)]
+pub enum MissionEffect {
+    /// The robot tells observers.
+    Report(MissionEvent),
+    /// It issues the next notice.
+    Issue(Notice),
+    /// It keeps in mind the task announced, who elects its leader, and whose robots compete.
+    Learn(TaskNotice, Arc<IdSet>, Arc<IdSet>),
+    /// It takes part in this election, with its own bid, from the way to the caller that it knows.
+    Elect(Election, Option<Bid>, Option<(u32, Shared<Vec<Hop>>)>),
+    /// It forgets the way to the caller.
+    ForgetRoute,
+    /// It takes part in this agreement about Σ.
+    Agree(Option<Agreement>),
+    /// Its stillness is counted anew.
+    Restart,
+}
+
+pub(super) type Effects = Vec<MissionEffect>;
+
+impl Holds<Mission> for Robot {
+    type Effects = Effects;
+
+    fn current(&self) -> &Current<Mission> {
+        &self.mission
+    }
+
+    fn current_mut(&mut self) -> &mut Current<Mission> {
+        &mut self.mission
+    }
+
+    fn carry_out(&mut self, effects: Effects) {
+        for effect in effects {
+            match effect {
+                MissionEffect::Report(event) => self.report(event),
+                MissionEffect::Issue(notice) => self.issue(notice),
+                MissionEffect::Learn(task, roster, eligible) => {
+                    (self.roster, self.eligible) = (roster, eligible);
+                    if self.tasks.last().is_none_or(|known| known.number != task.number) {
+                        self.tasks.push(task);
+                    }
+                }
+                MissionEffect::Elect(election, bid, route) => {
+                    (self.election, self.bid, self.route) = (Some(election), bid, route);
+                    self.waited_rounds = 1;
+                    if self.phase() == Phase::RecruitElection {
+                        self.answer_call();
+                    }
+                }
+                MissionEffect::ForgetRoute => self.route = None,
+                MissionEffect::Agree(agreement) => self.agreement = agreement,
+                MissionEffect::Restart => self.still_periods = 0,
+            }
+        }
+    }
+}
 
 impl Robot {
+    /// Takes at most one step of the mission, together with the duty automaton if that has a
+    /// transition for it; says whether it did.
+    pub(super) fn jump_mission(&mut self) -> Result<bool, TransitionError> {
+        let site = Arc::clone(&self.site);
+        let mut phase = self.phase();
+        let Some(step) = site.automata.mission.enabled(phase, self)? else { return Ok(false) };
+        self.jump_duty(Label::Mission(step.jump().event))?;
+        step.fire(&mut phase, self)?;
+        Ok(true)
+    }
+
+    /// The phase of the mission as the robot knows it.
+    pub fn phase(&self) -> Phase {
+        self.mission.location()
+    }
+
+    /// The mission as the robot knows it.
+    pub fn mission(&self) -> &Mission {
+        &self.mission
+    }
+
     /// Takes the maximum of what it knows of the mission and what its neighbours say.
-    pub fn hear_word(&mut self) {
-        let newest = self
-            .neighbours
-            .iter()
-            .map(|neighbour| &neighbour.beacon.bulletin)
-            .max_by_key(|bulletin| bulletin.sequence());
-        if let Some(newest) = newest
-            && newest.sequence() > self.bulletin.sequence()
-        {
-            self.bulletin = newest.clone();
-        }
+    pub(super) fn hear_notices(&mut self) {
         for neighbour in &self.neighbours {
+            if neighbour.beacon.bulletin.is_newer_than(&self.bulletin) {
+                self.bulletin = neighbour.beacon.bulletin.clone();
+            }
             if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {
                 own.merge(heard);
             }
@@ -32,16 +122,143 @@ impl Robot {
                 own.merge(heard);
             }
         }
-        match self.phase {
+        match self.phase() {
             Phase::RecruitElection => self.answer_call(),
-            Phase::Shift => self.walk_path(),
+            Phase::Shift => self.report_arrival(),
             _ => {}
         }
         self.review_team();
     }
 
-    /// The next word on the mission, which this robot is the one to say.
-    pub(super) fn issue(&mut self, notice: Notice) {
+    /// The next notice on the mission, which this robot is the one to issue.
+    fn issue(&mut self, notice: Notice) {
         self.bulletin = Shared::new(self.bulletin.next(notice));
     }
+}
+
+type Row = Transfer<Phase, MissionStep, Robot>;
+
+fn end<A>(_: &A, _: &Robot, _: &mut Effects) -> Ended {
+    Ended
+}
+
+fn ended<A: DataOf<Mission>>() -> Row {
+    Transfer::new(MissionStep::Ended, guards::ended(), "stop", end::<A>)
+}
+
+fn announced<A: DataOf<Mission>>() -> Row {
+    let name = "place a bid for the task";
+    Transfer::where_known(MissionStep::Announced, guards::announced(), name, leader::place_bid::<A>)
+}
+
+fn called<A: DataOf<Mission> + KnowsPath>() -> Row {
+    Transfer::new(MissionStep::Called, guards::called(), "answer the call", recruit::answer::<A>)
+}
+
+fn resumed<A: DataOf<Mission> + KnowsPath>() -> Row {
+    Transfer::new(MissionStep::Resumed, guards::resumed(), "go on", path::resume::<A>)
+}
+
+/// The mission automaton (Algorithms 1 to 5).
+///
+/// # Errors
+/// Never with the table and guards of this crate; they are checked all the same.
+pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
+    use MissionStep as Step;
+    Automaton::builder(MISSION, Phase::Idle)
+        .observing(VARIABLES, PROPOSITIONS)
+        .carried_out(ended::<Idle>())
+        .carried_out(ended::<LeaderElection>())
+        .carried_out(ended::<Advance>())
+        .carried_out(ended::<RecruitElection>())
+        .carried_out(ended::<PathAgreement>())
+        .carried_out(ended::<Shift>())
+        .carried_out(announced::<Idle>())
+        .carried_out(announced::<LeaderElection>())
+        .carried_out(announced::<Advance>())
+        .carried_out(announced::<RecruitElection>())
+        .carried_out(announced::<PathAgreement>())
+        .carried_out(announced::<Shift>())
+        .carried_out(called::<Idle>())
+        .carried_out(called::<LeaderElection>())
+        .carried_out(called::<Advance>())
+        .carried_out(resumed::<Idle>())
+        .carried_out(resumed::<LeaderElection>())
+        .carried_out(resumed::<RecruitElection>())
+        .carried_out(resumed::<PathAgreement>())
+        .carried_out(resumed::<Shift>())
+        .carried_out(Transfer::new(
+            Step::Elected,
+            guards::elected(),
+            "the winner leads",
+            leader::conclude,
+        ))
+        .carried_out(Transfer::new(
+            Step::Bound,
+            guards::bound(),
+            "call for a recruit",
+            recruit::call,
+        ))
+        .carried_out(Transfer::new(
+            Step::Trapped,
+            guards::trapped(),
+            "call for a recruit",
+            recruit::call,
+        ))
+        .carried_out(Transfer::new(
+            Step::Blocked,
+            guards::blocked(),
+            "say why",
+            team::give_up::<Advance>,
+        ))
+        .carried_out(Transfer::new(
+            Step::Blocked,
+            guards::blocked(),
+            "say why",
+            team::give_up::<Shift>,
+        ))
+        .carried_out(Transfer::where_known(
+            Step::Recruited,
+            guards::recruited(),
+            "announce Σ",
+            recruit::announce_path,
+        ))
+        .carried_out(Transfer::new(
+            Step::Unaided,
+            guards::unaided(),
+            "ask other trees, or say why",
+            recruit::end_unaided,
+        ))
+        .carried_out(Transfer::where_known(
+            Step::PathHeard,
+            guards::path_heard(),
+            "vote on break points",
+            path::vote,
+        ))
+        .carried_out(Transfer::where_known(
+            Step::PointsAgreed,
+            guards::points_agreed(),
+            "form the subgroups",
+            path::form_subgroups,
+        ))
+        .carried_out(Transfer::new(
+            Step::SubgroupArrived,
+            guards::subgroup_arrived(),
+            "the next subgroup is active",
+            path::next_subgroup,
+        ))
+        .carried_out(Transfer::new(
+            Step::Relieved,
+            guards::relieved(),
+            "announce that the team advances",
+            path::announce_advance,
+        ))
+        .carried_out(Transfer::where_known(
+            Step::Reached,
+            guards::reached(),
+            "announce the service",
+            team::announce_service,
+        ))
+        .carried_out(Transfer::new(Step::Serviced, guards::serviced(), "wait", team::wait))
+        .build()
 }

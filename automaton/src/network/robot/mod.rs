@@ -11,6 +11,8 @@
 
 mod abstraction;
 mod attachment;
+mod dealing;
+mod duties;
 mod exchange;
 mod facts;
 mod hearing;
@@ -32,23 +34,28 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Bid, Bulletin, Dealings, Election, IdSet, Lineage, MissionStep, NodeId, Phase, Post,
-    PostId, Role, RoleEvent, Subgroup,
+    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Post, PostId,
+    Role,
 };
 
-pub use facts::{Facts, VARIABLES};
+pub use dealing::{Deal, DealingAutomaton, DealingEffect, dealing_automaton};
+pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
+pub use facts::{Facts, GLOSSARY, PROPOSITIONS, VARIABLES};
 pub use links::TreeLink;
+pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
 pub use routing::RouteLink;
 pub use step::{RobotError, Stage};
 
-use crate::automaton::{Jump, TransitionError};
+use crate::automaton::TransitionError;
+use crate::located::Current;
 
-use super::automata::{MissionAutomaton, RoleAutomaton};
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
-use super::duty::{Duty, Hop, Path, Station};
+use super::duty::{Duty, Held, Hop, Standby, Station};
+use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
 use super::shared::Shared;
 use super::site::Site;
+use duties::Label;
 use hearing::Neighbour;
 
 /// A robot of the network.
@@ -68,9 +75,10 @@ pub struct Robot {
     velocity: Vector,
     clock: f64,
 
-    // Where it is in its two automata.
-    role: Role,
-    phase: Phase,
+    // Where it is in its automata, and what the duty automaton jumps together with.
+    duty: Current<Duty>,
+    label: Label,
+    mission: Current<Mission>,
     facts: Facts,
     is_quiet: bool,
 
@@ -80,10 +88,12 @@ pub struct Robot {
     is_unmeasured: bool,
     voice: Voice,
 
-    // Its duty, and the exchange of duties that it is engaged in.
-    duty: Duty,
-    left_post: Option<PostId>,
-    dealings: Dealings<Duty>,
+    // The exchange of duties that it is engaged in.
+    deal: Current<Deal>,
+    /// The robot in its way with which it could exchange duties.
+    partner: Option<NodeId>,
+    /// The duty that it takes over in this jump, and from which robot.
+    taking_over: Option<(Duty, NodeId)>,
     last_partner: Option<NodeId>,
     /// The number of the offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, u32>,
@@ -95,6 +105,10 @@ pub struct Robot {
     parent: Option<NodeId>,
     lineage: Option<Arc<Lineage>>,
     below: Arc<IdSet>,
+    /// The parent in the tree that it has found to be best, none if it has looked for none.
+    desired_parent: Option<Option<Anchor>>,
+    /// The node that p₁ finds to be a better parent.
+    reattaches_to: Option<NodeId>,
     can_detach: bool,
     barren_periods: u32,
 
@@ -108,11 +122,7 @@ pub struct Robot {
     bid: Option<Bid>,
     waited_rounds: usize,
     route: Option<(u32, Shared<Vec<Hop>>)>,
-    awaits_release: bool,
-    path: Option<Arc<Path>>,
     agreement: Option<Agreement>,
-    subgroups: Vec<Subgroup>,
-    subgroup: usize,
     team: Option<TeamReport>,
 
     // Communication variables.
@@ -148,17 +158,20 @@ pub struct Robot {
 
 /// A task that this robot has heard of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct TaskNotice {
-    number: usize,
-    position: Point,
+pub struct TaskNotice {
+    /// Its number.
+    pub number: usize,
+    /// q_v.
+    pub position: Point,
     /// The point of 𝒲_f nearest to it, where the leader goes.
-    target: Point,
+    pub target: Point,
 }
 
 impl Robot {
     /// A robot at the start of a mission: redundant, alone, at rest.
     pub fn new(id: NodeId, position: Point, rate: f64, site: Arc<Site>) -> Self {
         let post = Post::redundant(PostId(id as u32));
+        let station = Station { post, reference: position };
         Robot {
             id,
             rate,
@@ -167,17 +180,18 @@ impl Robot {
             position,
             velocity: Vector::zeros(),
             clock: site.settings.period,
-            role: Role::Redundant,
-            phase: Phase::Idle,
+            duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
+            label: Label::Alone,
+            mission: Current::new(Mission::Idle(Idle)),
             facts: Facts::default(),
             is_quiet: false,
             has_news: true,
             is_unspoken: true,
             is_unmeasured: true,
             voice: Voice::default(),
-            duty: Duty::Hold(Station { post, reference: position }),
-            left_post: None,
-            dealings: Dealings::new(),
+            deal: Current::new(Deal::Free(dealing::Free(Dealings::new()))),
+            partner: None,
+            taking_over: None,
             last_partner: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
@@ -185,6 +199,8 @@ impl Robot {
             parent: None,
             lineage: None,
             below: Arc::new(IdSet::singleton(id)),
+            desired_parent: None,
+            reattaches_to: None,
             can_detach: false,
             barren_periods: 0,
             bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
@@ -195,11 +211,7 @@ impl Robot {
             bid: None,
             waited_rounds: 0,
             route: None,
-            awaits_release: false,
-            path: None,
             agreement: None,
-            subgroups: Vec::new(),
-            subgroup: 0,
             team: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
@@ -251,13 +263,13 @@ impl Robot {
             lineage: self.lineage.clone(),
             parent: self.parent,
             below: Arc::clone(&self.below),
-            duty: Some(self.duty),
+            duty: Some(*self.duty),
             parked: self.is_parked(),
             way: self.way_asked_for(),
             can_detach: self.can_detach,
-            offer: self.dealings.offer().cloned(),
-            offers_made: self.dealings.offers_made(),
-            reply: self.dealings.reply().cloned(),
+            offer: self.dealings().offer().cloned(),
+            offers_made: self.dealings().offers_made(),
+            reply: self.dealings().reply().cloned(),
             team: self.team,
         }
     }
@@ -267,18 +279,13 @@ impl Robot {
         self.position
     }
 
-    /// The role, a location of the role automaton.
-    pub const fn role(&self) -> Role {
-        self.role
-    }
-
-    /// The phase, a location of the mission automaton.
-    pub const fn phase(&self) -> Phase {
-        self.phase
+    /// The role that its duty gives it.
+    pub fn role(&self) -> Role {
+        self.duty.role()
     }
 
     /// What it does.
-    pub const fn duty(&self) -> &Duty {
+    pub fn duty(&self) -> &Duty {
         &self.duty
     }
 
@@ -303,61 +310,46 @@ impl Robot {
     }
 
     /// A control period begins: what is looked at once a period.
-    fn begin_period(&mut self) {
+    fn begin_period(&mut self) -> Result<(), TransitionError> {
         self.stir();
-        self.retire_if_barren();
+        self.count_barren_periods();
         self.consider_exchange();
+        self.deal()
     }
 
     /// After each round of messages: the robot puts together what it has heard.
     ///
     /// What comes of it depends on nothing but what the robot hears and its own state. Where
     /// neither has changed, and no wait is over, there is nothing to do.
-    fn deliberate(&mut self) {
+    fn deliberate(&mut self) -> Result<(), TransitionError> {
         let is_due = self.count_round();
         if !std::mem::take(&mut self.has_news) && !is_due {
-            return;
+            return Ok(());
         }
-        self.reflect();
+        self.reflect()
     }
 
     /// The robot puts together what it has heard, whether or not there is news in it.
-    fn reflect(&mut self) {
+    fn reflect(&mut self) -> Result<(), TransitionError> {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
-        self.handle_exchange();
+        self.deal()?;
         self.keep_place();
-        self.hear_word();
+        self.hear_notices();
         self.remember_parent();
+        Ok(())
     }
 
-    /// Takes at most one transition of the mission automaton.
-    fn step_mission(
-        &mut self,
-        automaton: &MissionAutomaton,
-    ) -> Result<Option<Jump<Phase, MissionStep>>, TransitionError> {
-        let mut phase = self.phase;
-        let Some(step) = automaton.enabled(phase, self)? else { return Ok(None) };
-        let jump = step.jump();
-        self.phase = jump.target;
-        step.fire(&mut phase, self)?;
-        self.is_quiet = false;
-        self.stir();
-        Ok(Some(jump))
-    }
-
-    /// Takes at most one transition of the role automaton.
-    fn step_role(
-        &mut self,
-        automaton: &RoleAutomaton,
-    ) -> Result<Option<Jump<Role, RoleEvent>>, TransitionError> {
-        let mut role = self.role;
-        let jump = automaton.step(&mut role, self)?;
-        self.role = role;
-        if jump.is_some() {
+    /// Takes at most one transition of the mission automaton, together with the duty automaton if
+    /// that has a transition for it, or else one of the duty automaton alone; says whether it did.
+    fn jump_once(&mut self) -> Result<bool, TransitionError> {
+        let role = self.role();
+        let jumped = self.jump_mission()? || self.jump_duty(Label::Alone)?.is_some();
+        if jumped {
             self.is_quiet = false;
             self.stir();
         }
-        Ok(jump)
+        self.report_role_after(role);
+        Ok(jumped)
     }
 
     /// The robot's state has changed: it has something to think over, to say and to measure.

@@ -53,25 +53,24 @@ impl Robot {
     /// Whether the robot stands still unless it is asked for; robots that settle on their post
     /// count as parked.
     pub fn is_parked(&self) -> bool {
-        match self.duty {
-            Duty::Shift { .. } => self.active_subgroup().is_none(),
-            Duty::Hold(_) | Duty::Wait { .. } => {
-                !(self.duty.is_primary() && self.phase == Phase::Advance)
-            }
+        match *self.duty {
+            Duty::Shifting(_) => self.active_subgroup().is_none(),
+            Duty::Following(_) | Duty::Leading(_) => self.phase() != Phase::Advance,
+            _ => true,
         }
     }
 
     /// ψ_i: where the robot goes now (Algorithm 2), if it goes anywhere.
     pub fn goal(&self) -> Option<Point> {
-        if self.is_engaged() || self.phase == Phase::Ended || self.is_held_by_old_news() {
+        if self.is_engaged() || self.phase() == Phase::Ended || self.is_held_by_old_news() {
             return None;
         }
-        if let Duty::Shift { .. } = self.duty {
+        if let Duty::Shifting(_) = *self.duty {
             self.active_subgroup()?;
             return self.next_hop().map(|hop| hop.place.reference).filter(|&p| self.is_off(p));
         }
         if self.duty.is_primary() {
-            let waits = self.phase != Phase::Advance
+            let waits = self.phase() != Phase::Advance
                 || self.leads() && (self.facts.distance <= self.reach() || self.bears_others());
             return if waits { None } else { self.team_goal() };
         }
@@ -85,7 +84,7 @@ impl Robot {
     /// still hangs on the robot: it would keep to the one that goes, and not to the one that came.
     /// Where nobody came, the robot stands for its post on the way.
     fn is_held_by_old_news(&self) -> bool {
-        self.left_post.is_some_and(|left| {
+        self.duty.left().is_some_and(|left| {
             self.holder(left).is_some()
                 && self.neighbours.iter().any(|neighbour| {
                     neighbour.beacon.parent == Some(self.id)

@@ -3,38 +3,83 @@
 use std::sync::Arc;
 
 use pleach_discrete::network::path::{Ties, subgroups};
-use pleach_discrete::network::{
-    Agreement, Anchor, NodeId, Phase, Post, PostId, PostKind, Subgroup,
-};
+use pleach_discrete::network::{Agreement, NodeId, Post, PostId, PostKind, Subgroup};
 
 use super::super::beacon::Notice;
-use super::super::duty::{Duty, Hop, Path, Station};
+use super::super::duty::{Duty, Hop, Path, Shifting, Waiting};
+use super::super::mission::{Advance, KnowsPath, PathAgreement, RecruitElection, Shift};
 use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
+use super::mission::{Effects, MissionEffect};
+
+/// The path Σ is known: its members say whether they are break points.
+pub(super) fn vote(
+    _: &RecruitElection,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> Option<PathAgreement> {
+    let Notice::Path(path) = robot.bulletin.notice() else { return None };
+    let agreement = robot.vote_on(path, robot.bulletin.sequence());
+    effects.push(MissionEffect::Agree(Some(agreement)));
+    Some(PathAgreement { path: Arc::clone(path) })
+}
+
+/// The break points are agreed: every robot computes the same subgroups.
+pub(super) fn form_subgroups(
+    agreed: &PathAgreement,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> Option<Shift> {
+    let points = robot.break_points()?;
+    if matches!(*robot.duty, Duty::Waiting(Waiting { place: 0, .. })) {
+        let path: Vec<NodeId> = agreed.path.hops.iter().map(|hop| hop.robot).collect();
+        let break_points = points.iter().map(|&place| path[place]).collect();
+        let event = MissionEvent::RecruitElected { robot: robot.id, path, break_points };
+        effects.push(MissionEffect::Report(event));
+    }
+    Some(Shift {
+        path: Arc::clone(&agreed.path),
+        subgroups: subgroups(&points).collect(),
+        arrived: 0,
+    })
+}
+
+/// Every member of the active subgroup has arrived: the next one is the active team.
+pub(super) fn next_subgroup(shift: &Shift, _: &Robot, _: &mut Effects) -> Shift {
+    Shift { arrived: shift.arrived + 1, ..shift.clone() }
+}
+
+/// The last robot that Σ relieves has joined the primary team, or leads it.
+pub(super) fn announce_advance(shift: &Shift, robot: &Robot, effects: &mut Effects) -> Advance {
+    let joined = robot.duty.post().and_then(|post| match post.kind {
+        PostKind::Primary { follows: Some(follows) } => Some((post.id, follows)),
+        _ => None,
+    });
+    effects.extend([MissionEffect::Issue(Notice::Advance { joined }), MissionEffect::Restart]);
+    Advance { path: shift.known_path() }
+}
+
+/// The primary team is the active team again.
+pub(super) fn resume<A: KnowsPath>(phase: &A, _: &Robot, effects: &mut Effects) -> Advance {
+    effects.push(MissionEffect::Restart);
+    Advance { path: phase.known_path() }
+}
 
 impl Robot {
-    /// The path Σ is known: its members say whether they are break points.
-    pub fn begin_path(&mut self) {
-        let Notice::Path(path) = self.bulletin.notice() else { return };
-        let path = Arc::clone(path);
-        let mut agreement = Agreement::new(self.bulletin.sequence());
-        self.subgroups.clear();
-        self.subgroup = 0;
-        if let Some(&station) = self.duty.station()
+    /// What the robot says on the break points of `path`.
+    pub(super) fn vote_on(&self, path: &Path, number: u32) -> Agreement {
+        let mut agreement = Agreement::new(number);
+        if let Some(station) = self.duty.station()
             && let Some(place) = path.place_of(station.post.id)
         {
             let ties = Ties {
                 services_task: station.post.task.is_some(),
-                bears_others: self.has_ties_off(&path),
+                bears_others: self.has_ties_off(path),
             };
             agreement.vote(place, path.is_break_point(place, ties));
-            if place <= path.last_break_point() {
-                self.duty = Duty::Wait { station, place };
-            }
         }
-        self.agreement = Some(agreement);
-        self.path = Some(path);
+        agreement
     }
 
     /// Whether this robot has a neighbour in the tree that is not on the path.
@@ -48,56 +93,24 @@ impl Robot {
     }
 
     pub(super) fn break_points(&self) -> Option<Vec<usize>> {
-        self.agreement.as_ref()?.break_points(self.path.as_ref()?.len())
-    }
-
-    /// The break points are agreed: every robot computes the same subgroups.
-    pub fn form_subgroups(&mut self) {
-        let Some(points) = self.break_points() else { return };
-        self.subgroups = subgroups(&points).collect();
-        self.subgroup = 0;
-        if let (Duty::Wait { place: 0, .. }, Some(path)) = (&self.duty, &self.path) {
-            let robots: Vec<_> = path.hops.iter().map(|hop| hop.robot).collect();
-            let break_points = points.iter().map(|&place| robots[place]).collect();
-            self.report(MissionEvent::RecruitElected {
-                robot: self.id,
-                path: robots,
-                break_points,
-            });
-        }
-        self.walk_path();
+        self.agreement.as_ref()?.break_points(self.mission.path()?.len())
     }
 
     /// How many subgroups of the path have arrived, as far as it knows.
     pub fn subgroups_done(&self) -> usize {
-        self.subgroup
+        self.mission.shift().map_or(0, |shift| shift.arrived)
     }
 
     /// The subgroup that is the active team, while one is.
     pub fn active_subgroup(&self) -> Option<Subgroup> {
-        (self.phase == Phase::Shift).then(|| self.subgroups.get(self.subgroup).copied())?
+        self.mission.shift()?.active()
     }
 
-    /// Sets out when it is this robot's turn, and says so when it has arrived.
-    pub(super) fn walk_path(&mut self) {
-        let Some(active) = self.subgroups.get(self.subgroup).copied() else { return };
-        if self.is_engaged() {
-            return;
-        }
-        if let Duty::Wait { station, place } = self.duty
-            && active.places().contains(&place)
-            && (place == 0 || place > active.first || self.is_relieved_of(station.post.id))
-        {
-            if place == active.first {
-                let robots = self.robots_at(active);
-                self.report(MissionEvent::SubgroupStarted { subgroup: self.subgroup, robots });
-            }
-            // The recruit's own place is given up; every other is taken over by the robot behind.
-            self.left_post = (place > 0).then_some(station.post.id);
-            self.duty = Duty::Shift { place };
-            self.still_periods = 0;
-        }
-        if let Duty::Shift { place } = self.duty
+    /// Says so when it has arrived at the next place of Σ.
+    pub(super) fn report_arrival(&mut self) {
+        if let Duty::Shifting(Shifting { place, .. }) = *self.duty
+            && self.active_subgroup().is_some()
+            && !self.is_engaged()
             && self.has_arrived()
             && let Some(agreement) = &mut self.agreement
         {
@@ -106,8 +119,8 @@ impl Robot {
     }
 
     /// The robots that stood at the places of a subgroup when Σ was announced.
-    fn robots_at(&self, subgroup: Subgroup) -> Vec<NodeId> {
-        let hops = self.path.as_ref().and_then(|path| path.hops.get(subgroup.places()));
+    pub(super) fn robots_at(&self, subgroup: Subgroup) -> Vec<NodeId> {
+        let hops = self.mission.path().and_then(|path| path.hops.get(subgroup.places()));
         hops.into_iter().flatten().map(|hop| hop.robot).collect()
     }
 
@@ -123,77 +136,9 @@ impl Robot {
 
     /// The place that this robot goes to along Σ.
     pub(super) fn next_hop(&self) -> Option<&Hop> {
-        match self.duty {
-            Duty::Shift { place } => self.path.as_ref()?.hops.get(place + 1),
+        match *self.duty {
+            Duty::Shifting(Shifting { place, .. }) => self.mission.path()?.hops.get(place + 1),
             _ => None,
         }
-    }
-
-    /// Every member of the active subgroup has arrived: each takes the post it has come to.
-    pub fn take_posts(&mut self) {
-        let Some(active) = self.subgroups.get(self.subgroup).copied() else { return };
-        if let Duty::Shift { place } = self.duty
-            && active.places().contains(&place)
-        {
-            if place == active.first {
-                let robots = self.robots_at(active);
-                self.report(MissionEvent::SubgroupArrived { subgroup: self.subgroup, robots });
-            }
-            self.take_post_ahead();
-        }
-        self.subgroup += 1;
-        self.walk_path();
-    }
-
-    fn take_post_ahead(&mut self) {
-        if let Some(hop) = self.next_hop() {
-            // A plain node that queues behind the next member makes its place where it stands.
-            let place = hop.place.reference;
-            let radius = self.site.settings.service_radius;
-            let queues = (self.position - place).norm() > radius;
-            let reference = if queues { self.position } else { place };
-            let station = Station { post: hop.post, reference };
-            self.duty = Duty::Hold(station);
-            self.left_post = None;
-            self.remember_parent();
-        }
-    }
-
-    /// The last robot that Σ relieves joins the primary team, or leads it.
-    pub fn join_team(&mut self) {
-        let (Some(path), Some(&station)) = (self.path.clone(), self.duty.station()) else { return };
-        let follows = match path.hops.last() {
-            Some(last) if !path.releases_leader => Some(last.post.id),
-            _ => None,
-        };
-        let parent = match self.subgroups.is_empty() {
-            true => station.post.parent,
-            false => Some(Anchor::Post(station.post.id)),
-        };
-        let id = PostId((self.site.robots as u32) + self.bulletin.sequence());
-        let mut post = Post::redundant(id);
-        post.kind = PostKind::Primary { follows };
-        post.parent = parent;
-        self.left_post = (!self.subgroups.is_empty()).then_some(station.post.id);
-        self.duty = Duty::Hold(Station { post, reference: self.position });
-        self.still_periods = 0;
-        self.awaits_release = false;
-        self.report(match follows {
-            Some(_) => MissionEvent::JoinedPrimary { robot: self.id, team: Vec::new() },
-            None => MissionEvent::Released { robot: self.id },
-        });
-        self.issue(Notice::Advance { joined: follows.map(|follows| (id, follows)) });
-        self.resume();
-    }
-
-    /// The primary team is the active team again.
-    pub fn resume(&mut self) {
-        match self.duty {
-            Duty::Shift { .. } => self.take_post_ahead(),
-            Duty::Wait { station, .. } => self.duty = Duty::Hold(station),
-            Duty::Hold(_) => {}
-        }
-        self.subgroups.clear();
-        self.still_periods = 0;
     }
 }

@@ -6,38 +6,103 @@ use pleach_discrete::network::{Anchor, Bid, Election, IdSet, Phase};
 
 use super::super::beacon::{Beacon, Notice};
 use super::super::duty::{Hop, Path, Place};
+use super::super::mission::{Advance, KnowsPath, PathAgreement, RecruitElection};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::shared::Shared;
 use super::Robot;
 use super::hearing::Neighbour;
+use super::mission::{Effects, MissionEffect};
 
 /// Residuals in bids are compared in units of this: routes aim at the same reserve everywhere,
 /// and what is left of differences is the dual iteration's noise.
 const RESIDUAL_RESOLUTION: f64 = 1e-3;
 
+/// p₁ is stuck, or the leader has past duties: it calls for a recruit.
+pub(super) fn call(advance: &Advance, robot: &Robot, effects: &mut Effects) -> RecruitElection {
+    let releases_leader = robot.duty.is_bound();
+    if !releases_leader {
+        let event = MissionEvent::Stationary { robot: robot.id, team: Vec::new() };
+        effects.push(MissionEffect::Report(event));
+    }
+    let number = robot.bulletin.sequence() + 1;
+    let route = robot.own_hop(Vec::new()).map(|hop| (number, Shared::new(vec![hop])));
+    effects.extend([
+        MissionEffect::Issue(Notice::Call { caller: robot.id, releases_leader }),
+        MissionEffect::Elect(Election::new(number), None, route),
+    ]);
+    RecruitElection { before: advance.path.clone() }
+}
+
+/// A recruit is called for.
+pub(super) fn answer<A: KnowsPath>(
+    phase: &A,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> RecruitElection {
+    let number = robot.bulletin.sequence();
+    let is_caller = matches!(*robot.bulletin.notice(),
+        Notice::Call { caller, .. } if caller == robot.id);
+    let own = is_caller.then(|| robot.own_hop(Vec::new())).flatten();
+    let route = own.map(|hop| (number, Shared::new(vec![hop])));
+    effects.push(MissionEffect::Elect(Election::new(number), None, route));
+    RecruitElection { before: phase.known_path() }
+}
+
+/// The recruit announces the path Σ that it has found.
+pub(super) fn announce_path(
+    _: &RecruitElection,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> Option<PathAgreement> {
+    let Notice::Call { releases_leader, .. } = *robot.bulletin.notice() else { return None };
+    let (_, hops) = robot.route.as_ref()?;
+    let path = Arc::new(Path { hops: hops.to_vec(), releases_leader });
+    let number = robot.bulletin.sequence() + 1;
+    effects.extend([
+        MissionEffect::Issue(Notice::Path(Arc::clone(&path))),
+        MissionEffect::Agree(Some(robot.vote_on(&path, number))),
+        MissionEffect::ForgetRoute,
+    ]);
+    Some(PathAgreement { path })
+}
+
+/// The caller finds that no robot can be recruited: other trees may try, or the mission ends.
+pub(super) fn end_unaided(
+    phase: &RecruitElection,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> RecruitElection {
+    let stranded = robot.election.as_ref().and_then(Election::best).is_some();
+    let own_root = robot.lineage.as_ref().map(|lineage| lineage.root());
+    let others: IdSet = robot.eligible.iter().filter(|&root| Some(root) != own_root).collect();
+    if let Some(task) = robot.tasks.last() {
+        if stranded && !others.is_empty() {
+            let event = MissionEvent::ElectionRepeated { task: task.number };
+            effects.push(MissionEffect::Report(event));
+            effects.push(MissionEffect::Issue(Notice::Task {
+                task: task.number,
+                position: task.position,
+                roster: Arc::clone(&robot.roster),
+                eligible: Arc::new(others),
+            }));
+        } else {
+            let wanted = (robot.remaining() / robot.site.build_length).ceil().max(1.0);
+            let reason = format!(
+                "task {} needs another recruit, and no redundant robot is left that can come; \
+                 about {wanted} more robots are needed",
+                task.number
+            );
+            effects.push(MissionEffect::Issue(Notice::Ended {
+                outcome: Outcome::InsufficientRobots,
+                reason: reason.into(),
+                task: Some(task.number),
+            }));
+        }
+    }
+    phase.clone()
+}
+
 impl Robot {
-    /// p₁ is stuck, or the leader has past duties: call for a recruit.
-    pub fn call_for_recruit(&mut self) {
-        if !self.awaits_release {
-            self.report(MissionEvent::Stationary { robot: self.id, team: Vec::new() });
-        }
-        self.issue(Notice::Call { caller: self.id, releases_leader: self.awaits_release });
-        self.begin_recruit_election();
-    }
-
-    /// A recruit is called for.
-    pub fn begin_recruit_election(&mut self) {
-        let number = self.bulletin.sequence();
-        self.election = Some(Election::new(number));
-        self.bid = None;
-        self.waited_rounds = 1;
-        self.route = None;
-        if matches!(*self.bulletin.notice(), Notice::Call { caller, .. } if caller == self.id) {
-            self.route = self.own_hop(Vec::new()).map(|hop| (number, Shared::new(vec![hop])));
-        }
-        self.answer_call();
-    }
-
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
         let station = self.duty.station()?;
         let place = Place { reference: station.reference, position: self.position };
@@ -47,7 +112,7 @@ impl Robot {
     /// Counts one more round of an election of a recruit; says whether a wait is over, so that the
     /// robot may do what it might not do before.
     pub(super) fn count_round(&mut self) -> bool {
-        if self.phase != Phase::RecruitElection {
+        if self.phase() != Phase::RecruitElection {
             return false;
         }
         self.waited_rounds += 1;
@@ -117,44 +182,5 @@ impl Robot {
         route.push(self.own_hop(via.beacon.crossing.clone())?);
         route.extend(onward.iter().cloned());
         Some(route)
-    }
-
-    /// The recruit announces the path Σ that it has found.
-    pub fn announce_path(&mut self) {
-        let Notice::Call { releases_leader, .. } = *self.bulletin.notice() else { return };
-        let Some((_, hops)) = self.route.take() else { return };
-        let path = Path { hops: hops.to_vec(), releases_leader };
-        self.issue(Notice::Path(Arc::new(path)));
-        self.begin_path();
-    }
-
-    /// The caller finds that nobody can be recruited: other trees may try, or the mission ends.
-    pub fn end_unaided(&mut self) {
-        let stranded = self.election.as_ref().and_then(Election::best).is_some();
-        let Some(task) = self.tasks.last().copied() else { return };
-        let own_root = self.lineage.as_ref().map(|lineage| lineage.root());
-        let others: IdSet = self.eligible.iter().filter(|&root| Some(root) != own_root).collect();
-        if stranded && !others.is_empty() {
-            let roster = Arc::clone(&self.roster);
-            self.report(MissionEvent::ElectionRepeated { task: task.number });
-            self.issue(Notice::Task {
-                task: task.number,
-                position: task.position,
-                roster,
-                eligible: Arc::new(others),
-            });
-            return;
-        }
-        let wanted = (self.remaining() / self.site.build_length).ceil().max(1.0);
-        let reason = format!(
-            "task {} needs another recruit, and no redundant robot is left that can come; about \
-             {wanted} more robots are needed",
-            task.number
-        );
-        self.issue(Notice::Ended {
-            outcome: Outcome::InsufficientRobots,
-            reason: reason.into(),
-            task: Some(task.number),
-        });
     }
 }

@@ -5,8 +5,6 @@
 //! for what the others say, up to the next tick. When it has set off, its clock calls again at
 //! τ = Δt.
 
-use std::sync::Arc;
-
 use pleach_continuous::Point;
 use pleach_discrete::network::NodeId;
 
@@ -162,13 +160,13 @@ impl Robot {
             Stage::Sample => {
                 self.restart_clock();
                 self.jump()?;
-                self.begin_period();
+                self.begin_period()?;
                 self.speak(outputs);
                 Stage::Beacons(1)
             }
             Stage::Beacons(round) => {
                 self.end_round();
-                self.deliberate();
+                self.deliberate()?;
                 self.jump()?;
                 if round < self.rounds_of_this_period() {
                     self.speak(outputs);
@@ -279,13 +277,9 @@ impl Robot {
             if !self.measure() {
                 return Ok(());
             }
-            let site = Arc::clone(&self.site);
-            if self.step_mission(&site.automata.mission)?.is_some() {
-                continue;
+            if !self.jump_once()? {
+                return Ok(());
             }
-            let Some(jump) = self.step_role(&site.automata.role)? else { return Ok(()) };
-            let (from, to) = (jump.source, jump.target);
-            self.report(MissionEvent::RoleChanged { robot: self.id, from, to });
         }
         Err(RobotError::Zeno { robot: self.id })
     }

@@ -4,9 +4,10 @@ use pleach_continuous::Point;
 use pleach_discrete::network::{Phase, PostId, PostKind};
 
 use super::super::beacon::{Notice, TeamReport};
-use super::super::duty::Duty;
+use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
 use super::Robot;
+use super::mission::{Effects, MissionEffect};
 
 /// The leader stops at δ − 2.2ρ from its task, so that a robot 2ρ behind it is within δ as well.
 const STAND_OFF: f64 = 2.2;
@@ -17,10 +18,44 @@ const BUNCHED: f64 = 2.6;
 /// A link shorter than this share of d_build is slack.
 const SLACK: f64 = 0.95;
 
+/// The leader is within reach of its task, and services it.
+pub(super) fn announce_service(_: &Advance, robot: &Robot, effects: &mut Effects) -> Option<Idle> {
+    let task = robot.current_task()?;
+    let event = MissionEvent::TaskServiced { task, robot: robot.id };
+    effects.extend([MissionEffect::Report(event), MissionEffect::Issue(Notice::Serviced { task })]);
+    Some(Idle)
+}
+
+/// The task is serviced: the robot waits for the next one.
+pub(super) fn wait(_: &Advance, _: &Robot, _: &mut Effects) -> Idle {
+    Idle
+}
+
+/// The active team cannot go on, and a recruit would not help.
+pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
+    let reason = match (robot.duty.place(), robot.team.and_then(|team| team.slack)) {
+        (Some(_), _) => format!(
+            "robot {} cannot get to the place of Σ that it should take: something stands in its way",
+            robot.id
+        ),
+        (None, Some(slack)) => format!(
+            "the primary team stands still although robot {slack} has room on its link: something \
+             stands in its way, and a recruit would not help"
+        ),
+        (None, None) => format!(
+            "robot {} has joined the primary team but cannot reach the robot that it follows",
+            robot.id
+        ),
+    };
+    let (outcome, task) = (Outcome::Blocked, robot.current_task());
+    effects.push(MissionEffect::Issue(Notice::Ended { outcome, reason: reason.into(), task }));
+    Ended
+}
+
 impl Robot {
-    /// Whether this robot heads the network's effort, released or not.
+    /// Whether this robot is the elected leader, released or not.
     pub fn leads(&self) -> bool {
-        self.awaits_release || self.duty.post().is_some_and(|post| post.is_leading())
+        self.duty.leads()
     }
 
     /// Whether this robot is p₁: nobody of the team follows it.
@@ -52,7 +87,7 @@ impl Robot {
             PostKind::Primary { follows: Some(ahead) } => match self.holder(ahead) {
                 Some(neighbour) => Some(neighbour.position()),
                 // Not heard yet: where it stood when it called.
-                None => self.path.as_ref()?.hops.last().map(|hop| hop.place.position),
+                None => self.mission.path()?.hops.last().map(|hop| hop.place.position),
             },
             _ => None,
         }
@@ -69,7 +104,7 @@ impl Robot {
     /// What the team knows of itself, from the leader back to this robot.
     pub(super) fn review_team(&mut self) {
         self.team = None;
-        if self.phase != Phase::Advance || !self.duty.is_primary() {
+        if self.phase() != Phase::Advance || !self.duty.is_primary() {
             return;
         }
         let own_slack = self.is_slack().then_some(self.id);
@@ -102,51 +137,5 @@ impl Robot {
                 .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance())
         };
         !bound && (self.leads() || !bunched())
-    }
-
-    /// The leader is within reach of its task.
-    pub fn service_task(&mut self) {
-        let Some(task) = self.tasks.last().map(|task| task.number) else { return };
-        self.leave_team();
-        if let Some(station) = self.duty.station_mut() {
-            station.post.task = Some(task);
-        }
-        self.report(MissionEvent::TaskServiced { task, robot: self.id });
-        self.issue(Notice::Serviced { task });
-    }
-
-    /// The team is dissolved: its posts become fixed where they are.
-    pub fn leave_team(&mut self) {
-        let position = self.position;
-        if let Some(station) = self.duty.station_mut()
-            && station.post.is_primary()
-        {
-            station.post.kind = PostKind::Fixed;
-            station.reference = position;
-        }
-        if let Duty::Wait { station, .. } = self.duty {
-            self.duty = Duty::Hold(station);
-        }
-    }
-
-    /// The active team cannot go on, and a recruit would not help.
-    pub fn end_blocked(&mut self) {
-        let task = self.tasks.last().map(|task| task.number);
-        let reason = match (self.duty.place(), self.team.and_then(|team| team.slack)) {
-            (Some(_), _) => format!(
-                "robot {} cannot get to the place of Σ that it should take: something stands in \
-                 its way",
-                self.id
-            ),
-            (None, Some(slack)) => format!(
-                "the primary team stands still although robot {slack} has room on its link: \
-                 something stands in its way, and a recruit would not help"
-            ),
-            (None, None) => format!(
-                "robot {} has joined the primary team but cannot reach the robot that it follows",
-                self.id
-            ),
-        };
-        self.issue(Notice::Ended { outcome: Outcome::Blocked, reason: reason.into(), task });
     }
 }

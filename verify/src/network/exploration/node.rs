@@ -208,13 +208,14 @@ impl Nodes {
         }
     }
 
-    /// What a node has heard last of each of those that it knows now.
+    /// The beacon that a node goes by of each of those that it knows now; it may have refused a late
+    /// one.
     fn last_heard(&self, node: &Node, known: &[BeaconId], heard: &[BeaconId]) -> Vec<BeaconId> {
         let Some(robot) = node.robot() else { return heard.to_vec() };
-        let last = |node| {
-            let from = |&&id: &&BeaconId| self.beacon(id).sender == node;
-            heard.iter().find(from).or_else(|| known.iter().find(from)).copied()
+        let number = |held: &Arc<Beacon>| {
+            let is_held = |id: &&BeaconId| Arc::ptr_eq(&self.beacons[**id as usize], held);
+            heard.iter().chain(known).find(is_held).copied()
         };
-        robot.audible().filter_map(|(node, _)| last(node)).collect()
+        robot.held_beacons().filter_map(number).collect()
     }
 }

@@ -113,7 +113,7 @@ pub fn primary_team_is_a_chain(protocol: &Protocol, state: &State) -> bool {
 /// A post on which that of a robot with a duty hangs is held, unless a subgroup of Σ is on its
 /// way: then its robots stand for the posts that they have left.
 pub fn bearing_posts_are_held(protocol: &Protocol, state: &State) -> bool {
-    let is_on_its_way = |duty: &Duty| matches!(duty, Duty::Shift { .. });
+    let is_on_its_way = |duty: &Duty| matches!(duty, Duty::Shifting(_));
     if duties(protocol, state).iter().any(is_on_its_way) {
         return true;
     }
@@ -200,7 +200,7 @@ pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
         let robots = protocol.robots(state).enumerate();
         robots.filter(|(_, robot)| is_member(robot)).map(|(id, _)| id).collect()
     };
-    let is_shifting = |robot: &Robot| matches!(robot.duty(), Duty::Shift { .. });
+    let is_shifting = |robot: &Robot| matches!(robot.duty(), Duty::Shifting(_));
     let moving =
         of(&|robot| robot.is_active() && (is_shifting(robot) || robot.duty().is_primary()));
     let primary_team = of(&|robot| robot.duty().is_primary());

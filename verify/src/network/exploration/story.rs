@@ -76,12 +76,11 @@ fn duty(robot: &Robot) -> String {
 }
 
 fn duty_text(duty: &Duty) -> String {
-    let (verb, post) = match duty {
-        Duty::Shift { place } => return format!("has left place {place} of Σ"),
-        Duty::Wait { station, place } => {
-            (format!("waits at place {place} of Σ with"), station.post)
-        }
-        Duty::Hold(station) => ("holds".into(), station.post),
+    let (verb, post) = match (duty.place(), duty.post()) {
+        (Some(place), None) => return format!("has left place {place} of Σ"),
+        (None, None) => return "holds nothing".into(),
+        (Some(place), Some(post)) => (format!("waits at place {place} of Σ with"), post),
+        (None, Some(post)) => ("holds".into(), post),
     };
     let kind = match post.kind {
         PostKind::Redundant => "redundant".into(),

@@ -1,0 +1,93 @@
+//! Groups: components that have something to do with one another.
+//!
+//! Components that share a label or a connection belong together, and so do those of which each
+//! belongs to a third. Nothing that happens in one group concerns another: each is followed by
+//! itself, from one of its own events to the next.
+
+use super::Composition;
+
+/// Components that flow and jump together.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    /// Ascending.
+    pub(super) components: Vec<usize>,
+    /// The variables that belong to the components, ascending.
+    pub(super) slots: Vec<usize>,
+    /// The labels that they share.
+    pub(super) labels: Vec<usize>,
+}
+
+impl Composition {
+    /// Finds the groups; components, variables and labels are complete.
+    pub(super) fn form_groups(&mut self) {
+        let leaders = self.leaders();
+        // By component that leads a group: its number.
+        let mut numbers = vec![usize::MAX; self.components.len()];
+        for (index, component) in self.components.iter_mut().enumerate() {
+            let number = &mut numbers[leaders[index]];
+            if *number == usize::MAX {
+                *number = self.groups.len();
+                let (components, slots, labels) = (Vec::new(), Vec::new(), Vec::new());
+                self.groups.push(Group { components, slots, labels });
+            }
+            component.group = *number;
+            let group = &mut self.groups[*number];
+            group.components.push(index);
+            let own = component.slots.iter().zip(&component.owned).filter(|(_, owned)| **owned);
+            group.slots.extend(own.map(|(slot, _)| slot));
+        }
+        for group in &mut self.groups {
+            group.slots.sort_unstable();
+        }
+        for component in &mut self.components {
+            let slots = &self.groups[component.group].slots;
+            let place = |slot: &usize| slots.partition_point(|one| one < slot);
+            component.places = component.slots.iter().map(place).collect();
+        }
+        for (number, label) in self.labels.iter().enumerate() {
+            if let Some(&(first, _)) = label.participants.first() {
+                self.groups[self.components[first].group].labels.push(number);
+            }
+        }
+    }
+
+    /// By component: one of its group, the same for all of them.
+    fn leaders(&self) -> Vec<usize> {
+        let mut forest = Forest((0..self.components.len()).collect());
+        let mut owners = vec![0; self.variables.len()];
+        for (index, component) in self.components.iter().enumerate() {
+            for (&slot, _) in component.slots.iter().zip(&component.owned).filter(|(_, own)| **own)
+            {
+                owners[slot] = index;
+            }
+        }
+        for (index, component) in self.components.iter().enumerate() {
+            component.slots.iter().for_each(|&slot| forest.join(index, owners[slot]));
+        }
+        for label in &self.labels {
+            for pair in label.participants.windows(2) {
+                forest.join(pair[0].0, pair[1].0);
+            }
+        }
+        (0..self.components.len()).map(|component| forest.root(component)).collect()
+    }
+}
+
+/// Disjoint sets, each a tree of indices that point to their parents (B. A. Galler and
+/// M. J. Fischer 1964, doi:10.1145/364099.364331).
+struct Forest(Vec<usize>);
+
+impl Forest {
+    fn root(&mut self, mut one: usize) -> usize {
+        while self.0[one] != one {
+            self.0[one] = self.0[self.0[one]];
+            one = self.0[one];
+        }
+        one
+    }
+
+    fn join(&mut self, one: usize, other: usize) {
+        let (one, other) = (self.root(one), self.root(other));
+        self.0[one.max(other)] = one.min(other);
+    }
+}

@@ -1,0 +1,120 @@
+//! Writing the trajectory while a simulation runs.
+
+use super::flight::Flight;
+use super::group::Group;
+use super::settings::Settings;
+use super::simulation::{Failure, Taken};
+use super::{Component, Composition};
+use crate::executor::Ending;
+use crate::moment::Moment;
+use crate::time::HybridTime;
+use crate::trajectory::{Doubt, JumpRecord, Participant, Strand, Stretch, Trajectory, Why};
+
+/// A trajectory in the making.
+pub(super) struct Record {
+    strands: Vec<Strand>,
+    jumps: Vec<JumpRecord>,
+    doubts: Vec<Doubt>,
+    /// About how large it is, in numbers.
+    numbers: u64,
+}
+
+/// What a jump and a stretch take besides values, in numbers: names, lists and the like.
+const OVERHEAD: u64 = 32;
+
+impl Record {
+    /// The record of a composition in its initial state.
+    pub(super) fn of(composition: &Composition) -> Record {
+        let strands = composition.groups.iter().map(|group| {
+            let first = values_of(group, &composition.initial);
+            let (slots, components) = (group.slots.clone(), group.components.clone());
+            let stretch = Stretch::at(HybridTime::START, Moment::default(), first);
+            Strand { slots, components, stretches: vec![stretch] }
+        });
+        Record { strands: strands.collect(), jumps: Vec::new(), doubts: Vec::new(), numbers: 0 }
+    }
+
+    /// About how large it is, in bytes.
+    pub(super) fn size(&self) -> u64 {
+        8 * self.numbers
+    }
+
+    /// The group has flown.
+    pub(super) fn flown(&mut self, number: usize, flight: Flight) {
+        let Strand { stretches, components, .. } = &mut self.strands[number];
+        for doubt in &flight.doubts {
+            let at = |time: f64| (flight.since + Moment::from(time)).seconds();
+            let doubt = Doubt {
+                components: components.clone(),
+                from: at(doubt.from),
+                to: at(doubt.to),
+                why: doubt.why.into(),
+            };
+            doubt.note(&mut self.doubts);
+        }
+        if flight.is_fitted {
+            let (from, to) = (flight.since.seconds(), flight.due().seconds());
+            let (components, why) = (components.clone(), Why::Solution);
+            Doubt { components, from, to, why }.note(&mut self.doubts);
+        }
+        let Some(mut stretch) = stretches.pop() else { return };
+        if !stretch.pieces.is_empty() {
+            // Nothing was taken at the end of the flow before.
+            let at = HybridTime { t: flight.since.seconds(), ..stretch.begin };
+            let next = Stretch::at(at, flight.since, stretch.last.clone());
+            stretches.push(std::mem::replace(&mut stretch, next));
+        }
+        let pieces = flight.pieces.iter().map(pleach_continuous::flow::Piece::len).sum::<usize>();
+        self.numbers += (pieces + flight.landing.len()) as u64 + OVERHEAD;
+        stretch.until = (flight.since + flight.duration).seconds();
+        stretch.since = flight.since;
+        stretch.pieces = flight.pieces;
+        stretch.last = flight.landing;
+        stretches.push(stretch);
+    }
+
+    /// The group has jumped at hybrid time `at`, and the state is now this.
+    pub(super) fn jumped(
+        &mut self,
+        at: HybridTime,
+        number: usize,
+        taken: &Taken,
+        group: &Group,
+        values: &[f64],
+    ) {
+        let first = values_of(group, values);
+        self.numbers += first.len() as u64 + OVERHEAD;
+        let since = Moment::from(at.t);
+        self.strands[number].stretches.push(Stretch::at(at.after_jump(), since, first));
+        self.jumps.push(JumpRecord { at, label: taken.label.clone(), moves: taken.moves.clone() });
+    }
+
+    pub(super) fn into_trajectory(
+        self,
+        composition: &Composition,
+        settings: Settings,
+        horizon: f64,
+        ending: Ending<Failure>,
+    ) -> Trajectory {
+        let participant = |(index, component): (usize, &Component)| Participant {
+            name: component.name.clone(),
+            locations: composition.locations(index).map(str::to_owned).collect(),
+        };
+        let components = &composition.components;
+        Trajectory {
+            variables: composition.variables.clone(),
+            components: components.iter().enumerate().map(participant).collect(),
+            initial: components.iter().map(|component| component.blueprint.initial).collect(),
+            settings,
+            horizon,
+            strands: self.strands,
+            jumps: self.jumps,
+            doubts: self.doubts,
+            ending,
+        }
+    }
+}
+
+fn values_of(group: &Group, values: &[f64]) -> Vec<f64> {
+    group.slots.iter().map(|&slot| values[slot]).collect()
+}

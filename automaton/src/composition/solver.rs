@@ -1,0 +1,269 @@
+//! The solution of a group's flow, piece by piece.
+
+use pleach_continuous::flow::{Curve, IntegrationFailure, Integrator, LinearFlow, Piece};
+use pleach_guards::Enclosure;
+
+use super::field::{Field, LinearPart, Row};
+use super::settings::Settings;
+use crate::moment::Moment;
+
+/// Steps of fewer spacings of the numbers around the present time are crawling.
+const CRAWLING: f64 = 1024.0 * f64::EPSILON;
+/// A flow that crawls for so many steps in a row has met a singularity.
+const MOST_CRAWLING: u32 = 100;
+/// The largest error, relative to its size, with which the polynomial of a function stands for it.
+const FITTING: f64 = 1e-12;
+/// How often the time of a function is halved for such a polynomial.
+const HALVINGS: u32 = 20;
+
+/// A flow that is being solved; its time counts from its start, in seconds.
+pub(super) struct Solver<'a> {
+    field: &'a Field<'a>,
+    method: Method<'a>,
+    pieces: Vec<Piece>,
+    /// How far it is solved.
+    reached: f64,
+    crawled: u32,
+    enclosures: Vec<Enclosure>,
+}
+
+enum Method<'a> {
+    /// All variables move along lines.
+    Lines,
+    /// The curved ones by the matrix exponential.
+    Linear(LinearFlow, Vec<usize>),
+    Steps(Box<Integrator<'a, Field<'a>>>),
+}
+
+impl<'a> Solver<'a> {
+    /// The solution for at most `limit` seconds.
+    pub(super) fn new(
+        field: &'a Field<'a>,
+        settings: &Settings,
+        limit: f64,
+    ) -> Result<Self, String> {
+        let steps = || {
+            let start = &field.start;
+            Method::Steps(Box::new(Integrator::new(field, 0.0, start, settings.tolerances())))
+        };
+        let method = if field.is_straight() {
+            Method::Lines
+        } else {
+            match field.linear() {
+                Some(LinearPart { variables, matrix, offset }) => {
+                    let start: Vec<f64> =
+                        variables.iter().map(|&place| field.start[place]).collect();
+                    let flow = LinearFlow::new(&matrix, offset.as_slice(), &start, limit)
+                        .map_err(|fault| fault.to_string())?;
+                    Method::Linear(flow, variables)
+                }
+                None => steps(),
+            }
+        };
+        let (pieces, enclosures) = (Vec::new(), Vec::new());
+        Ok(Solver { field, method, pieces, reached: 0.0, crawled: 0, enclosures })
+    }
+
+    /// Whether all variables move along lines, so that nothing needs to be solved.
+    pub(super) fn is_straight(&self) -> bool {
+        matches!(self.method, Method::Lines)
+    }
+
+    /// Whether some of it is a function that is taken at a few instants only.
+    pub(super) fn is_fitted(&self) -> bool {
+        self.field.has_solutions()
+    }
+
+    /// The state at the start.
+    pub(super) fn start(&self) -> &[f64] {
+        &self.field.start
+    }
+
+    /// How far the flow is solved.
+    pub(super) fn reached(&self) -> f64 {
+        self.reached
+    }
+
+    /// The piece that holds `time`, solving the flow as far as it takes, but not beyond `limit`.
+    ///
+    /// # Errors
+    ///
+    /// Why the flow cannot be followed up to there; it is solved as far as it can.
+    pub(super) fn piece_at(&mut self, time: f64, limit: f64) -> Result<&Piece, String> {
+        while self.reached <= time && self.reached < limit || self.pieces.is_empty() {
+            self.extend(limit)?;
+        }
+        let number = self.pieces.partition_point(|piece| piece.end() <= time);
+        Ok(&self.pieces[number.min(self.pieces.len() - 1)])
+    }
+
+    /// How many numbers the pieces hold.
+    pub(super) fn size(&self) -> usize {
+        self.pieces.iter().map(Piece::len).sum()
+    }
+
+    /// The solution up to `time`.
+    pub(super) fn into_pieces(mut self, time: f64) -> Result<Vec<Piece>, String> {
+        if time > 0.0 {
+            self.piece_at(time.next_down(), time)?;
+        }
+        self.pieces.retain(|piece| piece.start() < time);
+        if let Some(last) = self.pieces.pop() {
+            self.pieces.push(last.within(0.0, time));
+        }
+        Ok(self.pieces)
+    }
+
+    /// The state at `time`, what moves along lines and what is solved by itself exactly.
+    ///
+    /// # Errors
+    ///
+    /// As for [`piece_at`](Self::piece_at).
+    pub(super) fn state_at(&mut self, time: Moment) -> Result<Vec<f64>, String> {
+        let mut state = self.field.start.clone();
+        if !matches!(self.method, Method::Lines) {
+            let limit = time.seconds();
+            self.piece_at(limit, limit)?.state_at(limit, &mut state);
+        }
+        for (place, row) in self.field.rows.iter().enumerate() {
+            if let Row::Line(rate) = *row {
+                let first = Moment::from(self.field.start[place]);
+                let moved = first + Moment::from(rate) * time;
+                // Over infinite rates nothing is exact.
+                state[place] = if rate == 0.0 { first.seconds() } else { moved.seconds() };
+            }
+        }
+        self.field.overlay(time.seconds(), &mut state);
+        Ok(state)
+    }
+
+    /// Adds the next piece.
+    fn extend(&mut self, limit: f64) -> Result<(), String> {
+        let start = self.reached;
+        let curved = match &mut self.method {
+            Method::Lines => Piece::new(start, limit, 0.0, 1.0),
+            Method::Linear(flow, _) => {
+                flow.piece(start).ok_or("the flow has no solution")?.within(start, limit)
+            }
+            Method::Steps(integrator) => {
+                let step = integrator.step(limit).map_err(|fault| without_time(&fault))?;
+                step.piece(start).ok_or("the flow has no solution")?
+            }
+        };
+        let piece = self.complete(&curved);
+        let piece = if self.field.has_solutions() { self.fitted(&piece) } else { piece };
+        let bounded = self.check_rates(&piece);
+        let end = bounded.as_ref().err().map_or(piece.end(), |(singularity, _)| *singularity);
+        let progress = self.check_progress(&piece);
+        if end > start {
+            self.reached = end;
+            self.pieces.push(piece.within(start, end));
+        }
+        bounded.map_err(|(_, reason)| reason)?;
+        progress
+    }
+
+    /// The piece with all variables, given that of the curved ones.
+    fn complete(&self, curved: &Piece) -> Piece {
+        let (origin, scale) = (curved.origin(), curved.scale());
+        let mut piece = Piece::new(curved.start(), curved.end(), origin, scale);
+        let mut next = 0;
+        for (place, row) in self.field.rows.iter().enumerate() {
+            let own = match &self.method {
+                Method::Lines => None,
+                Method::Linear(_, variables) => {
+                    let own = (variables.get(next) == Some(&place)).then_some(next);
+                    next += usize::from(own.is_some());
+                    own
+                }
+                Method::Steps(_) => Some(place),
+            };
+            match (row, own) {
+                (Row::Curved, Some(own)) => {
+                    piece.push(curved.coefficients(own).iter().copied(), curved.error(own));
+                }
+                (Row::Line(rate), _) => {
+                    let first = self.field.start[place];
+                    piece.push([rate.mul_add(origin, first), rate * scale], 0.0);
+                }
+                _ => piece.push([self.field.start[place]], 0.0),
+            }
+        }
+        piece
+    }
+
+    /// The piece with what is solved by itself as polynomials through its values.
+    fn fitted(&self, piece: &Piece) -> Piece {
+        let (start, mut length) = (piece.start(), piece.end() - piece.start());
+        for _ in 0..HALVINGS {
+            let fit = self.fit(piece, start, length);
+            let is_close = |component: usize| {
+                let size = fit.coefficients(component).iter().map(|c| c.abs()).sum::<f64>();
+                fit.error(component) <= piece.error(component) + FITTING * size
+            };
+            if (0..fit.dimension()).all(is_close) {
+                return fit;
+            }
+            length *= 0.5;
+        }
+        self.fit(piece, start, length)
+    }
+
+    fn fit(&self, piece: &Piece, start: f64, length: f64) -> Piece {
+        Piece::through(start, length, piece.dimension(), |time, state| {
+            piece.state_at(time, state);
+            self.field.overlay(time, state);
+        })
+    }
+
+    /// No rate grows without bound in the piece. Where one may, its surroundings are halved until
+    /// it does not, or until nothing is left to halve: then the rate is bounded up to there alone.
+    fn check_rates(&mut self, piece: &Piece) -> Result<(), (f64, String)> {
+        let field = self.field;
+        for (component, rate) in field.unbounded_rates() {
+            let Some(tracker) = &rate.tracker else { continue };
+            let mut spans = vec![(piece.start(), piece.end())];
+            while let Some((from, to)) = spans.pop() {
+                piece.enclose(from, to, &mut self.enclosures);
+                let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
+                let mut margins = tracker.comparisons().iter().map(|comparison| {
+                    comparison.margin(&self.enclosures, &component.places, half).range
+                });
+                if margins.all(|range| range.lower().is_finite() && range.upper().is_finite()) {
+                    continue;
+                }
+                let middle = from + 0.5 * (to - from);
+                if to - from <= CRAWLING * to.abs() || middle <= from || middle >= to {
+                    let name = component.blueprint.coordinates[rate.coordinate];
+                    let reason = format!("the rate of `{name}` grows without bound");
+                    return Err((from, reason));
+                }
+                spans.extend([(middle, to), (from, middle)]);
+            }
+        }
+        Ok(())
+    }
+
+    fn check_progress(&mut self, piece: &Piece) -> Result<(), String> {
+        let crawls = piece.end() - piece.start() <= CRAWLING * piece.end().abs();
+        self.crawled = if crawls { self.crawled + 1 } else { 0 };
+        if self.crawled <= MOST_CRAWLING {
+            return Ok(());
+        }
+        let time = piece.start();
+        Err(format!("the flow is singular: steps are too short to leave {time} s"))
+    }
+}
+
+/// What is wrong, without the time, which counts from the start of the flow.
+fn without_time(fault: &IntegrationFailure) -> String {
+    match fault {
+        IntegrationFailure::StepTooSmall { .. } => {
+            "no step is accurate enough, however short: the solution runs off to infinity, or its \
+             rates jump,"
+                .to_owned()
+        }
+        IntegrationFailure::Undefined { .. } => "the rates are not finite numbers".to_owned(),
+        other => other.to_string(),
+    }
+}

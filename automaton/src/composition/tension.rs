@@ -1,0 +1,311 @@
+//! What makes time stop in a group: a transition that is due, or an invariant that ends.
+
+use pleach_continuous::flow::Watch;
+use pleach_guards::{Affine, Course, Enclosure, Tracker, Verdict};
+
+use super::blueprint::{Condition, Leaving};
+use super::field::{Field, Row};
+use super::group::Group;
+use super::jumps::Standing;
+use super::settings::Policy;
+use super::simulation::Failure;
+use crate::moment::Moment;
+
+/// Which transitions count.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Readiness {
+    /// Those that have to be taken.
+    Forced,
+    /// All.
+    Possible,
+}
+
+/// The conditions of a group in its locations.
+#[derive(Clone, Copy)]
+pub(super) struct Conditions<'a> {
+    pub(super) standing: Standing<'a>,
+    pub(super) group: &'a Group,
+    pub(super) policy: Policy,
+    /// How far, in margins, invariants may be violated.
+    pub(super) allowance: f64,
+}
+
+impl<'a> Conditions<'a> {
+    /// Holds where time has to stop.
+    pub(super) fn tension(&self, state: &[f64]) -> Result<Verdict, Failure> {
+        let forced = self.any_transition(state, Readiness::Forced)?;
+        Ok(forced.or(self.invariants(state)?.opposite()))
+    }
+
+    /// Holds where all components are within their invariants, but for what is allowed.
+    pub(super) fn invariants(&self, state: &[f64]) -> Result<Verdict, Failure> {
+        let mut verdict = Verdict::ALWAYS;
+        for &index in &self.group.components {
+            let location = self.standing.locations[index];
+            if let Some(invariant) = self.invariant(index) {
+                let part = || format!("the invariant `{invariant}`");
+                let own = invariant
+                    .evaluate_at(state, self.standing.slots(index))
+                    .map_err(|fault| self.standing.formula(index, location, part(), &fault))?;
+                verdict = verdict.and(own);
+            }
+        }
+        let margin = verdict.margin + self.allowance;
+        let holds = verdict.holds || (self.allowance > 0.0 && margin >= 0.0);
+        Ok(Verdict { margin, holds })
+    }
+
+    /// Holds where a transition of this readiness can be taken.
+    pub(super) fn any_transition(
+        &self,
+        state: &[f64],
+        readiness: Readiness,
+    ) -> Result<Verdict, Failure> {
+        let mut verdict = Verdict::NEVER;
+        for (index, leaving) in self.own_transitions() {
+            if self.is_wanted(leaving, readiness) {
+                verdict = verdict.or(self.standing.allows(index, leaving, state)?);
+            }
+        }
+        for &label in &self.group.labels {
+            verdict = verdict.or(self.label(label, state, readiness)?);
+        }
+        Ok(verdict)
+    }
+
+    /// Whether a transition is among those that are looked for.
+    pub(super) fn is_wanted(&self, leaving: &Leaving, readiness: Readiness) -> bool {
+        leaving.urgency.is_forced()
+            || readiness == Readiness::Possible
+            || self.policy == Policy::Early
+    }
+
+    /// Holds where the label can be taken, if any participant wants it.
+    fn label(&self, label: usize, state: &[f64], readiness: Readiness) -> Result<Verdict, Failure> {
+        let mut all = Verdict::ALWAYS;
+        // Which part of the participants makes the label forced, depends on the state, too.
+        let mut wanted = Verdict::NEVER;
+        for &(index, event) in &self.standing.composition.labels[label].participants {
+            let mut any = Verdict::NEVER;
+            for leaving in self.standing.on_event(index, event) {
+                let allowed = self.standing.allows(index, leaving, state)?;
+                any = any.or(allowed);
+                if self.is_wanted(leaving, readiness) {
+                    wanted = wanted.or(allowed);
+                }
+            }
+            all = all.and(any);
+        }
+        Ok(all.and(wanted))
+    }
+
+    fn invariant(&self, component: usize) -> Option<&'a Condition> {
+        let location = self.standing.locations[component];
+        self.standing.composition.components[component].place(location).invariant.as_ref()
+    }
+
+    /// The transitions that components take by themselves.
+    fn own_transitions(&self) -> impl Iterator<Item = (usize, &'a Leaving)> {
+        let standing = self.standing;
+        self.group.components.iter().flat_map(move |&index| {
+            let labels = &standing.composition.components[index].labels;
+            let is_own = |leaving: &&Leaving| labels[leaving.event].is_none();
+            standing.leaving(index).iter().filter(is_own).map(move |leaving| (index, leaving))
+        })
+    }
+}
+
+/// The tension of a group along its flow.
+pub(super) struct Tension<'a> {
+    conditions: Conditions<'a>,
+    /// By component of the group: what is known of its invariant, then of its transitions.
+    known: Vec<Vec<Box<[Knowledge]>>>,
+    /// The open span of time, in seconds since the start of the flow, that is looked at.
+    window: (Moment, Moment),
+}
+
+/// What is known of a comparison during a flow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Knowledge {
+    /// Nothing beforehand.
+    Nothing,
+    /// Whether it holds, throughout.
+    Fixed(bool),
+    /// It changes at this time, to this.
+    Switch(Moment, bool),
+}
+
+impl<'a> Tension<'a> {
+    /// The tension along the flow of a field. What depends on lines alone is solved at once.
+    pub(super) fn along(conditions: Conditions<'a>, field: &Field<'_>) -> Self {
+        let knowledge = |index: usize, condition: &Condition, slack: f64| {
+            let places = conditions.standing.slots(index);
+            let comparisons = condition.tracker.comparisons().iter();
+            comparisons
+                .map(|comparison| match comparison.form() {
+                    Some(form) => Knowledge::of(form, comparison.is_strict(), places, slack, field),
+                    None => Knowledge::Nothing,
+                })
+                .collect()
+        };
+        let known = conditions.group.components.iter().map(|&index| {
+            let invariant = conditions.invariant(index);
+            let first = invariant.map_or_else(Box::default, |invariant| {
+                knowledge(index, invariant, conditions.allowance)
+            });
+            let transitions = conditions.standing.leaving(index).iter();
+            let others = transitions.map(|leaving| knowledge(index, &leaving.guard, 0.0));
+            std::iter::once(first).chain(others).collect()
+        });
+        let window = (Moment::default(), Moment::default());
+        Tension { conditions, known: known.collect(), window }
+    }
+
+    /// The times in order at which something changes that depends on lines alone.
+    pub(super) fn switches(&self) -> Vec<Moment> {
+        let mut switches: Vec<Moment> = Vec::new();
+        for knowledge in self.known.iter().flatten().flatten() {
+            if let Knowledge::Switch(time, _) = knowledge {
+                switches.push(*time);
+            }
+        }
+        switches.sort_by(|one, other| one.partial_cmp(other).unwrap_or(std::cmp::Ordering::Equal));
+        switches.dedup();
+        switches
+    }
+
+    /// Looks at the open span between these times from now on, in which nothing switches.
+    pub(super) fn set_window(&mut self, from: Moment, to: Moment) {
+        self.window = (from, to);
+    }
+
+    /// What is known of the tension in the window without following any curve.
+    pub(super) fn known_course(&self) -> Course {
+        self.course_of(&[], 0.0)
+    }
+
+    /// The conditions that it is made of.
+    pub(super) fn conditions(&self) -> &Conditions<'a> {
+        &self.conditions
+    }
+
+    fn course_of(&self, states: &[Enclosure], half_width: f64) -> Course {
+        let Conditions { standing, group, allowance, .. } = self.conditions;
+        let mut course = Course::Never;
+        for (number, &index) in group.components.iter().enumerate() {
+            if let Some(invariant) = self.conditions.invariant(index) {
+                let context = Follow { states, half_width, slack: allowance };
+                let own = self.follow(&invariant.tracker, (number, index, 0), &context);
+                course = course.or(own.opposite());
+            }
+        }
+        for (number, &index) in group.components.iter().enumerate() {
+            let labels = &standing.composition.components[index].labels;
+            for (transition, leaving) in standing.leaving(index).iter().enumerate() {
+                let is_own = labels[leaving.event].is_none();
+                if is_own && self.conditions.is_wanted(leaving, Readiness::Forced) {
+                    let context = Follow { states, half_width, slack: 0.0 };
+                    let place = (number, index, 1 + transition);
+                    course = course.or(self.follow(&leaving.guard.tracker, place, &context));
+                }
+            }
+        }
+        group
+            .labels
+            .iter()
+            .fold(course, |course, &label| course.or(self.label_course(label, states, half_width)))
+    }
+
+    fn label_course(&self, label: usize, states: &[Enclosure], half_width: f64) -> Course {
+        let Conditions { standing, group, .. } = self.conditions;
+        let (mut all, mut wanted) = (Course::Always, Course::Never);
+        for &(index, event) in &standing.composition.labels[label].participants {
+            let number = group.components.partition_point(|one| *one < index);
+            let mut any = Course::Never;
+            for (transition, leaving) in standing.leaving(index).iter().enumerate() {
+                if leaving.event == event {
+                    let context = Follow { states, half_width, slack: 0.0 };
+                    let place = (number, index, 1 + transition);
+                    let own = self.follow(&leaving.guard.tracker, place, &context);
+                    any = any.or(own);
+                    if self.conditions.is_wanted(leaving, Readiness::Forced) {
+                        wanted = wanted.or(own);
+                    }
+                }
+            }
+            all = all.and(any);
+        }
+        all.and(wanted)
+    }
+
+    fn follow(
+        &self,
+        tracker: &Tracker,
+        (number, component, condition): (usize, usize, usize),
+        context: &Follow<'_>,
+    ) -> Course {
+        let known = &self.known[number][condition];
+        let (from, to) = self.window;
+        let truth = |comparison: usize| match known.get(comparison)? {
+            Knowledge::Nothing => None,
+            Knowledge::Fixed(holds) => Some(*holds),
+            Knowledge::Switch(time, after) if *time <= from => Some(*after),
+            Knowledge::Switch(time, after) if *time >= to => Some(!*after),
+            Knowledge::Switch(..) => None,
+        };
+        let slots = self.conditions.standing.slots(component);
+        tracker.course(context.states, slots, context.half_width, context.slack, &truth)
+    }
+}
+
+/// What a condition is followed with.
+struct Follow<'a> {
+    states: &'a [Enclosure],
+    half_width: f64,
+    slack: f64,
+}
+
+impl Watch for Tension<'_> {
+    type Error = Failure;
+
+    fn verdict(&mut self, state: &[f64]) -> Result<Verdict, Failure> {
+        self.conditions.tension(state)
+    }
+
+    fn course(&mut self, states: &[Enclosure], half_width: f64) -> Course {
+        self.course_of(states, half_width)
+    }
+}
+
+impl Knowledge {
+    /// The margin a₁ x₁ + … + b along lines xᵢ = xᵢ₀ + cᵢ t, solved for the time at which it is 0.
+    fn of(
+        form: &Affine,
+        is_strict: bool,
+        places: &[usize],
+        slack: f64,
+        field: &Field<'_>,
+    ) -> Knowledge {
+        let mut margin = Moment::from(form.constant) + Moment::from(slack);
+        let mut slope = Moment::default();
+        for &(variable, coefficient) in &form.coefficients {
+            let place = places[variable];
+            let Row::Line(rate) = field.rows[place] else { return Knowledge::Nothing };
+            margin = margin + Moment::product(coefficient, field.start[place]);
+            slope = slope + Moment::product(coefficient, rate);
+        }
+        let zero = Moment::default();
+        if !(margin.seconds().is_finite() && slope.seconds().is_finite()) {
+            return Knowledge::Nothing;
+        }
+        if slope == zero {
+            let is_strict = is_strict && slack == 0.0;
+            return Knowledge::Fixed(if is_strict { margin > zero } else { margin >= zero });
+        }
+        let (time, rises) = (-margin / slope, slope > zero);
+        if !time.seconds().is_finite() {
+            return Knowledge::Nothing;
+        }
+        if time <= zero { Knowledge::Fixed(rises) } else { Knowledge::Switch(time, rises) }
+    }
+}

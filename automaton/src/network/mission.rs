@@ -1,0 +1,142 @@
+//! The mission as one robot knows it: the phases, with the data that each of them needs.
+
+use std::sync::Arc;
+
+use pleach_discrete::network::{Phase, Subgroup};
+
+use super::duty::Path;
+
+crate::places_of! {
+    /// Where the mission stands for one robot: a [`Phase`] with the data that it owns.
+    pub enum Mission: Phase {
+        /// No task is announced.
+        Idle(Idle),
+        /// The leader of the announced task is being elected (Algorithm 1).
+        LeaderElection(LeaderElection),
+        /// The primary team is the active team (Sec. V-A3).
+        Advance(Advance),
+        /// A recruit is being elected (Remark 5.4).
+        RecruitElection(RecruitElection),
+        /// The path Σ is announced and its break points are agreed (Sec. V-C2).
+        PathAgreement(PathAgreement),
+        /// A subgroup of the secondary team is the active team (Algorithm 3).
+        Shift(Shift),
+        /// The mission has ended.
+        Ended(Ended),
+    }
+}
+
+/// The data of [`Phase::Idle`]: none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Idle;
+
+/// The data of [`Phase::LeaderElection`]: none beside the election that the robot repeats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LeaderElection;
+
+/// The data of [`Phase::Advance`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Advance {
+    /// The path Σ along which the robot that joined last has come, if any has.
+    pub path: Option<Arc<Path>>,
+}
+
+/// The data of [`Phase::RecruitElection`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecruitElection {
+    /// The path Σ of the recruitment before, if there was one.
+    pub before: Option<Arc<Path>>,
+}
+
+/// The data of [`Phase::PathAgreement`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathAgreement {
+    /// The path Σ.
+    pub path: Arc<Path>,
+}
+
+/// The data of [`Phase::Shift`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shift {
+    /// The path Σ.
+    pub path: Arc<Path>,
+    /// Its subgroups S_β; none if the recruit joins the primary team at once.
+    pub subgroups: Arc<[Subgroup]>,
+    /// β: how many subgroups have arrived.
+    pub arrived: usize,
+}
+
+/// The data of [`Phase::Ended`]: none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ended;
+
+impl Shift {
+    /// The subgroup that is the active team; none when all have arrived.
+    pub fn active(&self) -> Option<Subgroup> {
+        self.subgroups.get(self.arrived).copied()
+    }
+}
+
+impl Mission {
+    /// The path Σ that matters in this phase.
+    pub const fn path(&self) -> Option<&Arc<Path>> {
+        match self {
+            Mission::PathAgreement(PathAgreement { path }) | Mission::Shift(Shift { path, .. }) => {
+                Some(path)
+            }
+            Mission::Advance(Advance { path })
+            | Mission::RecruitElection(RecruitElection { before: path }) => path.as_ref(),
+            Mission::Idle(_) | Mission::LeaderElection(_) | Mission::Ended(_) => None,
+        }
+    }
+
+    /// The subgroups of the secondary team and which of them is active, while one is.
+    pub const fn shift(&self) -> Option<&Shift> {
+        match self {
+            Mission::Shift(shift) => Some(shift),
+            _ => None,
+        }
+    }
+}
+
+/// A phase from which a robot may learn that the primary team advances: what it knows of Σ.
+pub(super) trait KnowsPath {
+    /// The path Σ, if the robot knows one.
+    fn known_path(&self) -> Option<Arc<Path>>;
+}
+
+macro_rules! knows_no_path {
+    ($($phase:ident),+) => {
+        $(impl KnowsPath for $phase {
+            fn known_path(&self) -> Option<Arc<Path>> {
+                None
+            }
+        })+
+    };
+}
+
+knows_no_path!(Idle, LeaderElection);
+
+impl KnowsPath for Advance {
+    fn known_path(&self) -> Option<Arc<Path>> {
+        self.path.clone()
+    }
+}
+
+impl KnowsPath for RecruitElection {
+    fn known_path(&self) -> Option<Arc<Path>> {
+        self.before.clone()
+    }
+}
+
+impl KnowsPath for PathAgreement {
+    fn known_path(&self) -> Option<Arc<Path>> {
+        Some(Arc::clone(&self.path))
+    }
+}
+
+impl KnowsPath for Shift {
+    fn known_path(&self) -> Option<Arc<Path>> {
+        Some(Arc::clone(&self.path))
+    }
+}

@@ -1,0 +1,523 @@
+//! The duty automaton: what each transition of [`DUTIES`] carries over, and when (Algorithms 3
+//! and 4, Remark 5.6).
+//!
+//! Resets are functions from the data of one duty to that of the next. They read the robot as it
+//! was before the jump and change nothing; what a jump does beside is a [`DutyEffect`].
+
+use std::sync::Arc;
+
+use pleach_discrete::network::{
+    Activity, Anchor, DUTIES, DutyEvent, MissionStep, NodeId, Post, PostId, PostKind, Role,
+};
+use pleach_discrete::{Event as _, Location as _};
+use pleach_guards::network::duty as guards;
+use pleach_guards::{EvaluationError, Guard};
+
+use crate::located::{Current, DataOf, Holds, Place as _};
+use crate::{Automaton, BuildError, Jump, Transfer, TransitionError};
+
+use super::super::beacon::Notice;
+use super::super::duty::{
+    AwaitingRelease, Bound, Duty, Following, Held, Holder, Junction, Leading, Leaf, Relay,
+    Shifting, Standby, Station, Waiting,
+};
+use super::super::record::MissionEvent;
+use super::Robot;
+use super::facts::{PROPOSITIONS, VARIABLES};
+
+/// The automaton of a robot's duty.
+pub type DutyAutomaton = Automaton<Activity, DutyEvent, Robot>;
+
+/// What the duty automaton jumps together with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Label {
+    /// Nothing: it jumps by itself.
+    #[default]
+    Alone,
+    /// A step of the mission automaton.
+    Mission(MissionStep),
+    /// The exchange of duties: the duty that the robot takes over, from this partner.
+    Exchange(Duty, NodeId),
+}
+
+/// What a transition does beside giving the robot another duty.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DutyEffect {
+    /// The robot tells observers.
+    Report(MissionEvent),
+    /// Its stillness is counted anew: it begins another way.
+    Restart,
+    /// It was given its duty by this partner, and its place in the tree is another.
+    Exchanged(NodeId),
+}
+
+type Effects = Vec<DutyEffect>;
+
+impl Holds<Duty> for Robot {
+    type Effects = Effects;
+
+    fn current(&self) -> &Current<Duty> {
+        &self.duty
+    }
+
+    fn current_mut(&mut self) -> &mut Current<Duty> {
+        &mut self.duty
+    }
+
+    fn carry_out(&mut self, effects: Effects) {
+        (self.desired_parent, self.reattaches_to) = (None, None);
+        self.barren_periods = 0;
+        for effect in effects {
+            match effect {
+                DutyEffect::Report(event) => self.report(event),
+                DutyEffect::Restart => self.still_periods = 0,
+                DutyEffect::Exchanged(partner) => {
+                    self.last_partner = Some(partner);
+                    self.lineage = None;
+                }
+            }
+        }
+    }
+}
+
+impl Robot {
+    /// Takes at most one transition of the duty automaton, together with what `label` says.
+    pub(super) fn jump_duty(
+        &mut self,
+        label: Label,
+    ) -> Result<Option<Jump<Activity, DutyEvent>>, TransitionError> {
+        let site = Arc::clone(&self.site);
+        self.label = label;
+        let jump = site.automata.duty.step_in_place::<Duty>(self);
+        self.label = Label::Alone;
+        if matches!(jump, Ok(Some(_))) {
+            self.is_quiet = false;
+            self.stir();
+            self.look_after_place();
+        }
+        jump
+    }
+
+    /// Takes over the duty of `partner` (Algorithm 4 without the walk).
+    pub(super) fn exchange_duty(
+        &mut self,
+        duty: Duty,
+        partner: NodeId,
+    ) -> Result<(), TransitionError> {
+        let role = self.role();
+        let location = self.duty.location().name();
+        let taken = self.jump_duty(Label::Exchange(duty, partner))?;
+        self.report_role_after(role);
+        match taken {
+            Some(_) => Ok(()),
+            // Half an exchange would leave one duty to two robots, or to none.
+            None => Err(TransitionError {
+                location,
+                event: duty.location().taken_over().name(),
+                part: "table".into(),
+                source: EvaluationError::MissingData { location: duty.location().name() },
+            }),
+        }
+    }
+
+    /// Tells observers if the role is not `before` any more.
+    pub(super) fn report_role_after(&mut self, before: Role) {
+        let now = self.role();
+        if now != before {
+            self.report(MissionEvent::RoleChanged { robot: self.id, from: before, to: now });
+        }
+    }
+
+    // ---- What the guards ask -------------------------------------------------------------------
+
+    pub(super) fn takes_step(&self, step: MissionStep) -> bool {
+        self.label == Label::Mission(step)
+    }
+
+    /// Whether it takes over a duty whose activity has this name.
+    pub(super) fn takes_over_duty_called(&self, activity: &str) -> bool {
+        matches!(self.label, Label::Exchange(duty, _) if duty.location().name() == activity)
+    }
+
+    /// Whether it has won the leader election that is over now.
+    pub(super) fn wins_now(&self) -> bool {
+        self.takes_step(MissionStep::Elected) && self.winner() == Some(self.id)
+    }
+
+    /// Whether it has past duties: a fixed post, or robots attached to it that find no other parent.
+    pub(super) fn has_past_duties(&self) -> bool {
+        !self.duty.is_redundant() || self.children().any(|child| !child.beacon.can_detach)
+    }
+
+    /// Whether the path Σ that it learns of now passes its post, before or at the last break point.
+    pub(super) fn is_on_coming_path(&self) -> bool {
+        self.coming_place().is_some()
+    }
+
+    fn coming_place(&self) -> Option<usize> {
+        let own = self.duty.post()?.id;
+        match self.label {
+            Label::Mission(MissionStep::Recruited) => Some(0),
+            Label::Mission(MissionStep::PathHeard) => {
+                let Notice::Path(path) = self.bulletin.notice() else { return None };
+                let place = path.place_of(own)?;
+                (place <= path.last_break_point()).then_some(place)
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether Σ is of no use any more.
+    pub(super) fn is_called_off(&self) -> bool {
+        use MissionStep::{Announced, Ended, Resumed, Serviced};
+        [Announced, Ended, Resumed, Serviced].into_iter().any(|step| self.takes_step(step))
+    }
+
+    /// Whether another task is announced.
+    pub(super) fn is_superseded(&self) -> bool {
+        self.takes_step(MissionStep::Announced)
+    }
+
+    /// Whether the primary team is dissolved.
+    pub(super) fn is_dissolved(&self) -> bool {
+        use MissionStep::{Announced, Ended, Serviced};
+        [Announced, Ended, Serviced].into_iter().any(|step| self.takes_step(step))
+    }
+
+    /// Whether it takes the post ahead now: its subgroup has arrived, or the mission goes on.
+    pub(super) fn takes_post_ahead(&self) -> bool {
+        let in_active_subgroup = || {
+            let active = self.active_subgroup();
+            self.duty
+                .place()
+                .is_some_and(|place| active.is_some_and(|active| active.places().contains(&place)))
+        };
+        self.next_hop().is_some()
+            && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
+                || self.takes_step(MissionStep::Resumed)
+                || self.takes_step(MissionStep::Announced))
+    }
+
+    pub(super) fn post_ahead(&self) -> Option<Post> {
+        self.next_hop().map(|hop| hop.post)
+    }
+
+    /// Whether its turn on Σ has come: its subgroup is the active team, and its post is held by
+    /// the robot behind unless the whole subgroup sets out, or it is the recruit.
+    pub(super) fn may_set_out(&self) -> bool {
+        let Duty::Waiting(Waiting { held, place, .. }) = *self.duty else { return false };
+        self.active_subgroup().is_some_and(|active| {
+            active.places().contains(&place)
+                && (place == 0 || place > active.first || self.is_relieved_of(held.station.post.id))
+        })
+    }
+
+    /// Whether another parent has been found to be better.
+    pub(super) fn finds_better_parent(&self) -> bool {
+        self.desired_parent.is_some_and(|desired| desired != self.anchor())
+    }
+}
+
+// ---- The resets: from the data of one duty to that of the next -------------------------------
+
+fn with_kind(held: Held, kind: PostKind) -> Held {
+    let post = Post { kind, ..held.station.post };
+    Held { station: Station { post, ..held.station }, ..held }
+}
+
+fn lead(standby: &Standby, _: &Robot, effects: &mut Effects) -> Leading {
+    effects.push(DutyEffect::Restart);
+    Leading(with_kind(standby.0, PostKind::Primary { follows: None }))
+}
+
+/// Where something depends on a redundant robot, its post is one of the tree from now on.
+fn bind<A: Holder>(duty: &A, _: &Robot, effects: &mut Effects) -> Bound {
+    effects.push(DutyEffect::Restart);
+    Bound(with_kind(*duty.held(), PostKind::Fixed))
+}
+
+/// The same post as before, held in another way.
+fn keep<A: Holder, B: From<Held>>(duty: &A, _: &Robot, _: &mut Effects) -> B {
+    B::from(*duty.held())
+}
+
+fn join_path<A: Holder + Copy + DataOf<Duty>>(duty: &A, robot: &Robot, _: &mut Effects) -> Waiting {
+    let place = robot.coming_place().unwrap_or_default();
+    Waiting { held: *duty.held(), place, role: duty.into_place().role() }
+}
+
+fn await_release(bound: &Bound, robot: &Robot, _: &mut Effects) -> AwaitingRelease {
+    AwaitingRelease { held: bound.0, place: robot.coming_place().unwrap_or_default() }
+}
+
+fn leave_path<B: From<Held>>(waiting: &Waiting, _: &Robot, effects: &mut Effects) -> B {
+    effects.push(DutyEffect::Restart);
+    B::from(waiting.held)
+}
+
+fn stop_awaiting<B: From<Held>>(waiting: &AwaitingRelease, _: &Robot, effects: &mut Effects) -> B {
+    effects.push(DutyEffect::Restart);
+    B::from(waiting.held)
+}
+
+/// The recruit's own place is given up; every other is taken over by the robot behind.
+fn set_out(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Shifting {
+    let place = waiting.place;
+    if let Some(active) = robot.active_subgroup().filter(|active| active.first == place) {
+        let (subgroup, robots) = (robot.subgroups_done(), robot.robots_at(active));
+        effects.push(DutyEffect::Report(MissionEvent::SubgroupStarted { subgroup, robots }));
+    }
+    effects.push(DutyEffect::Restart);
+    Shifting { place, left: (place > 0).then_some(waiting.held.station.post.id) }
+}
+
+/// Eq. (26): the robot holds the post that it has come to. A plain node that queues behind the next
+/// member makes its place where it stands.
+fn take_post_ahead<B: From<Held>>(
+    shifting: &Shifting,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> Option<B> {
+    let hop = robot.next_hop()?;
+    if !robot.takes_step(MissionStep::SubgroupArrived) {
+        effects.push(DutyEffect::Restart);
+    } else if let Some(active) =
+        robot.active_subgroup().filter(|active| active.first == shifting.place)
+    {
+        let (subgroup, robots) = (robot.subgroups_done(), robot.robots_at(active));
+        effects.push(DutyEffect::Report(MissionEvent::SubgroupArrived { subgroup, robots }));
+    }
+    let place = hop.place.reference;
+    let queues = (robot.position - place).norm() > robot.site.settings.service_radius;
+    let reference = if queues { robot.position } else { place };
+    Some(B::from(Held { station: Station { post: hop.post, reference }, left: None }))
+}
+
+/// The post that the last robot of Σ gets in the primary team.
+fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
+    let joins_at_once = robot.mission.shift().is_none_or(|shift| shift.subgroups.is_empty());
+    let before = held.station.post;
+    let parent = if joins_at_once { before.parent } else { Some(Anchor::Post(before.id)) };
+    let id = PostId((robot.site.robots as u32) + robot.bulletin.sequence());
+    let post = Post { id, kind: PostKind::Primary { follows }, parent, task: None };
+    let station = Station { post, reference: robot.position };
+    Held { station, left: (!joins_at_once).then_some(before.id) }
+}
+
+fn join_team(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Following {
+    let event = MissionEvent::JoinedPrimary { robot: robot.id, team: Vec::new() };
+    effects.extend([DutyEffect::Report(event), DutyEffect::Restart]);
+    let follows = robot.mission.path().and_then(|path| path.hops.last()).map(|hop| hop.post.id);
+    Following(team_post(&waiting.held, robot, follows))
+}
+
+fn release(waiting: &AwaitingRelease, robot: &Robot, effects: &mut Effects) -> Leading {
+    let event = MissionEvent::Released { robot: robot.id };
+    effects.extend([DutyEffect::Report(event), DutyEffect::Restart]);
+    Leading(team_post(&waiting.held, robot, None))
+}
+
+fn settle<A: Holder>(duty: &A, robot: &Robot, _: &mut Effects) -> Relay {
+    Relay(fixed_here(duty.held(), robot))
+}
+
+fn fixed_here(held: &Held, robot: &Robot) -> Held {
+    let mut held = with_kind(*held, PostKind::Fixed);
+    held.station.reference = robot.position;
+    held
+}
+
+fn service(leading: &Leading, robot: &Robot, _: &mut Effects) -> Leaf {
+    let mut held = fixed_here(&leading.0, robot);
+    held.station.post.task = robot.current_task();
+    Leaf(held)
+}
+
+fn promote(standby: &Standby, _: &Robot, _: &mut Effects) -> Relay {
+    Relay(with_kind(standby.0, PostKind::Fixed))
+}
+
+fn retire(relay: &Relay, _: &Robot, _: &mut Effects) -> Standby {
+    Standby(with_kind(relay.0, PostKind::Redundant))
+}
+
+/// Another parent in the tree, for a redundant robot or p₁ (Remark 5.6).
+fn attach<A: Holder + From<Held>>(duty: &A, robot: &Robot, effects: &mut Effects) -> A {
+    let mut held = *duty.held();
+    if let Some(desired) = robot.desired_parent {
+        held.station.post.parent = desired;
+    }
+    if let Some(parent) = robot.reattaches_to {
+        let event = MissionEvent::Reattached { robot: robot.id, parent };
+        effects.extend([DutyEffect::Report(event), DutyEffect::Restart]);
+    }
+    A::from(held)
+}
+
+/// The duty of the partner of an exchange.
+fn take_over<A, B: DataOf<Duty> + Copy>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<B> {
+    let Label::Exchange(duty, partner) = robot.label else { return None };
+    let left = robot.duty.post().map(|post| post.id);
+    effects.extend([DutyEffect::Exchanged(partner), DutyEffect::Restart]);
+    B::of(&duty.taken_over(left)).copied()
+}
+
+// ---- The automaton ---------------------------------------------------------------------------
+
+type Row = Transfer<Activity, DutyEvent, Robot>;
+
+/// The transitions in which a robot under way and a parked one exchange their duties.
+macro_rules! exchanges {
+    ($automaton:expr, $($mover:ident: [$($parked:ident),*]),*) => {
+        $automaton$($(
+            .carried_out(exchange::<$mover, $parked>())
+            .carried_out(exchange::<$parked, $mover>())
+        )*)*
+    };
+}
+
+fn exchange<A: DataOf<Duty>, B: DataOf<Duty> + Copy>() -> Row {
+    let activity = B::LOCATION;
+    let name = "take over the partner's duty";
+    Transfer::where_known(
+        activity.taken_over(),
+        guards::takes(activity.name()),
+        name,
+        take_over::<A, B>,
+    )
+}
+
+fn bound<A: DataOf<Duty> + Holder>() -> Row {
+    Transfer::new(DutyEvent::Bound, guards::bound(), "lead, bound to its post", bind::<A>)
+}
+
+fn path_joined<A: DataOf<Duty> + Holder + Copy>() -> Row {
+    Transfer::new(DutyEvent::PathJoined, guards::path_joined(), "wait on Σ", join_path::<A>)
+}
+
+fn reached<B: DataOf<Duty> + From<Held>>(event: DutyEvent, guard: Guard) -> Row {
+    Transfer::where_known(event, guard, "take the post ahead", take_post_ahead::<B>)
+}
+
+fn kept<B: DataOf<Duty> + From<Held>>(event: DutyEvent, guard: Guard) -> Row {
+    Transfer::new(event, guard, "keep the post", leave_path::<B>)
+}
+
+fn settled<A: DataOf<Duty> + Holder>() -> Row {
+    Transfer::new(DutyEvent::Settled, guards::dissolved(), "make the post a fixed one", settle::<A>)
+}
+
+fn attached<A: DataOf<Duty> + Holder + From<Held>>() -> Row {
+    Transfer::new(
+        DutyEvent::Attached,
+        guards::attached(),
+        "attach to the better parent",
+        attach::<A>,
+    )
+}
+
+/// The duty automaton (Algorithms 3 and 4, Remark 5.6).
+///
+/// # Errors
+/// Never with the table and guards of this crate; they are checked all the same.
+pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
+    use DutyEvent as On;
+    let automaton = Automaton::builder(DUTIES, Activity::Standby)
+        .observing(VARIABLES, PROPOSITIONS)
+        .carried_out(Transfer::new(On::Elected, guards::elected(), "lead", lead))
+        .carried_out(bound::<Standby>())
+        .carried_out(bound::<Relay>())
+        .carried_out(bound::<Junction>())
+        .carried_out(bound::<Leaf>())
+        .carried_out(Transfer::new(
+            On::RelayResumed,
+            guards::relay_resumed(),
+            "keep the post",
+            keep::<Bound, Relay>,
+        ))
+        .carried_out(Transfer::new(
+            On::LeafResumed,
+            guards::leaf_resumed(),
+            "keep the post",
+            keep::<Bound, Leaf>,
+        ))
+        .carried_out(path_joined::<Standby>())
+        .carried_out(path_joined::<Relay>())
+        .carried_out(path_joined::<Junction>())
+        .carried_out(path_joined::<Leaf>())
+        .carried_out(Transfer::new(
+            On::PathJoined,
+            guards::path_joined(),
+            "wait on Σ",
+            await_release,
+        ))
+        .carried_out(kept::<Standby>(On::StandbyKept, guards::standby_kept()))
+        .carried_out(kept::<Relay>(On::RelayKept, guards::relay_kept()))
+        .carried_out(kept::<Leaf>(On::LeafKept, guards::leaf_kept()))
+        .carried_out(Transfer::new(
+            On::BoundKept,
+            guards::bound_kept(),
+            "keep the post",
+            stop_awaiting::<Bound>,
+        ))
+        .carried_out(Transfer::new(
+            On::RelayResumed,
+            guards::relay_resumed(),
+            "keep the post",
+            stop_awaiting::<Relay>,
+        ))
+        .carried_out(Transfer::new(
+            On::LeafResumed,
+            guards::leaf_resumed(),
+            "keep the post",
+            stop_awaiting::<Leaf>,
+        ))
+        .carried_out(Transfer::new(
+            On::TeamJoined,
+            guards::team_joined(),
+            "follow the robot that was p₁",
+            join_team,
+        ))
+        .carried_out(Transfer::new(On::Released, guards::released(), "lead", release))
+        .carried_out(reached::<Standby>(On::StandbyReached, guards::standby_reached()))
+        .carried_out(reached::<Relay>(On::RelayReached, guards::relay_reached()))
+        .carried_out(reached::<Junction>(On::JunctionReached, guards::junction_reached()))
+        .carried_out(reached::<Leaf>(On::LeafReached, guards::leaf_reached()))
+        .carried_out(Transfer::new(
+            On::TaskReached,
+            guards::task_reached(),
+            "service the task from here",
+            service,
+        ))
+        .carried_out(settled::<Leading>())
+        .carried_out(settled::<Following>())
+        .carried_out(Transfer::new(On::SetOut, guards::set_out(), "leave the post", set_out))
+        .carried_out(attached::<Standby>())
+        .carried_out(attached::<Following>())
+        .carried_out(attached::<Leading>())
+        .carried_out(Transfer::new(
+            On::Promoted,
+            guards::promoted(),
+            "make the post a fixed one",
+            promote,
+        ))
+        .carried_out(Transfer::new(
+            On::Branched,
+            guards::branched(),
+            "keep the post",
+            keep::<Relay, Junction>,
+        ))
+        .carried_out(Transfer::new(
+            On::Merged,
+            guards::merged(),
+            "keep the post",
+            keep::<Junction, Relay>,
+        ))
+        .carried_out(Transfer::new(On::Retired, guards::retired(), "give the post up", retire));
+    let automaton = automaton.carried_out(exchange::<Following, Following>());
+    exchanges!(automaton,
+        Shifting: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Following, Leading],
+        Following: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease, Leading],
+        Leading: [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease])
+    .build()
+}

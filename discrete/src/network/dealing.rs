@@ -1,0 +1,88 @@
+//! The exchange of duties as an automaton: where a robot stands in it, and the table.
+//!
+//! What each transition does to the offers and replies themselves is
+//! [`Dealings`](super::Dealings).
+
+use crate::{Row, TransitionTable, Urgency, vocabulary};
+
+vocabulary! {
+    /// Where a robot stands in the exchange of duties.
+    pub enum Dealing: Location {
+        /// It exchanges nothing.
+        Free = "free",
+        /// As a mover, it has offered its duty to the robot in its way.
+        Offering = "offering",
+        /// It has refused an offer, and repeats that until the mover has heard it.
+        Refusing = "refusing",
+        /// It has made an offer, and refused one.
+        OfferingAndRefusing = "offering and refusing",
+        /// It gives its duty for the one offered, and holds it until the mover has taken it.
+        Giving = "giving",
+    }
+
+    /// What happens in an exchange of duties.
+    pub enum DealingEvent: Event {
+        /// It finds a robot in its way with which to exchange duties.
+        Offers = "offers",
+        /// Its offer is refused.
+        OfferRefused = "offer refused",
+        /// Its offer is accepted: it takes the partner's duty.
+        DutyTaken = "duty taken",
+        /// It accepts an offer.
+        Gives = "gives",
+        /// It refuses an offer.
+        Refuses = "refuses",
+        /// The mover has heard the refusal.
+        RefusalHeard = "refusal heard",
+        /// The mover has taken the duty given: it takes the one offered.
+        DutyGiven = "duty given",
+    }
+}
+
+const fn row(
+    priority: u8,
+    source: Dealing,
+    event: DealingEvent,
+    target: Dealing,
+) -> Row<Dealing, DealingEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority }
+}
+
+/// The table of the exchange of duties.
+///
+/// Priority 0: what becomes of an own offer. Priority 1: what becomes of a reply. Priority 2:
+/// offers of others. Priority 3: an offer of its own.
+pub const DEALINGS: TransitionTable<Dealing, DealingEvent> = {
+    use Dealing::{Free, Giving, Offering, OfferingAndRefusing, Refusing};
+    use DealingEvent as On;
+    TransitionTable::new(&[
+        row(3, Free, On::Offers, Offering),
+        row(2, Free, On::Gives, Giving),
+        row(2, Free, On::Refuses, Refusing),
+        row(0, Offering, On::DutyTaken, Free),
+        row(0, Offering, On::OfferRefused, Free),
+        row(2, Offering, On::Refuses, OfferingAndRefusing),
+        row(0, OfferingAndRefusing, On::DutyTaken, Refusing),
+        row(0, OfferingAndRefusing, On::OfferRefused, Refusing),
+        row(1, OfferingAndRefusing, On::RefusalHeard, Offering),
+        row(1, Refusing, On::RefusalHeard, Free),
+        row(1, Giving, On::DutyGiven, Free),
+    ])
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Location;
+
+    #[test]
+    fn the_table_is_deterministic_and_every_location_is_reached_and_left() {
+        assert!(DEALINGS.is_deterministic());
+        assert_eq!(DEALINGS.unreachable_from(Dealing::Free), vec![]);
+        for &dealing in Dealing::ALL {
+            let mut reached = [false; Dealing::ALL.len()];
+            DEALINGS.mark_reachable(dealing, &mut reached);
+            assert!(reached[Dealing::Free as usize], "{dealing:?} never ends");
+        }
+    }
+}

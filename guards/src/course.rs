@@ -1,0 +1,451 @@
+//! What becomes of a predicate while its variables move.
+//!
+//! A [`Tracker`] is a predicate prepared for being followed over time. Given an [`Enclosure`] of
+//! each variable during a span, it tells the predicate's [`Course`]: that it holds throughout or
+//! nowhere, that it changes at most once and in which direction, or that a shorter span is needed.
+//! The first two are proofs; together with halving they isolate the first instant at which a
+//! predicate begins to hold.
+
+use crate::enclosure::{Definedness, Enclosure};
+use crate::expression::{BinaryOperator, Expression, UnaryOperator};
+use crate::fold::Operands;
+use crate::interval::Interval;
+use crate::predicate::{Comparison, Predicate, Relation};
+use crate::range::Truth;
+use crate::table::Table;
+use crate::valuation::EvaluationError;
+
+/// What a predicate does during a span of time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Course {
+    /// It holds at every instant.
+    Always,
+    /// It holds at no instant.
+    Never,
+    /// It changes at most once, from not holding to holding.
+    Rising,
+    /// It changes at most once, from holding to not holding.
+    Falling,
+    /// It may change several times; a shorter span may tell more.
+    Open,
+    /// It may change several times, and rounding alone says so: a shorter span tells no more.
+    Blurred,
+    /// A proposition or a named function decides, of which nothing is known.
+    Opaque,
+}
+
+impl Course {
+    /// The course of a conjunction.
+    #[must_use]
+    pub fn and(self, other: Course) -> Course {
+        use Course::{Always, Blurred, Falling, Never, Opaque, Open, Rising};
+        match (self, other) {
+            (Never, _) | (_, Never) => Never,
+            (Always, course) | (course, Always) => course,
+            (Opaque, _) | (_, Opaque) => Opaque,
+            (Rising, Rising) => Rising,
+            (Falling, Falling) => Falling,
+            (Blurred, Blurred) => Blurred,
+            // One rises and the other falls, or nothing is known about one of them.
+            (Rising | Falling | Open | Blurred, Rising | Falling | Open | Blurred) => Open,
+        }
+    }
+
+    /// The course of a disjunction.
+    #[must_use]
+    pub fn or(self, other: Course) -> Course {
+        self.opposite().and(other.opposite()).opposite()
+    }
+
+    /// The course of the negation.
+    #[must_use]
+    pub fn opposite(self) -> Course {
+        match self {
+            Course::Always => Course::Never,
+            Course::Never => Course::Always,
+            Course::Rising => Course::Falling,
+            Course::Falling => Course::Rising,
+            Course::Open | Course::Blurred | Course::Opaque => self,
+        }
+    }
+}
+
+impl From<Truth> for Course {
+    fn from(truth: Truth) -> Course {
+        match truth {
+            Truth::Always => Course::Always,
+            Truth::Never => Course::Never,
+            Truth::Undecided => Course::Open,
+        }
+    }
+}
+
+/// A predicate prepared for being followed over time, made by [`Predicate::track`].
+///
+/// ```
+/// use pleach_guards::{Course, Enclosure, Interval, variable};
+///
+/// // x = t² − 1 during [0.5, 1.5] seconds, where it passes 0.
+/// let x = Enclosure {
+///     middle: Interval::point(0.0),
+///     range: Interval::new(-0.75, 1.25)?,
+///     rate: Interval::new(1.0, 3.0)?,
+/// };
+/// let course = |predicate: pleach_guards::Predicate| {
+///     let tracker = predicate.track(&["x"]).expect("x is the only variable");
+///     tracker.course(&[x], &[0], 0.5, 0.0, &|_| None)
+/// };
+/// assert_eq!(course(variable("x").at_least(0.0)), Course::Rising);
+/// assert_eq!(course(variable("x").at_least(2.0)), Course::Never);
+/// assert_eq!(course(!variable("x").at_least(0.0)), Course::Falling);
+/// # Ok::<(), pleach_guards::EmptyInterval>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Tracker {
+    root: Node,
+    comparisons: Box<[Tracked]>,
+}
+
+/// The logic; negations are resolved into the comparisons.
+#[derive(Clone, Debug)]
+enum Node {
+    Comparison(usize),
+    All(Box<[Node]>),
+    Any(Box<[Node]>),
+    Function,
+}
+
+/// A comparison as a margin: it holds where `upper` ≥ `lower`, or, if it is strict, `upper` > `lower`.
+#[derive(Clone, Debug)]
+pub struct Tracked {
+    upper: Tape,
+    lower: Tape,
+    is_strict: bool,
+    form: Option<Affine>,
+}
+
+/// a₁·x₁ + … + aₙ·xₙ + b, over variables by their place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Affine {
+    /// Places and coefficients, none of them 0.
+    pub coefficients: Box<[(usize, f64)]>,
+    /// What is added.
+    pub constant: f64,
+}
+
+impl Predicate {
+    /// The predicate prepared for being followed, where variable *i* is `variables[i]`.
+    ///
+    /// # Errors
+    ///
+    /// [`EvaluationError::UnknownVariable`] if a variable of the predicate is not listed.
+    pub fn track(&self, variables: &[impl AsRef<str>]) -> Result<Tracker, EvaluationError> {
+        let mut comparisons = Vec::new();
+        let root = Node::of(self, false, variables, &mut comparisons)?;
+        Ok(Tracker { root, comparisons: comparisons.into() })
+    }
+}
+
+impl Tracker {
+    /// The course during a span of twice `half_width` seconds, where variable *i* is
+    /// `states[slots[i]]`.
+    ///
+    /// A comparison may fail by up to `slack`, ≥ 0, in the unit of what it compares. What is known
+    /// about the comparison of a number is not computed again.
+    pub fn course(
+        &self,
+        states: &[Enclosure],
+        slots: &[usize],
+        half_width: f64,
+        slack: f64,
+        known: &impl Fn(usize) -> Option<bool>,
+    ) -> Course {
+        let context = Context { states, slots, half_width, slack };
+        let (course, definedness) = self.root.course(&self.comparisons, &context, known);
+        match definedness {
+            Definedness::Everywhere => course,
+            Definedness::Blurred => Course::Blurred,
+            Definedness::Open => Course::Open,
+        }
+    }
+
+    /// The comparisons by their numbers; those under a negation are turned.
+    pub fn comparisons(&self) -> &[Tracked] {
+        &self.comparisons
+    }
+
+    /// Whether a proposition or a named function occurs.
+    pub fn is_opaque(&self) -> bool {
+        self.root.is_opaque()
+    }
+}
+
+impl Tracked {
+    /// Whether equality does not count as holding.
+    pub fn is_strict(&self) -> bool {
+        self.is_strict
+    }
+
+    /// The margin as an affine form, if it is one.
+    pub fn form(&self) -> Option<&Affine> {
+        self.form.as_ref()
+    }
+
+    /// The margin during a span, as far as it has a value there; see [`Tracker::course`].
+    pub fn margin(&self, states: &[Enclosure], slots: &[usize], half_width: f64) -> Enclosure {
+        let context = Context { states, slots, half_width, slack: 0.0 };
+        let (upper, lower) = (self.upper.run(&context).0, self.lower.run(&context).0);
+        upper.minus(&lower).sharpened(half_width)
+    }
+
+    fn course(&self, context: &Context<'_>) -> (Course, Definedness) {
+        let (upper, is_upper) = self.upper.run(context);
+        let (lower, is_lower) = self.lower.run(context);
+        let definedness = is_upper.and(is_lower);
+        let is_strict = self.is_strict && context.slack == 0.0;
+        let slack = Interval::point(context.slack);
+        let margin = upper.minus(&lower).sharpened(context.half_width);
+        let (least, most) = ((margin.range + slack).lower(), (margin.range + slack).upper());
+        let is_exact = context.slack == 0.0;
+        let course = if least > 0.0 || !is_strict && least >= 0.0 {
+            Course::Always
+        } else if most < 0.0 || is_strict && most <= 0.0 {
+            Course::Never
+        } else if is_exact && !is_strict && lower.range.upper() <= upper.range.lower() {
+            Course::Always
+        } else if is_exact && is_strict && upper.range.upper() <= lower.range.lower() {
+            Course::Never
+        } else if margin.rate.lower() >= 0.0 {
+            Course::Rising
+        } else if margin.rate.upper() <= 0.0 {
+            Course::Falling
+        } else if margin.is_blurred() {
+            Course::Blurred
+        } else {
+            Course::Open
+        };
+        (course, definedness)
+    }
+}
+
+impl Node {
+    fn of(
+        predicate: &Predicate,
+        is_negated: bool,
+        variables: &[impl AsRef<str>],
+        comparisons: &mut Vec<Tracked>,
+    ) -> Result<Node, EvaluationError> {
+        let mut parts = |parts: &[Predicate]| -> Result<Box<[Node]>, EvaluationError> {
+            let part = |part| Node::of(part, is_negated, variables, comparisons);
+            parts.iter().map(part).collect()
+        };
+        Ok(match (predicate, is_negated) {
+            (Predicate::Comparison(comparison), _) => {
+                comparisons.push(Tracked::of(comparison, is_negated, variables)?);
+                Node::Comparison(comparisons.len() - 1)
+            }
+            (Predicate::Not(inner), _) => Node::of(inner, !is_negated, variables, comparisons)?,
+            (Predicate::All(all), false) | (Predicate::Any(all), true) => Node::All(parts(all)?),
+            (Predicate::Any(any), false) | (Predicate::All(any), true) => Node::Any(parts(any)?),
+            (Predicate::Proposition(_) | Predicate::Function(_), _) => Node::Function,
+        })
+    }
+
+    fn course(
+        &self,
+        comparisons: &[Tracked],
+        context: &Context<'_>,
+        known: &impl Fn(usize) -> Option<bool>,
+    ) -> (Course, Definedness) {
+        let join = |parts: &[Node], first: Course, combine: fn(Course, Course) -> Course| {
+            parts.iter().fold((first, Definedness::Everywhere), |(course, definedness), part| {
+                let (next, is_defined) = part.course(comparisons, context, known);
+                (combine(course, next), definedness.and(is_defined))
+            })
+        };
+        match self {
+            Node::Comparison(number) => match known(*number) {
+                Some(true) => (Course::Always, Definedness::Everywhere),
+                Some(false) => (Course::Never, Definedness::Everywhere),
+                None => comparisons[*number].course(context),
+            },
+            Node::All(parts) => join(parts, Course::Always, Course::and),
+            Node::Any(parts) => join(parts, Course::Never, Course::or),
+            Node::Function => (Course::Opaque, Definedness::Everywhere),
+        }
+    }
+
+    fn is_opaque(&self) -> bool {
+        match self {
+            Node::Comparison(_) => false,
+            Node::All(parts) | Node::Any(parts) => parts.iter().any(Node::is_opaque),
+            Node::Function => true,
+        }
+    }
+}
+
+impl Tracked {
+    fn of(
+        comparison: &Comparison,
+        is_negated: bool,
+        variables: &[impl AsRef<str>],
+    ) -> Result<Tracked, EvaluationError> {
+        let Comparison { left, relation, right } = comparison;
+        // a ≤ b is not so where a > b.
+        let (upper, lower, is_strict) = match (relation, is_negated) {
+            (Relation::AtMost, false) | (Relation::MoreThan, true) => (right, left, false),
+            (Relation::LessThan, false) | (Relation::AtLeast, true) => (right, left, true),
+            (Relation::AtLeast, false) | (Relation::LessThan, true) => (left, right, false),
+            (Relation::MoreThan, false) | (Relation::AtMost, true) => (left, right, true),
+        };
+        let form = (upper - lower).linear_form().and_then(|form| {
+            let place = |name: &str| variables.iter().position(|one| one.as_ref() == name);
+            let coefficients = form.coefficients().map(|(name, &a)| Some((place(name)?, a)));
+            Some(Affine {
+                coefficients: coefficients.collect::<Option<_>>()?,
+                constant: *form.constant(),
+            })
+        });
+        let (upper, lower) = (Tape::of(upper, variables)?, Tape::of(lower, variables)?);
+        Ok(Tracked { upper, lower, is_strict, form })
+    }
+}
+
+/// An expression as a list of operations, each on results of earlier ones; the last is the value.
+#[derive(Clone, Debug, PartialEq)]
+struct Tape(Box<[Operation]>);
+
+#[derive(Clone, Debug, PartialEq)]
+enum Operation {
+    Constant(f64),
+    Variable(usize),
+    Unary(UnaryOperator, usize),
+    Binary(BinaryOperator, usize, usize),
+    Power(usize, f64),
+    /// With the table of the slopes.
+    Lookup(Table, Table, usize),
+    /// Both sides of the condition, then what is chosen from.
+    Choice(Relation, [usize; 4]),
+}
+
+/// What operations are computed in.
+struct Context<'a> {
+    states: &'a [Enclosure],
+    slots: &'a [usize],
+    half_width: f64,
+    slack: f64,
+}
+
+/// Results that fit on the stack of the thread; longer expressions allocate.
+const SHORT: usize = 16;
+
+/// What is known about a part, and whether it has a value.
+type Known = (Enclosure, Definedness);
+
+const UNKNOWN: Known = (Enclosure::UNKNOWN, Definedness::Everywhere);
+
+impl Tape {
+    fn of(expression: &Expression, variables: &[impl AsRef<str>]) -> Result<Tape, EvaluationError> {
+        let mut operations: Vec<Operation> = Vec::new();
+        expression.fold(&mut |part, operands| {
+            operations.push(Operation::of(part, operands, variables)?);
+            Ok(operations.len() - 1)
+        })?;
+        Ok(Tape(operations.into()))
+    }
+
+    fn run(&self, context: &Context<'_>) -> Known {
+        if self.0.len() <= SHORT {
+            self.run_on(context, &mut [UNKNOWN; SHORT])
+        } else {
+            self.run_on(context, &mut vec![UNKNOWN; self.0.len()])
+        }
+    }
+
+    fn run_on(&self, context: &Context<'_>, results: &mut [Known]) -> Known {
+        for (place, operation) in self.0.iter().enumerate() {
+            results[place] = operation.run(context, results);
+        }
+        let last = self.0.len().saturating_sub(1);
+        results.get(last).copied().unwrap_or(UNKNOWN)
+    }
+}
+
+impl Operation {
+    fn of(
+        part: &Expression,
+        operands: Operands<usize>,
+        variables: &[impl AsRef<str>],
+    ) -> Result<Operation, EvaluationError> {
+        Ok(match (part, operands) {
+            (Expression::Constant(value), _) => Operation::Constant(*value),
+            (Expression::Variable(name), _) => {
+                let place = variables.iter().position(|listed| *listed.as_ref() == **name);
+                let unknown = || EvaluationError::UnknownVariable { variable: name.to_string() };
+                Operation::Variable(place.ok_or_else(unknown)?)
+            }
+            (Expression::Unary(operator, _), Operands::One(operand)) => {
+                Operation::Unary(*operator, operand)
+            }
+            (Expression::Binary(BinaryOperator::Product, left, right), Operands::Two(one, _))
+                if left == right =>
+            {
+                Operation::Power(one, 2.0)
+            }
+            (Expression::Binary(operator, ..), Operands::Two(left, right)) => {
+                Operation::Binary(*operator, left, right)
+            }
+            (Expression::Power(_, exponent), Operands::One(base)) => {
+                Operation::Power(base, *exponent)
+            }
+            (Expression::Lookup(table, _), Operands::One(place)) => {
+                Operation::Lookup(table.clone(), table.derivative(), place)
+            }
+            (Expression::Choice(choice), Operands::Four(parts)) => {
+                Operation::Choice(choice.condition.relation, parts)
+            }
+            _ => Operation::Constant(f64::NAN),
+        })
+    }
+
+    fn run(&self, context: &Context<'_>, results: &[Known]) -> Known {
+        let defined = |places: &[usize]| {
+            let parts = places.iter().map(|&place| results[place].1);
+            parts.fold(Definedness::Everywhere, Definedness::and)
+        };
+        let ((result, own), inner) = match self {
+            Operation::Constant(value) => return (Enclosure::constant(*value), defined(&[])),
+            Operation::Variable(variable) => {
+                let slot = context.slots.get(*variable);
+                let state = slot.and_then(|&slot| context.states.get(slot));
+                return (state.copied().unwrap_or(Enclosure::UNKNOWN), defined(&[]));
+            }
+            Operation::Unary(operator, operand) => {
+                (operator.enclose(&results[*operand].0), defined(&[*operand]))
+            }
+            Operation::Binary(operator, left, right) => {
+                let result = operator.enclose(&results[*left].0, &results[*right].0);
+                (result, defined(&[*left, *right]))
+            }
+            Operation::Power(base, exponent) => {
+                (results[*base].0.raised(*exponent), defined(&[*base]))
+            }
+            Operation::Lookup(table, slopes, place) => {
+                let found = results[*place].0.looked_up(table, slopes);
+                ((found, Definedness::Everywhere), defined(&[*place]))
+            }
+            Operation::Choice(relation, [left, right, then, otherwise]) => {
+                let sides = [results[*left].0, results[*right].0];
+                let [one, other] = [results[*then], results[*otherwise]];
+                let truth = relation.truth(sides[0].range, sides[1].range);
+                let chosen = match truth {
+                    Truth::Always => one,
+                    Truth::Never => other,
+                    Truth::Undecided => (one.0.or(&other.0), one.1.and(other.1)),
+                };
+                (chosen, defined(&[*left, *right]))
+            }
+        };
+        (result.sharpened(context.half_width), own.and(inner))
+    }
+}

@@ -1,0 +1,147 @@
+//! The guards of the duty automaton (Algorithms 3 and 4, Remark 5.6).
+//!
+//! Some propositions say which step of the mission, or which exchange of duties, the automaton
+//! jumps together with; in a jump by itself they are false.
+
+use crate::{Guard, Predicate, proposition, variable};
+
+fn named(name: &str, predicate: Predicate) -> Guard {
+    Guard::new(name, predicate)
+}
+
+/// What a robot does by itself only while it does not exchange duties: what two robots have offered
+/// each other stays as it is until both have taken it.
+fn disengaged(name: &str, predicate: Predicate) -> Guard {
+    Guard::new(name, predicate.and(!proposition("engaged")))
+}
+
+/// It has won the leader election, and nothing depends on it.
+pub fn elected() -> Guard {
+    named("elected", proposition("wins").and(!proposition("has_past_duties")))
+}
+
+/// It has won the leader election, and has past duties: L_b = 1.
+pub fn bound() -> Guard {
+    named("bound", proposition("wins").and(proposition("has_past_duties")))
+}
+
+/// The path Σ passes its post.
+pub fn path_joined() -> Guard {
+    named("path joined", proposition("on_coming_path"))
+}
+
+/// Another task is announced, and its post services none.
+pub fn relay_resumed() -> Guard {
+    named("relay resumed", proposition("superseded").and(!proposition("serves")))
+}
+
+/// Another task is announced, and its post services one.
+pub fn leaf_resumed() -> Guard {
+    named("leaf resumed", proposition("superseded").and(proposition("serves")))
+}
+
+fn called_off(name: &str, predicate: Predicate) -> Guard {
+    named(name, proposition("called_off").and(predicate))
+}
+
+/// Σ is given up or done, and its post is that of a redundant robot.
+pub fn standby_kept() -> Guard {
+    called_off("standby kept", proposition("free"))
+}
+
+/// Σ is given up or done, and its post is a fixed one.
+pub fn relay_kept() -> Guard {
+    called_off("relay kept", !proposition("free") & !proposition("serves"))
+}
+
+/// Σ is given up or done, and a task is serviced from its post.
+pub fn leaf_kept() -> Guard {
+    called_off("leaf kept", !proposition("free") & proposition("serves"))
+}
+
+/// Σ is given up although the leader has not been released.
+pub fn bound_kept() -> Guard {
+    called_off("bound kept", !proposition("superseded"))
+}
+
+/// It is the last robot that Σ relieves, and joins the team.
+pub fn team_joined() -> Guard {
+    named("team joined", proposition("is_relieved"))
+}
+
+/// It is the leader, and another robot holds its post.
+pub fn released() -> Guard {
+    named("released", proposition("is_relieved"))
+}
+
+fn reached(name: &str, predicate: Predicate) -> Guard {
+    named(name, proposition("takes_post_ahead").and(predicate))
+}
+
+/// The post ahead is that of a redundant robot.
+pub fn standby_reached() -> Guard {
+    reached("standby reached", proposition("ahead_is_free"))
+}
+
+/// The post ahead is a fixed one on one branch.
+pub fn relay_reached() -> Guard {
+    let plain = !proposition("ahead_is_free") & !proposition("ahead_serves");
+    reached("relay reached", plain & variable("branches_ahead").less_than(2.0))
+}
+
+/// Branches part from the post ahead.
+pub fn junction_reached() -> Guard {
+    let plain = !proposition("ahead_is_free") & !proposition("ahead_serves");
+    reached("junction reached", plain & variable("branches_ahead").at_least(2.0))
+}
+
+/// A task is serviced from the post ahead.
+pub fn leaf_reached() -> Guard {
+    reached("leaf reached", !proposition("ahead_is_free") & proposition("ahead_serves"))
+}
+
+/// The leader has reached its task.
+pub fn task_reached() -> Guard {
+    named("task reached", proposition("reaches_task"))
+}
+
+/// The primary team is dissolved.
+pub fn dissolved() -> Guard {
+    named("dissolved", proposition("dissolved"))
+}
+
+/// Its turn on Σ has come.
+pub fn set_out() -> Guard {
+    disengaged("set out", proposition("may_set_out"))
+}
+
+/// Another parent is better.
+pub fn attached() -> Guard {
+    disengaged("attached", proposition("finds_better_parent"))
+}
+
+/// A branch of the tree depends on it.
+pub fn promoted() -> Guard {
+    disengaged("promoted", variable("branches").at_least(1.0))
+}
+
+/// A second branch parts from its post.
+pub fn branched() -> Guard {
+    named("branched", variable("branches").at_least(2.0))
+}
+
+/// Only one branch is left.
+pub fn merged() -> Guard {
+    named("merged", variable("branches").less_than(2.0))
+}
+
+/// For some periods no branch has depended on it.
+pub fn retired() -> Guard {
+    let barren = variable("barren").at_least(variable("barren_patience"));
+    disengaged("retired", barren & variable("branches").less_than(1.0))
+}
+
+/// It takes over a duty called `name` in an exchange.
+pub fn takes(name: &'static str) -> Guard {
+    Guard::new(&format!("takes {name}"), proposition(&format!("takes {name}")))
+}
