@@ -15,7 +15,7 @@ macro_rules! classics {
         $(
             #[allow(dead_code)] // its program
             #[path = $file]
-            mod $name;
+            pub mod $name;
         )+
 
         const CLASSICS: &[&str] = &[$(stringify!($name)),+];

@@ -154,7 +154,7 @@ fn the_run_in_the_readme_is_up_to_date() {
         let folder = std::env::temp_dir().join(format!("pleach-{}", std::process::id()));
         let figures = album.write(&folder, &completed.end).unwrap();
         keep_picture(&figures, "stationary", 1, "study-1-stuck.svg");
-        keep_picture(&figures, "-end", 0, "study-1-end.svg");
+        keep_picture(&figures, "animation", 0, "study-1-plays.svg");
         fs::remove_dir_all(folder).unwrap();
     }
     let summary = summary.completed(completed, Duration::ZERO).to_string();

@@ -9,6 +9,7 @@ mod missions;
 mod oracle;
 
 mod book;
+mod browser;
 mod command_line;
 mod determinism;
 mod documents;

@@ -15,6 +15,7 @@ use std::error::Error;
 use pleach::automaton::check::{Report, Severity};
 use pleach::automaton::{Automaton, Composition, Coordinates, Reason, Trajectory, diagram};
 use pleach::discrete::{Event, Location};
+use pleach::page::{self as pages, TrajectoryPage};
 
 pub use number::{number, numbers};
 
@@ -41,6 +42,8 @@ pub struct Exhibit {
 struct Drawing {
     title: &'static str,
     diagram: String,
+    /// What the pages of runs show of an automaton.
+    automaton: Option<pages::Drawing>,
     /// What stands below the diagram, in Markdown.
     legend: String,
 }
@@ -49,6 +52,7 @@ struct Run {
     title: &'static str,
     story: Vec<String>,
     plot: Option<String>,
+    trajectory: Option<Trajectory>,
 }
 
 /// Numbers that a run gives beside those that it should give.
@@ -87,7 +91,9 @@ impl Exhibit {
         let folded =
             format!("<details><summary>{DEFINITION}</summary>\n\n{definition}\n\n</details>");
         let legend = format!("{table}\n{folded}\n");
-        self.drawings.push(Drawing { title, diagram: diagram::svg(automaton), legend });
+        let diagram = diagram::svg(automaton);
+        let automaton = Some(pages::Drawing::of(automaton));
+        self.drawings.push(Drawing { title, diagram, automaton, legend });
         self
     }
 
@@ -102,20 +108,21 @@ impl Exhibit {
     /// Shows a composition: what joins its components.
     pub fn composition(mut self, title: &'static str, composition: &Composition) -> Self {
         let diagram = diagram::composition_svg(composition);
-        self.drawings.push(Drawing { title, diagram, legend: String::new() });
+        let legend = String::new();
+        self.drawings.push(Drawing { title, diagram, automaton: None, legend });
         self.checked(&composition.check())
     }
 
     /// Shows a run: its plot, its jumps and its ending.
     pub fn run(mut self, title: &'static str, trajectory: Trajectory) -> Self {
         let (story, plot) = (show::story(&trajectory), Some(diagram::plot(&trajectory)));
-        self.runs.push(Run { title, story, plot });
+        self.runs.push(Run { title, story, plot, trajectory: Some(trajectory) });
         self
     }
 
     /// Shows what happens where no time passes: a line for each jump.
     pub fn story(mut self, title: &'static str, story: Vec<String>) -> Self {
-        self.runs.push(Run { title, story, plot: None });
+        self.runs.push(Run { title, story, plot: None, trajectory: None });
         self
     }
 
@@ -179,6 +186,17 @@ impl Exhibit {
     /// The plots of the runs: the name of a file, and an SVG document.
     pub fn plots(&self) -> impl Iterator<Item = (String, &str)> {
         self.runs.iter().filter_map(|run| Some((self.plot_of(run), run.plot.as_deref()?)))
+    }
+
+    /// The pages on which the runs play: the name of a file, and an HTML document.
+    pub fn pages(&self) -> impl Iterator<Item = (String, String)> {
+        let drawings = || self.drawings.iter().filter_map(|drawing| drawing.automaton.clone());
+        self.runs.iter().filter_map(move |run| {
+            let page = TrajectoryPage::new(run.title, run.trajectory.as_ref()?)
+                .lead(format!("A run of the classic {}.", self.name.replace('_', " ")))
+                .drawings(drawings());
+            Some((format!("{}.html", file_name(run.title)), page.render()))
+        })
     }
 
     fn diagram_of(&self, drawing: &Drawing) -> String {

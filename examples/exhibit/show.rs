@@ -14,7 +14,7 @@ use super::{Exhibit, number, numbers};
 const MOST_JUMPS: usize = 12;
 
 impl Exhibit {
-    /// Prints the exhibit and writes its drawings to `figures/NAME/`.
+    /// Prints the exhibit and writes its drawings, and a page for each run, to `figures/NAME/`.
     ///
     /// # Errors
     ///
@@ -50,6 +50,11 @@ impl Exhibit {
             fs::write(folder.join(name), svg)?;
         }
         println!("Drawings: {}", folder.display());
+        for (name, page) in self.pages() {
+            let path = folder.join(name);
+            fs::write(&path, page)?;
+            println!("A run that plays: open {}", path.display());
+        }
         Ok(())
     }
 }

@@ -113,6 +113,9 @@ pub struct RunArguments {
     /// Write no figures
     #[arg(long)]
     pub no_figures: bool,
+    /// Write figures without titles, for papers with captions of their own
+    #[arg(long)]
+    pub plain: bool,
     /// Write a table of the runs to FILE as comma-separated values
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,

@@ -23,6 +23,8 @@ pub struct Outputs {
     pub trace: Option<PathBuf>,
     /// The folder of its figures.
     pub figures: Option<PathBuf>,
+    /// Whether figures go without titles.
+    pub plain: bool,
 }
 
 /// A run that has ended.
@@ -49,7 +51,8 @@ pub fn run(
     if let Some(folder) = &outputs.figures {
         create_folder(folder)?;
     }
-    let mut album = outputs.figures.as_ref().map(|_| Album::new(scenario));
+    let open = |album: Album| if outputs.plain { album.plain() } else { album };
+    let mut album = outputs.figures.as_ref().map(|_| open(Album::new(scenario)));
 
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, progress, &mut interrupt];
     watchers.extend(trace.as_mut().map(|trace| trace as &mut dyn Watcher));

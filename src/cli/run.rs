@@ -38,6 +38,7 @@ fn run_one(
         trace: arguments.trace.clone(),
         figures: (!arguments.no_figures)
             .then(|| arguments.figures.clone().unwrap_or_else(default_folder)),
+        plain: arguments.plain,
     };
     let mut progress = Progress::new(&run.scenario, arguments.quiet);
     let finished = job::run(run, &outputs, &mut progress, interrupt)?;
@@ -67,6 +68,7 @@ fn run_many(
         Outputs {
             trace: arguments.trace.as_ref().map(|folder| folder.join(format!("{name}.jsonl"))),
             figures: arguments.figures.as_ref().map(|folder| folder.join(name)),
+            plain: arguments.plain,
         }
     };
     let mission = |run: &Planned| -> Record {

@@ -11,6 +11,7 @@ use crate::mission::Watcher;
 use crate::page::MissionPage;
 use crate::story;
 
+use super::animation::Film;
 use super::canvas::quantity;
 use super::curves::{Chart, Curve, DISTINCT_CURVES, Limit, Sign};
 use super::palette;
@@ -30,6 +31,7 @@ pub struct Album {
     walls: Walls,
     page: MissionPage,
     pictures: Vec<Picture>,
+    film: Film,
     trails: Vec<Vec<[f64; 2]>>,
     last: Option<Snapshot>,
     distances: Series,
@@ -60,6 +62,7 @@ impl Album {
             walls: Walls::new(&scenario.workspace),
             page: MissionPage::new(scenario),
             pictures: Vec::new(),
+            film: Film::default(),
             trails: Vec::new(),
             last: None,
             distances: Series::new(2),
@@ -70,11 +73,18 @@ impl Album {
         }
     }
 
+    /// The same album with figures that have no title, for papers with captions of their own.
+    #[must_use]
+    pub fn plain(self) -> Album {
+        Album { plan: self.plan.plain(), ..self }
+    }
+
     /// The start, each election, stationary point, release, arrival of a recruit and serviced
     /// task becomes a picture.
     fn extend_pictures(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) {
         self.extend_curves(snapshot);
         self.extend_trails(snapshot);
+        self.film.push(snapshot);
         let started = self.last.is_none();
         let captions = || events.iter().filter_map(story::caption);
         self.signs.extend(captions().map(|caption| Sign {
@@ -93,7 +103,7 @@ impl Album {
         self.last = Some(snapshot.clone());
     }
 
-    /// Writes the pictures, the curves and the page, `index.html`, into a folder, which it
+    /// Writes the pictures, the curves, an animation and the page, `index.html`, into a folder, which it
     /// creates, and returns the paths in the order of the story, the page last.
     ///
     /// # Errors
@@ -116,9 +126,10 @@ impl Album {
             (format!("{index:0digits$}-k{step:05}-{slug}.svg"), self.plan.render(&scene))
         });
         let curves = self.curve_figures().map(|(name, svg)| (name.to_owned(), svg));
+        let film = ("animation.svg".to_owned(), self.film.render(&self.plan, self.last.as_ref()));
         let page = ("index.html".to_owned(), self.page.render());
         let mut written = Vec::new();
-        for (name, text) in drawn.chain(curves).chain([page]) {
+        for (name, text) in drawn.chain(curves).chain([film, page]) {
             let path = folder.join(name);
             fs::write(&path, text)?;
             written.push(path);
@@ -241,6 +252,7 @@ impl Album {
             signs: &self.signs,
             tasks: &self.tasks,
             last_step: self.last.as_ref().map_or(0, |snapshot| snapshot.step),
+            is_plain: self.plan.is_plain,
         }
     }
 }

@@ -3,7 +3,7 @@
 use svg::Document;
 use svg::node::element::{Group, Line, Rectangle, Text};
 
-use super::palette::{CHARACTER_WIDTH, FONT, INK, PAPER, SUBTITLE_SIZE, TITLE_SIZE, WIDTH};
+use super::palette::{CHARACTER_WIDTH, FONT, INK, PAPER, QUIET, SUBTITLE_SIZE, TITLE_SIZE};
 
 /// A place on the paper, y downwards.
 pub(crate) type Spot = [f64; 2];
@@ -55,21 +55,43 @@ pub(super) fn stroke(from: Spot, to: Spot, colour: &str, width: f64) -> Line {
         .set("stroke-linecap", "round")
 }
 
-/// An empty sheet with its title and subtitle.
-pub(super) fn sheet(height: f64, title: &str, subtitle: &str) -> Document {
-    let room = WIDTH - 40.0;
+/// Above the drawings of figures with a heading, for title and subtitle.
+const HEAD: f64 = 62.0;
+
+/// An empty sheet; readers of the screen say its title.
+pub(super) fn sheet(size: [f64; 2], title: &str) -> Document {
+    framed([0.0, 0.0], size, title)
+}
+
+/// A sheet with title and subtitle above the drawing; `plain` figures, for papers with captions of
+/// their own, go without and begin where the drawing does.
+pub(super) fn headed(
+    [width, height]: [f64; 2],
+    title: &str,
+    subtitle: &str,
+    plain: bool,
+) -> Document {
+    if plain {
+        return framed([0.0, HEAD], [width, height - HEAD], title);
+    }
+    let room = width - 40.0;
     let fitting =
         |content: &str, size: f64| size.min(size * room / text_width(content, size).max(1.0));
+    framed([0.0, 0.0], [width, height], title)
+        .add(text(title, [20.0, 34.0], fitting(title, TITLE_SIZE), INK).set("font-weight", "bold"))
+        .add(text(subtitle, [20.0, 56.0], fitting(subtitle, SUBTITLE_SIZE), QUIET))
+}
+
+fn framed([left, top]: Spot, [width, height]: [f64; 2], title: &str) -> Document {
+    let corners = [left, top, width, height].map(number);
     Document::new()
-        .set("viewBox", format!("0 0 {} {}", number(WIDTH), number(height)))
-        .set("width", number(WIDTH))
+        .set("viewBox", corners.join(" "))
+        .set("width", number(width))
         .set("height", number(height))
         .set("font-family", FONT)
         .set("role", "img")
         .set("aria-label", title)
-        .add(rectangle([0.0, 0.0], [WIDTH, height], PAPER))
-        .add(text(title, [20.0, 34.0], fitting(title, TITLE_SIZE), INK).set("font-weight", "bold"))
-        .add(text(subtitle, [20.0, 56.0], fitting(subtitle, SUBTITLE_SIZE), super::palette::QUIET))
+        .add(rectangle([left, top], [width, height], PAPER))
 }
 
 /// A filled rectangle from a corner, with its size.
@@ -98,8 +120,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Fits the bounding box of `points` into a box of the paper whose upper left corner is
-    /// `corner`, centred in x.
+    /// Fits the bounding box of `points` into a box of the paper, from its upper left `corner`.
     pub(super) fn fit(points: &[[f64; 2]], corner: Spot, room: [f64; 2]) -> View {
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
@@ -116,7 +137,7 @@ impl View {
         let low = low.map(|value: f64| if value.is_finite() { value } else { 0.0 });
         let scale = (room[0] / extent[0]).min(room[1] / extent[1]);
         let size = extent.map(|length| length * scale);
-        let origin = [corner[0] + (room[0] - size[0]) / 2.0, corner[1] + size[1]];
+        let origin = [corner[0], corner[1] + size[1]];
         View { scale, left: low[0], bottom: low[1], origin, size }
     }
 

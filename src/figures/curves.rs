@@ -2,7 +2,7 @@
 
 use svg::node::element::{Group, Polyline};
 
-use super::canvas::{Spot, corners, layer, quantity, rectangle, sheet, stroke, text, text_width};
+use super::canvas::{Spot, corners, headed, layer, quantity, rectangle, stroke, text, text_width};
 use super::marks::draw_moment;
 use super::palette;
 use super::plan::round_length;
@@ -63,13 +63,15 @@ pub(super) struct Chart<'a> {
     /// From which period on each task is pursued.
     pub tasks: &'a [(usize, usize)],
     pub last_step: usize,
+    /// Without title.
+    pub is_plain: bool,
 }
 
 impl Chart<'_> {
     /// Draws the chart as an SVG document.
     pub(super) fn render(&self) -> String {
         let frame = Frame::around(self);
-        sheet(HEIGHT, self.title, &self.subtitle)
+        headed([palette::WIDTH, HEIGHT], self.title, &self.subtitle, self.is_plain)
             .add(self.bands(&frame))
             .add(frame.grid(self.axis, &self.period_axis))
             .add(self.sign_lines(&frame))

@@ -6,12 +6,12 @@ use super::canvas::{Spot, View, layer, number, quantity, rectangle, stroke, text
 use super::marks::{Mark, TaskState, active_ring};
 use super::palette;
 use super::plan::{Plan, bar, round_length};
-use super::scene::{link_width, path_band, tree_width, way_to_post};
+use super::scene::{link_width, path_band, to_scale, tree_width, way_to_post};
 
-/// Left edge of the column.
-const LEFT: f64 = 752.0;
-/// Right edge of the samples, where the words begin.
-const WORDS: f64 = LEFT + 42.0;
+/// Width of the column, with the white at its right.
+pub(super) const WIDTH: f64 = 208.0;
+/// From the left edge to where the words begin.
+const WORDS: f64 = 42.0;
 /// Base line of the first row.
 const TOP: f64 = 92.0;
 /// From row to row.
@@ -22,18 +22,23 @@ const GAP: f64 = 8.0;
 const RADIUS: f64 = 6.0;
 /// The longest bar that fits.
 const LONGEST_BAR: f64 = 170.0;
-/// Where the column ends, scale included.
-pub(super) const FOOT: f64 = TOP + 17.0 * ROW + 3.0 * GAP + 74.0;
+/// Height of the scale and its words, at the end of the column.
+const SCALE: f64 = 53.0;
 
-/// Draws the column.
-pub(super) fn draw(plan: &Plan, view: &View) -> Group {
-    let mut column = Column { group: layer("legend"), y: TOP };
+/// Draws the column from its left edge; also says where it ends.
+pub(super) fn draw(plan: &Plan, view: &View, left: f64) -> (Group, f64) {
+    let mut column = Column { group: layer("legend"), left, y: TOP };
     for mark in Mark::ALL {
         column.row(mark.name(), |spot| mark.draw(spot, RADIUS, mark.name()));
     }
     column.row("ring: active team", |spot| {
         layer("sample").add(Mark::Member.draw(spot, 4.6, "")).add(active_ring(spot, 4.6))
     });
+    if let Some(disc) = plan.disc_radius(view) {
+        column.row("disc of radius ρ, to scale", |spot| {
+            layer("sample").add(to_scale(spot, disc.min(10.0)))
+        });
+    }
     column.gap();
     for state in TaskState::ALL {
         column.row(state.name(), |spot| state.draw(spot, 5.6, state.name()));
@@ -63,44 +68,45 @@ pub(super) fn draw(plan: &Plan, view: &View) -> Group {
     });
     column.gap();
     column.scale(plan, view);
-    column.group
+    (column.group, column.y + SCALE)
 }
 
 struct Column {
     group: Group,
+    left: f64,
     y: f64,
 }
 
 impl Column {
     fn row(&mut self, words: &str, sample: impl FnOnce(Spot) -> Group) {
-        let sample = sample([LEFT + 18.0, self.y - 4.0]);
-        let words = text(words, [WORDS, self.y], palette::TEXT_SIZE, palette::INK);
+        let sample = sample([self.left + 18.0, self.y - 4.0]);
+        let words = text(words, [self.left + WORDS, self.y], palette::TEXT_SIZE, palette::INK);
         self.group = std::mem::take(&mut self.group).add(sample).add(words);
         self.y += ROW;
     }
 
     fn gap(&mut self) {
         let y = self.y - ROW / 2.0 - 1.0;
-        let line = stroke([LEFT, y], [palette::WIDTH - 20.0, y], palette::GRID, 1.0);
+        let line = stroke([self.left, y], [self.left + WIDTH - 20.0, y], palette::GRID, 1.0);
         self.group = std::mem::take(&mut self.group).add(line);
         self.y += GAP;
     }
 
-    /// A bar as long as the range of a sure link, or a round length where that is too long.
+    /// A bar as long as the range of fully reliable links, or a round length where that is too long.
     fn scale(&mut self, plan: &Plan, view: &View) {
         let range = plan.scenario.link.full_range;
         let longest = LONGEST_BAR / view.length(1.0).max(f64::MIN_POSITIVE);
         let (length, words) = match range <= longest {
-            true => (range, format!("l = {}: link is sure up to here", quantity(range))),
+            true => (range, format!("l = {}: links fully reliable", quantity(range))),
             false => {
                 let length = round_length(longest);
                 (length, format!("{} (l = {})", quantity(length), quantity(range)))
             }
         };
-        let clearance = plan.clearance();
-        let swatch = rectangle([LEFT, self.y - 10.0], [14.0, 12.0], palette::WALL);
+        let (clearance, left) = (plan.clearance(), self.left);
+        let swatch = rectangle([left, self.y - 10.0], [14.0, 12.0], palette::WALL);
         let outline =
-            stroke([LEFT + 18.0, self.y - 4.0], [LEFT + 36.0, self.y - 4.0], palette::LIMIT, 0.9)
+            stroke([left + 18.0, self.y - 4.0], [left + 36.0, self.y - 4.0], palette::LIMIT, 0.9)
                 .set("stroke-dasharray", "4 3");
         let note = match plan.free_space.is_empty() {
             true => format!("walls; robots keep ρ = {}", quantity(clearance)),
@@ -112,9 +118,9 @@ impl Column {
             group = group.add(outline);
         }
         self.group = group
-            .add(text(note, [WORDS, self.y], size, palette::INK))
-            .add(bar([LEFT + 2.0, self.y + 22.0], view.length(length)))
-            .add(text(words, [LEFT, self.y + 42.0], size, palette::INK))
+            .add(text(note, [left + WORDS, self.y], size, palette::INK))
+            .add(bar([left + 2.0, self.y + 22.0], view.length(length)))
+            .add(text(words, [left, self.y + 42.0], size, palette::INK))
             .set("data-scale", number(view.length(1.0)));
     }
 }

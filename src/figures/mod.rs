@@ -3,8 +3,8 @@
 //! An [`Album`] watches a mission. Every control period it takes a snapshot; the telling ones
 //! (the start, each election, stationary point, release, arrival of a recruit, serviced task, and
 //! the end) become pictures, and the others extend the curves of Figs. 11 to 13: smallest
-//! distances, residuals, multipliers. At the end it writes one file a figure and a page that
-//! tells the story in order. A single instant is drawn by [`Plan::render`].
+//! distances, residuals, multipliers. At the end it writes one file per figure, an animation and the
+//! [page](crate::page) on which the mission plays. A single instant is drawn by [`Plan::render`].
 //!
 //! | what | looks like |
 //! | --- | --- |
@@ -13,10 +13,12 @@
 //! | node | the [`Mark`] of its role, with its number |
 //! | member of the active team | a ring around the mark |
 //! | task | blue cross; in a ring when serviced, faint until announced |
+//! | disc of radius ρ | to scale around the mark, where it is large enough to be seen |
 //!
 //! Equal missions give equal bytes.
 
 mod album;
+mod animation;
 mod canvas;
 mod curves;
 mod labels;

@@ -16,13 +16,20 @@ const WALL_MARGIN: f64 = 9.0;
 pub struct Plan {
     pub(super) scenario: Scenario,
     pub(super) free_space: Vec<Vec<[f64; 2]>>,
+    pub(super) is_plain: bool,
 }
 
 impl Plan {
     /// Takes the scenario and the loops of the outline of W_f, which may be none.
     #[must_use]
     pub fn new(scenario: &Scenario, free_space_outline: Vec<Vec<[f64; 2]>>) -> Plan {
-        Plan { scenario: scenario.clone(), free_space: free_space_outline }
+        Plan { scenario: scenario.clone(), free_space: free_space_outline, is_plain: false }
+    }
+
+    /// The same plan for figures without title, for papers with captions of their own.
+    #[must_use]
+    pub fn plain(self) -> Plan {
+        Plan { is_plain: true, ..self }
     }
 
     /// ρ, with the default that the scenario's documentation states.

@@ -2,9 +2,9 @@
 
 use pleach_automaton::network::record::Snapshot;
 use svg::Document;
-use svg::node::element::{Group, Polyline, Text};
+use svg::node::element::{Circle, Group, Polyline, Text};
 
-use super::canvas::{Spot, View, corners, layer, number, sheet, stroke, text};
+use super::canvas::{Spot, View, corners, headed, layer, number, stroke, text};
 use super::labels::LabelPlaces;
 use super::legend;
 use super::marks::{Mark, TaskState, active_ring};
@@ -15,6 +15,10 @@ use super::plan::{PaperWalls, Plan};
 const ROOM: [f64; 2] = [692.0, 660.0];
 /// Upper left corner of that room.
 const CORNER: Spot = [30.0, 84.0];
+/// Where narrow plans end at least, so that titles have room.
+const LEAST_WIDTH: f64 = 480.0;
+/// Between the drawing and the legend.
+const GUTTER: f64 = 30.0;
 /// Space below the drawing.
 const FOOT: f64 = 26.0;
 /// Width of a link that is used all the time, T·R = 1, on the paper.
@@ -23,6 +27,8 @@ pub(super) const FULL_WIDTH: f64 = 11.0;
 pub(super) const FAINT_WIDTH: f64 = 0.9;
 /// Width of a tree edge relative to the link below it, which stays visible on both sides.
 pub(super) const TREE_SHARE: f64 = 0.45;
+/// Discs of radius ρ are drawn from this radius on.
+const LEAST_DISC: f64 = 5.5;
 /// Robots up to which each mark carries its number; in larger crowds redundant robots do not.
 const FULLY_LABELLED: usize = 120;
 
@@ -38,7 +44,7 @@ pub struct Scene<'a> {
 }
 
 impl Plan {
-    /// Renders one instant as an SVG document of 960 pixels' width.
+    /// Renders one instant as an SVG document, as wide as plan and legend ask for.
     ///
     /// Links lie below, tree edges above them, marks on top; the legend stands beside the
     /// drawing. Equal input gives equal bytes.
@@ -46,9 +52,13 @@ impl Plan {
     pub fn render(&self, scene: &Scene<'_>) -> String {
         let view = View::fit(&self.scenario.workspace.boundary, CORNER, ROOM);
         let (corner, size) = view.frame();
-        let height = (corner[1] + size[1]).max(legend::FOOT) + FOOT;
+        let left = (corner[0] + size[0]).max(LEAST_WIDTH) + GUTTER;
+        let (legend, foot) = legend::draw(self, &view, left);
+        let height = (corner[1] + size[1]).max(foot) + FOOT;
         let picture = Picture { plan: self, scene, view, radius: self.mark_radius(&view, scene) };
-        let document: Document = sheet(height, scene.title, &subtitle(scene.snapshot));
+        let sheet_size = [left + legend::WIDTH, height];
+        let document: Document =
+            headed(sheet_size, scene.title, &subtitle(scene.snapshot), self.is_plain);
         document
             .add(self.draw(&view))
             .add(picture.trails())
@@ -59,14 +69,24 @@ impl Plan {
             .add(picture.ways_to_posts())
             .add(picture.marks())
             .add(picture.labels())
-            .add(legend::draw(self, &view))
+            .add(legend)
             .to_string()
     }
 
-    /// Marks shrink where robots may stand close together or are many.
+    /// Marks are smaller in crowds; where the disc of radius ρ is large enough to be seen, marks
+    /// leave its rim free.
     fn mark_radius(&self, view: &View, scene: &Scene<'_>) -> f64 {
         let crowd: f64 = if scene.snapshot.positions.len() > 30 { 4.8 } else { 6.2 };
-        crowd.max(view.length(self.clearance()).min(9.0))
+        match self.disc_radius(view) {
+            Some(disc) => crowd.min((0.62 * disc).max(4.0)),
+            None => crowd,
+        }
+    }
+
+    /// ρ on the paper, if a disc of this radius can be seen around a mark.
+    pub(super) fn disc_radius(&self, view: &View) -> Option<f64> {
+        let disc = view.length(self.clearance());
+        (disc >= LEAST_DISC).then_some(disc)
     }
 }
 
@@ -179,6 +199,8 @@ impl Picture<'_> {
                 Mark::AccessPoint => format!("access point {node}"),
                 _ => format!("robot {node}: {}", mark.name()),
             };
+            let disc = self.plan.disc_radius(&self.view).filter(|_| node < robots);
+            let group = disc.into_iter().fold(group, |group, disc| group.add(to_scale(spot, disc)));
             let group = group.add(mark.draw(spot, self.radius, &tooltip));
             if snapshot.active_team.contains(&node) {
                 group.add(active_ring(spot, self.radius))
@@ -267,6 +289,17 @@ pub(super) fn path_band(spots: Vec<Spot>) -> Polyline {
         .set("stroke-linejoin", "round")
 }
 
+/// The disc of radius ρ that a robot keeps for itself, to scale.
+pub(super) fn to_scale(centre: Spot, radius: f64) -> Circle {
+    super::marks::disc(centre, radius)
+        .set("class", "disc")
+        .set("fill", palette::INK)
+        .set("fill-opacity", "0.1")
+        .set("stroke", palette::INK)
+        .set("stroke-opacity", "0.5")
+        .set("stroke-width", "0.8")
+}
+
 /// A robot's way to the reference of its post.
 pub(super) fn way_to_post(holder: Spot, reference: Spot) -> Group {
     let place = super::marks::disc(reference, 3.2)
@@ -297,13 +330,13 @@ fn subtitle(snapshot: &Snapshot) -> String {
         let members: Vec<String> = snapshot.primary_team.iter().map(usize::to_string).collect();
         parts.push(format!("primary team: {}", members.join(" – ")));
     }
-    let serviced: Vec<String> = snapshot
+    let held: Vec<String> = snapshot
         .serviced
         .iter()
         .map(|(task, robot)| format!("task {task} by robot {robot}"))
         .collect();
-    if !serviced.is_empty() {
-        parts.push(format!("serviced: {}", serviced.join(", ")));
+    if !held.is_empty() {
+        parts.push(format!("held: {}", held.join(", ")));
     }
     parts.join("  ·  ")
 }

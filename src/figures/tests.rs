@@ -228,6 +228,7 @@ fn an_album_tells_its_mission_in_order_and_to_the_byte() {
             "distances.svg",
             "residuals.svg",
             "multipliers.svg",
+            "animation.svg",
             "index.html",
         ]
     );
@@ -248,7 +249,7 @@ fn an_album_tells_its_mission_in_order_and_to_the_byte() {
 fn an_album_without_a_single_period_is_written_too() {
     let folder = folder("empty");
     let files = empty_album(&study_one()).write(&folder, &end()).expect("written");
-    assert_eq!(files.len(), 4);
+    assert_eq!(files.len(), 5);
     std::fs::remove_dir_all(&folder).expect("removable");
 }
 

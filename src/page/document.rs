@@ -7,7 +7,7 @@ use crate::figures::palette;
 const FRAME: &str = include_str!("assets/page.html");
 const STYLE: &str = include_str!("assets/style.css");
 /// In the order in which they use each other.
-const SCRIPTS: [&str; 10] = [
+const SCRIPTS: [&str; 11] = [
     include_str!("assets/tables.js"),
     include_str!("assets/canvas.js"),
     include_str!("assets/player.js"),
@@ -17,6 +17,7 @@ const SCRIPTS: [&str; 10] = [
     include_str!("assets/marks.js"),
     include_str!("assets/plan.js"),
     include_str!("assets/mission.js"),
+    include_str!("assets/run.js"),
     include_str!("assets/start.js"),
 ];
 

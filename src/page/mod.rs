@@ -1,7 +1,8 @@
 //! Pages on which a run plays.
 //!
 //! A page is one HTML file that needs no other and no network: the run as data, and scripts that
-//! show it. [`MissionPage`] makes the page of a mission while it runs, [`of_trace`] from its trace.
+//! show it. [`MissionPage`] makes the page of a mission while it runs,
+//! [`of_trace`] from its trace, and [`TrajectoryPage`] that of a run of any automaton or composition.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -12,6 +13,7 @@
 //! | `assets/plan.js`, `assets/marks.js` | the plan of a mission, its layers, marks and labels |
 //! | `assets/curves.js`, `assets/strips.js` | numbers and locations over time |
 //! | `assets/mission.js` | what is told of a mission, its robots and links |
+//! | `assets/run.js` | what is told of a trajectory, and the drawings of its automata |
 
 mod choices;
 mod document;
@@ -19,6 +21,8 @@ mod mission;
 mod steps;
 mod table;
 mod trace;
+mod trajectory;
 
 pub use mission::MissionPage;
 pub use trace::{PageError, of_trace};
+pub use trajectory::{Drawing, TrajectoryPage};

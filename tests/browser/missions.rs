@@ -41,7 +41,7 @@ impl Run {
 }
 
 /// Writes a page where the browser finds it.
-fn kept(name: &str, page: &str) -> PathBuf {
+pub fn kept(name: &str, page: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("pleach-pages-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join(format!("{name}.html"));

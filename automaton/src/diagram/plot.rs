@@ -47,7 +47,7 @@ pub fn plot(trajectory: &Trajectory) -> String {
     let end = trajectory.ending().at.t;
     let time = Axis::exact([0.0, end], LEFT, right);
     sheet.text(LEFT, 24.0, &title(trajectory), "title");
-    sheet.text(LEFT, 46.0, &subtitle(trajectory), "quiet");
+    sheet.text(LEFT, 46.0, &outcome(trajectory), "quiet");
 
     let mut top = HEAD;
     for (variable, name) in trajectory.variables().iter().enumerate() {
@@ -91,7 +91,8 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-fn subtitle(trajectory: &Trajectory) -> String {
+/// How long a run was, how many jumps it had, and why it ended, in a line.
+pub fn outcome(trajectory: &Trajectory) -> String {
     let Ending { at, reason } = trajectory.ending();
     let ending = match reason {
         Reason::Horizon => "up to the horizon".to_owned(),

@@ -74,13 +74,13 @@ function drawCursor(context, x, top, bottom) {
  * and `number`: what is selected when it is. Limits are dashed lines.
  */
 class Chart {
-  constructor(parent, player, selection, { title, note, curves, limits = [], bands = [], instants = "" }) {
-    Object.assign(this, { player, selection, curves, limits, bands, instants });
+  constructor(parent, player, selection, { title, note, curves, limits = [], bands = [], instants = "", isTight = false }) {
+    Object.assign(this, { player, selection, curves, limits, bands, instants, isTight });
     this.reading = element("span", { class: "reading" });
     this.plot = element("div", { class: "plot" });
     parent.append(element("figure", { class: "chart" },
       element("figcaption", {}, element("h3", {}, title), note && element("p", {}, note), this.reading),
-      this.plot, curves.length <= FEW_CURVES ? legendOf(curves) : null));
+      this.plot, curves.length > 1 && curves.length <= FEW_CURVES ? legendOf(curves) : null));
     this.range = this.measure();
     this.base = new Surface(this.plot, CHART_HEIGHT, (context, size) => this.drawBase(context, size));
     this.top = new Surface(this.plot, CHART_HEIGHT, (context, size) => this.drawTop(context, size));
@@ -92,8 +92,9 @@ class Chart {
     this.show();
   }
 
+  /** The values that the panel shows: from 0 on, unless it is tight around the curves. */
   measure() {
-    let low = 0, high = 0;
+    let [low, high] = this.isTight ? [Infinity, -Infinity] : [0, 0];
     const widen = value => {
       if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
     };
@@ -101,8 +102,9 @@ class Chart {
     this.curves.forEach(curve => {
       for (const [, value] of curve.points()) widen(value);
     });
+    if (low > high) [low, high] = [0, 0];
     const room = high > low ? 0.06 * (high - low) : 1;
-    return [low < 0 ? low - room : low, high + room];
+    return [low < 0 || this.isTight ? low - room : low, high + room];
   }
 
   scale([width, height]) {

@@ -269,7 +269,7 @@ function showMission(data) {
   new Facts(part("facts"), mission, player, selection);
   layerPanel(part("layers"), mission, plan);
   new Transport(part("transport"), player, {
-    bands, clock, unit: "periods", isTelling: event => Boolean(event.moment) || event.event === "violated",
+    bands, clock, unit: speed => `${speed} periods/s`, isTelling: event => Boolean(event.moment) || event.event === "violated",
     glyph: event => event.moment ? momentGlyph(moments.get(event.moment).strokes)
       : element("span", { class: "alarm" }, "!"),
   });

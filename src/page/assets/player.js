@@ -58,7 +58,7 @@ class Player {
       }
       return this.seek(this.end);
     }
-    const isBehind = index => this.isWhole ? events[index].at < this.at : index < this.passed - 1;
+    const isBehind = index => events[index].at < this.at || !this.isWhole && index < this.passed - 1;
     for (let index = Math.min(this.passed, events.length) - 1; index >= 0; index--) {
       if (isBehind(index) && isWanted(events[index])) return this.seekEvent(index);
     }

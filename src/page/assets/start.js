@@ -1,6 +1,6 @@
 // ---- Start ---------------------------------------------------------------------------------------
 
-const SHOWS = { mission: showMission };
+const SHOWS = { mission: showMission, run: showRun };
 
 /** What is on the page, for the console and for tests. */
 window.pleach = (() => {

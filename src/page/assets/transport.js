@@ -13,6 +13,8 @@ const KEYS = [
 
 /** The share of the time line that the mark of an event takes. */
 const MARK_SHARE = 0.016;
+/** From so many events on, marks on top of each other are left out; the story has them all. */
+const MOST_MARKS = 200;
 
 /** The signs of the buttons, in a box of 16 by 16. */
 const ICONS = {
@@ -32,9 +34,9 @@ function icon(sign) {
 
 /** The buttons, the time line with its events, and the keys. */
 class Transport {
-  /** `bands`: stretches of the run `{from, to, name}`; `clock` tells the instant in words. */
-  constructor(parent, player, { bands = [], clock, unit, isTelling = () => true, glyph = () => null }) {
-    Object.assign(this, { player, clock, unit, isTelling });
+  /** `bands`: stretches of the run `{from, to, name}`; `clock` tells the instant in words, `unit` a speed. */
+  constructor(parent, player, { bands = [], clock, unit, isTelling = () => true, glyph }) {
+    Object.assign(this, { player, clock, isTelling, hasGlyphs: Boolean(glyph) });
     const button = (sign, title, act) =>
       element("button", { type: "button", title, "aria-label": title, onclick: act }, icon(sign));
     this.toggle = button("play", "Play (space)", () => player.toggle());
@@ -44,7 +46,7 @@ class Transport {
       player.speed = Number(event.target.value);
       player.announce();
     } }, ...SPEEDS.map(speed =>
-      element("option", { value: speed }, `${written(speed * player.rate, 3)} ${unit}/s`)));
+      element("option", { value: speed }, unit(written(speed * player.rate, 3)))));
     parent.append(
       element("div", { class: "buttons" },
         button("previous", "Previous event (↑)", () => player.jump(-1, isTelling)),
@@ -64,13 +66,13 @@ class Transport {
     const share = at => `${(100 * at / Math.max(player.end, 1e-12)).toFixed(4)}%`;
     this.thumb = element("div", { class: "thumb" });
     this.fill = element("div", { class: "fill" });
-    const isUpper = this.rows();
-    const marks = player.events.map((event, index) => this.isTelling(event) && element("button", {
+    const isUpper = this.rows(), isCovered = this.covered();
+    const marks = player.events.map((event, index) => this.isTelling(event) && !isCovered.has(index) && element("button", {
       type: "button", class: isUpper.has(index) ? "event upper" : "event", tabindex: "-1", style: `left: ${share(event.at)}`,
       title: `${this.clock(event.at)}: ${event.text}`, "data-event": index,
       onclick: () => player.seekEvent(index),
       onpointerdown: press => press.stopPropagation(),
-    }, glyph(event))).filter(Boolean);
+    }, glyph ? glyph(event) : null)).filter(Boolean);
     this.line = element("div", {
       id: "scrubber", class: "line", role: "slider", tabindex: "0", "aria-label": "Instant",
       "aria-valuemin": "0", "aria-valuemax": player.end,
@@ -92,13 +94,24 @@ class Transport {
     return this.line;
   }
 
+  /** The events whose marks would lie on the mark of the event before. */
+  covered() {
+    const { events, end } = this.player, covered = new Set();
+    let last = -Infinity;
+    events.forEach((event, index) => {
+      if (!this.isTelling(event)) return;
+      if (events.length > MOST_MARKS && event.at - last < 0.1 * MARK_SHARE * end) covered.add(index); else last = event.at;
+    });
+    return covered;
+  }
+
   /** The events whose marks stand in the upper row, since the lower one is taken. */
   rows() {
     const { events, end } = this.player, upper = new Set();
     let taken = -Infinity;
     events.forEach((event, index) => {
       if (!this.isTelling(event)) return;
-      if (event.at - taken < MARK_SHARE * end) upper.add(index); else taken = event.at;
+      if (this.hasGlyphs && event.at - taken < MARK_SHARE * end) upper.add(index); else taken = event.at;
     });
     return upper;
   }

@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::axis::{Axis, power_of_ten};
 use super::curve::{self, Quantity};
 use super::sheet::{Sheet, WIDTH, line_colour, text_width};
-use super::{LEFT, RIGHT, draw_dots, subtitle};
+use super::{LEFT, RIGHT, draw_dots, outcome};
 use crate::trajectory::{Phase, Sample, Trajectory};
 
 /// The height of the panel, in pixels.
@@ -49,7 +49,7 @@ pub fn phase_portrait(
     };
     let mut sheet = Sheet::new();
     sheet.text(LEFT, 24.0, &format!("{up} over {across}"), "title");
-    sheet.text(LEFT, 46.0, &subtitle(trajectory), "quiet");
+    sheet.text(LEFT, 46.0, &outcome(trajectory), "quiet");
     portrait.draw_frame(&mut sheet, across, up);
     portrait.draw_curves(&mut sheet);
     portrait.draw_legend(&mut sheet);

@@ -74,6 +74,7 @@ struct Row {
 
 /// The box of a location.
 struct Box {
+    name: &'static str,
     lines: Vec<String>,
     is_missed: bool,
     left: f64,
@@ -251,7 +252,7 @@ impl Box {
             place.lines().iter().flat_map(|line| broken(line, LINE_LENGTH)).collect();
         let longest = lines.iter().map(|line| text_width(line)).fold(0.0, f64::max);
         let width = (longest + 2.0 * PADDING).max(LEAST_BOX);
-        Box { lines, is_missed: place.is_missed, left: 0.0, width }
+        Box { name: place.name, lines, is_missed: place.is_missed, left: 0.0, width }
     }
 
     fn right(&self) -> f64 {

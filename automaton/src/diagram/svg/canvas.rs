@@ -130,9 +130,13 @@ impl Canvas {
         self.add(text.set("x", number(place.x)).set("y", number(base)));
     }
 
-    /// The box of a location.
-    pub fn location(&mut self, corner: Place, size: Size, class: &str) {
-        self.add(rectangle(corner, size).set("class", class).set("rx", 8));
+    /// The box of a location. Its attribute `data-location` is the name, for scripts that show
+    /// which location is active.
+    pub fn location(&mut self, corner: Place, size: Size, name: &str, is_missed: bool) {
+        self.is_rich |= is_missed;
+        let class = if is_missed { "location missed" } else { "location" };
+        let place = rectangle(corner, size).set("class", class).set("data-location", name);
+        self.add(place.set("rx", 8));
     }
 
     /// The frame of a component.

@@ -53,6 +53,7 @@ pub(super) fn draw(sketch: &Sketch) -> (Canvas, Size) {
 
 /// A location: its box, and the line below it.
 struct Column {
+    name: &'static str,
     lines: Vec<String>,
     is_missed: bool,
     x: f64,
@@ -94,7 +95,7 @@ fn columns(sketch: &Sketch, left: f64) -> Vec<Column> {
             let width = longest + 2.0 * PADDING;
             let x = from + width / 2.0;
             from += width + GAP;
-            Column { lines, is_missed: place.is_missed, x, width }
+            Column { name: place.name, lines, is_missed: place.is_missed, x, width }
         })
         .collect()
 }
@@ -177,11 +178,8 @@ fn draw_columns(canvas: &mut Canvas, columns: &[Column], bottom: f64) {
     for column in columns {
         let corner = Place { x: column.x - column.width / 2.0, y: top };
         canvas.column_line(column.x, top + height, bottom);
-        let class = if column.is_missed { "location missed" } else { "location" };
-        if column.is_missed {
-            canvas.enrich();
-        }
-        canvas.location(corner, Size { width: column.width, height }, class);
+        let size = Size { width: column.width, height };
+        canvas.location(corner, size, column.name, column.is_missed);
         let lines = column.lines.len() as f64;
         let first = top + height / 2.0 - (lines - 1.0) / 2.0 * LINE_HEIGHT;
         for (at, line) in column.lines.iter().enumerate() {

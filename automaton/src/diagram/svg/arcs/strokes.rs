@@ -24,14 +24,7 @@ impl Row {
         for one in &self.boxes {
             let corner = Place { x: one.left, y: -self.height / 2.0 };
             let size = Size { width: one.width, height: self.height };
-            if one.is_missed {
-                canvas.enrich();
-            }
-            canvas.location(
-                corner,
-                size,
-                if one.is_missed { "location missed" } else { "location" },
-            );
+            canvas.location(corner, size, one.name, one.is_missed);
             extent.include(corner, size);
             let first = -(one.lines.len() as f64 - 1.0) / 2.0 * LINE_HEIGHT;
             for (at, line) in one.lines.iter().enumerate() {
