@@ -154,7 +154,7 @@ mod tests {
             [2.0, 2.0],
             [0.0, 2.0],
         ];
-        let pillar = vec![[1.0, 0.1], [1.5, 0.1], [1.5, 0.5], [1.0, 0.5]];
+        let pillar = vec![[0.3, 0.1], [0.6, 0.1], [0.6, 0.5], [0.3, 0.5]];
         let plan = WorkspaceOutline { boundary: door, holes: vec![pillar] };
         let gaps = narrower_than(&plan, 1.2);
         let widths: Vec<f64> = gaps.iter().map(|gap| (gap.width * 1e3).round() / 1e3).collect();

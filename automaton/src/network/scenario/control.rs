@@ -71,7 +71,7 @@ pub struct ControlKey {
 /// What may stand at a key, with access to what does.
 #[derive(Clone, Copy, Debug)]
 pub enum Values {
-    /// A length, at least [`SHORTEST`] and at most 1 time the range of the links.
+    /// A length, at least `SHORTEST` and at most 1 time the range of the links.
     Length(fn(&Control) -> Option<f64>),
     /// A time in seconds, from the first number to the second.
     Time(f64, f64, fn(&Control) -> Option<f64>),
