@@ -1,5 +1,7 @@
 //! Models with parameters, in matrix form, with the time, and made from data.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
