@@ -18,7 +18,7 @@ use crate::{Automaton, BuildError, Transfer, TransitionError};
 use super::super::beacon::Notice;
 use super::super::duty::Hop;
 use super::super::mission::{
-    Advance, Ended, Idle, KnowsPath, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
+    Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
 };
 use super::super::record::MissionEvent;
 use super::super::shared::Shared;
@@ -150,11 +150,11 @@ fn announced<A: DataOf<Mission>>() -> Row {
     Transfer::where_known(MissionStep::Announced, guards::announced(), name, leader::place_bid::<A>)
 }
 
-fn called<A: DataOf<Mission> + KnowsPath>() -> Row {
+fn called<A: DataOf<Mission>>() -> Row {
     Transfer::new(MissionStep::Called, guards::called(), "answer the call", recruit::answer::<A>)
 }
 
-fn resumed<A: DataOf<Mission> + KnowsPath>() -> Row {
+fn resumed<A: DataOf<Mission>>() -> Row {
     Transfer::new(MissionStep::Resumed, guards::resumed(), "go on", path::resume::<A>)
 }
 
