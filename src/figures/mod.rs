@@ -38,7 +38,7 @@ pub(crate) use marks::TaskState;
 pub(crate) use screen::{link_data, mark_data, moment_data};
 pub(crate) use spacing::Walls;
 
-pub use album::Album;
+pub use album::{ANIMATION, Album};
 pub use marks::Mark;
 pub use plan::Plan;
 pub use scene::Scene;

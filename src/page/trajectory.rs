@@ -55,7 +55,7 @@ pub struct Drawing {
 impl Drawing {
     /// The drawing of `automaton`.
     pub fn of<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Drawing {
-        let locations = L::ALL.iter().map(|location| location.name()).collect();
+        let locations = automaton.locations().iter().map(|location| location.name()).collect();
         Drawing { locations, svg: diagram::svg(automaton) }
     }
 }

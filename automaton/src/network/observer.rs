@@ -6,8 +6,10 @@ use pleach_discrete::network::{NodeId, Phase, PostKind};
 
 use super::beacon::Notice;
 use super::composition::Network;
-use super::record::{MissionEvent, PostView, Route, Snapshot};
+use super::record::{MissionEvent, PostView, RobotView, Route, Snapshot};
 use super::robot::Robot;
+use crate::located::Place as _;
+use crate::node::Traffic;
 
 impl<M> Network<M> {
     /// The observers' view of this instant, just before the robots move.
@@ -31,6 +33,19 @@ impl<M> Network<M> {
             task: overview.task(),
             serviced: overview.serviced(),
             posts: overview.posts(),
+            robots: (0..).zip(robots()).map(|(id, robot)| self.robot_view(id, robot)).collect(),
+        }
+    }
+
+    fn robot_view(&self, id: NodeId, robot: &Robot) -> RobotView {
+        let Traffic { sent, heard } = self.nodes.traffic(id);
+        RobotView {
+            activity: robot.duty().location(),
+            dealing: robot.dealing(),
+            phase: robot.phase(),
+            target: robot.target(),
+            sent,
+            heard,
         }
     }
 

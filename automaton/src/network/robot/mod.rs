@@ -34,8 +34,8 @@ use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Post, PostId,
-    Role,
+    Agreement, Anchor, Bid, Bulletin, Dealing, Dealings, Election, IdSet, Lineage, NodeId, Post,
+    PostId, Role,
 };
 
 pub use dealing::{Deal, DealingAutomaton, DealingEffect, dealing_automaton};
@@ -47,7 +47,7 @@ pub use routing::RouteLink;
 pub use step::{RobotError, Stage};
 
 use crate::automaton::TransitionError;
-use crate::located::Current;
+use crate::located::{Current, Place as _};
 
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
 use super::duty::{Duty, Held, Hop, Standby, Station};
@@ -282,6 +282,16 @@ impl Robot {
     /// The role that its duty gives it.
     pub fn role(&self) -> Role {
         self.duty.role()
+    }
+
+    /// Where it goes; none if it stands still.
+    pub fn target(&self) -> Option<Point> {
+        self.waypoint.and(self.destination.as_ref()).map(Destination::goal)
+    }
+
+    /// Its location in the automaton of the exchange of duties.
+    pub fn dealing(&self) -> Dealing {
+        self.deal.location()
     }
 
     /// What it does.
