@@ -18,7 +18,8 @@ pub(super) fn number(value: f64) -> String {
 
 /// Writes a quantity for people: with four decimals or four significant digits at most, and as few
 /// as it needs.
-pub(crate) fn quantity(value: f64) -> String {
+#[must_use]
+pub fn quantity(value: f64) -> String {
     let exponent = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
     let decimals = (3.0 - exponent).clamp(4.0, 300.0) as usize;
     let text = format!("{value:.decimals$}");

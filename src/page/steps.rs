@@ -138,8 +138,8 @@ fn optional_points(points: &Value) -> Vec<f64> {
     points.as_array().into_iter().flatten().flat_map(coordinates).collect()
 }
 
-/// The numbers of a list, those of points one after the other. JSON has no other word for what is
-/// no number than `null`.
+/// The numbers of a list, those of points one after the other. JSON writes what is not a
+/// number as `null`.
 fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(entries) => entries.iter().flat_map(numbers).collect(),
