@@ -10,6 +10,7 @@ use thiserror::Error;
 use crate::builder::Builder;
 use crate::coordinates::Coordinates;
 use crate::flow::Flow;
+use crate::law::Command;
 use crate::located::{Holds, Place};
 use crate::observed::Watch;
 use crate::reset::Reset;
@@ -100,6 +101,10 @@ pub struct Mode<S> {
     pub flow: Option<Flow<S>>,
     /// What must hold for time to pass; without an invariant, nothing must.
     pub invariant: Option<Predicate>,
+    /// The same by numbers, where the state has them.
+    pub(crate) watch: Option<Watch<S>>,
+    /// What is chosen at each sample, case by case; see [`law`](crate::law).
+    pub commands: Vec<Command>,
 }
 
 /// A transition that has been taken.
@@ -199,6 +204,21 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// Flow and invariant of `location`.
     pub fn mode(&self, location: L) -> Option<&Mode<S>> {
         self.modes.get(self.node(location)?.index())
+    }
+
+    /// Whether time may pass in `location`: its invariant holds in `state`.
+    ///
+    /// # Errors
+    ///
+    /// [`EvaluationError`] if the invariant cannot be evaluated.
+    pub fn allows_time(&self, location: L, state: &S) -> Result<bool, EvaluationError> {
+        let Some(mode) = self.mode(location) else { return Ok(true) };
+        let known = mode.watch.as_ref().and_then(|watch| watch.holds(state));
+        match (known, &mode.invariant) {
+            (Some(holds), _) => Ok(holds),
+            (None, Some(invariant)) => invariant.holds(state),
+            (None, None) => Ok(true),
+        }
     }
 
     /// The first transition in total order that leaves `location`, has to be taken (*must* or *at

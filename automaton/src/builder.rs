@@ -11,6 +11,7 @@ use crate::automaton::{Automaton, Mode, Transition};
 use crate::coordinates::{Coordinate, Coordinates};
 use crate::edge::Edge;
 use crate::flow::{Flow, Rate};
+use crate::law::{Command, Laws};
 use crate::located::Transfer;
 use crate::observed::{Observed, Watch};
 use crate::reset::Reset;
@@ -39,6 +40,8 @@ pub struct Builder<L, E, S> {
     parameters: Vec<(String, f64)>,
     /// What changes alike in all locations.
     throughout: Vec<Rate<S>>,
+    /// What is chosen at samples.
+    commands: Vec<(L, Command)>,
     /// The names of all variables and propositions, where the state is not its coordinates.
     observed: Option<Names>,
     /// How a guard is looked up by numbers, where the state has them.
@@ -210,6 +213,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             known: None,
             parameters: Vec::new(),
             throughout: Vec::new(),
+            commands: Vec::new(),
             observed: None,
             watch: |_| None,
             transfers: Vec::new(),
@@ -346,7 +350,9 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         let guards = conditions.chain(edges).map(|(place, guard)| (place, guard.predicate()));
         let invariants = self.invariants.iter();
         let invariants = invariants.map(|(location, invariant)| (location.name(), invariant));
-        for (place, predicate) in guards.chain(invariants) {
+        let commands = self.commands.iter();
+        let commands = commands.map(|(location, command)| (location.name(), &command.guard));
+        for (place, predicate) in guards.chain(invariants).chain(commands) {
             if let Some(name) =
                 predicate.propositions().into_iter().find(|name| !known.contains(name))
             {
@@ -518,6 +524,9 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         for (location, invariant) in &self.invariants {
             parts.push(Part::reading(location.name(), "invariant", invariant));
         }
+        for (location, command) in &self.commands {
+            parts.push(Part::reading(location.name(), "law", &command.guard));
+        }
         parts
     }
 
@@ -554,9 +563,12 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     fn mode(&self, location: L) -> Mode<S> {
         let flow = self.flows.iter().find(|(place, _)| *place == location);
         let invariant = self.invariants.iter().find(|(place, _)| *place == location);
+        let commands = self.commands.iter().filter(|(place, _)| *place == location);
         Mode {
             flow: flow.map(|(_, flow)| flow.clone()),
             invariant: invariant.map(|(_, invariant)| invariant.clone()),
+            watch: invariant.and_then(|(_, invariant)| (self.watch)(invariant)),
+            commands: commands.map(|(_, command)| command.clone()).collect(),
         }
     }
 }
@@ -567,6 +579,14 @@ impl<L: Location, E: Event, S: Observed> Builder<L, E, S> {
     pub fn observing(mut self) -> Self {
         self.observed = Some((S::VARIABLES, S::PROPOSITIONS));
         self.watch = Watch::of;
+        self
+    }
+
+    /// At each sample `laws` choose a value, as far as they speak of a location. Drawings and
+    /// tables show them; whoever samples asks them.
+    pub fn commanding<T>(mut self, laws: &Laws<L, S, T>) -> Self {
+        let commands = laws.commands();
+        self.commands.extend(commands.map(|(location, command)| (location, command.clone())));
         self
     }
 }

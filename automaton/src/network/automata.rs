@@ -4,8 +4,8 @@
 use crate::BuildError;
 
 use super::robot::{
-    DealingAutomaton, DutyAutomaton, MissionAutomaton, dealing_automaton, duty_automaton,
-    mission_automaton,
+    ControlAutomaton, DealingAutomaton, DutyAutomaton, MissionAutomaton, control_automaton,
+    dealing_automaton, duty_automaton, mission_automaton,
 };
 
 /// The automata of a robot; all robots run the same.
@@ -17,6 +17,8 @@ pub struct Automata {
     pub mission: MissionAutomaton,
     /// Where the robot stands in the exchange of duties.
     pub dealing: DealingAutomaton,
+    /// Where the robot stands in its control period.
+    pub control: ControlAutomaton,
 }
 
 impl Automata {
@@ -29,6 +31,7 @@ impl Automata {
             duty: duty_automaton()?,
             mission: mission_automaton()?,
             dealing: dealing_automaton()?,
+            control: control_automaton()?,
         })
     }
 }

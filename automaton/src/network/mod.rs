@@ -4,6 +4,7 @@ pub mod access_point;
 pub mod automata;
 pub mod beacon;
 mod composition;
+pub mod control;
 pub mod duty;
 mod link;
 pub mod medium;
@@ -25,6 +26,8 @@ pub use link::Link;
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
-pub use robot::{Robot, dealing_automaton, duty_automaton, mission_automaton};
+pub use robot::{
+    Robot, control_automaton, dealing_automaton, duty_automaton, mission_automaton,
+};
 pub use site::{Site, SiteError};
 pub use user::User;

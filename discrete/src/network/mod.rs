@@ -4,6 +4,7 @@
 pub mod activity;
 pub mod agreement;
 pub mod bulletin;
+pub mod control;
 pub mod dealing;
 pub mod election;
 pub mod exchange;
@@ -17,6 +18,7 @@ pub mod tables;
 pub use activity::{Activity, DUTIES, DutyEvent};
 pub use agreement::Agreement;
 pub use bulletin::Bulletin;
+pub use control::{CONTROL, Stage, StageEvent};
 pub use dealing::{DEALINGS, Dealing, DealingEvent};
 pub use election::{Bid, Election};
 pub use exchange::{Dealings, Exchange, Reply};

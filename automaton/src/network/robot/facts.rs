@@ -3,6 +3,7 @@
 //! Numbers end here. The guards turn what is measured into events, and the tables of the duty and
 //! mission automata know events only.
 
+use pleach_continuous::network::motion::FEASIBILITY_TOLERANCE;
 use pleach_discrete::Location as _;
 use pleach_discrete::network::{Activity, MissionStep, Phase, Post};
 use pleach_guards::Valuation;
@@ -10,9 +11,11 @@ use pleach_guards::Valuation;
 use crate::Observed;
 
 use super::super::beacon::Notice;
+use super::super::scenario::RoutingMethod;
 use super::super::duty::{AwaitingRelease, Duty, Waiting};
 use super::Robot;
 use super::attachment::PATIENCE_WITH_BARREN_POSTS;
+use super::step::{MAX_SWEEPS, NEGOTIATION_ROUNDS};
 
 macro_rules! facts {
     (
@@ -173,6 +176,30 @@ facts! {
             barren: f64::from(robot.barren_periods),
             /// Control periods after which a post without a branch is given up.
             barren_patience: f64::from(PATIENCE_WITH_BARREN_POSTS),
+            /// τ: seconds since the last sample.
+            clock: robot.time_since_sample(),
+            /// Δt: seconds from sample to sample.
+            period: robot.site.settings.period,
+            /// By how much it is outside of the region that it was given at the last sample.
+            outside: robot.outside(),
+            /// By how much rounding may take it outside.
+            rounding: FEASIBILITY_TOLERANCE,
+            /// The number of this round of beacons.
+            round: robot.control.count() as f64,
+            /// The number of rounds in this control period.
+            rounds: robot.rounds_of_this_period() as f64,
+            /// The number of this iteration of the routes.
+            iteration: robot.control.count() as f64,
+            /// The number of iterations in a control period.
+            iterations: robot.site.settings.routing_iterations as f64,
+            /// The number of this sweep of the routes.
+            sweep: robot.control.count() as f64,
+            /// The number of sweeps in a control period.
+            sweeps: MAX_SWEEPS as f64,
+            /// How often moves have been judged in this control period.
+            attempt: robot.control.count() as f64,
+            /// How often they are judged, the last time not counted.
+            attempts: NEGOTIATION_ROUNDS as f64,
         }
         propositions {
             /// It is exchanging duties with another robot.
@@ -217,6 +244,8 @@ facts! {
             may_give: robot.may_be_relieved(),
             /// The mover has heard its reply.
             reply_heard: robot.is_reply_heard(),
+            /// Routes are found by ADAL.
+            adal: robot.site.settings.routing_method == RoutingMethod::Adal,
             /// It finds now that it has reached its task.
             reaches_task: robot.takes_step(MissionStep::Reached),
         }

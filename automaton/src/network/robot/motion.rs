@@ -143,7 +143,7 @@ impl Robot {
 
     /// Lines 4 to 7 of Algorithm 5: the next position, if the robot moves.
     pub(super) fn propose(&mut self) {
-        self.proposal = None;
+        (self.proposal, self.problem) = (None, None);
         self.heard_moves.clear();
         self.must_judge_moves = true;
         let Some(goal) = self.goal() else {
@@ -165,7 +165,15 @@ impl Robot {
             && self.site.free_space.sees(segment.from, segment.to)
         {
             self.proposal = Some(segment);
+            self.problem = Some(problem);
         }
+    }
+
+    /// By how much the robot is outside of the region that the motion problem has given it at the
+    /// last sample: cell, trust region, posts and links; 0 if it stands still.
+    pub(super) fn outside(&self) -> f64 {
+        let margin = self.problem.as_ref().map_or(0.0, |it| it.smallest_margin(&self.position));
+        (-margin).max(0.0)
     }
 
     /// a₁ of the geodesic to the goal, round parked robots where that is a short way round.
