@@ -110,8 +110,7 @@ impl<L: Location, S: Observed, T> Laws<L, S, T> {
     ) -> Self {
         let guard = guard.into().predicate().clone();
         let watch = Watch::of(&guard);
-        let command =
-            Command { commanded: self.commanded.clone(), name: name.to_owned(), guard };
+        let command = Command { commanded: self.commanded.clone(), name: name.to_owned(), guard };
         self.cases.push(Case { location, command, watch, value });
         self
     }

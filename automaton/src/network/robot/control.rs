@@ -168,10 +168,15 @@ fn row<A: DataOf<Control>, B: DataOf<Control>>(
     next: fn(&A) -> B,
 ) -> Row {
     let names: Vec<&str> = acts.iter().map(|act| act.name()).collect();
-    Transfer::new(event, guard, &names.join(", "), move |data: &A, _: &Robot, effects: &mut Acts| {
-        *effects = acts;
-        next(data)
-    })
+    Transfer::new(
+        event,
+        guard,
+        &names.join(", "),
+        move |data: &A, _: &Robot, effects: &mut Acts| {
+            *effects = acts;
+            next(data)
+        },
+    )
 }
 
 /// The automaton of the control period (Algorithm 5).
@@ -257,18 +262,12 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
             &[TellFlows],
             |shortages: &Shortages| Reliefs { sweep: shortages.sweep },
         ))
-        .carried_out(row(
-            On::ReliefsHeard,
-            guards::heard(),
-            &[SweepAgain],
-            |reliefs: &Reliefs| Demands { sweep: reliefs.sweep + 1 },
-        ))
-        .carried_out(row(
-            On::MoveDue,
-            guards::heard(),
-            &[Propose, TellProposal],
-            |_: &Planning| Proposals { attempt: 0 },
-        ))
+        .carried_out(row(On::ReliefsHeard, guards::heard(), &[SweepAgain], |reliefs: &Reliefs| {
+            Demands { sweep: reliefs.sweep + 1 }
+        }))
+        .carried_out(row(On::MoveDue, guards::heard(), &[Propose, TellProposal], |_: &Planning| {
+            Proposals { attempt: 0 }
+        }))
         .carried_out(row(
             On::ProposalsHeard,
             guards::heard(),

@@ -11,8 +11,8 @@ use pleach_guards::Valuation;
 use crate::Observed;
 
 use super::super::beacon::Notice;
-use super::super::scenario::RoutingMethod;
 use super::super::duty::{AwaitingRelease, Duty, Waiting};
+use super::super::scenario::RoutingMethod;
 use super::Robot;
 use super::attachment::PATIENCE_WITH_BARREN_POSTS;
 use super::step::{MAX_SWEEPS, NEGOTIATION_ROUNDS};

@@ -52,8 +52,8 @@ pub use step::RobotError;
 use crate::automaton::TransitionError;
 use crate::located::Current;
 
-use super::control::{Control, Moving};
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
+use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
