@@ -190,7 +190,13 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
 
     /// The node of `location`, unless the automaton lacks it. Enums are small: looking through them
     /// is faster than any map.
+    #[inline]
     pub(crate) fn node(&self, location: L) -> Option<NodeIndex> {
+        if let Some(place) = location.place()
+            && self.locations.get(place) == Some(&location)
+        {
+            return Some(NodeIndex::new(place));
+        }
         self.locations.iter().position(|listed| *listed == location).map(NodeIndex::new)
     }
 
