@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use pleach_guards::{Comparison, Expression, Predicate, Relation, Valuation};
+use pleach_guards::{Comparison, Expression, Predicate, Relation, Valuation, always};
 
 /// A state with quantities and propositions that have names and numbers.
 pub trait Observed: Valuation {
@@ -24,6 +24,8 @@ pub trait Observed: Valuation {
 /// A guard over quantities and propositions by their numbers.
 pub(crate) struct Watch<S> {
     test: Test,
+    /// Whether there is nothing to test.
+    always: bool,
     quantity: fn(&S, usize) -> f64,
     proposition: fn(&S, usize) -> bool,
 }
@@ -48,6 +50,7 @@ impl<S: Observed> Watch<S> {
     /// is not known.
     pub(crate) fn of(predicate: &Predicate) -> Option<Self> {
         Some(Watch {
+            always: *predicate == always(),
             test: Test::of::<S>(predicate)?,
             quantity: S::quantity,
             proposition: S::proposition,
@@ -59,9 +62,13 @@ impl<S> Watch<S> {
     /// Whether the guard holds; none where a quantity is not a number, so that it has no verdict.
     #[inline]
     pub(crate) fn holds(&self, state: &S) -> Option<bool> {
+        if self.always {
+            return Some(true);
+        }
         self.judge(&self.test, state)
     }
 
+    #[inline(never)]
     fn judge(&self, test: &Test, state: &S) -> Option<bool> {
         Some(match test {
             Test::Proposition(number) => (self.proposition)(state, *number),
