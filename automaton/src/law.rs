@@ -8,24 +8,26 @@
 //!
 //! ```
 //! use pleach_automaton::law::Laws;
-//! use pleach_automaton::{Automaton, Observed, Reset};
+//! use pleach_automaton::{Automaton, Reset, observed};
 //! use pleach_discrete::{Row, TransitionTable, Urgency, vocabulary};
-//! use pleach_guards::{Valuation, always, proposition, variable};
+//! use pleach_guards::{always, proposition, variable};
 //!
 //! vocabulary! {
 //!     enum Room: Location { Empty = "empty", Used = "used" }
 //!     enum Seen: Event { Entered = "entered" }
 //! }
 //! struct Thermostat { people: u32, is_night: bool }
-//! impl Valuation for Thermostat {
-//!     fn value(&self, name: &str) -> Option<f64> { (name == "people").then(|| self.people.into()) }
-//!     fn truth(&self, name: &str) -> Option<bool> { (name == "night").then_some(self.is_night) }
-//! }
-//! impl Observed for Thermostat {
-//!     const VARIABLES: &'static [&'static str] = &["people"];
-//!     const PROPOSITIONS: &'static [&'static str] = &["night"];
-//!     fn quantity(&self, _: usize) -> f64 { self.people.into() }
-//!     fn proposition(&self, _: usize) -> bool { self.is_night }
+//! observed! {
+//!     impl Observed for Thermostat as thermostat;
+//!     const GLOSSARY;
+//!     quantities {
+//!         /// How many people are in the room.
+//!         people: thermostat.people.into(),
+//!     }
+//!     propositions {
+//!         /// It is between ten in the evening and six in the morning.
+//!         night: thermostat.is_night,
+//!     }
 //! }
 //!
 //! let laws = Laws::of("θ")
@@ -52,8 +54,9 @@
 use std::fmt;
 
 use pleach_discrete::Location;
-use pleach_guards::{EvaluationError, Guard, Predicate};
+use pleach_guards::Predicate;
 
+use crate::automaton::TransitionError;
 use crate::observed::{Observed, Watch};
 
 /// What the locations `L` of a component with state `S` command: values of type `T`.
@@ -99,37 +102,32 @@ impl<L: Location, S: Observed, T> Laws<L, S, T> {
     }
 
     /// One more case in `location`: where `guard` holds, and no case of this location before it
-    /// applies, `value` is chosen, called `name`. It may find nothing to choose.
+    /// applies, `value` is chosen, called `name`. A case that finds nothing to choose does not apply.
     #[must_use]
     pub fn case(
         mut self,
         location: L,
-        guard: impl Into<Guard>,
+        guard: Predicate,
         name: &str,
         value: fn(&S) -> Option<T>,
     ) -> Self {
-        let guard = guard.into().predicate().clone();
         let watch = Watch::of(&guard);
         let command = Command { commanded: self.commanded.clone(), name: name.to_owned(), guard };
         self.cases.push(Case { location, command, watch, value });
         self
     }
 
-    /// What `state` commands in `location`; nothing if no case applies, or the one that does finds
-    /// nothing.
+    /// What `state` commands in `location`, if a case applies.
     ///
     /// # Errors
     ///
-    /// [`EvaluationError`] for the first guard before it without a value.
-    pub fn value(&self, location: L, state: &S) -> Result<Option<T>, EvaluationError> {
+    /// [`TransitionError`] for the first guard before that case that has no value.
+    pub fn value(&self, location: L, state: &S) -> Result<Option<T>, TransitionError> {
         for case in self.cases.iter().filter(|case| case.location == location) {
-            let known = case.watch.as_ref().and_then(|watch| watch.holds(state));
-            let holds = match known {
-                Some(holds) => holds,
-                None => case.command.guard.holds(state)?,
-            };
-            if holds {
-                return Ok((case.value)(state));
+            if case.holds(state)?
+                && let Some(value) = (case.value)(state)
+            {
+                return Ok(Some(value));
             }
         }
         Ok(None)
@@ -138,6 +136,21 @@ impl<L: Location, S: Observed, T> Laws<L, S, T> {
     /// The cases with their locations, in their order.
     pub fn commands(&self) -> impl Iterator<Item = (L, &Command)> {
         self.cases.iter().map(|case| (case.location, &case.command))
+    }
+}
+
+impl<L: Location, S: Observed, T> Case<L, S, T> {
+    fn holds(&self, state: &S) -> Result<bool, TransitionError> {
+        let Command { commanded, name, guard } = &self.command;
+        if let Some(holds) = self.watch.as_ref().and_then(|watch| watch.holds(state)) {
+            return Ok(holds);
+        }
+        guard.holds(state).map_err(|source| TransitionError {
+            location: self.location.name(),
+            event: "sample",
+            part: format!("guard of the law `{commanded} := {name}`"),
+            source,
+        })
     }
 }
 

@@ -4,8 +4,8 @@
 use crate::BuildError;
 
 use super::robot::{
-    ControlAutomaton, DealingAutomaton, DutyAutomaton, MissionAutomaton, control_automaton,
-    dealing_automaton, duty_automaton, mission_automaton,
+    ControlAutomaton, DealingAutomaton, DutyAutomaton, MissionAutomaton, Targets,
+    control_automaton, dealing_automaton, duty_automaton, mission_automaton, targets,
 };
 
 /// The automata of a robot; all robots run the same.
@@ -13,6 +13,8 @@ use super::robot::{
 pub struct Automata {
     /// What the robot does.
     pub duty: DutyAutomaton,
+    /// Where the robot goes.
+    pub targets: Targets,
     /// The mission as the robot knows it.
     pub mission: MissionAutomaton,
     /// Where the robot stands in the exchange of duties.
@@ -29,6 +31,7 @@ impl Automata {
     pub fn new() -> Result<Self, BuildError> {
         Ok(Automata {
             duty: duty_automaton()?,
+            targets: targets(),
             mission: mission_automaton()?,
             dealing: dealing_automaton()?,
             control: control_automaton()?,

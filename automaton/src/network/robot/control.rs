@@ -150,7 +150,7 @@ impl Robot {
             Act::AdmitShortage => self.admit_shortage(outputs),
             Act::SweepAgain => self.sweep_again(outputs),
             Act::EndRoutes => self.end_routes(),
-            Act::Propose => self.propose(),
+            Act::Propose => self.propose()?,
             Act::TellProposal => self.tell_proposal(outputs),
             Act::Object => self.object(outputs),
             Act::SetOff => self.set_off(),

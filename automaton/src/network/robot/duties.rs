@@ -23,6 +23,7 @@ use super::super::duty::{
 };
 use super::super::record::MissionEvent;
 use super::Robot;
+use super::target::targets;
 
 /// The automaton of a robot's duty.
 pub type DutyAutomaton = Automaton<Activity, DutyEvent, Robot>;
@@ -423,6 +424,7 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
     use DutyEvent as On;
     let automaton = Automaton::builder(DUTIES, Activity::Standby)
         .observing()
+        .commanding(&targets())
         .carried_out(Transfer::new(On::Elected, guards::elected(), "lead", lead))
         .carried_out(bound::<Standby>())
         .carried_out(bound::<Relay>())

@@ -25,6 +25,7 @@ mod path;
 mod recruit;
 mod routing;
 mod step;
+mod target;
 mod team;
 mod yielding;
 
@@ -43,11 +44,12 @@ use pleach_discrete::network::{
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
 pub use dealing::{Deal, DealingAutomaton, DealingEffect, dealing_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
-pub use facts::{Facts, GLOSSARY, PROPOSITIONS, VARIABLES};
+pub use facts::{Facts, GLOSSARY};
 pub use links::TreeLink;
 pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
 pub use routing::RouteLink;
 pub use step::RobotError;
+pub use target::{Targets, targets};
 
 use crate::automaton::TransitionError;
 use crate::located::Current;
