@@ -140,6 +140,33 @@ pub struct TransitionError {
     pub source: EvaluationError,
 }
 
+/// The invariant of a location does not hold although time is to pass there, or has passed.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("the invariant `{invariant}` of location `{location}` does not hold: {values}")]
+pub struct InvariantError {
+    /// The location.
+    pub location: &'static str,
+    /// What must hold.
+    pub invariant: String,
+    /// The variables and propositions that it names, with their values.
+    pub values: String,
+}
+
+impl InvariantError {
+    fn new(location: &'static str, invariant: &Predicate, state: &impl Valuation) -> Self {
+        let variables = invariant.variables().into_iter().map(|name| {
+            let value = state.value(name);
+            value.map_or_else(|| format!("{name} is unknown"), |value| format!("{name} = {value}"))
+        });
+        let propositions = invariant.propositions().into_iter().map(|name| {
+            let truth = state.truth(name);
+            truth.map_or_else(|| format!("{name} is unknown"), |truth| format!("{name} is {truth}"))
+        });
+        let values: Vec<String> = variables.chain(propositions).collect();
+        InvariantError { location, invariant: invariant.to_string(), values: values.join(", ") }
+    }
+}
+
 impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// Begins the automaton of `table` that starts in `initial`.
     pub fn builder(table: TransitionTable<'_, L, E>, initial: L) -> Builder<L, E, S> {
@@ -212,18 +239,31 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         self.modes.get(self.node(location)?.index())
     }
 
-    /// Whether time may pass in `location`: its invariant holds in `state`.
+    /// Checks that time may pass in `location`: its invariant holds in `state`.
     ///
     /// # Errors
     ///
-    /// [`EvaluationError`] if the invariant cannot be evaluated.
-    pub fn allows_time(&self, location: L, state: &S) -> Result<bool, EvaluationError> {
-        let Some(mode) = self.mode(location) else { return Ok(true) };
+    /// [`InvariantError`] if it does not hold, or has no value.
+    pub fn check_invariant(&self, location: L, state: &S) -> Result<(), InvariantError> {
+        let Some(mode) = self.mode(location) else { return Ok(()) };
+        let Some(invariant) = &mode.invariant else { return Ok(()) };
         let known = mode.watch.as_ref().and_then(|watch| watch.holds(state));
-        match (known, &mode.invariant) {
-            (Some(holds), _) => Ok(holds),
-            (None, Some(invariant)) => invariant.holds(state),
-            (None, None) => Ok(true),
+        if known.is_some_and(|holds| holds) || invariant.holds(state).is_ok_and(|holds| holds) {
+            return Ok(());
+        }
+        Err(InvariantError::new(location.name(), invariant, state))
+    }
+
+    /// Lets `duration` ≥ 0 seconds pass in the place where `state` stands, by its
+    /// [exact](Flow::exact) flow; without one the state rests.
+    pub fn flow_in_place<P>(&self, state: &mut S, duration: f64)
+    where
+        P: Place<Location = L>,
+        S: Holds<P>,
+    {
+        let mode = self.mode(state.current().location());
+        if let Some(flow) = mode.and_then(|mode| mode.flow.as_ref()) {
+            let _is_exact = flow.advance(state, duration);
         }
     }
 

@@ -72,6 +72,24 @@ vocabulary! {
         /// The last objections are heard: what is left of the moves is certified.
         MoveCertified = "move certified",
     }
+
+    /// Where an access point stands in its control period.
+    pub enum Round: Location {
+        /// It waits for the next sample.
+        Resting = "resting",
+        /// It has told its beacon, and waits for those of others.
+        Listening = "listening",
+    }
+
+    /// What takes an access point from round to round.
+    pub enum RoundEvent: Event {
+        /// τ = Δt.
+        SampleDue = "sample due",
+        /// A round of beacons is over, and another one follows.
+        NextRound = "next round",
+        /// The last round of beacons is over.
+        RoundsOver = "rounds over",
+    }
 }
 
 const fn row(source: Stage, event: StageEvent, target: Stage) -> Row<Stage, StageEvent> {
@@ -102,6 +120,17 @@ pub const CONTROL: TransitionTable<Stage, StageEvent> = {
         row(Objections, On::MoveCertified, Moving),
     ])
 };
+
+const fn round(source: Round, event: RoundEvent, target: Round) -> Row<Round, RoundEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
+}
+
+/// The table of an access point's control period.
+pub const ROUNDS: TransitionTable<Round, RoundEvent> = TransitionTable::new(&[
+    round(Round::Resting, RoundEvent::SampleDue, Round::Listening),
+    round(Round::Listening, RoundEvent::NextRound, Round::Listening),
+    round(Round::Listening, RoundEvent::RoundsOver, Round::Resting),
+]);
 
 #[cfg(test)]
 mod tests {

@@ -11,6 +11,11 @@ fn last_round() -> Predicate {
     variable("round").at_least(variable("rounds"))
 }
 
+/// The last round of beacons is over.
+pub fn rounds_over() -> Guard {
+    Guard::new("rounds over", last_round())
+}
+
 /// Another round of beacons follows.
 pub fn next_round() -> Guard {
     Guard::new("next round", variable("round").less_than(variable("rounds")))
@@ -61,10 +66,13 @@ pub fn heard() -> Guard {
     Guard::new("heard", always())
 }
 
+/// While an access point or the user waits: the next sample is not over.
+pub fn waiting() -> Predicate {
+    variable("clock").at_most(variable("period"))
+}
+
 /// While the robot moves: the next sample is not over, and the robot is in the region that the
 /// motion problem (21) has given it at the last sample: cell, trust region and links of the tree.
 pub fn moving() -> Predicate {
-    variable("clock")
-        .at_most(variable("period"))
-        .and(variable("outside").at_most(variable("rounding")))
+    waiting().and(variable("outside").at_most(variable("rounding")))
 }

@@ -7,6 +7,7 @@
 pub mod control;
 pub mod dealing;
 pub mod duty;
+pub mod service;
 pub mod target;
 
 use crate::{Guard, proposition, variable};

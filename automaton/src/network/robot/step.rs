@@ -8,15 +8,14 @@
 use pleach_continuous::Point;
 use std::sync::Arc;
 
-use pleach_discrete::Location as _;
 use pleach_discrete::network::{NodeId, Stage};
-use pleach_guards::EvaluationError;
 
+use super::super::control::Control;
 use super::super::member::Sense;
 use super::super::message::Message;
 use super::super::record::MissionEvent;
 use super::Robot;
-use crate::automaton::TransitionError;
+use crate::automaton::{InvariantError, TransitionError};
 use crate::located::Place as _;
 use crate::node::{Input, Node, Outputs};
 
@@ -38,28 +37,13 @@ pub enum RobotError {
     /// A guard speaks of something that robots do not measure.
     #[error(transparent)]
     Guard(#[from] TransitionError),
-    /// An invariant cannot be evaluated.
-    #[error("the invariant of robot {robot}: {source}")]
+    /// Time has passed although an invariant does not hold.
+    #[error("node {node}: {source}")]
     Invariant {
-        /// Which.
-        robot: usize,
-        /// Why.
-        source: EvaluationError,
-    },
-    /// Time has passed for a robot although its invariant does not hold.
-    #[error(
-        "robot {robot} is outside of its invariant while {stage}: τ = {clock}, and it is {outside} \
-         outside of the region that it was given at the last sample"
-    )]
-    OutsideInvariant {
-        /// Which.
-        robot: usize,
-        /// What it does.
-        stage: &'static str,
-        /// τ, in seconds.
-        clock: f64,
-        /// How far it is outside of its region, a length.
-        outside: f64,
+        /// The node.
+        node: NodeId,
+        /// Its invariant.
+        source: InvariantError,
     },
     /// A robot jumps and jumps, and no time passes.
     #[error("robot {robot} takes more than {MOST_JUMPS} transitions at one instant")]
@@ -106,24 +90,12 @@ impl Node for Robot {
     /// By the flow of the stage.
     fn flow(&mut self, duration: f64) {
         let site = Arc::clone(&self.site);
-        if let Some(flow) = site.automata.control.mode(self.stage()).and_then(|it| it.flow.as_ref())
-        {
-            let _ = flow.advance(self, duration);
-        }
+        site.automata.control.flow_in_place::<Control>(self, duration);
     }
 
     fn check_invariant(&self) -> Result<(), RobotError> {
-        let stage = self.stage();
-        let holds = self.site.automata.control.allows_time(stage, self);
-        match holds.map_err(|source| RobotError::Invariant { robot: self.id, source })? {
-            true => Ok(()),
-            false => Err(RobotError::OutsideInvariant {
-                robot: self.id,
-                stage: stage.name(),
-                clock: self.clock,
-                outside: self.outside(),
-            }),
-        }
+        let holds = self.site.automata.control.check_invariant(self.stage(), self);
+        holds.map_err(|source| RobotError::Invariant { node: self.id, source })
     }
 
     fn body(&self) -> Point {
