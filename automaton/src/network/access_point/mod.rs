@@ -167,8 +167,10 @@ impl AccessPoint {
     fn hear_notices(&mut self) -> Result<(), TransitionError> {
         let newest = self.heard.iter().map(|b| &b.bulletin).max_by_key(|b| b.sequence());
         self.newest = newest.filter(|heard| heard.is_newer_than(&self.bulletin)).cloned();
-        self.jump()?;
-        self.newest = None;
+        if self.newest.is_some() {
+            self.jump()?;
+            self.newest = None;
+        }
         for beacon in &self.heard {
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
                 own.merge(heard);
