@@ -75,6 +75,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) modes: Vec<Mode<S>>,
     /// By node: the edges that leave it, in their total order.
     pub(crate) leaving: Vec<Vec<EdgeIndex>>,
+    /// Propositions of which at most one is true at a time.
+    pub(crate) exclusive: Vec<Vec<String>>,
 }
 
 /// What an edge of the graph carries.
@@ -325,12 +327,22 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         self.step(&mut location, state)
     }
 
+    /// Two propositions that are true although the model says that they exclude each other.
+    fn two_at_once(&self, state: &S) -> Option<[&str; 2]> {
+        self.exclusive.iter().find_map(|group| {
+            let holds = |name: &&str| state.truth(name) == Some(true);
+            let mut true_ones = group.iter().map(String::as_str).filter(holds);
+            Some([true_ones.next()?, true_ones.next()?])
+        })
+    }
+
     fn first(
         &self,
         location: L,
         state: &S,
         eligible: impl Fn(&Transition<E, S>) -> bool,
     ) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
+        debug_assert!(self.two_at_once(state).is_none(), "{:?}", self.two_at_once(state));
         let leaving = self.node(location).and_then(|node| self.leaving.get(node.index()));
         for &edge in leaving.into_iter().flatten() {
             let transition = &self.graph[edge];

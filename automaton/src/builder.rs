@@ -40,6 +40,8 @@ pub struct Builder<L, E, S> {
     parameters: Vec<(String, f64)>,
     /// What changes alike in all locations.
     throughout: Vec<Rate<S>>,
+    /// Propositions of which at most one is true at a time.
+    exclusive: Vec<Vec<String>>,
     /// What is chosen at samples.
     commands: Vec<(L, Command)>,
     /// The names of all variables and propositions, where the state is not its coordinates.
@@ -213,6 +215,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             known: None,
             parameters: Vec::new(),
             throughout: Vec::new(),
+            exclusive: Vec::new(),
             commands: Vec::new(),
             observed: None,
             watch: |_| None,
@@ -286,7 +289,8 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         }
         let leaving = locations.iter().map(|&location| self.leaving(location)).collect();
         let modes = locations.iter().map(|&location| self.mode(location)).collect();
-        let Builder { rows, initial, initial_state, ranges, known, parameters, .. } = self;
+        let Builder { rows, initial, initial_state, ranges, known, parameters, exclusive, .. } =
+            self;
         Ok(Automaton {
             rows,
             initial,
@@ -299,6 +303,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             graph,
             modes,
             leaving,
+            exclusive,
         })
     }
 
@@ -352,6 +357,11 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         let invariants = invariants.map(|(location, invariant)| (location.name(), invariant));
         let commands = self.commands.iter();
         let commands = commands.map(|(location, command)| (location.name(), &command.guard));
+        let unknown = self.exclusive.iter().flatten().find(|name| !known.contains(&name.as_str()));
+        if let Some(name) = unknown {
+            let (place, proposition) = ("propositions that exclude each other", name.clone());
+            return Err(BuildError::UnknownProposition { place, proposition });
+        }
         for (place, predicate) in guards.chain(invariants).chain(commands) {
             if let Some(name) =
                 predicate.propositions().into_iter().find(|name| !known.contains(name))
@@ -579,6 +589,13 @@ impl<L: Location, E: Event, S: Observed> Builder<L, E, S> {
     pub fn observing(mut self) -> Self {
         self.observed = Some((S::VARIABLES, S::PROPOSITIONS));
         self.watch = Watch::of;
+        self
+    }
+
+    /// States are made such that at most one of these propositions is true at a time: checks look
+    /// nowhere else, and in builds with debug assertions every step of the automaton watches it.
+    pub fn at_most_one(mut self, propositions: &[&str]) -> Self {
+        self.exclusive.push(propositions.iter().map(|&name| name.to_owned()).collect());
         self
     }
 

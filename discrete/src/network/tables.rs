@@ -58,7 +58,8 @@ const fn step(
 
 /// The table of the mission automaton.
 ///
-/// Priority 0: what the newest notice says. Priority 1: what the robot itself finds.
+/// Priority 0: what the newest notice says. Priorities from 1: what the robot itself finds; a team
+/// that has reached its task calls for no recruit, and one that can call for one does not give up.
 pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::Idle, MissionStep::Ended, Phase::Ended),
     step(0, Phase::Idle, MissionStep::Announced, Phase::LeaderElection),
@@ -75,8 +76,8 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::Advance, MissionStep::Called, Phase::RecruitElection),
     step(1, Phase::Advance, MissionStep::Bound, Phase::RecruitElection),
     step(1, Phase::Advance, MissionStep::Reached, Phase::Idle),
-    step(1, Phase::Advance, MissionStep::Trapped, Phase::RecruitElection),
-    step(1, Phase::Advance, MissionStep::Blocked, Phase::Ended),
+    step(2, Phase::Advance, MissionStep::Trapped, Phase::RecruitElection),
+    step(3, Phase::Advance, MissionStep::Blocked, Phase::Ended),
     step(0, Phase::RecruitElection, MissionStep::Ended, Phase::Ended),
     step(0, Phase::RecruitElection, MissionStep::Announced, Phase::LeaderElection),
     step(0, Phase::RecruitElection, MissionStep::PathHeard, Phase::PathAgreement),
@@ -92,7 +93,7 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::Shift, MissionStep::Resumed, Phase::Advance),
     step(1, Phase::Shift, MissionStep::SubgroupArrived, Phase::Shift),
     step(1, Phase::Shift, MissionStep::Relieved, Phase::Advance),
-    step(1, Phase::Shift, MissionStep::Blocked, Phase::Ended),
+    step(3, Phase::Shift, MissionStep::Blocked, Phase::Ended),
 ]);
 
 #[cfg(test)]

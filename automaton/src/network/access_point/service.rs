@@ -285,8 +285,10 @@ fn all_serviced<A: DataOf<Serving>>(guard: Guard) -> Row {
 /// # Errors
 /// Never with the table and guards of this crate; they are checked all the same.
 pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
+    let notices = ["hears_election", "hears_progress", "hears_service", "hears_end"];
     Automaton::builder(SERVICE, Service::Gathering)
         .observing()
+        .at_most_one(&notices)
         .carried_out(election_heard::<Gathering>())
         .carried_out(election_heard::<Electing>())
         .carried_out(election_heard::<UnderWay>())
