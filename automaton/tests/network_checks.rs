@@ -18,7 +18,7 @@ fn has_no_unexplained_finding<L: Location, E: Event, S: Valuation>(automaton: &A
 
 #[test]
 fn automata_of_robots_have_no_faults() {
-    let automata = Automata::new().unwrap();
+    let automata = Automata::new().expect("the automata are well formed");
     has_no_unexplained_finding(&automata.duty);
     has_no_unexplained_finding(&automata.mission);
     has_no_unexplained_finding(&automata.dealing);
@@ -27,7 +27,7 @@ fn automata_of_robots_have_no_faults() {
 
 #[test]
 fn automata_of_access_points_and_the_user_have_no_faults() {
-    let automata = Automata::new().unwrap();
+    let automata = Automata::new().expect("the automata are well formed");
     has_no_unexplained_finding(&automata.service);
     has_no_unexplained_finding(&automata.rounds);
     has_no_unexplained_finding(&automata.request);
