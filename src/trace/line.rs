@@ -147,7 +147,7 @@ impl TryFrom<StepLine> for Snapshot {
                 .iter()
                 .map(|name| called("role", &Role::ALL, Role::name, name))
                 .collect::<Result<_, _>>()?,
-            phase: called("phase", &Phase::ALL, Phase::name, &line.phase)?,
+            phase: called("phase", Phase::ALL, Phase::name, &line.phase)?,
             active: line.active,
             active_team: line.active_team,
             primary_team: line.primary_team,
@@ -203,7 +203,7 @@ impl RobotsLine {
                     Dealing::name,
                     &self.exchange[robot],
                 )?,
-                phase: called("phase", &Phase::ALL, Phase::name, &self.known_phase[robot])?,
+                phase: called("phase", Phase::ALL, Phase::name, &self.known_phase[robot])?,
                 target: self.target[robot].map(Point2::from),
                 sent: self.sent[robot],
                 heard: self.heard[robot],

@@ -43,7 +43,7 @@ impl<M> Network<M> {
             activity: robot.duty().location(),
             dealing: robot.dealing(),
             phase: robot.phase(),
-            target: robot.target(),
+            target: robot.goal(),
             sent,
             heard,
         }
