@@ -67,7 +67,7 @@ mod tests {
         let line = "k = 677    subgroup 2, [8 9 10], starts\nshort\n";
         assert_eq!(wrapped(line, None, 11), line);
         assert_eq!(wrapped(line, Some(80), 11), line);
-        let narrow = "k = 677    subgroup 2, [8\n       9 10], starts\nshort\n";
+        let narrow = "k = 677    subgroup 2, [8 9\n       10], starts\nshort\n";
         assert_eq!(wrapped(line, Some(28), 11), narrow);
     }
 
