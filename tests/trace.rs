@@ -44,7 +44,8 @@ fn what_is_read_is_what_was_written() {
 /// Traces of older builds do not say where robots are in their automata.
 #[test]
 fn a_trace_without_views_of_robots_is_read() {
-    let older = written().lines().map(|line| {
+    let text = written();
+    let older = text.lines().map(|line| {
         let mut line: serde_json::Value = serde_json::from_str(line).unwrap();
         let fields = line.as_object_mut().unwrap();
         for name in ["location", "exchange", "known_phase", "target", "sent", "heard"] {

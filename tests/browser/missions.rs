@@ -3,6 +3,7 @@
 use super::chromium::Page;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::ValidScenario;
+use pleach::discrete::Location as _;
 use pleach::mission::{self, Watcher};
 use pleach::page::{self, MissionPage};
 use pleach::scenario_file;
