@@ -18,3 +18,11 @@ fn what_failed_once_does_not_fail_again() {
         assert_eq!(end.outcome, Outcome::Serviced, "{said}");
     }
 }
+
+/// Whether they can be serviced or not: no property is violated.
+#[test]
+fn races_that_were_lost_once_violate_nothing() {
+    let scenario = scenario_file::read("tests/scenarios/races/exchange-and-call.toml").unwrap();
+    let end = mission::run(&scenario, &mut []).unwrap().end;
+    assert_ne!(end.outcome, Outcome::InvariantViolated, "{}", end.reason);
+}
