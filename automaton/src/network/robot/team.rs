@@ -68,9 +68,8 @@ impl Robot {
         let follower = PostKind::Primary { follows: Some(post.id) };
         let told = matches!(*self.bulletin.notice(),
             Notice::Advance { joined: Some((_, followed)) } if followed == post.id);
-        let gives = |beacon: &Beacon| {
-            beacon.reply.as_ref().is_some_and(|reply| reply.accepted.is_some())
-        };
+        let gives =
+            |beacon: &Beacon| beacon.reply.as_ref().is_some_and(|reply| reply.accepted.is_some());
         !told
             && !self.neighbours.iter().any(|neighbour| {
                 neighbour.post().is_some_and(|post| post.kind == follower)
