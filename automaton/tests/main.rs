@@ -17,3 +17,5 @@ mod models;
 mod pictures;
 mod sampled_rooms;
 mod semantics;
+mod sets;
+mod sliding;
