@@ -95,9 +95,10 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     /// fails, sliding ends, too. An automaton without surfaces stays as it is.
     ///
     /// States beyond a surface by at most a billionth, of the comparison's right side or of 1 if that
-    /// is larger, are on it: landings are beyond it by a rounding error. A surface that is a formula
-    /// of degree one is not left but for rounding while the state slides; on a curved one errors of
-    /// the integration add up, as in any integrated flow. Sliding on two surfaces at once is not
+    /// is larger, are on it: landings are beyond it by a rounding error. A state that begins to slide
+    /// is put on it, and one that leaves is put beside it by a trillionth of the same. While it
+    /// slides, a surface that is a formula of degree one is not left but for rounding; on a curved one
+    /// errors of the integration add up, as in any integrated flow. Sliding on two surfaces at once is not
     /// defined by Filippov's convention and ends the run as before.
     ///
     /// # Errors

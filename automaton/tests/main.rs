@@ -15,6 +15,7 @@ mod guarantees;
 mod many_components;
 mod models;
 mod pictures;
+mod records;
 mod sampled_rooms;
 mod semantics;
 mod sets;

@@ -93,7 +93,7 @@ fn what_was_drawn_is_recorded_and_replayed() {
 #[test]
 fn texts_show_the_interval() {
     let ball = ball(0.5, 0.8).build().unwrap();
-    assert!(mermaid(&ball).contains("v :∈ [(−0.5) · v, (−0.8) · v]"), "{}", mermaid(&ball));
+    assert!(mermaid(&ball).contains("∈ [−0.5 · v, −0.8 · v]"), "{}", mermaid(&ball));
     assert!(latex(&ball).contains(r"\left["), "{}", latex(&ball));
 }
 
@@ -114,7 +114,9 @@ fn an_empty_interval_ends_the_run_and_checks_warn_of_it() {
 /// Only some numbers of the interval lie outside the invariant; the witness tells one.
 #[test]
 fn checks_look_at_every_number_of_an_interval() {
-    assert!(ball(0.5, 0.8).build().unwrap().check().is_sound());
+    let report = ball(0.5, 0.8).build().unwrap().check();
+    let kinds = [Kind::LandsOutside, Kind::Undefined, Kind::LeavesRange, Kind::Blocked];
+    assert!(!report.findings().iter().any(|one| kinds.contains(&one.kind)), "{report}");
     let Ball { height, .. } = Ball::coordinates();
     let stopping = |least: f64| {
         ball(0.5, 0.8)

@@ -1,6 +1,7 @@
 //! The surface between two locations, and what the flows of both do on it.
 
 use pleach_discrete::{Event, Location};
+use pleach_guards::expression::{BinaryOperator, UnaryOperator};
 use pleach_guards::{
     Comparison, Expression, Predicate, Relation, Substitution, always, constant, maximum, never,
     not,
@@ -42,9 +43,9 @@ struct Motion {
 /// States beyond a surface by this, relative to the right side of the comparison or to 1 if that is
 /// larger, are on it.
 const ON_IT: f64 = 1e-9;
-/// Who leaves a surface is put beside it by this part of the sides of the comparison, so that rounding
-/// does not put him on the other side: four spacings of the numbers.
-const BESIDE: f64 = 4.0 * f64::EPSILON;
+/// A state that leaves a surface is put beside it by this, relative to the same, so that rounding does
+/// not put it on the other side.
+const BESIDE: f64 = 1e-12;
 /// Coefficients of two comparisons that differ by rounding are the same.
 const ROUNDING: f64 = 1e-12;
 
@@ -140,35 +141,49 @@ impl<L: Location, S: Coordinates> Surface<L, S> {
         self.motions.iter().map(|one| one.coordinate).filter(move |name| names.contains(name))
     }
 
-    /// How fast the state of a side moves to the surface by the flow of that side.
-    fn approach(&self, side: usize) -> Expression {
-        if side == 0 { self.speeds[0].clone() } else { negated(&self.speeds[1]) }
+    /// Where the flow of a side leads to the surface.
+    fn leads(&self, side: usize) -> Predicate {
+        let speed = &self.speeds[side];
+        if side == 0 { speed.more_than(0.0) } else { speed.less_than(0.0) }
     }
 
-    /// How far a state is from a side, beyond the surface.
-    fn beyond(&self, side: usize) -> Expression {
-        if side == 0 { self.margin.clone() } else { negated(&self.margin) }
+    /// Where it does not.
+    fn leads_away(&self, side: usize) -> Predicate {
+        let speed = &self.speeds[side];
+        if side == 0 { speed.at_most(0.0) } else { speed.at_least(0.0) }
+    }
+
+    /// A small part of the right side of the comparison, or of 1 if that is larger.
+    fn small(&self, part: f64) -> Expression {
+        let right = self.comparison.right.abs();
+        match self.number(&right) {
+            Some(right) => constant(part * right.max(1.0)),
+            None => part * maximum([constant(1.0), right]),
+        }
     }
 
     /// What is asked of a crossing from a side, beside its guard: for it to end on the surface, and
     /// for it to lead across.
     pub(super) fn entry(&self, side: usize) -> [Predicate; 2] {
-        let (near, far) = (self.approach(side), self.approach(1 - side));
-        let beyond = self.beyond(side);
-        let tolerance = ON_IT * maximum([constant(1.0), self.comparison.right.abs()]);
-        let enters = near.more_than(0.0) & far.more_than(0.0) & beyond.at_most(tolerance.clone());
-        let passes =
-            (near.at_most(0.0) | far.at_most(0.0)) & (near.more_than(0.0) | beyond.more_than(0.0));
-        [enters, passes | beyond.more_than(tolerance)]
+        let far = 1 - side;
+        let tolerance = self.small(ON_IT);
+        let [on, beyond] = match side {
+            0 => [self.margin.at_most(&tolerance), self.margin.more_than(&tolerance)],
+            _ => {
+                let tolerance = negated(&tolerance);
+                [self.margin.at_least(&tolerance), self.margin.less_than(&tolerance)]
+            }
+        };
+        let enters = self.leads(side) & self.leads(far) & on;
+        [enters, self.leads(side) & self.leads_away(far) | beyond]
     }
 
     /// Where sliding ends on a side: its flow leads to the surface no longer, or what else is asked of
     /// a crossing from there fails.
     pub(super) fn exit(&self, side: usize) -> Predicate {
-        let parts = self.approach(side).at_most(0.0);
         match &self.rests[side] {
-            rest if *rest == always() => parts,
-            rest => parts | not(rest.clone()),
+            rest if *rest == always() => self.leads_away(side),
+            rest => self.leads_away(side) | not(rest.clone()),
         }
     }
 
@@ -234,18 +249,9 @@ impl<L: Location, S: Coordinates> Surface<L, S> {
         self.moved(&self.margin)
     }
 
-    /// The reset that puts a state on the surface beside it, on a side, unless σ = 0 is reached
-    /// exactly.
+    /// The reset that puts a state on the surface beside it, on a side.
     pub(super) fn off(&self, side: usize) -> Reset<S> {
-        let mut slopes = self.motions.iter().filter(|one| one.slope != constant(0.0));
-        let is_exact =
-            |one: &Motion| self.number(&one.slope).is_some_and(|slope| slope.abs() == 1.0);
-        if slopes.next().is_some_and(is_exact) && slopes.next().is_none() {
-            return Reset::identity();
-        }
-        let Comparison { left, right, .. } = &self.comparison;
-        let least = BESIDE * left.abs().max(right.abs());
-        let margin = &self.margin;
+        let (margin, least) = (self.margin.clone(), self.small(BESIDE));
         self.moved(&if side == 0 { margin + least } else { margin - least })
     }
 
@@ -256,7 +262,11 @@ impl<L: Location, S: Coordinates> Surface<L, S> {
             Assignment::new(one.coordinate, NewValue::Exactly(value))
         };
         if let Some((pivot, slope)) = self.pivot() {
-            let step = if slope == 1.0 { change.clone() } else { change / slope };
+            let step = match slope {
+                1.0 => change.clone(),
+                -1.0 => negated(change),
+                _ => change / slope,
+            };
             return assign(pivot, step).into();
         }
         let [near, far] = &self.speeds;
@@ -344,10 +354,14 @@ fn margin(comparison: &Comparison) -> Expression {
 
 /// Whether the two compare the same numbers the other way round.
 fn are_opposite(one: &Comparison, other: &Comparison, numbers: &Substitution) -> bool {
-    let [first, second] = [one, other].map(margin);
-    if first == negated(&second) || negated(&first) == second {
+    let is_lower = |one: &Comparison| matches!(one.relation, Relation::AtMost | Relation::LessThan);
+    let is_turned = is_lower(one) != is_lower(other);
+    if is_turned && one.left == other.left && one.right == other.right
+        || !is_turned && one.left == other.right && one.right == other.left
+    {
         return true;
     }
+    let [first, second] = [one, other].map(margin);
     let forms = [first, second].map(|margin| margin.substitute(numbers).linear_form());
     let [Some(first), Some(second)] = forms else { return false };
     let Some((name, coefficient)) = first.coefficients().next() else { return false };
@@ -378,9 +392,8 @@ fn without(mut parts: Vec<Predicate>, place: usize) -> Predicate {
 fn negated(expression: &Expression) -> Expression {
     match expression {
         Expression::Constant(value) => constant(-value),
-        Expression::Unary(pleach_guards::expression::UnaryOperator::Negation, operand) => {
-            (**operand).clone()
-        }
+        Expression::Binary(BinaryOperator::Difference, left, right) => &**right - &**left,
+        Expression::Unary(UnaryOperator::Negation, operand) => (**operand).clone(),
         other => -other,
     }
 }
@@ -403,6 +416,8 @@ fn times(left: &Expression, right: &Expression) -> Expression {
         right.clone()
     } else if *right == one {
         left.clone()
+    } else if *left == constant(-1.0) {
+        negated(right)
     } else {
         left * right
     }
