@@ -121,7 +121,14 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         let guards = conditions.chain(edges).map(|(place, guard)| (place, guard.predicate()));
         let invariants = self.invariants.iter();
         let invariants = invariants.map(|(location, invariant)| (location.name(), invariant));
-        for (place, predicate) in guards.chain(invariants) {
+        let commands = self.commands.iter();
+        let commands = commands.map(|(location, command)| (location.name(), &command.guard));
+        let unknown = self.exclusive.iter().flatten().find(|name| !known.contains(&name.as_str()));
+        if let Some(name) = unknown {
+            let (place, proposition) = ("propositions that exclude each other", name.clone());
+            return Err(BuildError::UnknownProposition { place, proposition });
+        }
+        for (place, predicate) in guards.chain(invariants).chain(commands) {
             if let Some(name) =
                 predicate.propositions().into_iter().find(|name| !known.contains(name))
             {
@@ -149,6 +156,9 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         }
         for (location, invariant) in &self.invariants {
             parts.push(Part::reading(location.name(), "invariant", invariant));
+        }
+        for (location, command) in &self.commands {
+            parts.push(Part::reading(location.name(), "law", &command.guard));
         }
         parts
     }
