@@ -87,7 +87,10 @@ fn bounces() {
     let few = cost(1000);
     for bounces in [1000, 100_000] {
         let time = cost(bounces);
-        println!("  {bounces} bounces: {time:?} per bounce ({:.2} of that of 1000)", ratio(time, few));
+        println!(
+            "  {bounces} bounces: {time:?} per bounce ({:.2} of that of 1000)",
+            ratio(time, few)
+        );
     }
 }
 
@@ -101,7 +104,8 @@ fn stiff() {
         .expect("it is sound");
     let ours = fastest(5, || oscillator.run(4000.0));
     let other = fastest(5, || stiff_van_der_pol(4000.0, 1e-9, 1e-9));
-    let pieces = oscillator.run(4000.0).expect("it can be run").phases().map(|one| one.samples.len());
+    let trajectory = oscillator.run(4000.0).expect("it can be run");
+    let pieces = trajectory.phases().map(|one| one.samples.len());
     println!(
         "  van der Pol, μ = 1000, at 1e-9: {ours:.1?}, {} samples; diffsol bdf {other:.1?} ({:.2})",
         pieces.sum::<usize>(),

@@ -154,7 +154,8 @@ pub fn stiff_van_der_pol(end: f64, relative: f64, absolute: f64) -> Vec<f64> {
             },
             |x: &[f64], _p: &[f64], _t: f64, v: &[f64], product: &mut [f64]| {
                 product[0] = v[1];
-                product[1] = (-2.0 * MU * x[0] * x[1] - 1.0) * v[0] + MU * (1.0 - x[0] * x[0]) * v[1];
+                product[1] =
+                    (-2.0 * MU * x[0] * x[1] - 1.0) * v[0] + MU * (1.0 - x[0] * x[0]) * v[1];
             },
         )
         .init(|_p: &[f64], _t: f64, x: &mut [f64]| x.copy_from_slice(&[2.0, 0.0]), 2)
