@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The packages with their product sources, the root package first.
+/// The packages that users depend on, the root package first.
 const PACKAGES: [&str; 6] = ["", "guards", "discrete", "continuous", "automaton", "verify"];
 
 fn root() -> &'static Path {
@@ -80,10 +80,14 @@ fn assert_none(offences: Vec<String>, rule: &str) {
     assert!(offences.is_empty(), "{rule}:\n{}", offences.join("\n"));
 }
 
+/// The manifest in a folder.
+fn manifest(folder: &Path) -> toml::Table {
+    fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap()
+}
+
 /// The `[dependencies]` table of a package.
 fn dependency_table(package: &str) -> toml::Table {
-    let manifest = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
-    let manifest: toml::Table = manifest.parse().unwrap();
+    let manifest = manifest(&root().join(package));
     let dependencies = manifest.get("dependencies").and_then(toml::Value::as_table);
     dependencies.cloned().unwrap_or_default()
 }
@@ -121,6 +125,34 @@ fn the_layers_know_only_those_below_them() {
         for dependency in dependencies(package) {
             let allowed = !dependency.starts_with("pleach") || below.contains(&&*dependency);
             assert!(allowed, "{package} depends on {dependency}");
+        }
+    }
+}
+
+/// What explores and tests the product is no part of it: packages that are not published appear
+/// among the dependencies of tests only, and nothing turns on what drives robots by hand.
+#[test]
+fn users_do_not_build_what_tests_the_product() {
+    let workspace = manifest(root());
+    let members = workspace["workspace"]["members"].as_array().unwrap();
+    let folders = members.iter().map(|member| member.as_str().unwrap());
+    let unpublished: Vec<String> = folders
+        .map(|folder| manifest(&root().join(folder)))
+        .filter(|manifest| {
+            manifest["package"].get("publish").and_then(toml::Value::as_bool) == Some(false)
+        })
+        .map(|manifest| manifest["package"]["name"].as_str().unwrap().to_owned())
+        .collect();
+    assert!(unpublished.iter().any(|name| name == "pleach-exploration"), "{unpublished:?}");
+    for package in PACKAGES {
+        let manifest = manifest(&root().join(package));
+        assert!(manifest["package"].get("publish").is_none(), "{package:?} is published");
+        assert!(manifest.get("target").is_none(), "{package:?} has dependencies for some targets");
+        for (name, dependency) in dependency_table(package) {
+            assert!(!unpublished.contains(&name), "{package:?} depends on {name}");
+            let features = dependency.get("features").and_then(toml::Value::as_array);
+            let drives_robots = |feature: &toml::Value| feature.as_str() == Some("abstraction");
+            assert!(!features.is_some_and(|it| it.iter().any(drives_robots)), "{package:?}");
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pleach::automaton::network::record::{MissionEvent, Route, Snapshot};
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Message, Robot, Site};
-use pleach::automaton::node::{Input, Node, Outputs};
+use pleach::automaton::node::{Input, Node, Observed, Outputs};
 use pleach::continuous::Point;
 use pleach::continuous::geometry::{Disc, Segment, convex_region, voronoi_half_planes};
 use pleach::continuous::network::LinkReliability;
@@ -176,7 +176,7 @@ impl Crowd {
     /// A control period begins.
     pub fn begin_period(&mut self) {
         for robot in &mut self.robots {
-            let still = robot.still_periods();
+            let still = robot.view().still_periods();
             robot.pass_period(still).expect("guards that can be evaluated");
         }
     }

@@ -3,6 +3,9 @@
 //! An access point passes on what it hears like a robot does. The first of them also serves the
 //! user: it announces the tasks one after another, each when the one before is serviced.
 
+#[cfg(feature = "abstraction")]
+mod abstraction;
+
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -95,11 +98,6 @@ impl AccessPoint {
         beacon
     }
 
-    /// What the access point would tell its neighbours now.
-    pub fn beacon(&self) -> Beacon {
-        self.public_state()
-    }
-
     fn public_state(&self) -> Beacon {
         Beacon {
             sender: self.id(),
@@ -124,7 +122,7 @@ impl AccessPoint {
     }
 
     /// Puts together what it has heard in one round.
-    pub fn think(&mut self) {
+    fn think(&mut self) {
         self.hear_word();
         self.find_route();
         self.call_roll();
@@ -234,7 +232,7 @@ impl AccessPoint {
 
     /// Announces the next of the user's tasks when the one before is serviced, and says when the
     /// mission has ended.
-    pub fn serve(&mut self) {
+    fn serve(&mut self) {
         let Some(tasks) = self.requested.clone() else { return };
         let next = match self.bulletin.notice() {
             Notice::Quiet if self.settled_rounds < ROUNDS_UNTIL_ROSTER_SETTLES => return,
@@ -309,25 +307,6 @@ impl AccessPoint {
     /// The newest word on the mission that it knows.
     pub fn notice(&self) -> &Notice {
         self.bulletin.notice()
-    }
-
-    /// Everything, apart from what it hears, that decides what the access point says from now on;
-    /// for explorers. Waits that are over are over, however long.
-    pub fn account(&self) -> String {
-        let settled = match self.bulletin.notice() {
-            Notice::Quiet => self.settled_rounds.min(ROUNDS_UNTIL_ROSTER_SETTLES),
-            _ => 0,
-        };
-        let patience = PATIENCE_WITH_ELECTIONS * self.longest_wait() + 1;
-        let electing = matches!(self.bulletin.notice(), Notice::Task { .. } | Notice::Call { .. });
-        let rounds = if electing { self.election_rounds.min(patience) } else { 0 };
-        format!(
-            "{:?}",
-            (
-                (self.number, &self.bulletin, &self.announced, &self.election, rounds),
-                (&self.agreement, &self.route, &self.crossing, &self.roster, settled),
-            )
-        )
     }
 }
 

@@ -18,7 +18,7 @@ use super::medium::Radio;
 use super::member::{Member, MemberView, Sense};
 use super::message::Message;
 use super::record::{End, MissionEvent, Outcome};
-use super::robot::{Robot, RobotError, Stage};
+use super::robot::{Robot, RobotError, RobotView, Stage};
 use super::scenario::{Scenario, ValidScenario};
 use super::site::Site;
 use super::user::User;
@@ -135,7 +135,7 @@ impl<M> Network<M> {
     }
 
     /// The robots as observers see them, by number.
-    pub fn robots(&self) -> Vec<&Robot> {
+    pub fn robots(&self) -> Vec<RobotView<'_>> {
         self.nodes.views().filter_map(MemberView::robot).collect()
     }
 
@@ -168,7 +168,7 @@ impl<M: Medium<Message, Point>> System for Network<M> {
             return None;
         }
         let limit = self.site.settings.max_steps;
-        let is_at_rest = || !self.robots().into_iter().any(Robot::is_active);
+        let is_at_rest = || !self.robots().into_iter().any(RobotView::is_active);
         self.announced_end().filter(|_| is_at_rest()).or_else(|| {
             (self.step >= limit).then(|| End {
                 outcome: Outcome::StepLimit,
@@ -183,7 +183,7 @@ impl<M: Medium<Message, Point>> System for Network<M> {
             self.events.clear();
         }
         let first = self.nodes.view(0).and_then(MemberView::robot);
-        let stage = first.map_or(Stage::Sample, Robot::stage);
+        let stage = first.map_or(Stage::Sample, RobotView::stage);
         let begin = Instant::now();
         self.nodes.jump(round)?;
         *self.times.of(stage) += begin.elapsed();

@@ -25,6 +25,6 @@ pub use link::Link;
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
-pub use robot::{Robot, dealing_automaton, duty_automaton, mission_automaton};
+pub use robot::{Robot, RobotView, dealing_automaton, duty_automaton, mission_automaton};
 pub use site::{Site, SiteError};
 pub use user::User;

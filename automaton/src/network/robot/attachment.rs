@@ -24,7 +24,7 @@ pub(super) const PATIENCE_WITH_BARREN_POSTS: u32 = 2;
 
 impl Robot {
     /// Renews the robot's place in the tree from what it has heard.
-    pub fn keep_place(&mut self) {
+    pub(super) fn keep_place(&mut self) {
         (self.desired_parent, self.reattaches_to) = (None, None);
         if self.is_engaged() {
             // The place goes with the duty that is being handed over.

@@ -225,7 +225,7 @@ facts! {
 
 impl Robot {
     /// Measures the facts; says whether a guard may hold that did not hold before.
-    pub fn measure(&mut self) -> bool {
+    pub(super) fn measure(&mut self) -> bool {
         if !std::mem::take(&mut self.is_unmeasured) {
             return false;
         }

@@ -151,12 +151,12 @@ impl Robot {
     }
 
     /// Whom the robot hears, and for how many rounds it has not.
-    pub fn audible(&self) -> impl Iterator<Item = (NodeId, u8)> {
+    pub(super) fn audible(&self) -> impl Iterator<Item = (NodeId, u8)> {
         self.neighbours.iter().map(|neighbour| (neighbour.id(), neighbour.silent_rounds))
     }
 
     /// The beacon that the robot goes by of each of its neighbours, ascending.
-    pub fn held_beacons(&self) -> impl Iterator<Item = &Arc<Beacon>> {
+    pub(super) fn held_beacons(&self) -> impl Iterator<Item = &Arc<Beacon>> {
         self.neighbours.iter().map(|neighbour| &neighbour.beacon)
     }
 

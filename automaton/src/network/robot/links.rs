@@ -22,7 +22,7 @@ pub struct TreeLink {
 impl Robot {
     /// The node that this robot hangs on: the one that its duty names or, while that is not
     /// heard of, the one that it hung on before.
-    pub fn tree_parent(&self) -> Option<NodeId> {
+    pub(super) fn tree_parent(&self) -> Option<NodeId> {
         self.named_parent()
             .filter(|&parent| parent != self.id)
             .or_else(|| self.parent.filter(|&parent| self.neighbour(parent).is_some()))
@@ -34,7 +34,7 @@ impl Robot {
     }
 
     /// The links of the tree at this robot: to its parent first, then to its children.
-    pub fn tree_links(&self) -> Vec<TreeLink> {
+    pub(super) fn tree_links(&self) -> Vec<TreeLink> {
         let mut links = Vec::new();
         links.extend(self.parent_link());
         links.extend(self.tree_children().map(|child| TreeLink {

@@ -99,13 +99,8 @@ impl Robot {
     }
 
     /// The phase of the mission as the robot knows it.
-    pub fn phase(&self) -> Phase {
+    pub(super) fn phase(&self) -> Phase {
         self.mission.location()
-    }
-
-    /// The mission as the robot knows it.
-    pub fn mission(&self) -> &Mission {
-        &self.mission
     }
 
     /// Takes the maximum of what it knows of the mission and what its neighbours say.

@@ -52,7 +52,7 @@ const FULL_LOAD: f64 = 1.0 - 1e-9;
 impl Robot {
     /// Whether the robot stands still unless it is asked for; robots that settle on their post
     /// count as parked.
-    pub fn is_parked(&self) -> bool {
+    pub(super) fn is_parked(&self) -> bool {
         match *self.duty {
             Duty::Shifting(_) => self.active_subgroup().is_none(),
             Duty::Following(_) | Duty::Leading(_) => self.phase() != Phase::Advance,
@@ -61,7 +61,7 @@ impl Robot {
     }
 
     /// ψ_i: where the robot goes now (Algorithm 2), if it goes anywhere.
-    pub fn goal(&self) -> Option<Point> {
+    pub(super) fn goal(&self) -> Option<Point> {
         if self.is_engaged() || self.phase() == Phase::Ended || self.is_held_by_old_news() {
             return None;
         }
@@ -103,7 +103,7 @@ impl Robot {
     }
 
     /// Whether the robot may move in this period.
-    pub fn is_active(&self) -> bool {
+    pub(super) fn is_active(&self) -> bool {
         self.goal().is_some()
     }
 

@@ -97,12 +97,12 @@ impl Robot {
     }
 
     /// How many subgroups of the path have arrived, as far as it knows.
-    pub fn subgroups_done(&self) -> usize {
+    pub(super) fn subgroups_done(&self) -> usize {
         self.mission.shift().map_or(0, |shift| shift.arrived)
     }
 
     /// The subgroup that is the active team, while one is.
-    pub fn active_subgroup(&self) -> Option<Subgroup> {
+    pub(super) fn active_subgroup(&self) -> Option<Subgroup> {
         self.mission.shift()?.active()
     }
 

@@ -112,7 +112,7 @@ impl Robot {
     }
 
     /// λ_i.
-    pub fn multiplier(&self) -> f64 {
+    pub(super) fn multiplier(&self) -> f64 {
         match &self.routing {
             RoutingState::Dual(state) => state.multiplier(),
             RoutingState::Adal(state) => state.multiplier(),
@@ -219,7 +219,7 @@ impl Robot {
     }
 
     /// The links in use.
-    pub fn routes(&self) -> impl Iterator<Item = &RouteLink> {
+    pub(super) fn routes(&self) -> impl Iterator<Item = &RouteLink> {
         self.links.iter().filter(|link| link.share > 0.0)
     }
 
@@ -436,7 +436,7 @@ impl Robot {
     }
 
     /// Whether the routes cannot carry the rates: c_i < −c_min.
-    pub fn is_infeasible(&self) -> bool {
+    pub(super) fn is_infeasible(&self) -> bool {
         self.residual < -self.site.settings.residual_tolerance - RESIDUAL_ROUNDING
     }
 

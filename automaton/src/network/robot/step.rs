@@ -121,9 +121,19 @@ impl Node for Robot {
 }
 
 impl Robot {
-    /// What the robot waits for.
-    pub const fn stage(&self) -> Stage {
-        self.stage
+    /// The robot stands at `position`, and has not got on for `still_periods` control periods.
+    pub(super) fn stand_at(&mut self, position: Point, still_periods: u32) {
+        (self.position, self.arrival, self.resting_place) = (position, position, position);
+        self.still_periods = still_periods;
+        self.stir();
+    }
+
+    /// The robot finds that it stands at `position`, and how far its neighbours are from there.
+    fn find_itself_at(&mut self, position: Point) {
+        self.stand_at(position, 0);
+        for known in &mut self.neighbours {
+            *known = known.seen_from(position, &self.site);
+        }
     }
 
     /// Time until the clock calls for the next sample.

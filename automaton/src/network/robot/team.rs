@@ -54,7 +54,7 @@ pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
 
 impl Robot {
     /// Whether this robot is the elected leader, released or not.
-    pub fn leads(&self) -> bool {
+    pub(super) fn leads(&self) -> bool {
         self.duty.leads()
     }
 

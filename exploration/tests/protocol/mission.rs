@@ -8,13 +8,13 @@
 
 use std::collections::BTreeMap;
 
-use pleach_automaton::network::Robot;
+use pleach_automaton::network::RobotView;
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::duty::Duty;
 use pleach_automaton::network::record::Outcome;
 use pleach_discrete::network::NodeId;
-use pleach_verify::network::exploration::properties::duties;
-use pleach_verify::network::exploration::{Protocol, State};
+use pleach_exploration::network::properties::duties;
+use pleach_exploration::network::{Protocol, State};
 
 /// What is said of the mission, without who says it and where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -202,7 +202,7 @@ impl Mission {
 
     /// An election is held on a word that calls for one, and its winner stays the winner.
     fn hear_elections(&mut self, protocol: &Protocol, state: &State) -> Result<(), String> {
-        for (number, best) in protocol.robots(state).filter_map(Robot::concluded_election) {
+        for (number, best) in protocol.robots(state).filter_map(RobotView::concluded_election) {
             let winner = best.map(|(_, robot)| robot);
             let first = *self.winners.entry(number).or_insert(winner);
             if first != winner {

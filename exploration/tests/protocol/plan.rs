@@ -1,8 +1,6 @@
 //! Random networks, and what may happen in them.
 
-use pleach_verify::network::exploration::{
-    Action, Configuration, Faults, Graph, Medium, Place, Places,
-};
+use pleach_exploration::network::{Action, Configuration, Faults, Graph, Medium, Place, Places};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest_state_machine::ReferenceStateMachine;

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::DiGraph;
 
-use super::{Exploration, StateId};
+use super::{StateGraph, StateId};
 
 /// Which paths count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub enum Fairness {
     Strong,
 }
 
-impl<S, A: Copy + Ord> Exploration<S, A> {
+impl<S, A: Copy + Ord> StateGraph<S, A> {
     /// Where a fair path may stay for ever without coming to a goal: each such set of states by
     /// one of its members that is first in the order of the visit.
     ///

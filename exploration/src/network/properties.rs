@@ -4,14 +4,14 @@
 //! off a state. While two robots exchange duties there is a moment at which one has taken over
 //! and the other does not know yet: what counts is the [duty in effect](duties).
 
-use pleach_automaton::network::Robot;
+use pleach_automaton::network::RobotView;
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::duty::Duty;
 use pleach_discrete::network::{Anchor, Phase, Post, PostId, PostKind, Role};
 
 use super::protocol::{Protocol, State};
-use crate::exploration::Property;
-use crate::network::{duty, election, team, tree};
+use crate::Property;
+use pleach_verify::network::{duty, election, team, tree};
 
 /// The properties that hold in every state.
 pub const ALWAYS: &[Property<Protocol>] = &[
@@ -40,7 +40,7 @@ pub fn property(name: &str) -> Option<&'static Property<Protocol>> {
 }
 
 /// Whether a robot has given its duty away and does not know it yet: the mover has taken it.
-pub fn has_handed_over(protocol: &Protocol, state: &State, robot: &Robot) -> bool {
+pub fn has_handed_over(protocol: &Protocol, state: &State, robot: RobotView<'_>) -> bool {
     let Some(reply) = robot.beacon().reply.filter(|reply| reply.accepted.is_some()) else {
         return false;
     };
@@ -65,7 +65,7 @@ fn posts(protocol: &Protocol, state: &State) -> Vec<Post> {
 }
 
 fn parents(protocol: &Protocol, state: &State) -> Vec<Option<usize>> {
-    protocol.robots(state).map(Robot::tree_parent).collect()
+    protocol.robots(state).map(RobotView::tree_parent).collect()
 }
 
 /// From parent to parent, every robot that has one comes to an access point.
@@ -84,8 +84,8 @@ pub fn workers_are_in_the_tree(protocol: &Protocol, state: &State) -> bool {
 pub fn at_most_one_leads(protocol: &Protocol, state: &State) -> bool {
     let roles: Vec<Role> = protocol
         .robots(state)
-        .filter(|robot| !has_handed_over(protocol, state, robot))
-        .map(Robot::role)
+        .filter(|robot| !has_handed_over(protocol, state, *robot))
+        .map(RobotView::role)
         .collect();
     team::has_at_most_one_leader(&roles)
 }
@@ -131,7 +131,7 @@ fn serviced(protocol: &Protocol, state: &State) -> usize {
         .map(|local| match local.notice() {
             Notice::Task { task, .. } => *task,
             Notice::Serviced { task } => task + 1,
-            _ => local.robot().and_then(Robot::current_task).unwrap_or_default(),
+            _ => local.robot().and_then(RobotView::current_task).unwrap_or_default(),
         })
         .max()
         .unwrap_or_default()
@@ -148,7 +148,8 @@ pub fn serviced_tasks_are_held(protocol: &Protocol, state: &State) -> bool {
 
 /// No task is the duty of two robots, but while one relieves the other on Σ.
 pub fn no_task_is_held_twice(protocol: &Protocol, state: &State) -> bool {
-    let relieves = |robot: &Robot| robot.duty().place().is_some() && robot.phase() == Phase::Shift;
+    let relieves =
+        |robot: RobotView<'_>| robot.duty().place().is_some() && robot.phase() == Phase::Shift;
     protocol.robots(state).any(relieves)
         || (0..serviced(protocol, state)).all(|task| holders(protocol, state, task) < 2)
 }
@@ -177,7 +178,7 @@ pub fn junctions_and_tasks_are_occupied(protocol: &Protocol, state: &State) -> b
 
 /// Robots that know an election to be over know the same winner.
 pub fn elections_agree(protocol: &Protocol, state: &State) -> bool {
-    let over: Vec<_> = protocol.robots(state).filter_map(Robot::concluded_election).collect();
+    let over: Vec<_> = protocol.robots(state).filter_map(RobotView::concluded_election).collect();
     over.iter().all(|(number, best)| over.iter().all(|(n, b)| n != number || b == best))
 }
 
@@ -186,8 +187,8 @@ pub fn elections_agree(protocol: &Protocol, state: &State) -> bool {
 /// Robots that have begun a later election remember no older bid of theirs: then the word has
 /// gone on, and the election was looked at before.
 pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
-    protocol.robots(state).filter_map(Robot::concluded_election).all(|(number, winner)| {
-        let took_part = |robot: &Robot| robot.election_number() == Some(number);
+    protocol.robots(state).filter_map(RobotView::concluded_election).all(|(number, winner)| {
+        let took_part = |robot: RobotView<'_>| robot.election_number() == Some(number);
         let bids: Vec<_> = protocol.robots(state).map(|robot| robot.own_bid(number)).collect();
         !protocol.robots(state).all(took_part) || election::is_won_by_best(&bids, winner)
     })
@@ -196,17 +197,17 @@ pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
 /// While Σ is walked one team is active: who moves for a task is in the primary team or in a
 /// subgroup, all in the same one.
 pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
-    let of = |is_member: &dyn Fn(&Robot) -> bool| -> Vec<usize> {
+    let of = |is_member: &dyn Fn(RobotView<'_>) -> bool| -> Vec<usize> {
         let robots = protocol.robots(state).enumerate();
-        robots.filter(|(_, robot)| is_member(robot)).map(|(id, _)| id).collect()
+        robots.filter(|(_, robot)| is_member(*robot)).map(|(id, _)| id).collect()
     };
-    let is_shifting = |robot: &Robot| matches!(robot.duty(), Duty::Shifting(_));
+    let is_shifting = |robot: RobotView<'_>| matches!(robot.duty(), Duty::Shifting(_));
     let moving =
         of(&|robot| robot.is_active() && (is_shifting(robot) || robot.duty().is_primary()));
     let primary_team = of(&|robot| robot.duty().is_primary());
     let known = protocol.robots(state).filter_map(agreed).max_by_key(|&(number, _)| number);
     let subgroups: Vec<Vec<usize>> = known.map_or_else(Vec::new, |(_, groups)| {
-        let has_left = |robot: &Robot, places: std::ops::Range<usize>| {
+        let has_left = |robot: RobotView<'_>, places: std::ops::Range<usize>| {
             is_shifting(robot) && robot.duty().place().is_some_and(|place| places.contains(&place))
         };
         groups.iter().map(|group| of(&|robot| has_left(robot, group.places()))).collect()
@@ -216,7 +217,7 @@ pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
 }
 
 /// The path that a robot has agreed on, by its number, and its subgroups.
-fn agreed(robot: &Robot) -> Option<(u32, &[pleach_discrete::network::Subgroup])> {
+fn agreed(robot: RobotView<'_>) -> Option<(u32, &[pleach_discrete::network::Subgroup])> {
     let number = robot.beacon().agreement?.number();
     (robot.phase() == Phase::Shift).then(|| (number, robot.subgroups()))
 }

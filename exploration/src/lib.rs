@@ -1,12 +1,15 @@
 //! Exhaustive exploration: every state that a discrete system can reach, in every order of events.
 //!
+//! The package tests the packages that are published, and is not published itself: [`network`]
+//! explores the protocol of the robots, by the code that they run.
+//!
 //! A [`Model`] says where it starts and what may happen next. [`explore`] visits its states
 //! breadth first, so that the way to a state that it finds is a shortest one, and checks each
-//! with the properties given. What it has visited is an [`Exploration`]: a finite graph, on which
-//! [`traps`](Exploration::traps) decides what must happen on every fair path.
+//! with the properties given. What it has visited is a [`StateGraph`]: a finite graph, on which
+//! [`traps`](StateGraph::traps) decides what must happen on every fair path.
 //!
 //! ```
-//! use pleach_verify::exploration::{Fairness, Model, Property, explore};
+//! use pleach_exploration::{Fairness, Model, Property, explore};
 //!
 //! /// Two processes that take turns in counting to three.
 //! struct Turns;
@@ -39,11 +42,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may panic"))]
+
 mod explorer;
 mod liveness;
+pub mod network;
 
 pub use explorer::{
-    Exploration, ExplorationError, Explored, Model, Property, StateId, Successors, Violation,
+    ExplorationError, Explored, Model, Property, StateGraph, StateId, Successors, Violation,
     explore,
 };
 pub use liveness::Fairness;

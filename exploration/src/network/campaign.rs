@@ -14,7 +14,7 @@ use super::places::{Place, Places, PlacesError};
 use super::properties::{ALWAYS, has_ended};
 use super::protocol::{Configuration, Protocol, ProtocolError, State};
 use super::story::story;
-use crate::exploration::{Exploration, ExplorationError, Fairness, StateId, explore};
+use crate::{ExplorationError, Fairness, StateGraph, StateId, explore};
 
 /// Which graphs of a number of robots and access points are explored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,7 +195,7 @@ impl Findings {
         }
     }
 
-    fn told(name: &str, protocol: &Protocol, exploration: &Exploration<State, Action>) -> Self {
+    fn told(name: &str, protocol: &Protocol, exploration: &StateGraph<State, Action>) -> Self {
         let fail = |property: &'static str, state: StateId| {
             let story = story(protocol, exploration, state);
             Failure { configuration: name.to_owned(), property, story }
@@ -232,7 +232,7 @@ impl Findings {
 /// How the missions of a configuration may end.
 fn outcomes(
     protocol: &Protocol,
-    exploration: &Exploration<State, Action>,
+    exploration: &StateGraph<State, Action>,
 ) -> impl Iterator<Item = &'static str> {
     exploration.states().iter().filter(|state| has_ended(protocol, state)).filter_map(|state| {
         match protocol.locals(state).next()?.notice() {

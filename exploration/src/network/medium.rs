@@ -1,6 +1,6 @@
 //! How messages go from node to node, and what may become of them on the way.
 
-use pleach_automaton::network::Robot;
+use pleach_automaton::network::RobotView;
 use pleach_automaton::network::robot::RobotError;
 use pleach_discrete::network::NodeId;
 
@@ -118,7 +118,7 @@ impl Protocol {
     pub(super) fn still_heard_by(&self, state: &State, receiver: NodeId) -> Vec<BeaconId> {
         let local = self.nodes().local(state.locals[receiver]);
         let is_silent = |sender: NodeId| {
-            let mut known = local.robot().into_iter().flat_map(Robot::audible);
+            let mut known = local.robot().into_iter().flat_map(RobotView::audible);
             known.any(|(node, silent_rounds)| node == sender && silent_rounds > 0)
         };
         let stays = |&beacon: &BeaconId| {

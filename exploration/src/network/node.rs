@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use pleach_automaton::network::beacon::{Beacon, Notice};
 use pleach_automaton::network::robot::RobotError;
-use pleach_automaton::network::{AccessPoint, Message, Robot, Sense};
-use pleach_automaton::node::{Input, Node as _, Outputs};
+use pleach_automaton::network::{AccessPoint, Message, Robot, RobotView, Sense};
+use pleach_automaton::node::{Input, Node as _, Observed, Outputs};
 use pleach_continuous::Point;
 
 /// The number of a beacon among all those ever said.
@@ -34,9 +34,9 @@ impl Node {
     }
 
     /// The robot, unless it is an access point.
-    pub fn robot(&self) -> Option<&Robot> {
+    pub fn robot(&self) -> Option<RobotView<'_>> {
         match self {
-            Node::Robot(robot) => Some(robot),
+            Node::Robot(robot) => Some(robot.view()),
             Node::AccessPoint(_) => None,
         }
     }
@@ -55,14 +55,14 @@ pub struct Local {
 
 impl Local {
     /// The robot, unless it is an access point.
-    pub fn robot(&self) -> Option<&Robot> {
+    pub fn robot(&self) -> Option<RobotView<'_>> {
         self.node.robot()
     }
 
     /// The newest word on the mission that it knows.
     pub fn notice(&self) -> &Notice {
         match &self.node {
-            Node::Robot(robot) => robot.notice(),
+            Node::Robot(robot) => robot.view().notice(),
             Node::AccessPoint(access_point) => access_point.notice(),
         }
     }
@@ -135,7 +135,7 @@ impl Nodes {
     /// Takes up a node that has heard the beacons given.
     pub fn take_up(&mut self, node: Node, heard: Vec<BeaconId>) -> LocalId {
         let (account, beacon) = match &node {
-            Node::Robot(robot) => (robot.account(), robot.beacon()),
+            Node::Robot(robot) => (robot.account(), robot.view().beacon()),
             Node::AccessPoint(access_point) => (access_point.account(), access_point.beacon()),
         };
         let key = (account, heard);
@@ -192,7 +192,7 @@ impl Nodes {
         match (node, stimulus) {
             (Node::Robot(robot), Stimulus::Hear(_)) => robot.think(),
             (Node::AccessPoint(access_point), Stimulus::Hear(_)) => {
-                access_point.think();
+                access_point.think_over();
                 Ok(())
             }
             (node @ Node::Robot(_), &Stimulus::Move(place)) => {
@@ -200,7 +200,7 @@ impl Nodes {
             }
             (Node::Robot(robot), &Stimulus::Period(still)) => robot.pass_period(still),
             (Node::AccessPoint(access_point), Stimulus::Period(_) | Stimulus::Announce) => {
-                access_point.serve();
+                access_point.attend_to_user();
                 Ok(())
             }
             (node, Stimulus::Round(_)) => node.step(Input::Tick),
@@ -216,6 +216,6 @@ impl Nodes {
             let is_held = |id: &&BeaconId| Arc::ptr_eq(&self.beacons[**id as usize], held);
             heard.iter().chain(known).find(is_held).copied()
         };
-        robot.held_beacons().filter_map(number).collect()
+        robot.beacons().filter_map(number).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! The protocol, explored exhaustively: how many states there are, and that everything holds in
 //! each of them.
 
-use pleach_verify::network::exploration::{
+use pleach_exploration::network::{
     Campaign, Configuration, Faults, Findings, Medium, Places, QUICK, THOROUGH,
 };
 
@@ -29,7 +29,7 @@ fn everything_holds_in_every_state_of_the_quick_campaigns() {
 }
 
 #[test]
-#[ignore = "takes minutes: cargo test --release -p pleach-verify --test it exploration -- --ignored"]
+#[ignore = "takes minutes: cargo test --release -p pleach-exploration --test it campaigns -- --ignored"]
 fn everything_holds_in_every_state_of_the_thorough_campaigns() {
     assert_all_met(THOROUGH);
 }

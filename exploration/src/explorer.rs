@@ -38,7 +38,7 @@ pub type Successors<M> = Vec<(<M as Model>::Action, <M as Model>::State)>;
 
 /// An exploration of a model, or why it came to no end.
 pub type Explored<M> = Result<
-    Exploration<<M as Model>::State, <M as Model>::Action>,
+    StateGraph<<M as Model>::State, <M as Model>::Action>,
     ExplorationError<<M as Model>::Error>,
 >;
 
@@ -79,7 +79,7 @@ pub enum ExplorationError<E: std::error::Error> {
 
 /// All states that a model can reach, and everything that may happen between them.
 #[derive(Debug)]
-pub struct Exploration<S, A> {
+pub struct StateGraph<S, A> {
     states: Vec<S>,
     origins: Vec<Option<(StateId, A)>>,
     /// The transitions of state `i` are those from `begins[i]` to `begins[i + 1]`.
@@ -118,7 +118,7 @@ pub fn explore<M: Model>(model: &mut M, properties: &[Property<M>], limit: usize
         begins.push(transitions.len());
     }
     let Visit { states, origins, .. } = visit;
-    Ok(Exploration { states, origins, begins, transitions, violations })
+    Ok(StateGraph { states, origins, begins, transitions, violations })
 }
 
 struct Visit<S, A> {
@@ -140,7 +140,7 @@ impl<S: Clone + Ord, A> Visit<S, A> {
     }
 }
 
-impl<S, A: Copy> Exploration<S, A> {
+impl<S, A: Copy> StateGraph<S, A> {
     /// The states, in the order of the visit.
     pub fn states(&self) -> &[S] {
         &self.states

@@ -2,19 +2,19 @@
 
 use std::fmt::Write;
 
-use pleach_automaton::network::Robot;
+use pleach_automaton::network::RobotView;
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::duty::Duty;
 use pleach_discrete::network::{Anchor, NodeId, PostKind};
 
 use super::node::Local;
 use super::protocol::{Action, Protocol, State};
-use crate::exploration::{Exploration, StateId};
+use crate::{StateGraph, StateId};
 
 /// What happens on a shortest way to a state: one line a step, with what it changes.
 pub fn story(
     protocol: &Protocol,
-    exploration: &Exploration<State, Action>,
+    exploration: &StateGraph<State, Action>,
     state: StateId,
 ) -> String {
     let (begin, way) = exploration.way_to(state);
@@ -59,7 +59,7 @@ fn situation(protocol: &Protocol, state: &State, node: NodeId) -> String {
         robot.phase().name(),
         duty(robot),
         beacon.parent.map_or("nobody".into(), |parent| parent.to_string()),
-        robot.word_number(),
+        robot.notice_number(),
     );
     if let Some(offer) = beacon.offer {
         let _ = write!(text, ", offers {} to {}", duty_text(&offer.duty), offer.to);
@@ -71,7 +71,7 @@ fn situation(protocol: &Protocol, state: &State, node: NodeId) -> String {
     text
 }
 
-fn duty(robot: &Robot) -> String {
+fn duty(robot: RobotView<'_>) -> String {
     duty_text(robot.duty())
 }
 

@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use pleach_discrete::network::{Bid, Election, IdSet, NodeId};
 
 use super::graphs::Graph;
-use crate::exploration::{Model, Property};
+use crate::{Model, Property};
 
 /// An election among robots and the access point of a graph; messages come in any order, late,
 /// and again and again.
@@ -91,7 +91,7 @@ pub const WINNER: Property<Ballot> = Property {
 mod tests {
     use super::super::graphs::numbered_graphs;
     use super::*;
-    use crate::exploration::{Fairness, explore};
+    use crate::{Fairness, explore};
 
     /// Every vector of bids of this many robots: none, 0 or 1, so that there are ties.
     fn every_bids(robots: usize) -> Vec<Vec<Option<Bid>>> {

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::robot::RobotError;
-use pleach_automaton::network::{AccessPoint, Message, Robot, Site, SiteError};
+use pleach_automaton::network::{AccessPoint, Message, Robot, RobotView, Site, SiteError};
 use pleach_automaton::node::Input;
 use pleach_discrete::network::NodeId;
 
 use super::medium::{Copied, Faults, Medium};
 use super::node::{BeaconId, Local, LocalId, Node, Nodes, Stimulus};
 use super::places::{Place, Places};
-use crate::exploration::Model;
+use crate::Model;
 
 /// What is explored: who stands where, how messages go, and how often a robot is in another's way.
 #[derive(Clone, Debug, PartialEq)]
@@ -205,7 +205,7 @@ impl Protocol {
     }
 
     /// The robots of a state.
-    pub fn robots<'a>(&'a self, state: &'a State) -> impl Iterator<Item = &'a Robot> {
+    pub fn robots<'a>(&'a self, state: &'a State) -> impl Iterator<Item = RobotView<'a>> {
         self.locals(state).filter_map(Local::robot)
     }
 
@@ -322,7 +322,7 @@ impl Protocol {
             && (0..self.configuration.places.robots()).any(|other| {
                 other != robot
                     && self.place_of(state, other) == here
-                    && body(other).is_some_and(Robot::is_parked)
+                    && body(other).is_some_and(RobotView::is_parked)
             })
     }
 

@@ -6,7 +6,7 @@
 //! mission ends. In every state [`ALWAYS`] holds, and the mission follows.
 //!
 //! A counterexample is shrunk, and told as a story. For more cases:
-//! `PROPTEST_CASES=10000 cargo test --release -p pleach-verify --test it protocol -- --nocapture`.
+//! `PROPTEST_CASES=10000 cargo test --release -p pleach-exploration --test it protocol -- --nocapture`.
 
 mod mission;
 mod plan;
@@ -18,8 +18,8 @@ use std::sync::Mutex;
 use mission::Mission;
 use plan::{Plan, Reference, Step};
 use pleach_automaton::network::robot::RobotError;
-use pleach_verify::exploration::Model;
-use pleach_verify::network::exploration::{ALWAYS, Action, ENDS, Protocol, State, has_ended, tell};
+use pleach_exploration::Model;
+use pleach_exploration::network::{ALWAYS, Action, ENDS, Protocol, State, has_ended, tell};
 use proptest::test_runner::{Config, TestRunner};
 use proptest_state_machine::{ReferenceStateMachine, StateMachineTest};
 
