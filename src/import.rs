@@ -1,4 +1,4 @@
-//! Floor plans of one's own: maps of other programs as scenarios.
+//! Import of floor plans: maps of other programs as scenarios.
 //!
 //! | file | read as |
 //! | --- | --- |

@@ -1,4 +1,4 @@
-//! Everything that a model of one's own usually needs: `use pleach::prelude::*;`.
+//! Everything that a model usually needs: `use pleach::prelude::*;`.
 
 pub use pleach_automaton::{
     Automaton, BuildError, Composition, CompositionError, Coordinates, Flow, Policy, Reason, Reset,

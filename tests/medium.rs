@@ -147,7 +147,7 @@ fn no_message_goes_where_there_is_no_link() {
     assert!(network.medium().longest > 0.99 * range, "the whole range is used");
 }
 
-/// Whatever robots know of each other has gone through the medium: without it nobody learns of a
+/// Whatever robots know of each other has gone through the medium: without it no robot learns of a
 /// task, sends anything or moves.
 #[test]
 fn without_messages_nothing_happens() {
@@ -169,7 +169,7 @@ fn without_messages_nothing_happens() {
 const FAR_CORNER: [f64; 2] = [2.6, 1.53];
 
 /// How many robots there are is common knowledge, and decides how many rounds of messages come
-/// before the first control period; with so many in every period it decides nothing.
+/// before the first control period; with that many in every period it decides nothing.
 const ROUNDS: usize = 32;
 
 fn with_hermit(rate: f64) -> Scenario {
@@ -263,7 +263,7 @@ fn one_round_a_period_and_fifty_both_service_study_one() {
 
 // ---- Messages that are lost --------------------------------------------------------------------
 
-/// A redundant robot of Study I on which nobody hangs and which is never called.
+/// A redundant robot of Study I that has no children and is never called.
 const NOBODY_NEEDS: NodeId = 0;
 
 /// Every message from or to that robot from control period `begin` on.
@@ -278,7 +278,7 @@ fn one_of(n: u64) -> impl Fn(Arrival) -> bool {
     move |message| message.number % n == n - 1
 }
 
-/// Who is never heard is in no roster, so that no election waits for it.
+/// A robot that is never heard is in no roster, so that no election waits for it.
 #[test]
 fn a_robot_that_was_never_heard_is_not_missed() {
     let mut network = network_over(&shipped("study-1"), |site| Lossy::new(site, jammed_from(0)));
@@ -288,7 +288,7 @@ fn a_robot_that_was_never_heard_is_not_missed() {
     assert!(periods.iter().all(|period| &period.snapshot.positions[NOBODY_NEEDS] == first));
 }
 
-/// Who falls silent stays in the roster: the next election waits for its token, nobody moves on
+/// A robot that falls silent stays in the roster: the next election waits for its token, no robot moves on
 /// a guess, and in the end the access points say who does not answer.
 #[test]
 fn an_election_waits_for_a_robot_that_falls_silent_and_names_it() {

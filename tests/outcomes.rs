@@ -85,7 +85,7 @@ fn a_task_farther_from_the_free_space_is_unreachable() {
         println!("{place}");
         assert_unserviced(&mission, Outcome::UnreachableTask, 0);
         let first = &mission.periods[0].snapshot.positions;
-        assert_eq!(first, &mission.last().positions, "{place}: nobody goes anywhere");
+        assert_eq!(first, &mission.last().positions, "{place}: no robot moves");
     }
 }
 

@@ -145,7 +145,7 @@ pub trait Observer<S: System + ?Sized> {
     }
 }
 
-/// Nobody looks on.
+/// No observer.
 impl<S: System + ?Sized> Observer<S> for () {}
 
 /// A round of jumps while it is under way.
@@ -189,7 +189,7 @@ pub struct Executor {
     detects_zeno: bool,
 }
 
-/// Jumps closer than so many spacings of the numbers around the present time count as jumps at one
+/// Jumps closer than this many spacings of the numbers around the present time count as jumps at one
 /// instant: what is measured of the time between them is mostly rounding.
 const SPACINGS: f64 = 16.0;
 

@@ -106,7 +106,7 @@ pub struct JumpRecord {
     pub at: HybridTime,
     /// The event or the label.
     pub label: String,
-    /// Who goes where.
+    /// The moves of the components.
     pub moves: Vec<Move>,
 }
 

@@ -76,7 +76,7 @@ impl Course {
         panic!("no team of {members} robots advances within {PATIENCE} control periods");
     }
 
-    /// Lets control periods pass until the mission has ended and nobody moves.
+    /// Lets control periods pass until the mission has ended and no robot moves.
     pub fn reach_rest(&mut self) {
         for _ in 0..PATIENCE {
             if self.rests() {

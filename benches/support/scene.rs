@@ -121,7 +121,7 @@ impl Scene {
         problem
     }
 
-    /// The loads that the leader's neighbours certify while everybody takes a full step.
+    /// The loads that the leader's neighbours certify while all robots take a full step.
     pub fn held_flows(&self) -> Vec<(Segment, Vec<(f64, Segment)>)> {
         let step = self.site.settings.step_radius;
         let step_of = |node: usize| {
@@ -152,7 +152,7 @@ impl Scene {
     }
 }
 
-/// Robots that stand where those of a scene do, and nobody else, in a control period without end.
+/// Robots that stand where those of a scene do, and no others, in a control period without end.
 pub struct Crowd {
     robots: Vec<Robot>,
     outputs: Vec<Outputs<Message, MissionEvent>>,

@@ -51,10 +51,10 @@ fn everything_holds_in_every_order_of_single_messages() {
     assert_eq!(states, 149_710);
 }
 
-/// Two access points, a leader that hangs on one of them and a recruit that hangs on the other and
+/// Two access points, a leader that is attached to one of them and a recruit that is attached to the other and
 /// does not come as far as the leader: then it says so. The state machine test found it.
 #[test]
-fn who_joins_from_another_tree_and_does_not_get_there_says_why_not() {
+fn a_robot_that_joins_from_another_tree_and_does_not_get_there_says_why_not() {
     let graph = [(0, 1), (0, 3), (1, 2), (2, 3), (2, 4)];
     let places = Places::with_branches(3, 2, &graph, &[(4, 2)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
@@ -62,7 +62,7 @@ fn who_joins_from_another_tree_and_does_not_get_there_says_why_not() {
 }
 
 /// p₁ exchanges duties with a robot of a lower number, on whose post the one hangs that p₁ hangs
-/// on: nobody comes to hang below itself. The state machine test found it.
+/// on: no robot ends up below itself. The state machine test found it.
 #[test]
 fn an_exchange_across_a_link_keeps_the_tree() {
     let graph = [(0, 1), (0, 3), (1, 4), (2, 3), (3, 4)];
@@ -71,10 +71,10 @@ fn an_exchange_across_a_link_keeps_the_tree() {
     assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 1_332);
 }
 
-/// Two robots that hang on a third, which becomes the leader, and hear each other: they look for
+/// Two robots that are attached to a third, which becomes the leader, and hear each other: they look for
 /// another parent at once, and not to each other. The campaign of six robots found it.
 #[test]
-fn robots_that_lose_their_parent_at_once_do_not_hang_on_one_another() {
+fn robots_that_lose_their_parent_at_once_do_not_attach_to_one_another() {
     let graph = [(0, 1), (0, 4), (0, 5), (0, 6), (1, 2), (1, 3), (1, 6), (2, 3), (2, 4), (3, 4)];
     let places = Places::with_branches(6, 1, &graph, &[(1, 1)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };

@@ -75,7 +75,7 @@ pub fn network_over<M: Medium<Message, Point>>(
     Network::with_medium(scenario, site, medium).expect("a network")
 }
 
-/// Runs a network for at most `periods` control periods with nobody but a recorder looking on,
+/// Runs a network for at most `periods` control periods with a recorder as the only observer,
 /// so that it may start where the monitor refuses and go on where the monitor stops.
 pub fn run_unmonitored<M: Medium<Message, Point>>(
     network: &mut Network<M>,

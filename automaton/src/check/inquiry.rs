@@ -21,7 +21,7 @@ impl<'a> Inquiry<'a> {
     }
 
     /// A state in which `fault` holds. That there is none is noted as an exclusion, and that
-    /// nobody knows as a note; functions have notes of their own.
+    /// is unknown as a note; functions have notes of their own.
     pub(super) fn witness(
         &mut self,
         kind: Kind,

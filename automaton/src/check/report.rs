@@ -8,7 +8,7 @@ use crate::decision::{Proof, State};
 ///
 /// It prints as a list, the worst first.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[must_use = "a report that nobody reads helps nobody"]
+#[must_use = "a report is of use only if it is read"]
 pub struct Report {
     findings: Vec<Finding>,
     exclusions: Vec<Exclusion>,
@@ -96,7 +96,7 @@ pub enum Kind {
     RefusedLabel,
     /// A label whose components never come together where all of them take it.
     BlockedLabel,
-    /// A component that waits for ever for labels that nobody else takes any more.
+    /// A component that waits for ever for labels that no other takes any more.
     Deadlock,
     /// A connected input that no formula reads.
     UnreadInput,

@@ -95,7 +95,7 @@ impl From<Halt> for Reason<Failure> {
 pub struct Taken {
     /// The event or the label.
     pub label: String,
-    /// Who goes where, by ascending component.
+    /// The moves, by ascending component.
     pub moves: Vec<Move>,
     /// The variables that are assigned to, by their number, and what they become.
     pub changes: Vec<(usize, f64)>,
@@ -191,7 +191,7 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
         Composition::builder().add("automaton", self).build()?.run(horizon)
     }
 
-    /// Runs the automaton by itself with settings of one's own.
+    /// Runs the automaton by itself with the given settings.
     ///
     /// # Errors
     ///
@@ -224,7 +224,7 @@ impl Composition {
         self.run_with(Settings::default(), horizon)
     }
 
-    /// Runs the composition with settings of one's own.
+    /// Runs the composition with the given settings.
     ///
     /// # Errors
     ///

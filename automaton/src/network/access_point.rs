@@ -178,7 +178,7 @@ impl AccessPoint {
         self.bulletin = bulletin;
     }
 
-    /// The way to the robot that calls: through a robot that hangs here, or through another
+    /// The way to the robot that calls: through a robot that is attached here, or through another
     /// access point so near that a robot can change over from one to the other.
     fn find_route(&mut self) {
         let number = self.bulletin.sequence();
@@ -190,12 +190,12 @@ impl AccessPoint {
             let Some((_, onward)) = beacon.route.as_ref().filter(|(at, _)| *at == number) else {
                 continue;
             };
-            let hangs_here = beacon
+            let is_child = beacon
                 .duty
                 .as_ref()
                 .is_some_and(|duty| duty.post().is_some_and(|post| post.parent == Some(own)));
             let changeover = beacon.duty.is_none() && self.is_within_changeover(beacon.position);
-            if hangs_here || changeover {
+            if is_child || changeover {
                 self.route = Some((number, onward.clone()));
                 self.crossing = vec![self.number];
                 self.crossing.extend(&beacon.crossing);
@@ -208,7 +208,7 @@ impl AccessPoint {
         self.site.distance(self.position, other) <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
     }
 
-    /// Which robots hang on the access points.
+    /// Which robots are attached to the access points.
     fn call_roll(&mut self) {
         let own = Anchor::Access(self.number);
         let mut roster = IdSet::new();
@@ -304,7 +304,7 @@ impl AccessPoint {
         self.take_up(Shared::new(self.bulletin.next(notice)));
     }
 
-    /// The newest word on the mission that it knows.
+    /// The newest notice on the mission that it knows.
     pub fn notice(&self) -> &Notice {
         self.bulletin.notice()
     }

@@ -83,7 +83,7 @@ impl Network<Radio> {
 }
 
 impl<M: Medium<Message, Point>> Network<M> {
-    /// The network of a scenario at its start, with a medium of one's own. Nodes are numbered from
+    /// The network of a scenario at its start, with the given medium. Nodes are numbered from
     /// 0: robots first, then access points, last the user.
     ///
     /// # Errors

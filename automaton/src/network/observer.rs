@@ -58,7 +58,7 @@ impl<M> Network<M> {
     }
 }
 
-/// All robots side by side, as nobody but an observer sees them.
+/// All robots side by side, as only observers see them.
 struct Overview<'a> {
     robots: Vec<RobotView<'a>>,
 }
@@ -72,7 +72,7 @@ impl Overview<'_> {
             .collect()
     }
 
-    /// Where the mission stands for the robot that knows the newest word.
+    /// Where the mission stands for the robot that knows the newest notice.
     fn phase(&self) -> Phase {
         self.newest().map_or(Phase::Idle, RobotView::phase)
     }
@@ -181,10 +181,9 @@ impl Overview<'_> {
             .filter_map(|(holder, robot)| {
                 let station = robot.duty().station().filter(|station| station.post.is_fixed())?;
                 let children = self.robots.iter().copied().filter(|child| {
-                    child
-                        .duty()
-                        .post()
-                        .is_some_and(|held| held.hangs_on(station.post.id) && !held.is_redundant())
+                    child.duty().post().is_some_and(|held| {
+                        held.is_child_of(station.post.id) && !held.is_redundant()
+                    })
                 });
                 Some(PostView {
                     reference: station.reference,

@@ -50,7 +50,7 @@ impl User {
         }
     }
 
-    /// The newest word on the mission that it knows.
+    /// The newest notice on the mission that it knows.
     pub fn notice(&self) -> &Notice {
         self.news.notice()
     }

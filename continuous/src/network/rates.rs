@@ -26,7 +26,7 @@ pub enum Receiver {
 /// A routing variable T_ij > 0 of one sender.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Route {
-    /// j: to whom.
+    /// j: the receiver.
     pub receiver: Receiver,
     /// T_ij: the share of the sender's time, in [0, 1].
     pub share: f64,
@@ -107,9 +107,9 @@ pub enum RatesError {
     /// A route leads to somebody who does not exist.
     #[error("robot {sender} has a route to {receiver:?}, which does not exist")]
     UnknownReceiver {
-        /// Who sends.
+        /// The sender.
         sender: usize,
-        /// To whom.
+        /// The receiver.
         receiver: Receiver,
     },
 }
@@ -120,7 +120,7 @@ pub enum RatesError {
 ///
 /// # Errors
 ///
-/// [`RatesError`] if the lists differ in length or a route leads to nobody.
+/// [`RatesError`] if the lists differ in length or a route leads to no node.
 pub fn residuals(
     routes: &[Vec<Route>],
     robots: &[Point],
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn a_route_to_nobody_is_an_error() {
+    fn a_route_to_no_node_is_an_error() {
         let link = CubicReliability::new(0.4, 0.5).unwrap();
         let routes = vec![vec![Route { receiver: Receiver::AccessPoint(1), share: 0.5 }]];
         let result = residuals(&routes, &[Point::origin()], &[Point::origin()], &[0.1], &link);

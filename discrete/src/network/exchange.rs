@@ -29,7 +29,7 @@ mod proofs;
 /// A mover's standing offer to a parked robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exchange<D> {
-    /// To whom.
+    /// The receiver.
     pub to: NodeId,
     /// The offers of one robot are numbered.
     pub number: u32,
@@ -40,7 +40,7 @@ pub struct Exchange<D> {
 /// The parked robot's answer, repeated until the mover has heard it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reply<D> {
-    /// To whom.
+    /// The receiver.
     pub to: NodeId,
     /// The number of the offer.
     pub number: u32,
@@ -112,7 +112,7 @@ impl<D> Dealings<D> {
 }
 
 impl<D> Dealings<D> {
-    /// Whether the mover, which has this offer and has made so many, has heard the reply.
+    /// Whether the mover, which has this offer and has made this number of offers, has heard the reply.
     pub fn has_heard_reply(&self, offer: Option<&Exchange<D>>, offers_made: u32) -> bool {
         // What the mover said before it made the offer may be heard again.
         self.reply
@@ -146,7 +146,7 @@ impl<D: Copy> Dealings<D> {
         reply.accepted
     }
 
-    /// The parked robot hears of the mover, which has this offer and has made so many: the duty
+    /// The parked robot hears of the mover, which has this offer and has made this number of offers: the duty
     /// that it has now, if it has given its own and the mover has taken that.
     pub fn conclude(&mut self, offer: Option<&Exchange<D>>, offers_made: u32) -> Option<D> {
         if !self.has_heard_reply(offer, offers_made) {

@@ -16,7 +16,7 @@ const fn rounds(faults: Faults) -> Medium {
     Medium::Rounds { faults, period: None }
 }
 
-/// The same in control periods: robots move after every so many rounds.
+/// The same in control periods: robots move after every `rounds` rounds.
 const fn periods(faults: Faults) -> Medium {
     Medium::Rounds { faults, period: Some(ROUNDS_OF_A_PERIOD) }
 }
@@ -24,8 +24,8 @@ const fn periods(faults: Faults) -> Medium {
 /// How many rounds the control periods have in which two faults are explored.
 const ROUNDS_OF_A_PERIOD: u32 = 4;
 
-/// On every graph of so many robots and an access point, with one task beside it; all messages
-/// arrive, and nobody is in another's way.
+/// On every graph of this many robots and an access point, with one task beside it; all messages
+/// arrive, and no robot is in another's way.
 const fn robots(robots: usize, expected: Counts) -> Campaign {
     Campaign {
         name: "",

@@ -26,7 +26,7 @@ impl Ballot {
         Ballot { graph, bids, roster }
     }
 
-    /// One round in which everybody hears all neighbours.
+    /// One round in which every node hears all neighbours.
     pub fn round(&self, views: &Views) -> Views {
         let mut next = views.clone();
         for &(a, b) in &self.graph {
@@ -36,7 +36,7 @@ impl Ballot {
         next
     }
 
-    /// Everybody has placed its own token and heard nothing.
+    /// Every robot has placed its own token and heard nothing.
     pub fn begin(&self) -> Views {
         let mut views = vec![Election::new(1); self.bids.len() + 1];
         for (robot, (view, &bid)) in views.iter_mut().zip(&self.bids).enumerate() {
@@ -77,7 +77,7 @@ impl Model for Ballot {
     }
 }
 
-/// Agreement and validity: whoever knows the election to be over knows the rightful winner, and a
+/// Agreement and validity: a node that knows the election to be over knows the rightful winner, and a
 /// winner has placed a bid.
 pub const WINNER: Property<Ballot> = Property {
     name: "the winner placed the best bid, and all agree on it",

@@ -5,7 +5,7 @@ use super::places::Place;
 /// A graph on robots 0 … N−1 and the access points from N on, by its edges.
 pub type Graph = Vec<(Place, Place)>;
 
-/// Every connected graph of so many robots and access points, once for all that are the same but
+/// Every connected graph of this many robots and access points, once for all that are the same but
 /// for the numbers of the robots. With one access point there are 1, 3, 11, 58 … of them.
 ///
 /// The numbers of robots decide ties. Where that matters, use [`numbered_graphs`].

@@ -10,7 +10,7 @@ use super::protocol::{Action, Protocol, State};
 /// How messages go from node to node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Medium {
-    /// In rounds, as the network plays them: everybody speaks, then everybody hears.
+    /// In rounds, as the network plays them: all nodes send, then all receive.
     Rounds {
         /// What may go wrong, one message in a round.
         faults: Faults,
@@ -19,7 +19,7 @@ pub enum Medium {
         /// of times.
         period: Option<u32>,
     },
-    /// One node at a time, in any order: it hears what everybody in range says now. Others may
+    /// One node at a time, in any order: it hears what all nodes in range say now. Others may
     /// speak and think any number of times meanwhile.
     NodesInAnyOrder,
     /// One message at a time, in any order. What is on its way from one node to another is
@@ -114,7 +114,7 @@ impl Protocol {
         Ok(found)
     }
 
-    /// What a node hears again that hears nothing new: of who has left without being heard, nothing.
+    /// What a node hears again that hears nothing new: nothing of a node that has left unheard.
     pub(super) fn still_heard_by(&self, state: &State, receiver: NodeId) -> Vec<BeaconId> {
         let local = self.nodes().local(state.locals[receiver]);
         let is_silent = |sender: NodeId| {

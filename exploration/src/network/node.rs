@@ -24,7 +24,7 @@ pub enum Node {
 }
 
 impl Node {
-    /// One step. What the node says is read off its state, and nobody needs its reports.
+    /// One step. What the node says is read off its state, and its reports are not needed.
     pub(super) fn step(&mut self, input: Input<'_, Message, Sense>) -> Result<(), RobotError> {
         let mut outputs = Outputs::of(0);
         match self {
@@ -42,7 +42,7 @@ impl Node {
     }
 }
 
-/// The state of one node: itself, what it says, and what it heard last from whom.
+/// The state of one node: itself, what it says, and what it heard last of each other node.
 #[derive(Clone, Debug)]
 pub struct Local {
     /// The node.
@@ -59,7 +59,7 @@ impl Local {
         self.node.robot()
     }
 
-    /// The newest word on the mission that it knows.
+    /// The newest notice on the mission that it knows.
     pub fn notice(&self) -> &Notice {
         match &self.node {
             Node::Robot(robot) => robot.view().notice(),
@@ -78,7 +78,7 @@ pub enum Stimulus {
     Round(Vec<BeaconId>),
     /// It has moved to this place, given by number.
     Move(usize),
-    /// It has not got on for so many control periods, and another one begins.
+    /// It has made no progress for this many control periods, and another one begins.
     Period(u32),
     /// An access point serves the user.
     Announce,

@@ -90,7 +90,7 @@ impl Places {
     }
 
     /// Robots and access points on a graph of their places, with a branch of places for each
-    /// task: from the place named, so many steps to the task.
+    /// task: from the place named, the given number of steps to the task.
     ///
     /// # Errors
     /// When a number is out of range or the graph is not connected.

@@ -16,10 +16,10 @@ use pleach_verify::network::{duty, election, team, tree};
 /// The properties that hold in every state.
 pub const ALWAYS: &[Property<Protocol>] = &[
     Property { name: "the tree is rooted", holds: tree_is_rooted },
-    Property { name: "who has a duty is in the tree", holds: workers_are_in_the_tree },
+    Property { name: "robots with a duty are in the tree", holds: workers_are_in_the_tree },
     Property { name: "at most one robot leads", holds: at_most_one_leads },
     Property { name: "the primary team is one chain", holds: primary_team_is_a_chain },
-    Property { name: "posts that others hang on are held", holds: bearing_posts_are_held },
+    Property { name: "posts with children are held", holds: bearing_posts_are_held },
     Property { name: "serviced tasks are held", holds: serviced_tasks_are_held },
     Property { name: "no task is held twice", holds: no_task_is_held_twice },
     Property {
@@ -101,7 +101,7 @@ pub fn primary_team_is_a_chain(protocol: &Protocol, state: &State) -> bool {
         count(post.id) == 1
             && rivals == 1
             && match post.kind {
-                // The team may have been dissolved where the word has come already.
+                // The team may have been dissolved where the notice has arrived already.
                 PostKind::Primary { follows: Some(ahead) } => {
                     posts(protocol, state).iter().any(|other| other.id == ahead)
                 }
@@ -110,7 +110,7 @@ pub fn primary_team_is_a_chain(protocol: &Protocol, state: &State) -> bool {
     })
 }
 
-/// A post on which that of a robot with a duty hangs is held, unless a subgroup of Σ is on its
+/// A post with the post of a robot with a duty as a child is held, unless a subgroup of Σ is on its
 /// way: then its robots stand for the posts that they have left.
 pub fn bearing_posts_are_held(protocol: &Protocol, state: &State) -> bool {
     let is_on_its_way = |duty: &Duty| matches!(duty, Duty::Shifting(_));
@@ -160,8 +160,8 @@ pub fn junctions_and_tasks_are_occupied(protocol: &Protocol, state: &State) -> b
     let places = &protocol.configuration().places;
     let duties = duties(protocol, state);
     let bears_branches = |own: PostId| {
-        let hanging = duties.iter().filter_map(Duty::post).filter(|post| post.hangs_on(own));
-        hanging.filter(|post| !post.is_redundant()).count() > 1
+        let children = duties.iter().filter_map(Duty::post).filter(|post| post.is_child_of(own));
+        children.filter(|post| !post.is_redundant()).count() > 1
     };
     let junctions = duties
         .iter()
@@ -182,7 +182,7 @@ pub fn elections_agree(protocol: &Protocol, state: &State) -> bool {
     over.iter().all(|(number, best)| over.iter().all(|(n, b)| n != number || b == best))
 }
 
-/// Whoever is elected has bid best of all that took part, ties going to the higher index.
+/// The elected robot has bid best of all that took part, ties going to the higher index.
 ///
 /// Robots that have begun a later election remember no older bid of theirs: then the word has
 /// gone on, and the election was looked at before.

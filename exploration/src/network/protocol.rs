@@ -28,7 +28,7 @@ pub struct Configuration {
 /// Something that happens in the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Action {
-    /// Everybody speaks, then everybody hears.
+    /// All nodes send, then all receive.
     Round,
     /// The same, but `to` does not hear `from`.
     Lose {
@@ -58,7 +58,7 @@ pub enum Action {
         /// The receiver.
         to: NodeId,
     },
-    /// A node hears everybody in range.
+    /// A node hears all nodes in range.
     Listen(NodeId),
     /// `to` hears what `from` says now or, if it is out of range, nothing of it any more.
     Hear {
@@ -73,7 +73,7 @@ pub enum Action {
     Move(NodeId),
     /// A parked robot at the same place does not let a mover pass.
     Touch(NodeId),
-    /// Nobody has anything new to say: a control period begins.
+    /// No node has news: a control period begins.
     Period,
     /// The user announces a task, or learns that there is none left.
     Announce,
@@ -82,7 +82,7 @@ pub enum Action {
 impl fmt::Display for Action {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Action::Round => write!(f, "everybody hears everybody in range"),
+            Action::Round => write!(f, "all nodes hear all nodes in range"),
             Action::Lose { from, to } => write!(f, "in a round {to} does not hear {from}"),
             Action::Delay { from, to } => {
                 write!(f, "in a round {to} hears of {from} what it heard before")
@@ -93,7 +93,7 @@ impl fmt::Display for Action {
             Action::Echo { from, to } => {
                 write!(f, "in a round {to} hears the copy of what {from} said")
             }
-            Action::Listen(node) => write!(f, "{node} hears everybody in range"),
+            Action::Listen(node) => write!(f, "{node} hears all nodes in range"),
             Action::Hear { from, to } => write!(f, "{to} hears {from}"),
             Action::Think(node) => write!(f, "{node} thinks"),
             Action::Move(robot) => write!(f, "{robot} moves on"),
@@ -181,7 +181,7 @@ impl Protocol {
         Ok(protocol)
     }
 
-    /// Rounds until nobody has anything new to say.
+    /// Rounds until no node has news.
     fn settle(&mut self) -> Result<(), RobotError> {
         loop {
             let mut next = self.initial.clone();
@@ -231,7 +231,7 @@ impl Protocol {
         one != other && (is_wire || linked())
     }
 
-    /// What a node hears if it hears everybody in range.
+    /// What a node hears if it hears all nodes in range.
     pub(super) fn all_heard_by(&self, state: &State, receiver: NodeId) -> Vec<BeaconId> {
         (0..state.locals.len())
             .filter(|&sender| self.is_in_range(state, sender, receiver))

@@ -53,12 +53,12 @@ fn situation(protocol: &Protocol, state: &State, node: NodeId) -> String {
     let Some(robot) = local.robot() else { return format!("access point {node}: {word}") };
     let beacon = robot.beacon();
     let mut text = format!(
-        "{node} at {}: {}, {}, {}, hangs on {}, {word} {}",
+        "{node} at {}: {}, {}, {}, parent {}, {word} {}",
         protocol.place_of(state, node),
         robot.role().name(),
         robot.phase().name(),
         duty(robot),
-        beacon.parent.map_or("nobody".into(), |parent| parent.to_string()),
+        beacon.parent.map_or("none".into(), |parent| parent.to_string()),
         robot.notice_number(),
     );
     if let Some(offer) = beacon.offer {

@@ -1,9 +1,9 @@
 //! What the network owes to its user, as an abstract machine: no robot, no message, no place.
 //!
-//! A mission is a sequence of words. The user announces a task; the network elects a leader, the
+//! A mission is a sequence of notices. The user announces a task; the network elects a leader, the
 //! primary team advances, calls for recruits, and services the task; then the user announces the
 //! next one. [`Word::may_follow`] is the whole of it. What the network does next is its own
-//! choice, so the machine cannot be run ahead of it: it follows, word by word, and refuses what
+//! choice, so the machine cannot be run ahead of it: it follows, notice by notice, and refuses what
 //! it does not allow.
 
 use std::collections::BTreeMap;
@@ -65,7 +65,7 @@ impl Word {
         }
     }
 
-    /// The same with `between` words in between: a robot may say two things at once, and nobody
+    /// The same with `between` notices in between: a robot may issue two at once, and no node
     /// hears the first of them.
     fn may_follow_after(self, between: u32, before: Word) -> bool {
         match between {
@@ -88,9 +88,9 @@ pub struct Mission {
     serviced: usize,
     /// What was said, by number.
     words: BTreeMap<u32, Notice>,
-    /// The number of the newest word that each node knows.
+    /// The number of the newest notice that each node knows.
     known: Vec<u32>,
-    /// Who has won each election.
+    /// The winner of each election.
     winners: BTreeMap<u32, Option<NodeId>>,
     /// Whether a robot could have come when a recruit was called for last.
     has_reserve: bool,
@@ -125,7 +125,7 @@ impl Mission {
         self.visit_tasks(protocol, state)
     }
 
-    /// One word at a time, each with its own number, and every node comes to know newer ones only.
+    /// One notice at a time, each with its own number, and every node comes to know newer ones only.
     fn hear_words(&mut self, protocol: &Protocol, state: &State) -> Result<(), String> {
         let mut spoken: Vec<_> = protocol
             .locals(state)
@@ -137,7 +137,7 @@ impl Mission {
         let went_back = |(was, is): (&u32, &u32)| was > is;
         if let Some(node) = before.iter().zip(&self.known).position(went_back) {
             let (was, is) = (before[node], self.known[node]);
-            return Err(format!("{node} knew word {was} and goes back to word {is}"));
+            return Err(format!("{node} knew notice {was} and goes back to notice {is}"));
         }
         spoken.sort_by_key(|&(number, _)| number);
         let last = self.newest_word();
@@ -161,13 +161,13 @@ impl Mission {
                 Word::of(known) == Word::Ended && Word::of(notice) == Word::Ended;
             return match known == notice || are_both_the_end {
                 true => Ok(()),
-                false => Err(format!("two words have number {number}: {known:?} and {notice:?}")),
+                false => Err(format!("two notices have number {number}: {known:?} and {notice:?}")),
             };
         }
         let last = self.words.keys().next_back().copied().unwrap_or_default();
         let (before, word) = (self.newest_word(), Word::of(notice));
         if number < last || !word.may_follow_after(number - last - 1, before) {
-            return Err(format!("{word:?}, word {number}, follows {before:?}, word {last}"));
+            return Err(format!("{word:?}, notice {number}, follows {before:?}, notice {last}"));
         }
         let is_due = self.count(notice, before);
         self.words.insert(number, notice.clone());
@@ -200,7 +200,7 @@ impl Mission {
         }
     }
 
-    /// An election is held on a word that calls for one, and its winner stays the winner.
+    /// An election is held on a notice that calls for one, and its winner stays the winner.
     fn hear_elections(&mut self, protocol: &Protocol, state: &State) -> Result<(), String> {
         for (number, best) in protocol.robots(state).filter_map(RobotView::concluded_election) {
             let winner = best.map(|(_, robot)| robot);
@@ -209,7 +209,7 @@ impl Mission {
                 return Err(format!("election {number} is won by {first:?}, then by {winner:?}"));
             }
             if !matches!(self.words.get(&number), Some(Notice::Task { .. } | Notice::Call { .. })) {
-                return Err(format!("nobody has called for election {number}"));
+                return Err(format!("no notice has called for election {number}"));
             }
         }
         Ok(())
@@ -223,7 +223,7 @@ impl Mission {
         let positions = places.task_positions().into_iter().take(self.serviced);
         let left = positions.enumerate().find(|(_, at)| !robots.contains(&places.place_at(*at)));
         match left {
-            Some((task, _)) => Err(format!("task {task} was serviced, and nobody is there")),
+            Some((task, _)) => Err(format!("task {task} was serviced, and no robot is there")),
             None => Ok(()),
         }
     }

@@ -119,7 +119,7 @@ impl StateMachineTest for Network {
         if let Err(broken) = network.mission.conclude(&network.protocol, network.state()) {
             network.fail(&broken);
         }
-        TALLY.lock().expect("nobody panics while counting").add(&network);
+        TALLY.lock().expect("no thread panics while counting").add(&network);
     }
 }
 
@@ -164,7 +164,7 @@ fn the_network_keeps_its_promises() {
         Network::test_sequential(config.clone(), plan, steps, seen);
         Ok(())
     });
-    println!("{}", TALLY.lock().expect("nobody panics while counting"));
+    println!("{}", TALLY.lock().expect("no thread panics while counting"));
     if let Err(counterexample) = found {
         panic!("{counterexample}");
     }

@@ -44,8 +44,8 @@ impl Plan {
 
     /// More steps than a mission takes that goes on fairly.
     ///
-    /// For each task the word goes round at most three times for every robot that is recruited or
-    /// released, and three times more. Before the next word each robot passes every place at most
+    /// For each task a notice goes round at most three times for every robot that is recruited or
+    /// released, and three times more. Before the next notice each robot passes every place at most
     /// once, and the network plays a few rounds for each node: for the news to come everywhere,
     /// for the two waits of an election, and for each subgroup to set out and to arrive.
     pub fn longest_mission(&self) -> usize {
@@ -71,8 +71,8 @@ struct Kind {
     contacts: u32,
 }
 
-/// No message fails: any size, in rounds or one node at a time. Who hears nothing for any time in
-/// the middle of an exchange of duties may be left behind: then nobody is in another's way.
+/// No message fails: any size, in rounds or one node at a time. A robot that hears nothing for any time in
+/// the middle of an exchange of duties may be left behind: then no robot is in another's way.
 fn faultless() -> impl Strategy<Value = Kind> {
     let rounds = |period| Medium::Rounds { faults: Faults::NONE, period };
     let medium = prop_oneof![
@@ -88,7 +88,7 @@ fn faultless() -> impl Strategy<Value = Kind> {
     )
 }
 
-/// One message at a time: so many robots that none can hang on another that hangs on it.
+/// One message at a time: as many robots that none can attach to another that is attached to it.
 fn message_by_message() -> impl Strategy<Value = Kind> {
     let medium = Medium::MessagesInAnyOrder;
     (2..=3_usize, 1..=MOST_ACCESS_POINTS, 0..=MOST_CONTACTS).prop_map(
@@ -119,7 +119,7 @@ fn faulty() -> impl Strategy<Value = Kind> {
     })
 }
 
-/// A connected graph: each node hangs on one that comes before it in some order, and there are a
+/// A connected graph: each node is attached to one that comes before it in some order, and there are a
 /// few more edges.
 fn graph(kind: Kind) -> impl Strategy<Value = Graph> {
     let nodes = kind.robots + kind.access_points;
@@ -164,7 +164,7 @@ pub enum Step {
     Fail(usize),
     /// The user speaks, or a control period begins.
     Wait(usize),
-    /// The network goes on by itself for so many steps.
+    /// The network goes on by itself for this many steps.
     GoOn(usize),
 }
 

@@ -85,7 +85,7 @@ impl Robot {
         let children_hold = self
             .neighbours
             .iter()
-            .filter(|n| n.post().is_some_and(|post| post.hangs_on(station.post.id)))
+            .filter(|n| n.post().is_some_and(|post| post.is_child_of(station.post.id)))
             .all(|child| self.walk_to(child) <= self.site.hard_length);
         parked.beacon.parked
             && parked.beacon.offer.is_none()

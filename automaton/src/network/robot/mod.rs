@@ -282,12 +282,12 @@ impl Robot {
         self.duty.role()
     }
 
-    /// The newest word on the mission that it knows.
+    /// The newest notice on the mission that it knows.
     pub(super) fn notice(&self) -> &Notice {
         self.bulletin.notice()
     }
 
-    /// The number of the newest word on the mission that it knows.
+    /// The number of the newest notice on the mission that it knows.
     pub(super) fn notice_number(&self) -> u32 {
         self.bulletin.sequence()
     }

@@ -124,13 +124,13 @@ impl Robot {
         hops.into_iter().flatten().map(|hop| hop.robot).collect()
     }
 
-    /// Whether another robot holds `post` and knows its parent: it does not hang on this one any
+    /// Whether another robot holds `post` and knows its parent: it does not attach to this one any
     /// more, unless that is the parent.
     pub(super) fn is_relieved_of(&self, post: PostId) -> bool {
         let own = self.duty.post().map(|held| held.id);
         self.holder(post).is_some_and(|holder| {
-            let hangs_here = |held: &Post| own.is_some_and(|own| held.hangs_on(own));
-            holder.beacon.parent != Some(self.id) || holder.post().is_some_and(hangs_here)
+            let is_child = |held: &Post| own.is_some_and(|own| held.is_child_of(own));
+            holder.beacon.parent != Some(self.id) || holder.post().is_some_and(is_child)
         })
     }
 

@@ -1,4 +1,4 @@
-//! The primary team (Sec. V-A): who leads, who follows whom, and when it is stuck.
+//! The primary team (Sec. V-A): its leader, its order, and when it is stuck.
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{Phase, PostId, PostKind};
@@ -58,7 +58,7 @@ impl Robot {
         self.duty.leads()
     }
 
-    /// Whether this robot is p₁: nobody of the team follows it.
+    /// Whether this robot is p₁: no robot of the team follows it.
     pub(super) fn is_first(&self) -> bool {
         let Some(post) = self.duty.post().filter(|post| post.is_primary()) else { return false };
         let follower = PostKind::Primary { follows: Some(post.id) };
@@ -67,12 +67,12 @@ impl Robot {
         !told && !self.neighbours.iter().any(|n| n.post().is_some_and(|p| p.kind == follower))
     }
 
-    /// The post of a newcomer that this robot should hang on but does not yet reach.
+    /// The post of a newcomer that this robot should attach to but does not yet reach.
     pub(super) fn awaited_parent(&self) -> Option<PostId> {
         let post = self.duty.post()?;
         match *self.bulletin.notice() {
             Notice::Advance { joined: Some((newcomer, followed)) }
-                if followed == post.id && !post.hangs_on(newcomer) =>
+                if followed == post.id && !post.is_child_of(newcomer) =>
             {
                 Some(newcomer)
             }
