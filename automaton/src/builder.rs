@@ -295,6 +295,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             graph,
             modes,
             leaving,
+            tally: None,
         })
     }
 

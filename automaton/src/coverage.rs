@@ -42,6 +42,7 @@
 
 mod parts;
 mod report;
+pub(crate) mod tally;
 
 use pleach_discrete::{Event, Location};
 use pleach_guards::EvaluationError;

@@ -110,10 +110,13 @@ fn a_message_without_delay_arrives_at_the_same_time_in_a_later_jump() {
 #[test]
 fn a_message_takes_as_long_as_the_policy_says_between_the_bounds() {
     let composition = pair(1.0, channel().taking(0.25, 0.75));
-    let arrival = |policy| jumps(&run(&composition, policy, 1.9))[1];
-    assert_eq!(arrival(Policy::Early), (1.25, HEAR));
-    assert_eq!(arrival(Policy::Late), (1.75, HEAR));
-    let (drawn, _) = arrival(Policy::Random { seed: 3 });
+    let arrival = |policy| {
+        let trajectory = run(&composition, policy, 1.9);
+        assert_eq!(trajectory.jumps()[1].label, HEAR);
+        trajectory.jumps()[1].at.t
+    };
+    assert_eq!((arrival(Policy::Early), arrival(Policy::Late)), (1.25, 1.75));
+    let drawn = arrival(Policy::Random { seed: 3 });
     assert!((1.25..=1.75).contains(&drawn), "{drawn}");
 }
 
@@ -155,6 +158,21 @@ fn one_send_goes_on_all_channels_that_begin_there() {
     let trajectory = run(&group, Policy::Late, 1.75);
     assert_eq!(jumps(&trajectory), [(1.0, TELL), (1.25, HEAR), (1.5, "c.hear")]);
     assert_eq!(trajectory.jumps()[0].moves.len(), 3);
+}
+
+#[test]
+fn a_channel_with_several_inputs_delivers_to_all_in_one_jump() {
+    let group = Composition::builder()
+        .add("a", &sender(1.0))
+        .add("b", &receiver())
+        .add("c", &receiver())
+        .channel(channel().and_to("c.hear").carrying("a.x", "c.m").called("air").taking(0.25, 0.25))
+        .build()
+        .expect("the parts fit");
+    let trajectory = run(&group, Policy::Late, 2.5);
+    assert_eq!(jumps(&trajectory), [(1.0, TELL), (1.25, "air"), (2.0, TELL), (2.25, "air")]);
+    let lasts = ["b.last", "c.last"].map(|name| trajectory.value(name, 2.5));
+    assert_eq!(lasts, [Some(1.0), Some(1.0)]);
 }
 
 /// How often the message of a herald may have been heard, and whether it may be under way.

@@ -323,16 +323,21 @@ impl CompositionBuilder {
     fn join_channels(mut self) -> Result<Self, CompositionError> {
         let mut heard: Vec<String> = Vec::new();
         for channel in std::mem::take(&mut self.channels) {
-            let (send, _) = self.end_of_channel(&channel.output)?;
-            let (arrive, receiver) = self.end_of_channel(&channel.input)?;
-            if heard.contains(&arrive) {
-                return Err(CompositionError::HeardTwice { event: channel.input });
-            }
-            if channel.has_deadline() {
-                self.parts[receiver].check_receptive(&arrive)?;
+            let (send, _) = self.end_of_channel(&channel.output, None)?;
+            let shared = (channel.inputs.len() > 1).then(|| channel.name.clone());
+            let mut arrive = String::new();
+            for input in &channel.inputs {
+                if heard.contains(input) {
+                    return Err(CompositionError::HeardTwice { event: input.clone() });
+                }
+                let receiver;
+                (arrive, receiver) = self.end_of_channel(input, shared.as_deref())?;
+                if channel.has_deadline() {
+                    self.parts[receiver].check_receptive(&arrive)?;
+                }
+                heard.push(input.clone());
             }
             self = channel.join(self, &send, &arrive)?;
-            heard.push(arrive);
         }
         match self.fault.take() {
             Some(fault) => Err(fault),
@@ -341,24 +346,27 @@ impl CompositionBuilder {
     }
 
     /// The label of an event at which a channel begins or ends, written `component.event`, and the
-    /// number of the component.
-    fn end_of_channel(&mut self, event: &str) -> Result<(String, usize), CompositionError> {
+    /// number of the component. The label is `label`, or else what is written.
+    fn end_of_channel(
+        &mut self,
+        event: &str,
+        label: Option<&str>,
+    ) -> Result<(String, usize), CompositionError> {
+        let label = label.unwrap_or(event);
         for (number, part) in self.parts.iter_mut().enumerate() {
-            let Some(own) = event.strip_prefix(&*part.name).and_then(|it| it.strip_prefix('.'))
-            else {
-                continue;
-            };
-            if part.event(event).is_some() {
-                return Ok((event.to_owned(), number));
+            let own = event.strip_prefix(&*part.name).and_then(|it| it.strip_prefix('.'));
+            let Some(own) = own else { continue };
+            if part.event(label).is_some() {
+                return Ok((label.to_owned(), number));
             }
             let Some(place) = part.event(own) else { continue };
-            if self.labels.iter().any(|label| label == own) {
+            if label == event && self.labels.iter().any(|label| label == own) {
                 return Ok((own.to_owned(), number));
             }
             let before = part.blueprint.events[place];
             part.renamed.retain(|(renamed, _)| renamed != before);
-            part.renamed.push((before.to_owned(), event.to_owned()));
-            return Ok((event.to_owned(), number));
+            part.renamed.push((before.to_owned(), label.to_owned()));
+            return Ok((label.to_owned(), number));
         }
         Err(CompositionError::UnknownMessage { event: event.to_owned() })
     }

@@ -83,8 +83,8 @@ use crate::reset::Assignment;
 #[must_use = "give it to a composition"]
 pub struct Channel {
     pub(super) output: String,
-    pub(super) input: String,
-    name: String,
+    pub(super) inputs: Vec<String>,
+    pub(super) name: String,
     /// From a coordinate of the sender to an input of the receiver.
     contents: Vec<(String, String)>,
     /// The shortest and the longest time that a message takes, in seconds; none if any time.
@@ -104,7 +104,7 @@ impl Channel {
     pub fn new(output: &str, input: &str) -> Self {
         Channel {
             output: output.to_owned(),
-            input: input.to_owned(),
+            inputs: vec![input.to_owned()],
             name: format!("{output} → {input}"),
             contents: Vec::new(),
             delay: None,
@@ -114,7 +114,15 @@ impl Channel {
         }
     }
 
-    /// The channel as a component is called `name`, instead of `output → input`.
+    /// The messages arrive at the event `input` of a component, too, in the same jump. Then the
+    /// arrival has the name of the channel.
+    pub fn and_to(mut self, input: &str) -> Self {
+        self.inputs.push(input.to_owned());
+        self
+    }
+
+    /// The channel as a component is called `name`, instead of `output → input` with
+    /// its first input.
     pub fn called(mut self, name: &str) -> Self {
         name.clone_into(&mut self.name);
         self
