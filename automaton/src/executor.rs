@@ -273,6 +273,7 @@ impl Reason<Infallible> {
 
 /// The limits of an [`Executor`] make no sense.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum InvalidLimit {
     /// The horizon is negative, infinite or NaN.
     #[error("the horizon is {0} s: it must be finite and at least 0")]

@@ -10,7 +10,7 @@ use pleach::continuous::Point;
 use pleach::continuous::geometry::{Disc, Segment, convex_region, voronoi_half_planes};
 use pleach::continuous::network::LinkReliability;
 use pleach::continuous::network::motion::MotionProblem;
-use pleach::continuous::network::rates::{Exchange, residual_gradient};
+use pleach::continuous::network::rates::{NeighbourTraffic, residual_gradient};
 use pleach::continuous::network::routing::problem::RoutingProblem;
 
 use crate::course::Course;
@@ -110,7 +110,7 @@ impl Scene {
         let mut discs = vec![Disc { center: position, radius: settings.step_radius }];
         discs.extend(parents);
         let mut problem = MotionProblem { position, waypoint, half_planes, discs };
-        let exchanges = self.routes_of(leader).map(|route| Exchange {
+        let exchanges = self.routes_of(leader).map(|route| NeighbourTraffic {
             neighbour: self.place(route.to),
             sent: route.share,
             received: 0.0,

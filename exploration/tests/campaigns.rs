@@ -2,7 +2,7 @@
 //! each of them.
 
 use pleach_exploration::network::{
-    Campaign, Configuration, Faults, Findings, Medium, Places, QUICK, THOROUGH,
+    Campaign, Configuration, Faults, Findings, Medium, PlaceGraph, QUICK, THOROUGH,
 };
 
 /// What fails is told before counts are compared: a fault in the protocol changes both.
@@ -45,7 +45,7 @@ fn states_of_sound(configuration: Configuration) -> usize {
 /// Two robots on an access point, a task beside one of them, and single messages in any order.
 #[test]
 fn everything_holds_in_every_order_of_single_messages() {
-    let places = Places::with_branches(2, 1, &[(0, 2), (1, 2)], &[(1, 1)]).unwrap();
+    let places = PlaceGraph::with_branches(2, 1, &[(0, 2), (1, 2)], &[(1, 1)]).unwrap();
     let medium = Medium::MessagesInAnyOrder;
     let states = states_of_sound(Configuration { places, medium, contacts: 0 });
     assert_eq!(states, 149_710);
@@ -56,7 +56,7 @@ fn everything_holds_in_every_order_of_single_messages() {
 #[test]
 fn a_robot_that_joins_from_another_tree_and_does_not_get_there_says_why_not() {
     let graph = [(0, 1), (0, 3), (1, 2), (2, 3), (2, 4)];
-    let places = Places::with_branches(3, 2, &graph, &[(4, 2)]).unwrap();
+    let places = PlaceGraph::with_branches(3, 2, &graph, &[(4, 2)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
     assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 522);
 }
@@ -66,7 +66,7 @@ fn a_robot_that_joins_from_another_tree_and_does_not_get_there_says_why_not() {
 #[test]
 fn an_exchange_across_a_link_keeps_the_tree() {
     let graph = [(0, 1), (0, 3), (1, 4), (2, 3), (3, 4)];
-    let places = Places::with_branches(4, 1, &graph, &[(1, 1)]).unwrap();
+    let places = PlaceGraph::with_branches(4, 1, &graph, &[(1, 1)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
     assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 1_332);
 }
@@ -76,7 +76,7 @@ fn an_exchange_across_a_link_keeps_the_tree() {
 #[test]
 fn robots_that_lose_their_parent_at_once_do_not_attach_to_one_another() {
     let graph = [(0, 1), (0, 4), (0, 5), (0, 6), (1, 2), (1, 3), (1, 6), (2, 3), (2, 4), (3, 4)];
-    let places = Places::with_branches(6, 1, &graph, &[(1, 1)]).unwrap();
+    let places = PlaceGraph::with_branches(6, 1, &graph, &[(1, 1)]).unwrap();
     let medium = Medium::Rounds { faults: Faults::NONE, period: None };
     assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 173);
 }

@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // not every test needs everything
 
+mod medium;
+
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, ValidScenario};
 use pleach::automaton::network::{Message, Network, Site};
@@ -15,6 +17,8 @@ use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
+
+pub use medium::{Arrival, Filtered};
 
 /// What a control period showed.
 #[derive(Clone, Debug, PartialEq)]

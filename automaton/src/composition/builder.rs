@@ -485,12 +485,17 @@ impl Part {
         self.event_names().position(|event| event == name)
     }
 
-    /// In every location there is a transition with this event.
+    /// In every location that is ever entered there is a transition with this event.
     fn check_receptive(&self, event: &str) -> Result<(), CompositionError> {
-        let number = self.event(event);
-        let is_deaf = |place: &&Place| !place.leaving.iter().any(|it| Some(it.event) == number);
-        match self.blueprint.places.iter().find(is_deaf) {
-            Some(place) => Err(CompositionError::NotReceptive {
+        let (number, places) = (self.event(event), &self.blueprint.places);
+        let is_entered = |place: usize| {
+            let mut leaving = places.iter().flat_map(|place| &place.leaving);
+            place == self.blueprint.initial || leaving.any(|leaving| leaving.target == place)
+        };
+        let is_deaf = |place: &Place| !place.leaving.iter().any(|it| Some(it.event) == number);
+        let mut numbered = places.iter().enumerate();
+        match numbered.find(|(number, place)| is_deaf(place) && is_entered(*number)) {
+            Some((_, place)) => Err(CompositionError::NotReceptive {
                 component: self.name.clone(),
                 event: event.to_owned(),
                 location: place.name,

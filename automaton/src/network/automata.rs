@@ -31,4 +31,11 @@ impl Automata {
             dealing: dealing_automaton()?,
         })
     }
+
+    /// The same automata, which count how often their rows are taken by all robots together.
+    #[must_use]
+    pub fn counted(self) -> Self {
+        let Automata { duty, mission, dealing } = self;
+        Automata { duty: duty.counted(), mission: mission.counted(), dealing: dealing.counted() }
+    }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{
-    Agreement, Bulletin, Election, Exchange, IdSet, Lineage, NodeId, PostId, Reply,
+    Agreement, Bulletin, Election, IdSet, Lineage, NodeId, Offer, PostId, Reply,
 };
 
 use super::duty::{Duty, Hop, Path};
@@ -105,7 +105,7 @@ pub struct Beacon {
     /// For a redundant robot: whether it could attach to another node than its parent.
     pub can_detach: bool,
     /// A standing offer to exchange duties.
-    pub offer: Option<Exchange<Duty>>,
+    pub offer: Option<Offer<Duty>>,
     /// How many offers it has made so far.
     pub offers_made: u32,
     /// The answer to an offer.

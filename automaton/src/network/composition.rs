@@ -27,6 +27,7 @@ use crate::node::{Ensemble, Medium, NodeJump};
 
 /// What went wrong inside the simulator.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum NetworkError {
     /// A node cannot go on.
     #[error(transparent)]

@@ -48,6 +48,7 @@ pub trait Measure: std::fmt::Debug + Send + Sync {
 
 /// Why no site can be made of a scenario.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SiteError {
     /// The polygons do not make a workspace.
     #[error(transparent)]

@@ -19,7 +19,7 @@ pub use agreement::Agreement;
 pub use bulletin::Bulletin;
 pub use dealing::{DEALINGS, Dealing, DealingEvent};
 pub use election::{Bid, Election};
-pub use exchange::{Dealings, Exchange, Reply};
+pub use exchange::{Dealings, Offer, Reply};
 pub use id_set::IdSet;
 pub use lineage::Lineage;
 pub use path::{Hop, Path, Subgroup};

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::Action;
 use super::graphs::{Graph, graphs, numbered_graphs};
 use super::medium::Medium;
-use super::places::{Place, Places, PlacesError};
+use super::places::{PlaceGraph, PlaceGraphError, PlaceId};
 use super::properties::{ALWAYS, has_ended};
 use super::protocol::{Configuration, Protocol, ProtocolError, State};
 use super::story::story;
@@ -99,7 +99,7 @@ impl fmt::Display for Failure {
 pub enum CampaignError {
     /// A graph is not one to start from.
     #[error(transparent)]
-    Places(#[from] PlacesError),
+    PlaceGraph(#[from] PlaceGraphError),
     /// A network cannot be made.
     #[error(transparent)]
     Protocol(#[from] ProtocolError),
@@ -144,8 +144,8 @@ impl Campaign {
     }
 
     /// Every choice of a branch for each task.
-    fn branches(&self) -> Vec<Vec<(Place, usize)>> {
-        let longer = |chosen: Vec<(Place, usize)>| {
+    fn branches(&self) -> Vec<Vec<(PlaceId, usize)>> {
+        let longer = |chosen: Vec<(PlaceId, usize)>| {
             let ends =
                 self.starts(&chosen).flat_map(|from| self.steps.iter().map(move |&n| (from, n)));
             ends.map(|branch| [chosen.as_slice(), &[branch]].concat()).collect::<Vec<_>>()
@@ -154,7 +154,7 @@ impl Campaign {
     }
 
     /// Where another branch may begin.
-    fn starts(&self, chosen: &[(Place, usize)]) -> std::ops::Range<Place> {
+    fn starts(&self, chosen: &[(PlaceId, usize)]) -> std::ops::Range<PlaceId> {
         let nodes = self.robots + self.access_points;
         // The places of branches are numbered in turn, each branch ending with its task.
         let places = nodes + chosen.iter().map(|&(_, steps)| steps).sum::<usize>();
@@ -162,9 +162,13 @@ impl Campaign {
     }
 
     /// Explores one configuration.
-    fn visit(&self, graph: &Graph, branches: &[(Place, usize)]) -> Result<Findings, CampaignError> {
+    fn visit(
+        &self,
+        graph: &Graph,
+        branches: &[(PlaceId, usize)],
+    ) -> Result<Findings, CampaignError> {
         let name = format!("graph {graph:?} with branches {branches:?}");
-        let places = Places::with_branches(self.robots, self.access_points, graph, branches)?;
+        let places = PlaceGraph::with_branches(self.robots, self.access_points, graph, branches)?;
         let (medium, contacts) = (self.medium, self.contacts);
         Findings::of(&name, Configuration { places, medium, contacts }, MOST_STATES)
     }

@@ -1,9 +1,9 @@
 //! All connected graphs of a few robots and access points.
 
-use super::places::Place;
+use super::places::PlaceId;
 
 /// A graph on robots 0 … N−1 and the access points from N on, by its edges.
-pub type Graph = Vec<(Place, Place)>;
+pub type Graph = Vec<(PlaceId, PlaceId)>;
 
 /// Every connected graph of this many robots and access points, once for all that are the same but
 /// for the numbers of the robots. With one access point there are 1, 3, 11, 58 … of them.
@@ -29,21 +29,21 @@ pub fn numbered_graphs(robots: usize) -> Vec<Graph> {
         .collect()
 }
 
-fn pairs(nodes: usize) -> Vec<(Place, Place)> {
+fn pairs(nodes: usize) -> Vec<(PlaceId, PlaceId)> {
     (0..nodes).flat_map(|a| (a + 1..nodes).map(move |b| (a, b))).collect()
 }
 
 /// Every choice of pairs, as bits.
-fn masks(pairs: &[(Place, Place)]) -> impl Iterator<Item = u32> + use<> {
+fn masks(pairs: &[(PlaceId, PlaceId)]) -> impl Iterator<Item = u32> + use<> {
     0..1_u32 << pairs.len()
 }
 
-fn edges(mask: u32, pairs: &[(Place, Place)]) -> Graph {
-    let chosen = |&(at, _): &(usize, &(Place, Place))| mask >> at & 1 == 1;
+fn edges(mask: u32, pairs: &[(PlaceId, PlaceId)]) -> Graph {
+    let chosen = |&(at, _): &(usize, &(PlaceId, PlaceId))| mask >> at & 1 == 1;
     pairs.iter().enumerate().filter(chosen).map(|(_, &pair)| pair).collect()
 }
 
-fn is_connected(mask: u32, pairs: &[(Place, Place)], nodes: usize) -> bool {
+fn is_connected(mask: u32, pairs: &[(PlaceId, PlaceId)], nodes: usize) -> bool {
     let mut reached = 1_u32;
     for _ in 0..nodes {
         for (at, &(a, b)) in pairs.iter().enumerate() {
@@ -56,7 +56,7 @@ fn is_connected(mask: u32, pairs: &[(Place, Place)], nodes: usize) -> bool {
 }
 
 /// Every order of the robots.
-fn orders(robots: usize) -> Vec<Vec<Place>> {
+fn orders(robots: usize) -> Vec<Vec<PlaceId>> {
     (0..robots).fold(vec![Vec::new()], |orders, robot| {
         orders
             .iter()
@@ -72,8 +72,8 @@ fn orders(robots: usize) -> Vec<Vec<Place>> {
 }
 
 /// The same graph with robot `i` called `order[i]`.
-fn renumbered(mask: u32, pairs: &[(Place, Place)], order: &[Place]) -> u32 {
-    let name = |node: Place| order.get(node).copied().unwrap_or(node);
+fn renumbered(mask: u32, pairs: &[(PlaceId, PlaceId)], order: &[PlaceId]) -> u32 {
+    let name = |node: PlaceId| order.get(node).copied().unwrap_or(node);
     let mut renumbered = 0;
     for (at, &(a, b)) in pairs.iter().enumerate() {
         if mask >> at & 1 == 1 {

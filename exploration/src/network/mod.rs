@@ -2,7 +2,7 @@
 //!
 //! What is explored is the code that robots and access points run: [`Robot`] and [`AccessPoint`]
 //! with their tables, guards and resets. Only the continuous side is replaced, by choice: robots
-//! stand on the places of a graph, [`Places`], and a body may come to the next place on its way,
+//! stand on the places of a graph, [`PlaceGraph`], and a body may come to the next place on its way,
 //! or not yet. A [`Protocol`] composes them with a [`Medium`].
 //!
 //! [`Robot`]: pleach_automaton::network::Robot
@@ -24,7 +24,7 @@ pub use campaigns::{QUICK, THOROUGH};
 pub use graphs::{Graph, graphs, numbered_graphs};
 pub use medium::{Faults, LONGEST_ECHO, Medium};
 pub use node::{BeaconId, Local, LocalId, Node, Nodes, Stimulus};
-pub use places::{Place, Places, PlacesError};
+pub use places::{PlaceGraph, PlaceGraphError, PlaceId};
 pub use properties::{ALWAYS, has_ended};
 pub use protocol::{Action, Configuration, Protocol, ProtocolError, State};
 pub use story::{story, tell};

@@ -11,7 +11,7 @@ use pleach_continuous::Point;
 
 /// The number of a place: first those where the robots start, then those of the access points,
 /// then others.
-pub type Place = usize;
+pub type PlaceId = usize;
 
 /// Ways are this share of the longest link that may be made, for each step from place to place:
 /// two steps are then too long for a link, and a link of one step is not slack.
@@ -25,10 +25,10 @@ const RANGES: LinkRanges = LinkRanges::new(1.0, 1.2);
 /// Robots hear each other, and a link of the tree may be made, where two places are one or
 /// neighbours. The length of a way is its number of steps.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Places {
+pub struct PlaceGraph {
     robots: usize,
     access_points: usize,
-    tasks: Vec<Place>,
+    tasks: Vec<PlaceId>,
     steps: Vec<Vec<usize>>,
     positions: Vec<Point>,
     /// The length of a step.
@@ -37,12 +37,12 @@ pub struct Places {
 
 /// Why no exploration starts from a graph.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PlacesError {
+pub enum PlaceGraphError {
     /// An edge or a task names a place that there is not.
     #[error("there is no place {place}: the places are 0 to {}", .places - 1)]
     NoSuchPlace {
         /// The place named.
-        place: Place,
+        place: PlaceId,
         /// How many there are.
         places: usize,
     },
@@ -50,15 +50,15 @@ pub enum PlacesError {
     #[error("no way leads from place 0 to place {place}")]
     Disconnected {
         /// Such a place.
-        place: Place,
+        place: PlaceId,
     },
     /// There is no robot or no access point.
     #[error("there must be a robot and an access point")]
     Empty,
 }
 
-impl Places {
-    /// Places 0 … with these neighbours: a robot on each of the first `robots`, an access point
+impl PlaceGraph {
+    /// PlaceGraph 0 … with these neighbours: a robot on each of the first `robots`, an access point
     /// on each of the next `access_points`, and the tasks where `tasks` says.
     ///
     /// # Errors
@@ -67,24 +67,24 @@ impl Places {
         robots: usize,
         access_points: usize,
         places: usize,
-        edges: &[(Place, Place)],
-        tasks: &[Place],
-    ) -> Result<Self, PlacesError> {
+        edges: &[(PlaceId, PlaceId)],
+        tasks: &[PlaceId],
+    ) -> Result<Self, PlaceGraphError> {
         if robots == 0 || access_points == 0 || places < robots + access_points {
-            return Err(PlacesError::Empty);
+            return Err(PlaceGraphError::Empty);
         }
         let named = edges.iter().flat_map(|&(a, b)| [a, b]).chain(tasks.iter().copied());
         if let Some(place) = named.into_iter().find(|&place| place >= places) {
-            return Err(PlacesError::NoSuchPlace { place, places });
+            return Err(PlaceGraphError::NoSuchPlace { place, places });
         }
         let steps: Vec<Vec<usize>> =
             (0..places).map(|from| steps_from(from, places, edges)).collect();
         if let Some(place) = steps[0].iter().position(|&steps| steps == usize::MAX) {
-            return Err(PlacesError::Disconnected { place });
+            return Err(PlaceGraphError::Disconnected { place });
         }
         let positions = (0..places).map(|place| on_circle(place, places)).collect();
         let tasks = tasks.to_vec();
-        let mut places = Places { robots, access_points, tasks, steps, positions, step: 0.0 };
+        let mut places = PlaceGraph { robots, access_points, tasks, steps, positions, step: 0.0 };
         places.step = STEP * Settings::resolve(&places.scenario()).longest_new_link();
         Ok(places)
     }
@@ -97,9 +97,9 @@ impl Places {
     pub fn with_branches(
         robots: usize,
         access_points: usize,
-        graph: &[(Place, Place)],
-        branches: &[(Place, usize)],
-    ) -> Result<Self, PlacesError> {
+        graph: &[(PlaceId, PlaceId)],
+        branches: &[(PlaceId, usize)],
+    ) -> Result<Self, PlaceGraphError> {
         let (mut edges, mut tasks, mut places) =
             (graph.to_vec(), Vec::new(), robots + access_points);
         for &(from, steps) in branches {
@@ -111,7 +111,7 @@ impl Places {
             places += steps;
             tasks.push(last);
         }
-        Places::new(robots, access_points, places, &edges, &tasks)
+        PlaceGraph::new(robots, access_points, places, &edges, &tasks)
     }
 
     /// The number of robots.
@@ -130,18 +130,18 @@ impl Places {
     }
 
     /// The number of steps of the shortest way.
-    pub fn steps(&self, from: Place, to: Place) -> usize {
+    pub fn steps(&self, from: PlaceId, to: PlaceId) -> usize {
         self.steps[from][to]
     }
 
     /// Whether a link may lead from one place to the other.
-    pub fn are_linked(&self, from: Place, to: Place) -> bool {
+    pub fn are_linked(&self, from: PlaceId, to: PlaceId) -> bool {
         self.steps(from, to) <= 1
     }
 
     /// The places one step nearer to `to`, ascending.
-    pub fn next_steps(&self, from: Place, to: Place) -> impl Iterator<Item = Place> + '_ {
-        let nearer = move |&place: &Place| {
+    pub fn next_steps(&self, from: PlaceId, to: PlaceId) -> impl Iterator<Item = PlaceId> + '_ {
+        let nearer = move |&place: &PlaceId| {
             self.steps(from, place) == 1 && self.steps(place, to) + 1 == self.steps(from, to)
         };
         (0..self.steps.len()).filter(nearer)
@@ -149,13 +149,13 @@ impl Places {
 
     /// Where a place lies. The places are so close together that all robots would be in range of
     /// each other: what counts is the graph.
-    pub fn position(&self, place: Place) -> Point {
+    pub fn position(&self, place: PlaceId) -> Point {
         self.positions[place]
     }
 
     /// The place nearest to a position.
-    pub fn place_at(&self, position: Point) -> Place {
-        let distance = |&place: &Place| (self.positions[place] - position).norm_squared();
+    pub fn place_at(&self, position: Point) -> PlaceId {
+        let distance = |&place: &PlaceId| (self.positions[place] - position).norm_squared();
         (0..self.positions.len())
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
             .unwrap_or_default()
@@ -168,7 +168,7 @@ impl Places {
 
     /// The mission with robots, access points and tasks at their places, in an empty room.
     pub fn scenario(&self) -> Scenario {
-        let at = |place: Place| self.position(place).into();
+        let at = |place: PlaceId| self.position(place).into();
         let side = 2.0;
         Scenario {
             name: "places".into(),
@@ -191,21 +191,21 @@ impl Places {
     }
 }
 
-impl Measure for Places {
+impl Measure for PlaceGraph {
     fn distance(&self, from: Point, to: Point) -> f64 {
         self.step * self.steps(self.place_at(from), self.place_at(to)) as f64
     }
 }
 
 /// A point of a circle, one of as many as there are places, to three decimals.
-fn on_circle(place: Place, places: usize) -> Point {
+fn on_circle(place: PlaceId, places: usize) -> Point {
     let angle = TAU * place as f64 / places as f64;
     let round = |coordinate: f64| (coordinate * 1e3).round() / 1e3;
     Point::new(round(0.45 * angle.cos()), round(0.45 * angle.sin()))
 }
 
 /// The numbers of steps from `from` to every place; `usize::MAX` where no way leads.
-fn steps_from(from: Place, places: usize, edges: &[(Place, Place)]) -> Vec<usize> {
+fn steps_from(from: PlaceId, places: usize, edges: &[(PlaceId, PlaceId)]) -> Vec<usize> {
     let mut steps = vec![usize::MAX; places];
     steps[from] = 0;
     let mut ahead = VecDeque::from([from]);

@@ -11,14 +11,14 @@ use pleach_discrete::network::NodeId;
 
 use super::medium::{Copied, Faults, Medium};
 use super::node::{BeaconId, Local, LocalId, Node, Nodes, Stimulus};
-use super::places::{Place, Places};
+use super::places::{PlaceGraph, PlaceId};
 use crate::Model;
 
 /// What is explored: who stands where, how messages go, and how often a robot is in another's way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration {
     /// The graph.
-    pub places: Places,
+    pub places: PlaceGraph,
     /// The medium.
     pub medium: Medium,
     /// How many times a parked robot is in the way of a mover at the same place.
@@ -215,7 +215,7 @@ impl Protocol {
     }
 
     /// Where a node is.
-    pub fn place_of(&self, state: &State, node: NodeId) -> Place {
+    pub fn place_of(&self, state: &State, node: NodeId) -> PlaceId {
         match self.nodes.local(state.locals[node]).robot() {
             Some(robot) => self.configuration.places.place_at(robot.position()),
             None => node,
@@ -299,7 +299,7 @@ impl Protocol {
     // ---- Bodies ------------------------------------------------------------------------------
 
     /// The next place on the way of a robot that no link of the tree keeps from going there.
-    pub fn next_place(&self, state: &State, robot: NodeId) -> Option<Place> {
+    pub fn next_place(&self, state: &State, robot: NodeId) -> Option<PlaceId> {
         let places = &self.configuration.places;
         let body = self.nodes.local(state.locals[robot]).robot()?;
         let (here, goal) = (self.place_of(state, robot), places.place_at(body.goal()?));
@@ -308,7 +308,7 @@ impl Protocol {
             let other = self.nodes.local(state.locals[other]).robot();
             other.is_some_and(|other| other.tree_parent() == Some(robot))
         }));
-        let holds = |place: &Place| {
+        let holds = |place: &PlaceId| {
             held.iter().all(|&other| places.are_linked(*place, self.place_of(state, other)))
         };
         places.next_steps(here, goal).find(holds)

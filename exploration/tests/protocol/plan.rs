@@ -1,6 +1,8 @@
 //! Random networks, and what may happen in them.
 
-use pleach_exploration::network::{Action, Configuration, Faults, Graph, Medium, Place, Places};
+use pleach_exploration::network::{
+    Action, Configuration, Faults, Graph, Medium, PlaceGraph, PlaceId,
+};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest_state_machine::ReferenceStateMachine;
@@ -20,7 +22,7 @@ pub struct Plan {
     robots: usize,
     access_points: usize,
     graph: Graph,
-    branches: Vec<(Place, usize)>,
+    branches: Vec<(PlaceId, usize)>,
     medium: Medium,
     contacts: u32,
 }
@@ -29,7 +31,7 @@ impl Plan {
     /// The network as it is explored.
     pub fn configuration(&self) -> Configuration {
         let Plan { robots, access_points, graph, branches, medium, contacts } = self;
-        let places = Places::with_branches(*robots, *access_points, graph, branches);
+        let places = PlaceGraph::with_branches(*robots, *access_points, graph, branches);
         Configuration {
             places: places.expect("a plan is a connected graph"),
             medium: *medium,

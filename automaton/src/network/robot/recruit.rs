@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pleach_discrete::network::{Anchor, Bid, Election, IdSet, Phase};
 
 use super::super::beacon::{Beacon, Notice};
-use super::super::duty::{Hop, Path, Place};
+use super::super::duty::{Hop, Path, PathPlace};
 use super::super::mission::{Advance, PathAgreement, RecruitElection};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::shared::Shared;
@@ -101,7 +101,7 @@ pub(super) fn end_unaided(
 impl Robot {
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
         let station = self.duty.station()?;
-        let place = Place { reference: station.reference, position: self.position };
+        let place = PathPlace { reference: station.reference, position: self.position };
         Some(Hop { robot: self.id, post: station.post, place, crossing })
     }
 

@@ -59,6 +59,7 @@ pub enum Stage {
 
 /// Why a robot cannot go on.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RobotError {
     /// A guard speaks of something that robots do not measure.
     #[error(transparent)]
