@@ -181,6 +181,40 @@ fn every_file_of_tests_is_in_the_program_of_its_package() {
     }
 }
 
+/// Where an automaton of the network stands is changed by its resets alone: what holds a location
+/// with its data is private, is made where its owner is made, and is assigned to nowhere. The one
+/// way to change it, `current_mut`, is called by the resets of `located.rs` and by nothing else.
+#[test]
+fn nothing_but_resets_changes_where_an_automaton_stands() {
+    let sources = sources();
+    let is_of_the_network =
+        |source: &&Source| source.package() == "automaton" && source.is_about_the_network();
+    let network = || sources.iter().filter(is_of_the_network);
+    let holds =
+        |line: &String| line.trim_start().split_once(": Current<").map(|it| it.0.to_owned());
+    let fields: Vec<String> = network()
+        .flat_map(|source| source.lines.iter().filter_map(|(_, line)| holds(line)))
+        .collect();
+    assert!(fields.len() >= 3, "the places are not where they are looked for: {fields:?}");
+    assert!(fields.iter().all(|field| !field.contains("pub")), "they are private: {fields:?}");
+    let changes: Vec<String> = fields
+        .iter()
+        .flat_map(|field| {
+            let (moved, borrowed) = (format!(".{field} = "), format!("&mut self.{field}"));
+            [moved, format!("({borrowed},"), format!("({borrowed})")]
+        })
+        .chain(["= Current::new(", ".current_mut()"].map(str::to_owned))
+        .collect();
+    let changes: Vec<&str> = changes.iter().map(String::as_str).collect();
+    let offences = network().flat_map(|source| source.lines_with(&changes)).collect();
+    assert_none(offences, "only resets change where an automaton stands");
+    let callers: Vec<&Source> = sources
+        .iter()
+        .filter(|source| !source.lines_with(&[".current_mut()"]).is_empty())
+        .collect();
+    assert!(callers.iter().all(|source| source.path == "automaton/src/located.rs"));
+}
+
 #[test]
 fn there_is_no_unsafe_code() {
     let offences = sources().iter().flat_map(|s| s.lines_with(&["unsafe "])).collect();
