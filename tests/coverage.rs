@@ -1,4 +1,4 @@
-//! Which rows of their tables the robots take, in the shipped scenarios and in random missions.
+//! Which rows of their tables the nodes take, in the shipped scenarios and in random missions.
 //!
 //! `PLEACH_UPDATE_DOCS=1 cargo test --test it coverage` writes the page anew.
 
@@ -24,7 +24,7 @@ struct Taken {
     missions: usize,
 }
 
-/// The tables of a robot, each with its title.
+/// The tables of robots, access points and the user, each with its title.
 fn tables(automata: &Automata) -> Vec<(&'static str, Vec<Taken>)> {
     fn rows<L: Location, E: Event>(taken: impl Iterator<Item = (Row<L, E>, u64)>) -> Vec<Taken> {
         taken
@@ -38,6 +38,10 @@ fn tables(automata: &Automata) -> Vec<(&'static str, Vec<Taken>)> {
         ("The duty", rows(automata.duty.taken())),
         ("The mission", rows(automata.mission.taken())),
         ("The exchange of duties", rows(automata.dealing.taken())),
+        ("The control period", rows(automata.control.taken())),
+        ("The service of the tasks", rows(automata.service.taken())),
+        ("The control period of an access point", rows(automata.rounds.taken())),
+        ("The user", rows(automata.request.taken())),
     ]
 }
 
@@ -89,9 +93,9 @@ fn every_row_is_taken_or_has_a_reason() {
     let (drawn, in_drawn) = tally(random_scenarios());
     let mut page = format!(
         "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it coverage -->\n\n\
-         # Which rows robots take\n\n\
+         # Which rows nodes take\n\n\
          In how many of the {scenarios} shipped scenarios, and of {drawn} random missions, some \
-         robot takes each row of its tables. For a row that no shipped scenario takes, the last \
+         node takes each row of its tables. For a row that no shipped scenario takes, the last \
          column says what does.\n"
     );
     let mut unexplained = Vec::new();

@@ -15,6 +15,8 @@ mod guarantees;
 mod many_components;
 mod messages;
 mod models;
+#[cfg(feature = "network")]
+mod network_checks;
 mod pictures;
 mod sampled_rooms;
 mod semantics;

@@ -4,6 +4,7 @@ pub mod access_point;
 pub mod automata;
 pub mod beacon;
 mod composition;
+pub mod control;
 pub mod duty;
 mod link;
 pub mod medium;
@@ -14,17 +15,20 @@ pub mod observer;
 pub mod record;
 pub mod robot;
 pub mod scenario;
+pub mod service;
 pub mod shared;
 pub mod site;
 pub mod user;
 
-pub use access_point::AccessPoint;
+pub use access_point::{AccessPoint, round_automaton, service_automaton};
 pub use automata::Automata;
 pub use composition::{KernelTimes, Network, NetworkError};
 pub use link::Link;
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
-pub use robot::{Robot, RobotView, dealing_automaton, duty_automaton, mission_automaton};
+pub use robot::{
+    Robot, RobotView, control_automaton, dealing_automaton, duty_automaton, mission_automaton,
+};
 pub use site::{Site, SiteError};
-pub use user::User;
+pub use user::{User, request_automaton};

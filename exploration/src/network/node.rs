@@ -191,17 +191,13 @@ impl Nodes {
     fn stir(&self, node: &mut Node, stimulus: &Stimulus) -> Result<(), RobotError> {
         match (node, stimulus) {
             (Node::Robot(robot), Stimulus::Hear(_)) => robot.think(),
-            (Node::AccessPoint(access_point), Stimulus::Hear(_)) => {
-                access_point.think_over();
-                Ok(())
-            }
+            (Node::AccessPoint(access_point), Stimulus::Hear(_)) => Ok(access_point.think_over()?),
             (node @ Node::Robot(_), &Stimulus::Move(place)) => {
                 node.step(Input::Sensed(Sense::Position(self.positions[place])))
             }
             (Node::Robot(robot), &Stimulus::Period(still)) => robot.pass_period(still),
             (Node::AccessPoint(access_point), Stimulus::Period(_) | Stimulus::Announce) => {
-                access_point.attend_to_user();
-                Ok(())
+                Ok(access_point.attend_to_user()?)
             }
             (node, Stimulus::Round(_)) => node.step(Input::Tick),
             _ => Ok(()),

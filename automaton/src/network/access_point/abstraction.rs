@@ -2,6 +2,7 @@
 
 use super::super::beacon::{Beacon, Notice};
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
+use crate::automaton::TransitionError;
 
 impl AccessPoint {
     /// What the access point would tell its neighbours now.
@@ -10,13 +11,19 @@ impl AccessPoint {
     }
 
     /// In place of a round of messages: thinks over what it has heard, without counting a round.
-    pub fn think_over(&mut self) {
-        self.think();
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn think_over(&mut self) -> Result<(), TransitionError> {
+        self.think()
     }
 
     /// In place of what it does for the user at the end of each round.
-    pub fn attend_to_user(&mut self) {
-        self.serve();
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn attend_to_user(&mut self) -> Result<(), TransitionError> {
+        self.serve()
     }
 
     /// Everything, apart from what it hears, that decides what the access point says from now on.
@@ -27,12 +34,11 @@ impl AccessPoint {
             _ => 0,
         };
         let patience = PATIENCE_WITH_ELECTIONS * self.longest_wait() + 1;
-        let electing = matches!(self.bulletin.notice(), Notice::Task { .. } | Notice::Call { .. });
-        let rounds = if electing { self.election_rounds.min(patience) } else { 0 };
+        let rounds = if self.is_electing() { self.election_rounds.min(patience) } else { 0 };
         format!(
             "{:?}",
             (
-                (self.number, &self.bulletin, &self.announced, &self.election, rounds),
+                (self.number, &self.bulletin, &*self.service, &self.election, rounds),
                 (&self.agreement, &self.route, &self.crossing, &self.roster, settled),
             )
         )

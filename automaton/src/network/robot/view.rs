@@ -3,14 +3,13 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{NodeId, Phase, Role, Subgroup};
+use pleach_discrete::network::{NodeId, Phase, Role, Stage, Subgroup};
 
 use super::super::beacon::{Beacon, Notice};
 use super::super::duty::Duty;
 use super::super::mission::Mission;
 use super::links::TreeLink;
 use super::routing::RouteLink;
-use super::step::Stage;
 use super::{Facts, Robot};
 use crate::node::Observed;
 
@@ -58,8 +57,8 @@ impl<'a> RobotView<'a> {
     }
 
     /// Where it stands in its control period.
-    pub const fn stage(self) -> Stage {
-        self.0.stage
+    pub fn stage(self) -> Stage {
+        self.0.stage()
     }
 
     /// What its guards saw when they were evaluated last.
