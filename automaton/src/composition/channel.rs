@@ -290,7 +290,7 @@ impl<'a> Machine<'a> {
         let contents = 0..self.channel.contents.len();
         contents
             .map(|number| {
-                self.variable(&content(number, place)).becomes(&self.variable(&sent(number)))
+                self.variable(&content(number, place)).becomes(self.variable(&sent(number)))
             })
             .chain(self.channel.delay.map(|_| self.variable(&age(place)).becomes(0.0)))
             .collect()
@@ -305,7 +305,7 @@ impl<'a> Machine<'a> {
         };
         let moved = (1..held).flat_map(|place| {
             let pairs = names(place - 1).zip(names(place));
-            pairs.map(|(to, from)| self.variable(&to).becomes(&self.variable(&from)))
+            pairs.map(|(to, from)| self.variable(&to).becomes(self.variable(&from)))
         });
         let emptied = names(held - 1).map(|name| self.variable(&name).becomes(0.0));
         moved.chain(emptied).collect()
