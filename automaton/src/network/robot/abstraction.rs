@@ -164,7 +164,7 @@ impl Robot {
             heard_moves: _,
             must_judge_moves: _,
             arrival: _,
-            resting_place: _,
+            resting_places: _,
         } = self;
         let waited = match self.phase() {
             Phase::RecruitElection => (*waited_rounds).min(2 * self.longest_wait() + 1),

@@ -5,6 +5,8 @@
 //! for what the others say, up to the next tick. When it has set off, its clock calls again at
 //! τ = Δt.
 
+use std::collections::VecDeque;
+
 use pleach_continuous::Point;
 use std::sync::Arc;
 
@@ -107,7 +109,8 @@ impl Node for Robot {
 impl Robot {
     /// The robot stands at `position`, and has not got on for `still_periods` control periods.
     pub(super) fn stand_at(&mut self, position: Point, still_periods: u32) {
-        (self.position, self.arrival, self.resting_place) = (position, position, position);
+        (self.position, self.arrival) = (position, position);
+        self.resting_places = VecDeque::from([position]);
         self.still_periods = still_periods;
         self.stir();
     }
