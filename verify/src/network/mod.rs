@@ -74,7 +74,6 @@
 
 pub mod duty;
 pub mod election;
-pub mod exploration;
 pub mod instant;
 pub mod link;
 pub mod motion;
