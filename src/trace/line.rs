@@ -1,7 +1,7 @@
 //! The lines of a trace as JSON shows them.
 
 use crate::automaton::network::record::{
-    End, MissionEvent, Outcome, PostView, RobotView, Route, Snapshot,
+    End, MissionEvent, Outcome, PostView, RobotSnapshot, Route, Snapshot,
 };
 use crate::automaton::network::scenario::Scenario;
 use crate::discrete::Location;
@@ -69,7 +69,7 @@ pub(super) struct StepLine {
     robots: RobotsLine,
 }
 
-/// The [`RobotView`]s, each list with an element for each robot; traces may lack all of them.
+/// The [`RobotSnapshot`]s, each list with an element for each robot; traces may lack all of them.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 struct RobotsLine {
@@ -166,8 +166,8 @@ impl TryFrom<StepLine> for Snapshot {
     }
 }
 
-impl From<&[RobotView]> for RobotsLine {
-    fn from(robots: &[RobotView]) -> Self {
+impl From<&[RobotSnapshot]> for RobotsLine {
+    fn from(robots: &[RobotSnapshot]) -> Self {
         Self {
             location: robots.iter().map(|robot| robot.activity.name().into()).collect(),
             exchange: robots.iter().map(|robot| robot.dealing.name().into()).collect(),
@@ -181,7 +181,7 @@ impl From<&[RobotView]> for RobotsLine {
 
 impl RobotsLine {
     /// The views of this many robots, or none where the trace has none.
-    fn views(self, robots: usize) -> Result<Vec<RobotView>, String> {
+    fn views(self, robots: usize) -> Result<Vec<RobotSnapshot>, String> {
         let lengths = [
             ("location", self.location.len()),
             ("exchange", self.exchange.len()),
@@ -195,7 +195,7 @@ impl RobotsLine {
         }
         lengths.into_iter().try_for_each(|(name, length)| fitting(name, length, robots))?;
         let view = |robot: usize| {
-            Ok(RobotView {
+            Ok(RobotSnapshot {
                 activity: called("location", Activity::ALL, Activity::name, &self.location[robot])?,
                 dealing: called(
                     "location of an exchange",

@@ -3,7 +3,7 @@
 #![allow(dead_code)] // not every test needs everything
 
 use pleach::automaton::network::record::{
-    End, MissionEvent, Outcome, PostView, RobotView, Route, Snapshot,
+    End, MissionEvent, Outcome, PostView, RobotSnapshot, Route, Snapshot,
 };
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::discrete::network::{Activity, Dealing, Phase, Role};
@@ -78,7 +78,7 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
             junction: false,
         }],
         robots: vec![
-            RobotView {
+            RobotSnapshot {
                 activity: Activity::Relay,
                 dealing: Dealing::Free,
                 phase: Phase::Advance,
@@ -86,7 +86,7 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
                 sent: 12,
                 heard: 9,
             },
-            RobotView {
+            RobotSnapshot {
                 activity: Activity::Leading,
                 dealing: Dealing::Offering,
                 phase: Phase::Advance,

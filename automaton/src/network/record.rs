@@ -43,12 +43,12 @@ pub struct Snapshot {
     /// Fixed posts: reference position, the robot that holds it, and whether it is a junction.
     pub posts: Vec<PostView>,
     /// What else each robot shows of itself; empty in what is read from traces that lack it.
-    pub robots: Vec<RobotView>,
+    pub robots: Vec<RobotSnapshot>,
 }
 
 /// Where a robot is in its automata, where it goes, and how much it says and hears.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RobotView {
+pub struct RobotSnapshot {
     /// Its location in the duty automaton.
     pub activity: Activity,
     /// Its location in the automaton of the exchange of duties.
@@ -127,7 +127,7 @@ pub enum MissionEvent {
     RouteInfeasible { robot: usize },
     /// A mover and the robot in its way exchange duties.
     DutiesExchanged { mover: usize, parked: usize },
-    /// p₁ hangs itself on another node of the tree (Remark 5.6).
+    /// p₁ attaches to another node of the tree (Remark 5.6).
     Reattached { robot: usize, parent: usize },
     /// The leader's tree has no recruit left; the election is repeated among the others.
     ElectionRepeated { task: usize },

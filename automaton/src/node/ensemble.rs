@@ -45,7 +45,7 @@ pub struct Ensemble<N: Node, M> {
     bodies: Vec<N::Body>,
     has_moved: bool,
     traffic: Vec<Traffic>,
-    /// Who takes part in the current jump.
+    /// The nodes that take part in the current jump.
     takes_part: Vec<bool>,
 }
 

@@ -9,6 +9,7 @@
 //! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
 //! what its guards see of all this are `facts`.
 
+#[cfg(feature = "abstraction")]
 mod abstraction;
 mod attachment;
 mod control;
@@ -27,6 +28,7 @@ mod routing;
 mod step;
 mod target;
 mod team;
+mod view;
 mod yielding;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -37,8 +39,8 @@ use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Bulletin, Dealing, Dealings, Election, IdSet, Lineage, NodeId, Post,
-    PostId, Role,
+    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Post, PostId,
+    Role,
 };
 
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
@@ -50,9 +52,10 @@ pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
 pub use routing::RouteLink;
 pub use step::RobotError;
 pub use target::{Targets, targets};
+pub use view::RobotView;
 
 use crate::automaton::TransitionError;
-use crate::located::{Current, Place as _};
+use crate::located::Current;
 
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
 use super::control::{Control, Moving};
@@ -286,44 +289,24 @@ impl Robot {
         }
     }
 
-    /// x_i.
-    pub const fn position(&self) -> Point {
-        self.position
-    }
-
     /// The role that its duty gives it.
-    pub fn role(&self) -> Role {
+    pub(super) fn role(&self) -> Role {
         self.duty.role()
     }
 
-    /// Its location in the automaton of the exchange of duties.
-    pub fn dealing(&self) -> Dealing {
-        self.deal.location()
-    }
-
-    /// What it does.
-    pub fn duty(&self) -> &Duty {
-        &self.duty
-    }
-
-    /// The newest word on the mission that it knows.
-    pub fn notice(&self) -> &Notice {
+    /// The newest notice on the mission that it knows.
+    pub(super) fn notice(&self) -> &Notice {
         self.bulletin.notice()
     }
 
-    /// The number of the newest word on the mission that it knows.
-    pub fn word_number(&self) -> u32 {
+    /// The number of the newest notice on the mission that it knows.
+    pub(super) fn notice_number(&self) -> u32 {
         self.bulletin.sequence()
     }
 
     /// The task announced last, as far as it knows.
-    pub fn current_task(&self) -> Option<usize> {
+    pub(super) fn current_task(&self) -> Option<usize> {
         self.tasks.last().map(|task| task.number)
-    }
-
-    /// c_i at the last sample.
-    pub const fn residual(&self) -> f64 {
-        self.residual
     }
 
     /// A control period begins: what is looked at once a period.
