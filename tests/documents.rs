@@ -23,7 +23,7 @@ use pleach::summary::Summary;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 16] = [
+const WRITTEN: [&str; 19] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
@@ -34,7 +34,10 @@ const WRITTEN: [&str; 16] = [
     "docs/robot.md",
     "docs/proofs.md",
     "docs/exploration.md",
+    "docs/how-to/batch.md",
+    "docs/how-to/controller.md",
     "docs/how-to/link-model.md",
+    "docs/how-to/map.md",
     "docs/how-to/medium.md",
     "docs/how-to/monitor.md",
     "docs/how-to/trace.md",

@@ -183,6 +183,7 @@ impl<M: Medium<Message, Point>> System for Network<M> {
     fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), NetworkError> {
         if std::mem::take(&mut self.has_flowed) {
             self.events.clear();
+            self.nodes.forget_traffic();
         }
         let first = self.nodes.view(0).and_then(MemberView::robot);
         let stage = first.map_or(Stage::Moving, RobotView::stage);

@@ -19,7 +19,7 @@ mod ensemble;
 mod medium;
 mod outputs;
 
-pub use ensemble::{Ensemble, NodeJump};
+pub use ensemble::{Ensemble, NodeJump, Traffic};
 pub use medium::{Delivery, FullMesh, Medium};
 pub use outputs::{Destination, Envelope, Outputs};
 
