@@ -1,6 +1,7 @@
 //! The robot network: one robot's automaton, the network composed of them, and their medium.
 
 pub mod access_point;
+mod act;
 pub mod automata;
 pub mod beacon;
 mod composition;
