@@ -162,6 +162,8 @@ pub mod figures;
 pub mod import;
 pub mod mission;
 pub mod page;
+#[cfg(feature = "pdf")]
+pub mod pdf;
 pub mod prelude;
 #[cfg(feature = "mcap")]
 pub mod recording;

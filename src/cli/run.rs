@@ -39,6 +39,8 @@ fn run_one(
         figures: (!arguments.no_figures)
             .then(|| arguments.figures.clone().unwrap_or_else(default_folder)),
         plain: arguments.plain,
+        #[cfg(feature = "pdf")]
+        pdf: arguments.pdf,
     };
     let mut progress = Progress::new(&run.scenario, arguments.quiet);
     let finished = job::run(run, &outputs, &mut progress, interrupt)?;
@@ -69,6 +71,8 @@ fn run_many(
             trace: arguments.trace.as_ref().map(|folder| folder.join(format!("{name}.jsonl"))),
             figures: arguments.figures.as_ref().map(|folder| folder.join(name)),
             plain: arguments.plain,
+            #[cfg(feature = "pdf")]
+            pdf: arguments.pdf,
         }
     };
     let mission = |run: &Planned| -> Record {
