@@ -158,6 +158,7 @@ pub struct CheckArguments {
 
 /// The arguments of `pleach import`.
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub struct ImportArguments {
     /// The map: .yaml with its image, .map, .geojson, .json or .svg
     pub map: PathBuf,

@@ -86,9 +86,7 @@ fn run_many(
     let records = batch::run(runs, arguments.jobs(), arguments.quiet, interrupt, mission);
     write_tables(arguments, &records)?;
     let mut said = table::draw(&records, terminal::width());
-    for record in records.iter().filter(|record| !record.reason.is_empty()) {
-        said += &format!("run {}: {}\n", record.run, record.reason);
-    }
+    said += &table::reasons(&records);
     if records.len() < runs.len() {
         said += &format!("{} of {} runs did not begin\n", runs.len() - records.len(), runs.len());
     }
