@@ -165,7 +165,7 @@ impl Protocol {
         let mut locals = Vec::with_capacity(user);
         for mut node in robots.chain(access_points) {
             // The first control period begins, and has no end until the explorer says so.
-            node.step(Input::Tick)?;
+            node.step(Input::Tick { passed: 0 })?;
             if locals.len() == scenario.robot.len() {
                 node.step(Input::Heard { from: user, message: &request })?;
             }

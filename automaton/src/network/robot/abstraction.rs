@@ -43,7 +43,7 @@ impl<'a> RobotView<'a> {
 
     /// The number of the election that it takes part in, or took part in last.
     pub fn election_number(self) -> Option<u32> {
-        self.robot().election.as_ref().map(Election::number)
+        self.robot().election.as_ref().map(|election| election.number())
     }
 
     /// What it has bid itself in the election with this number, if it has taken part in it and
@@ -127,6 +127,7 @@ impl Robot {
             site: _,
             // Between two stimuli a robot is at rest and has nothing left to do.
             control: _,
+            rounds: _,
             acts: _,
             is_new: _,
             label: _,
@@ -147,6 +148,7 @@ impl Robot {
             clock: _,
             routing: _,
             links: _,
+            upstream: _,
             expected_link: _,
             inflow: _,
             inflows: _,

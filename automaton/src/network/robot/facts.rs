@@ -11,7 +11,7 @@ use super::super::duty::{AwaitingRelease, Duty, Waiting};
 use super::super::scenario::RoutingMethod;
 use super::Robot;
 use super::attachment::PATIENCE_WITH_BARREN_POSTS;
-use super::step::{MAX_SWEEPS, NEGOTIATION_ROUNDS};
+use super::rounds::SweepRound;
 
 macro_rules! facts {
     (
@@ -124,14 +124,6 @@ facts! {
             iteration: robot.control.count() as f64,
             /// The number of iterations in a control period.
             iterations: robot.site.settings.routing_iterations as f64,
-            /// The number of this sweep of the routes.
-            sweep: robot.control.count() as f64,
-            /// The number of sweeps in a control period.
-            sweeps: MAX_SWEEPS as f64,
-            /// How often moves have been judged in this control period.
-            attempt: robot.control.count() as f64,
-            /// How often they are judged, the last time not counted.
-            attempts: NEGOTIATION_ROUNDS as f64,
         }
         propositions {
             /// It is exchanging duties with another robot.
@@ -194,6 +186,18 @@ facts! {
             advances: robot.phase() == Phase::Advance,
             /// A redundant robot is attached to its post.
             bears_redundant: robot.bears_redundant(),
+            /// This round of a sweep is for demands.
+            hears_demands: robot.rounds.of_sweep() == SweepRound::Demands,
+            /// This round of a sweep is for flows.
+            hears_flows: robot.rounds.of_sweep() == SweepRound::Flows,
+            /// This round of a sweep is for shortages.
+            hears_shortages: robot.rounds.of_sweep() == SweepRound::Shortages,
+            /// This sweep is the last of the control period.
+            last_sweep: robot.rounds.is_last_sweep(),
+            /// This round of the negotiation is for proposals.
+            hears_proposals: robot.rounds.is_for_proposals(),
+            /// Moves have been judged for the last time in this control period.
+            last_attempt: robot.rounds.is_last_attempt(),
             /// Routes are found by ADAL.
             adal: robot.site.settings.routing_method == RoutingMethod::Adal,
             /// It exchanges duties now, and takes over that of a robot on standby.

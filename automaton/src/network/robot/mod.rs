@@ -24,6 +24,7 @@ mod mission;
 mod motion;
 mod path;
 mod recruit;
+mod rounds;
 mod routing;
 mod step;
 mod target;
@@ -50,7 +51,7 @@ pub use facts::{Facts, GLOSSARY};
 pub use links::TreeLink;
 pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
 pub use routing::RouteLink;
-pub use step::RobotError;
+pub use step::{RobotError, RobotFault};
 pub use target::{Targets, targets};
 pub use view::RobotView;
 
@@ -66,6 +67,7 @@ use super::shared::Shared;
 use super::site::Site;
 use duties::Label;
 use hearing::Neighbour;
+use rounds::Rounds;
 
 /// A robot of the network.
 #[derive(Clone, Debug)]
@@ -75,8 +77,10 @@ pub struct Robot {
     rate: f64,
     site: Arc<Site>,
 
-    // Where it stands in its control period, what it does now, and whether that is its first.
+    // Where it stands in its control period, rounds of sweeps or negotiation, what it does now, and
+    // whether that is its first period.
     control: Current<Control>,
+    rounds: Rounds,
     acts: Acts,
     is_new: bool,
 
@@ -127,7 +131,7 @@ pub struct Robot {
     tasks: Vec<TaskNotice>,
     roster: Arc<IdSet>,
     eligible: Arc<IdSet>,
-    election: Option<Election>,
+    election: Option<Arc<Election>>,
     /// What it has bid in this election itself.
     bid: Option<Bid>,
     waited_rounds: usize,
@@ -138,6 +142,8 @@ pub struct Robot {
     // Communication variables.
     routing: routing::RoutingState,
     links: Vec<RouteLink>,
+    /// The parent to which it sends its demand in this period.
+    upstream: Option<NodeId>,
     /// The link whose other end is expected to tell its multiplier next.
     expected_link: usize,
     inflow: f64,
@@ -189,6 +195,7 @@ impl Robot {
             id,
             rate,
             control: Current::new(Control::Moving(Moving {})),
+            rounds: Rounds::default(),
             acts: &[],
             is_new: true,
             position,
@@ -229,6 +236,7 @@ impl Robot {
             team: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
+            upstream: None,
             expected_link: 0,
             inflow: 0.0,
             inflows: Vec::new(),

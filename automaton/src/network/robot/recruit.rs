@@ -68,7 +68,7 @@ pub(super) fn end_unaided(
     robot: &Robot,
     effects: &mut Effects,
 ) -> RecruitElection {
-    let stranded = robot.election.as_ref().and_then(Election::best).is_some();
+    let stranded = robot.election.as_ref().is_some_and(|election| election.best().is_some());
     let own_root = robot.lineage.as_ref().map(|lineage| lineage.root());
     let others: IdSet = robot.eligible.iter().filter(|&root| Some(root) != own_root).collect();
     if let Some(task) = robot.tasks.last() {
@@ -136,7 +136,7 @@ impl Robot {
         if let Some(election) = &mut self.election
             && !election.has_token(self.id)
         {
-            election.place(self.id, bid);
+            Arc::make_mut(election).place(self.id, bid);
             self.bid = bid;
         }
     }
