@@ -152,11 +152,6 @@ fn instants(trajectory: &Trajectory) -> impl Iterator<Item = f64> + '_ {
 /// round, which has no agreement to begin with but the start.
 const WORST_SKEW: f64 = 2.0 * DRIFT * (PERIOD + WAIT) / (1.0 + DRIFT);
 
-/// How much farther apart clocks may be where messages take up to `error` more or less.
-const fn skew_by(error: f64) -> f64 {
-    3.0 * (1.0 + DRIFT) * error
-}
-
 /// The largest difference of the clocks of nodes 1 to `nodes` in a run, in seconds.
 fn skew(trajectory: &Trajectory, nodes: usize) -> f64 {
     let names = trajectory.variables().iter().enumerate();
@@ -209,6 +204,11 @@ mod tests {
         for (found, instant) in instants(&trajectory).zip(closed_form()) {
             assert!((found - instant).abs() < 1e-10, "{found} instead of {instant} s");
         }
+    }
+
+    /// How much farther apart clocks may be where messages take up to `error` more or less.
+    const fn skew_by(error: f64) -> f64 {
+        3.0 * (1.0 + DRIFT) * error
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! stands, and for how long it has not got on. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
-use pleach_discrete::network::{Bid, Election, NodeId, Phase, Subgroup};
+use pleach_discrete::network::{Bid, NodeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Path};
@@ -107,7 +107,7 @@ impl Robot {
             last_partner,
             answered,
             parent,
-            lineage,
+            place,
             below,
             can_detach,
             barren_periods,
@@ -130,6 +130,8 @@ impl Robot {
             rounds: _,
             acts: _,
             is_new: _,
+            heard_way: _,
+            is_displaced: _,
             label: _,
             facts: _,
             is_quiet: _,
@@ -177,7 +179,7 @@ impl Robot {
             "{:?}",
             (
                 (id, position, still_periods, &**duty, &**mission, barren_periods),
-                (&**deal, answered, last_partner, parent, lineage, below, can_detach),
+                (&**deal, answered, last_partner, parent, &**place, below, can_detach),
                 (bulletin, tasks, roster, eligible, election, bid, waited, route),
                 (agreement, team, silences),
             )

@@ -11,6 +11,7 @@ use super::super::duty::{AwaitingRelease, Duty, Waiting};
 use super::super::scenario::RoutingMethod;
 use super::Robot;
 use super::attachment::PATIENCE_WITH_BARREN_POSTS;
+use super::lineage::HeardWay;
 use super::rounds::SweepRound;
 
 macro_rules! facts {
@@ -126,6 +127,14 @@ facts! {
             iterations: robot.site.settings.routing_iterations as f64,
         }
         propositions {
+            /// Its post has a parent.
+            names_parent: robot.heard_way != HeardWay::NoParent,
+            /// Its parent tells a way to an access point that leads through its own post.
+            hears_cycle: robot.heard_way == HeardWay::Cycle,
+            /// Its parent tells a way, not through its own post, that is not the one it tells itself.
+            hears_other_way: robot.heard_way == HeardWay::Other,
+            /// It has been given the post of another robot in this jump.
+            displaced: robot.is_displaced,
             /// It is exchanging duties with another robot.
             engaged: robot.is_engaged(),
             /// It is the elected leader.

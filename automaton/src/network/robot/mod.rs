@@ -19,6 +19,7 @@ mod exchange;
 mod facts;
 mod hearing;
 mod leader;
+mod lineage;
 mod links;
 mod mission;
 mod motion;
@@ -40,14 +41,14 @@ use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Post, PostId,
-    Role,
+    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, NodeId, Post, PostId, Role,
 };
 
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
 pub use dealing::{Deal, DealingAutomaton, DealingEffect, dealing_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
 pub use facts::{Facts, GLOSSARY};
+pub use lineage::{AttachmentAutomaton, PlaceInTree, attachment_automaton};
 pub use links::TreeLink;
 pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
 pub use routing::RouteLink;
@@ -67,6 +68,7 @@ use super::shared::Shared;
 use super::site::Site;
 use duties::Label;
 use hearing::Neighbour;
+use lineage::HeardWay;
 use rounds::Rounds;
 
 /// A robot of the network.
@@ -117,7 +119,10 @@ pub struct Robot {
     /// Where in the table of neighbours the next beacon is expected.
     heard_up_to: usize,
     parent: Option<NodeId>,
-    lineage: Option<Arc<Lineage>>,
+    place: Current<PlaceInTree>,
+    heard_way: HeardWay,
+    /// It has been given the post of another robot in this jump.
+    is_displaced: bool,
     below: Arc<IdSet>,
     /// The parent in the tree that it has found to be best, none if it has looked for none.
     desired_parent: Option<Option<Anchor>>,
@@ -218,7 +223,9 @@ impl Robot {
             neighbours: Vec::new(),
             heard_up_to: 0,
             parent: None,
-            lineage: None,
+            place: Current::new(PlaceInTree::Detached(lineage::Detached)),
+            heard_way: HeardWay::NoParent,
+            is_displaced: false,
             below: Arc::new(IdSet::singleton(id)),
             desired_parent: None,
             reattaches_to: None,
@@ -283,7 +290,7 @@ impl Robot {
             agreement: self.agreement.clone(),
             route: self.route.clone(),
             crossing: Vec::new(),
-            lineage: self.lineage.clone(),
+            lineage: self.lineage().cloned(),
             parent: self.parent,
             below: Arc::clone(&self.below),
             duty: Some(*self.duty),
@@ -341,7 +348,7 @@ impl Robot {
     fn reflect(&mut self) -> Result<(), TransitionError> {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
         self.deal()?;
-        self.keep_place();
+        self.keep_place()?;
         self.hear_notices();
         self.remember_parent();
         Ok(())
