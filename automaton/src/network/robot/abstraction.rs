@@ -127,7 +127,7 @@ impl Robot {
             site: _,
             // Between two stimuli a robot is at rest and has nothing left to do.
             control: _,
-            rounds: _,
+            round_count: _,
             acts: _,
             is_new: _,
             heard_way: _,

@@ -18,7 +18,6 @@ use super::super::control::{
 };
 use super::super::message::Message;
 use super::super::record::MissionEvent;
-use super::rounds::Rounds;
 use super::{Robot, RobotError};
 
 /// The automaton of the control period.
@@ -117,7 +116,7 @@ impl Robot {
         passed: usize,
         outputs: &mut Outputs<Message, MissionEvent>,
     ) -> Result<(), RobotError> {
-        self.rounds.pass(passed + 1);
+        self.round_count.pass(passed + 1);
         let site = Arc::clone(&self.site);
         site.automata.control.step_in_place::<Control>(self)?;
         for act in std::mem::take(&mut self.acts) {
@@ -149,7 +148,7 @@ impl Robot {
             Act::TellMultiplier => self.tell_multiplier(outputs),
             Act::StepPrimal => self.primal_step(),
             Act::StepDual => self.dual_step(),
-            Act::CountRounds => self.rounds = Rounds::default(),
+            Act::CountRounds => self.round_count.restart(),
             Act::BeginSweep => self.begin_sweep(outputs),
             Act::EndSweep => self.end_sweep(),
             Act::SettleResidual => self.settle_residual(),

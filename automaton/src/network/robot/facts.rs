@@ -196,17 +196,17 @@ facts! {
             /// A redundant robot is attached to its post.
             bears_redundant: robot.bears_redundant(),
             /// This round of a sweep is for demands.
-            hears_demands: robot.rounds.of_sweep() == SweepRound::Demands,
+            hears_demands: robot.round_count.of_sweep() == SweepRound::Demands,
             /// This round of a sweep is for flows.
-            hears_flows: robot.rounds.of_sweep() == SweepRound::Flows,
+            hears_flows: robot.round_count.of_sweep() == SweepRound::Flows,
             /// This round of a sweep is for shortages.
-            hears_shortages: robot.rounds.of_sweep() == SweepRound::Shortages,
+            hears_shortages: robot.round_count.of_sweep() == SweepRound::Shortages,
             /// This sweep is the last of the control period.
-            last_sweep: robot.rounds.is_last_sweep(),
+            last_sweep: robot.round_count.is_last_sweep(),
             /// This round of the negotiation is for proposals.
-            hears_proposals: robot.rounds.is_for_proposals(),
+            hears_proposals: robot.round_count.is_for_proposals(),
             /// Moves have been judged for the last time in this control period.
-            last_attempt: robot.rounds.is_last_attempt(),
+            last_attempt: robot.round_count.is_last_attempt(),
             /// Routes are found by ADAL.
             adal: robot.site.settings.routing_method == RoutingMethod::Adal,
             /// It exchanges duties now, and takes over that of a robot on standby.

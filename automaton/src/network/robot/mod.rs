@@ -82,7 +82,7 @@ pub struct Robot {
     // Where it stands in its control period, rounds of sweeps or negotiation, what it does now, and
     // whether that is its first period.
     control: Current<Control>,
-    rounds: Rounds,
+    round_count: Rounds,
     acts: Acts,
     is_new: bool,
 
@@ -200,7 +200,7 @@ impl Robot {
             id,
             rate,
             control: Current::new(Control::Moving(Moving {})),
-            rounds: Rounds::default(),
+            round_count: Rounds::default(),
             acts: &[],
             is_new: true,
             position,

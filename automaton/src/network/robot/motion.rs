@@ -379,7 +379,8 @@ impl Robot {
         if self.proposal.is_some() {
             self.must_judge_moves = true;
         }
-        let is_last_chance = self.stage() == Stage::Negotiation && self.rounds.is_last_chance();
+        let is_last_chance =
+            self.stage() == Stage::Negotiation && self.round_count.is_last_chance();
         self.proposal = match is_last_chance {
             false => self.proposal.map(|segment| segment.halved()),
             true => None,

@@ -39,6 +39,11 @@ impl Rounds {
     /// The last objections are heard: proposals and objections alternate.
     const LAST_OF_NEGOTIATION: usize = 2 * (ATTEMPTS + 1);
 
+    /// Rounds are counted anew.
+    pub const fn restart(&mut self) {
+        *self = Rounds(0);
+    }
+
     /// Further rounds pass.
     pub const fn pass(&mut self, rounds: usize) {
         self.0 += rounds;
@@ -91,6 +96,6 @@ impl Robot {
             Stage::Negotiation => self.has_no_moves_to_judge(),
             _ => false,
         };
-        if has_nothing_to_do { self.rounds.before_last_of(stage) } else { 0 }
+        if has_nothing_to_do { self.round_count.before_last_of(stage) } else { 0 }
     }
 }
