@@ -153,6 +153,7 @@
 //! that holds it.
 
 pub mod figures;
+pub mod judge;
 pub mod mission;
 pub mod page;
 pub mod prelude;

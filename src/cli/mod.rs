@@ -2,6 +2,7 @@
 
 mod arguments;
 mod diagram;
+mod judge;
 mod page;
 mod progress;
 mod run;
@@ -16,6 +17,7 @@ use std::process::ExitCode;
 pub fn carry_out(arguments: Arguments) -> ExitCode {
     let result = match arguments.command {
         Command::Run(run) => run::run(&run),
+        Command::Judge(judge) => judge::run(&judge),
         Command::Diagram(diagram) => diagram::print(&diagram),
         Command::Page(page) => page::write(&page),
     };

@@ -86,9 +86,10 @@ impl Failure {
     /// The exit status that tells this failure.
     pub fn status(&self) -> Status {
         match self {
-            Failure::Scenario(_) | Failure::Trace { .. } | Failure::Creation { .. } => {
-                Status::BadInput
-            }
+            Failure::Scenario(_)
+            | Failure::Trace { .. }
+            | Failure::Judge(_)
+            | Failure::Creation { .. } => Status::BadInput,
             Failure::Output(_) | Failure::Mission(_) | Failure::Internal(_) => Status::Failed,
         }
     }

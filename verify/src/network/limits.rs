@@ -67,6 +67,11 @@ impl Limits {
         })
     }
 
+    /// Every setting, defaults filled in.
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
     /// 𝒲: where the robots are.
     pub fn workspace(&self) -> &Workspace {
         &self.workspace
