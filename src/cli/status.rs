@@ -65,6 +65,9 @@ pub enum Failure {
         /// What the system says.
         source: io::Error,
     },
+    /// A trace cannot be read, and nothing was judged.
+    #[error("{0}")]
+    Judge(String),
     /// The trace, the progress or a figure cannot be written.
     #[error("cannot write what the mission shows: {0}")]
     Output(#[from] io::Error),
