@@ -1,7 +1,7 @@
 //! How long a whole control period takes, and how that grows with the number of robots.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::ValidScenario;
 use pleach_benches::course::Course;
 use pleach_benches::hall::hall;
 
@@ -13,11 +13,12 @@ const TASKS: usize = 3;
 const TEAM: usize = 1;
 
 /// Every scenario by its number of robots, with its tasks or without any.
-fn scenarios(with_tasks: bool) -> Vec<Scenario> {
-    let mut study = pleach_benches::study_1();
+fn scenarios(with_tasks: bool) -> Vec<ValidScenario> {
+    let mut study = pleach_benches::study_1().into_scenario();
     if !with_tasks {
         study.task.clear();
     }
+    let study = ValidScenario::new(study).expect("Study I is a valid scenario");
     let halls = SIZES.map(|robots| hall(robots, if with_tasks { TASKS } else { 0 }));
     std::iter::once(study).chain(halls).collect()
 }

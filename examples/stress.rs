@@ -80,7 +80,7 @@ fn mission(family: Family, seed: u64, folder: Option<&Path>) -> Result<(), Box<d
     {
         std::fs::write(
             folder.join(format!("{}.toml", scenario.name)),
-            toml::to_string(&scenario)?,
+            toml::to_string(scenario.scenario())?,
         )?;
     }
     Ok(())

@@ -10,9 +10,10 @@ use std::io::BufRead;
 use thiserror::Error;
 
 use crate::automaton::network::record::{End, MissionEvent};
+use crate::automaton::network::scenario::{InvalidScenario, ValidScenario};
 use crate::discrete::network::activity::may_follow;
 use crate::trace::{TraceEntry, TraceError, TraceReader};
-use crate::verify::network::{Extremes, Instant, Judge, LimitError, Property, Violation};
+use crate::verify::network::{Extremes, Instant, Judge, Property, Violation};
 
 /// What a trace amounts to.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +39,7 @@ pub enum JudgeError {
     Trace(#[from] TraceError),
     /// No mission can start from the scenario in its header.
     #[error("line 1: {0}")]
-    Scenario(#[from] LimitError),
+    Scenario(#[from] InvalidScenario),
 }
 
 /// Judges a trace.
@@ -46,8 +47,9 @@ pub enum JudgeError {
 /// # Errors
 /// The trace cannot be read, or its header holds no scenario from which a mission can start.
 pub fn judge<R: BufRead>(trace: TraceReader<R>) -> Result<Verdict, JudgeError> {
+    let scenario = ValidScenario::new(trace.scenario().clone())?;
     let mut reading = Reading {
-        judge: Judge::new(trace.scenario(), may_follow)?,
+        judge: Judge::new(&scenario, may_follow),
         now: Instant { step: 0, time: 0.0 },
         events: Vec::new(),
         end: None,

@@ -54,54 +54,57 @@
 //!
 //! # A mission
 //!
-//! A [`Scenario`](automaton::network::scenario::Scenario) is plain data: read from a file by
-//! [`scenario_file::read`], or built. Here is a room of 1.2 by 0.6 with an access point at the left
+//! A [`Scenario`](automaton::network::scenario::Scenario) is plain data. A
+//! [`ValidScenario`](automaton::network::scenario::ValidScenario) is one that a mission can start
+//! from: read from a file by [`scenario_file::read`], or built. Here is a room of 1.2 by 0.6 with an access point at the left
 //! and a task at the right, farther away than one link carries.
 //!
 //! ```
 //! use pleach::automaton::network::scenario::{
-//!     AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
+//!     AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
+//!     WorkspaceOutline,
 //! };
 //!
 //! let robot = |x, y| RobotStart { position: [x, y], rate: 0.075 };
-//! let scenario = Scenario {
+//! let scenario = ValidScenario::new(Scenario {
 //!     name: "room".into(),
 //!     description: None,
 //!     workspace: WorkspaceOutline {
 //!         boundary: vec![[0.0, 0.0], [1.2, 0.0], [1.2, 0.6], [0.0, 0.6]],
 //!         holes: vec![],
 //!     },
-//!     link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+//!     link: LinkRanges::new(0.4, 0.5),
 //!     control: Control::default(),
 //!     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
 //!     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
 //!     task: vec![Task { position: [0.9, 0.3] }],
-//! };
-//! assert_eq!(scenario.validate(), Ok(()));
+//! })?;
+//! assert!(scenario.remarks().is_empty()); // every task can be reached, and no link crosses a wall
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`mission::run`] runs it to its end. Whoever wants to see more than the end hands over
-//! [`Watcher`](mission::Watcher)s; the [`Summary`](summary::Summary) that the program prints is one.
+//! [`mission::run`] runs it to its end. [`Watcher`](mission::Watcher)s see more than
+//! the end; the [`Summary`](summary::Summary) that the program prints is one.
 //!
 //! ```
 //! # use pleach::automaton::network::scenario::{
-//! #     AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
+//! #     AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
+//! #     WorkspaceOutline,
 //! # };
 //! # let robot = |x, y| RobotStart { position: [x, y], rate: 0.075 };
-//! # let scenario = Scenario {
+//! # let scenario = ValidScenario::new(Scenario {
 //! #     name: "room".into(),
 //! #     description: None,
 //! #     workspace: WorkspaceOutline {
 //! #         boundary: vec![[0.0, 0.0], [1.2, 0.0], [1.2, 0.6], [0.0, 0.6]],
 //! #         holes: vec![],
 //! #     },
-//! #     link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+//! #     link: LinkRanges::new(0.4, 0.5),
 //! #     control: Control::default(),
 //! #     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
 //! #     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
 //! #     task: vec![Task { position: [0.9, 0.3] }],
-//! # };
+//! # })?;
 //! use pleach::automaton::network::record::Outcome;
 //! use pleach::summary::Summary;
 //!
@@ -152,12 +155,19 @@
 //! `docs/model.md` of the repository leads from each equation and algorithm of the paper to the item
 //! that holds it.
 
+#![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
+
 pub mod figures;
+#[cfg(feature = "cli")]
+pub mod import;
 pub mod judge;
 pub mod mission;
 pub mod page;
 pub mod prelude;
+#[cfg(feature = "mcap")]
+pub mod recording;
 pub mod scenario_file;
+pub mod starts;
 pub mod story;
 pub mod summary;
 pub mod trace;
@@ -172,3 +182,19 @@ pub use pleach_verify as verify;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The examples of the how-tos compile and run.
+#[cfg(doctest)]
+mod how_to {
+    #[doc = include_str!("../docs/how-to/controller.md")]
+    struct Controller;
+    #[doc = include_str!("../docs/how-to/link-model.md")]
+    struct LinkModel;
+    #[cfg(feature = "cli")]
+    #[doc = include_str!("../docs/how-to/map.md")]
+    struct Map;
+    #[doc = include_str!("../docs/how-to/medium.md")]
+    struct Medium;
+    #[doc = include_str!("../docs/how-to/monitor.md")]
+    struct Monitor;
+}

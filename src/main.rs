@@ -1,5 +1,7 @@
 //! The command-line program.
 
+#![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
+
 mod cli;
 
 use clap::Parser;

@@ -3,7 +3,8 @@
 //! [`run`] hands the network of a scenario to the executor. Every control period it takes the
 //! observers' view of the network, holds it against the properties of [`crate::verify`], and
 //! shows it to the [`Watcher`]s: the trace writer, the progress display, the summary, the
-//! figures. None of them can influence the robots; a violated property ends the run.
+//! figures. None of them can influence the robots; a violated property ends the run, and so does
+//! a watcher that asks for it.
 
 use std::io;
 use std::ops::ControlFlow;
@@ -11,21 +12,27 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 use crate::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use crate::automaton::network::scenario::Scenario;
+use crate::automaton::network::scenario::ValidScenario;
 use crate::automaton::network::{KernelTimes, Message, Network, NetworkError};
 use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use crate::continuous::Point;
 use crate::discrete::network::activity::may_follow;
-use crate::verify::network::{Extremes, Judge, LimitError, Violation};
+use crate::verify::network::{Extremes, Judge, Violation};
 
-/// Somebody who watches a mission.
+/// Something that watches a mission.
 pub trait Watcher {
     /// The robots are about to move; `events` is what has happened in this control period.
     ///
     /// # Errors
     /// The watcher cannot write what it has to.
     fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()>;
+
+    /// Why the mission is to end now, if it is: asked after each period has been observed. The
+    /// mission then ends in order, with the outcome [`Outcome::Interrupted`] and this reason.
+    fn interruption(&self) -> Option<String> {
+        None
+    }
 
     /// The mission has ended.
     ///
@@ -39,15 +46,20 @@ pub trait Watcher {
 /// Why a mission could not be run to an end.
 #[derive(Debug, Error)]
 pub enum MissionError {
-    /// No mission can start from the scenario.
-    #[error(transparent)]
-    Scenario(#[from] LimitError),
     /// The network cannot be set up, or a guard cannot be evaluated.
     #[error(transparent)]
     Network(#[from] NetworkError),
     /// The settings leave no time for the mission.
     #[error(transparent)]
     Limit(#[from] InvalidLimit),
+    /// The network came to a state in which it could not go on.
+    #[error("the executor stops at t = {time} s: {reason}; this is a fault of the program")]
+    Stopped {
+        /// t in seconds.
+        time: f64,
+        /// How the executor names it.
+        reason: String,
+    },
     /// A watcher cannot write what it has to.
     #[error("cannot write what the mission shows: {0}")]
     Watcher(#[from] io::Error),
@@ -67,9 +79,9 @@ pub struct Completed {
 /// Runs the mission of `scenario` to its end.
 ///
 /// # Errors
-/// When no mission can start from the scenario, or a watcher fails.
+/// When a watcher fails.
 pub fn run(
-    scenario: &Scenario,
+    scenario: &ValidScenario,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     run_network(scenario, &mut Network::new(scenario)?, watchers)
@@ -78,13 +90,18 @@ pub fn run(
 /// Runs `network`, which is the network of `scenario` over any medium, to its end.
 ///
 /// # Errors
-/// When no mission can start from the scenario, or a watcher fails.
+/// When a watcher fails.
 pub fn run_network<M: Medium<Message, Point>>(
-    scenario: &Scenario,
+    scenario: &ValidScenario,
     network: &mut Network<M>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    let mut gallery = Gallery { judge: Judge::new(scenario, may_follow)?, watchers, failure: None };
+    let mut gallery = Gallery {
+        judge: Judge::new(scenario, may_follow),
+        watchers,
+        failure: None,
+        saturated: Vec::new(),
+    };
     let settings = network.site().settings;
     let horizon = settings.period * (settings.max_steps as f64 + 1.0);
     let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
@@ -92,12 +109,10 @@ pub fn run_network<M: Medium<Message, Point>>(
         return Err(error.into());
     }
     let end = match ending.reason {
-        Reason::Finished(end) | Reason::Interrupted(end) => end,
-        other => End {
-            outcome: Outcome::StepLimit,
-            reason: format!("the executor stops at t = {} s: {other:?}", ending.at.t),
-            task: None,
-        },
+        Reason::Finished(end) | Reason::Interrupted(end) => gallery.explain(end),
+        other => {
+            return Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") });
+        }
     };
     let end = gallery
         .judge
@@ -125,11 +140,27 @@ fn stopped(violation: &Violation, end: &End) -> End {
     }
 }
 
+/// The load from which on a robot counts as saturated: it sends all the time.
+const SATURATED: f64 = 0.999;
+
 /// The judge and the watchers, looking on while the executor runs.
 struct Gallery<'a, 'w> {
     judge: Judge<'a>,
     watchers: &'a mut [&'w mut dyn Watcher],
     failure: Option<io::Error>,
+    /// The robots that send all the time in the last period, with their loads.
+    saturated: Vec<(usize, f64)>,
+}
+
+/// The robots that send all the time, each with its load Σ_j T_ij.
+fn saturated(snapshot: &Snapshot) -> Vec<(usize, f64)> {
+    let mut loads = vec![0.0; snapshot.positions.len()];
+    for route in &snapshot.routes {
+        if let Some(load) = loads.get_mut(route.from) {
+            *load += route.share;
+        }
+    }
+    loads.into_iter().enumerate().filter(|&(_, load)| load >= SATURATED).collect()
 }
 
 impl Gallery<'_, '_> {
@@ -138,6 +169,31 @@ impl Gallery<'_, '_> {
             watcher.observe(snapshot, events)?;
         }
         Ok(())
+    }
+
+    /// A mission that gets stuck while robots send all the time is stuck because of their links:
+    /// the reason names them.
+    fn explain(&self, end: End) -> End {
+        let is_stuck = matches!(end.outcome, Outcome::Blocked | Outcome::StepLimit);
+        if !is_stuck || self.saturated.is_empty() {
+            return end;
+        }
+        let loads =
+            self.saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
+        let loads: Vec<String> = loads.collect();
+        let reason = format!(
+            "{}; the load is {}: its links carry no more, so lower the rates, place robots closer \
+             together or add some",
+            end.reason,
+            loads.join(", ")
+        );
+        End { reason, ..end }
+    }
+
+    /// The end that a watcher asks for.
+    fn interruption(&self, task: Option<usize>) -> Option<End> {
+        let reason = self.watchers.iter().find_map(|watcher| watcher.interruption())?;
+        Some(End { outcome: Outcome::Interrupted, reason, task })
     }
 
     fn check(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Result<(), End> {
@@ -157,9 +213,11 @@ impl<M: Medium<Message, Point>> Observer<Network<M>> for Gallery<'_, '_> {
             self.failure = Some(error);
             return ControlFlow::Break(End { outcome: Outcome::Blocked, reason, task: None });
         }
-        match self.check(&snapshot, &events) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(end) => ControlFlow::Break(end),
+        self.saturated = saturated(&snapshot);
+        let end = self.check(&snapshot, &events).err();
+        match end.or_else(|| self.interruption(snapshot.task)) {
+            None => ControlFlow::Continue(()),
+            Some(end) => ControlFlow::Break(end),
         }
     }
 }

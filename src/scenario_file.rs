@@ -1,10 +1,14 @@
 //! Reading a scenario from its TOML file, and saying where in the file a mistake stands.
 
 mod location;
+mod setting;
 mod shape;
 
-use crate::automaton::network::scenario::Scenario;
-use location::Located;
+pub use setting::{Setting, SettingError};
+
+use crate::automaton::network::scenario::{KeyPath, Scenario, ValidScenario};
+use location::{Lines, Located};
+use serde::Deserialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -44,19 +48,34 @@ pub enum ScenarioError {
 /// A mistake in a scenario file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistake {
-    /// The line, counted from 1.
-    pub line: usize,
-    /// The character in the line, counted from 1.
-    pub column: usize,
+    /// Where it stands.
+    pub place: Place,
     /// The key, such as `robot[3].position`; empty where none is concerned.
     pub key: String,
     /// What is wrong and what would be right.
     pub message: String,
 }
 
+/// Where a mistake stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In the text, both counted from 1.
+    Text {
+        /// The line.
+        line: usize,
+        /// The character in the line.
+        column: usize,
+    },
+    /// In a setting that replaces a value of the text, such as `control.period=0`.
+    Setting(String),
+}
+
 impl fmt::Display for Mistake {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}:{}: ", self.line, self.column)?;
+        match &self.place {
+            Place::Text { line, column } => write!(formatter, "{line}:{column}: ")?,
+            Place::Setting(setting) => write!(formatter, "{setting}: ")?,
+        }
         if !self.key.is_empty() {
             write!(formatter, "{}: ", self.key)?;
         }
@@ -68,9 +87,9 @@ impl fmt::Display for Mistake {
 ///
 /// # Errors
 /// The file cannot be read, is empty, is not TOML, does not have the shape of a scenario, or a
-/// mission cannot start from it ([`Scenario::validate`]). Each mistake comes with line, column,
+/// mission cannot start from it ([`ValidScenario::new`]). Each mistake comes with line, column,
 /// key and what would be right.
-pub fn read(path: &Path) -> Result<Scenario, ScenarioError> {
+pub fn read(path: &Path) -> Result<ValidScenario, ScenarioError> {
     let text = std::fs::read_to_string(path)
         .map_err(|source| ScenarioError::Unreadable { path: path.into(), source })?;
     parse(&text, path)
@@ -87,40 +106,72 @@ pub fn read(path: &Path) -> Result<Scenario, ScenarioError> {
 ///     "room.toml:1:8: name: the whole number 3 stands where a text in quotation marks belongs"
 /// ));
 /// ```
-pub fn parse(text: &str, path: &Path) -> Result<Scenario, ScenarioError> {
+pub fn parse(text: &str, path: &Path) -> Result<ValidScenario, ScenarioError> {
+    parse_with(text, path, &[])
+}
+
+/// Reads a scenario from `text` with some of its values replaced, the later settings last.
+///
+/// # Errors
+/// As [`read`]; also for a setting of something that the scenario does not have.
+///
+/// ```
+/// let text = std::fs::read_to_string("scenarios/study-1.toml")?;
+/// let settings = ["control.step_radius=0.02".parse()?, "robot[*].rate=0.05".parse()?];
+/// let scenario = pleach::scenario_file::parse_with(&text, "study-1".as_ref(), &settings)?;
+/// assert_eq!(scenario.settings().step_radius, 0.02);
+/// assert!(scenario.robot.iter().all(|robot| robot.rate == 0.05));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn parse_with(
+    text: &str,
+    path: &Path,
+    settings: &[Setting],
+) -> Result<ValidScenario, ScenarioError> {
     let mistaken = |mistakes| ScenarioError::Mistaken { path: path.into(), mistakes };
+    let lines = Lines::of(text);
     let syntax = |error: &toml::de::Error| {
         let start = error.span().map_or(0, |span| span.start);
-        let line = location::line_around(text, start);
-        let message = format!("not TOML: {} in `{line}`", error.message());
-        mistaken(vec![location::mistake(text, start, "", &message)])
+        let message = format!("not TOML: {} in `{}`", error.message(), lines.around(start));
+        mistaken(vec![Mistake { place: lines.place(start), key: String::new(), message }])
+    };
+    // A value that a setting has replaced does not stand in the text.
+    let mistake = |start: usize, key: &KeyPath, message: String| {
+        let setting = settings.iter().rev().find(|setting| setting.covers(key));
+        let place = setting
+            .map_or_else(|| lines.place(start), |setting| Place::Setting(setting.to_string()));
+        Mistake { place, key: key.to_string(), message }
     };
 
-    let file = DeTable::parse(text).map_err(|error| syntax(&error))?;
+    let mut file = DeTable::parse(text).map_err(|error| syntax(&error))?;
     if file.get_ref().is_empty() {
         return Err(ScenarioError::Empty { path: path.into() });
     }
+    for setting in settings {
+        setting.apply(file.get_mut()).map_err(|message| {
+            let place = Place::Setting(setting.to_string());
+            mistaken(vec![Mistake { place, key: String::new(), message }])
+        })?;
+    }
     let departures = shape::departures(&file);
     if !departures.is_empty() {
-        let mistakes = departures.into_iter().map(|departure| {
-            let key = departure.key.to_string();
-            location::mistake(text, departure.span.start, &key, &departure.message)
-        });
+        let mistakes = (departures.into_iter())
+            .map(|departure| mistake(departure.span.start, &departure.key, departure.message));
         return Err(mistaken(mistakes.collect()));
     }
-    let scenario: Scenario = toml::from_str(text).map_err(|error| syntax(&error))?;
-    scenario.validate().map_err(|faults| {
-        let mistakes = faults.iter().map(|fault| {
-            let start = file.start_of(&fault.key);
-            location::mistake(text, start, &fault.key.to_string(), &fault.problem.to_string())
-        });
+    let scenario = Scenario::deserialize(toml::Deserializer::from(file.clone()))
+        .map_err(|error| syntax(&error))?;
+    ValidScenario::new(scenario).map_err(|invalid| {
+        let mistakes = (invalid.faults.iter())
+            .map(|fault| mistake(file.start_of(&fault.key), &fault.key, fault.problem.to_string()));
         mistaken(mistakes.collect())
-    })?;
-    Ok(scenario)
+    })
 }
 
 fn one_per_line(path: &Path, mistakes: &[Mistake]) -> String {
-    let lines: Vec<_> =
-        mistakes.iter().map(|mistake| format!("{}:{mistake}", path.display())).collect();
-    lines.join("\n")
+    let line = |mistake: &Mistake| match mistake.place {
+        Place::Text { .. } => format!("{}:{mistake}", path.display()),
+        Place::Setting(_) => format!("{} with {mistake}", path.display()),
+    };
+    mistakes.iter().map(line).collect::<Vec<_>>().join("\n")
 }

@@ -29,6 +29,8 @@ pub struct TaskSummary {
     pub position: [f64; 2],
     /// The control period in which it was serviced, and the robot that did.
     pub serviced: Option<(usize, usize)>,
+    /// The robot that stays close to it now; duties are exchanged, so it may be another one.
+    pub holder: Option<usize>,
 }
 
 impl Summary {
@@ -38,7 +40,7 @@ impl Summary {
             name: scenario.name.clone(),
             settings: Settings::resolve(scenario),
             tasks: (scenario.task.iter())
-                .map(|task| TaskSummary { position: task.position, serviced: None })
+                .map(|task| TaskSummary { position: task.position, serviced: None, holder: None })
                 .collect(),
             recruits: 0,
             stationary_points: 0,
@@ -65,6 +67,21 @@ impl Summary {
         self.recruits
     }
 
+    /// The number of tasks serviced.
+    pub fn serviced(&self) -> usize {
+        self.tasks.iter().filter(|task| task.serviced.is_some()).count()
+    }
+
+    /// The number of control periods.
+    pub fn periods(&self) -> usize {
+        self.periods
+    }
+
+    /// The time that the mission took, in seconds.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
     /// The number of local stationary points met.
     pub fn stationary_points(&self) -> usize {
         self.stationary_points
@@ -83,6 +100,11 @@ impl Watcher for Summary {
                     }
                 }
                 _ => {}
+            }
+        }
+        for &(task, robot) in &snapshot.serviced {
+            if let Some(task) = self.tasks.get_mut(task) {
+                task.holder = Some(robot);
             }
         }
         (self.periods, self.seconds) = (snapshot.step + 1, snapshot.time + self.settings.period);
@@ -104,7 +126,7 @@ impl fmt::Display for Summary {
 
 impl Summary {
     fn write_outcome(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let serviced = self.tasks.iter().filter(|task| task.serviced.is_some()).count();
+        let serviced = self.serviced();
         writeln!(
             formatter,
             "{}: {serviced} of {} tasks serviced in {} control periods ({} s)",
@@ -126,15 +148,22 @@ impl Summary {
     }
 
     fn write_tasks(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (number, TaskSummary { position: [x, y], serviced }) in self.tasks.iter().enumerate() {
+        for (number, task) in self.tasks.iter().enumerate() {
+            let TaskSummary { position: [x, y], serviced, holder } = task;
             let place = format!("({x}, {y})");
             let label = format!("task {number}");
+            write!(formatter, "  {label:<19} {place:<14} ")?;
             match serviced {
-                Some((step, robot)) => writeln!(
-                    formatter,
-                    "  {label:<19} {place:<14} serviced at k = {step} by robot {robot}"
-                )?,
-                None => writeln!(formatter, "  {label:<19} {place:<14} not serviced")?,
+                Some((step, robot)) => {
+                    write!(formatter, "serviced at k = {step} by robot {robot}")?
+                }
+                None => write!(formatter, "not serviced")?,
+            }
+            match (serviced, holder) {
+                (Some((_, robot)), Some(holder)) if robot != holder => {
+                    writeln!(formatter, ", held by robot {holder} at the end")?;
+                }
+                _ => writeln!(formatter)?,
             }
         }
         Ok(())
@@ -154,12 +183,13 @@ impl Summary {
         ];
         for (label, extreme, symbol, bound) in rows {
             let Some(Extreme { value, instant, robots }) = extreme else { continue };
-            let who: Vec<String> = robots.iter().map(usize::to_string).collect();
+            let concerned: Vec<String> = robots.iter().map(usize::to_string).collect();
+            let noun = if robots.len() == 1 { "robot" } else { "robots" };
             writeln!(
                 formatter,
-                "  {label:<19} {value:.6} at k = {} (robot {}); {symbol} {bound}",
+                "  {label:<19} {value:.6} at k = {} ({noun} {}); {symbol} {bound}",
                 instant.step,
-                who.join(" and "),
+                concerned.join(" and "),
             )?;
         }
         Ok(())

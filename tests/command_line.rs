@@ -34,6 +34,7 @@ fn help_is_worth_reading() {
     };
     insta::assert_snapshot!("help", help(&["--help"]));
     insta::assert_snapshot!("help-run", help(&["run", "--help"]));
+    insta::assert_snapshot!("help-check", help(&["check", "--help"]));
     insta::assert_snapshot!("help-diagram", help(&["diagram", "--help"]));
 }
 
@@ -72,4 +73,144 @@ fn a_quiet_run_says_nothing_but_the_summary() {
     let output = pleach(&["run", "scenarios/unreachable.toml", "--no-figures", "--quiet"]);
     assert!(output.stderr.is_empty());
     assert!(!output.stdout.is_empty());
+}
+
+// ---- Many runs ---------------------------------------------------------------------------------
+
+fn said(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// The rows of comma-separated values, none of which has a comma in it.
+fn rows(csv: &str) -> Vec<Vec<&str>> {
+    csv.lines().map(|line| line.split(',').collect()).collect()
+}
+
+#[test]
+fn a_sweep_gives_a_table_and_the_worst_status() {
+    let sweep = ["--set", "control.max_steps=20..40:3", "--set", "robot[*].rate=0.07"];
+    let outputs = ["--csv", "-", "--jobs", "2", "--quiet"];
+    let arguments = [&["run", "scenarios/too-few.toml"][..], &sweep, &outputs].concat();
+    let output = pleach(&arguments);
+    assert_eq!(output.status.code(), Some(3));
+    let csv = said(&output.stdout);
+    let rows = rows(&csv);
+    assert_eq!(rows[0][..5], ["run", "source", "scenario", "control.max_steps", "robot[*].rate"]);
+    assert_eq!(rows.len(), 4);
+    for (row, steps) in rows[1..].iter().zip(["20", "30", "40"]) {
+        assert_eq!((row[3], row[6], row[10]), (steps, "step_limit", steps));
+    }
+    assert_eq!(pleach(&arguments).stdout, output.stdout, "the same on any number of threads");
+    assert!(said(&output.stderr).contains("step limit"), "the table for people goes elsewhere");
+}
+
+#[test]
+fn repeats_start_at_random_places() {
+    let repeat =
+        ["run", "tests/scenarios/room.toml", "--repeat", "3", "--seed", "7", "--json", "-"];
+    let limit = ["--set", "control.max_steps=5", "--quiet"];
+    let output = pleach(&[&repeat[..], &limit].concat());
+    assert_eq!(output.status.code(), Some(3));
+    let table: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = table.as_array().unwrap();
+    assert_eq!(rows.iter().map(|row| row["seed"].as_u64().unwrap()).collect::<Vec<_>>(), [7, 8, 9]);
+    assert_eq!(rows[0]["set"]["control.max_steps"], 5);
+    let distances: Vec<_> = rows.iter().map(|row| row["smallest_distance"].as_f64()).collect();
+    assert!(distances.iter().all(|distance| distance.unwrap() >= 0.02));
+    assert!(distances[0] != distances[1] && distances[1] != distances[2]);
+}
+
+#[test]
+fn a_folder_and_a_mistake_run_nothing() {
+    let output = pleach(&["run", "tests/scenarios/faulty", "scenarios/study-1.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(output.stdout.is_empty());
+    let said = said(&output.stderr);
+    assert!(said.contains("faulty/clearance-zero.toml:12:13"), "{said}");
+    assert!(said.contains("faulty/unknown-key.toml:"), "{said}");
+}
+
+#[test]
+fn a_scenario_comes_from_the_standard_input_and_a_trace_goes_to_the_standard_output() {
+    let input = std::fs::File::open("scenarios/too-few.toml").unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_pleach"))
+        .args(["run", "-", "--trace", "-", "--no-figures", "--set", "control.max_steps=30"])
+        .stdin(input)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    let entries = TraceReader::new(output.stdout.as_slice()).unwrap();
+    let steps = entries.filter(|entry| matches!(entry, Ok(TraceEntry::Step(_)))).count();
+    assert_eq!(steps, 30);
+    assert!(said(&output.stderr).contains("outcome             step limit"));
+}
+
+/// A run that a signal ends: the trace is complete, and so are summary and figures.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_ends_in_order() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("interrupted");
+    let trace = folder.join("hall.jsonl");
+    std::fs::create_dir_all(&folder).unwrap();
+    let _ = std::fs::remove_file(&trace);
+    let run = Command::new(env!("CARGO_BIN_EXE_pleach"))
+        .args(["run", "scenarios/hall.toml", "--quiet"])
+        .arg("--trace")
+        .arg(&trace)
+        .arg("--figures")
+        .arg(&folder)
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let has_begun = || std::fs::metadata(&trace).is_ok_and(|file| file.len() > 10_000);
+    while !has_begun() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let process = run.id().to_string();
+    assert!(Command::new("kill").args(["-TERM", &process]).status().unwrap().success());
+    let output = run.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    let summary = said(&output.stdout);
+    assert!(summary.contains("interrupted: the run was ended by SIGTERM at k = "), "{summary}");
+    assert!(folder.join("index.html").exists());
+    let file = std::io::BufReader::new(std::fs::File::open(&trace).unwrap());
+    let entries: Vec<_> = TraceReader::new(file).unwrap().map(Result::unwrap).collect();
+    let Some(TraceEntry::End(end)) = entries.last() else { panic!("the trace has no end") };
+    assert_eq!(end.outcome, Outcome::Interrupted);
+}
+
+// ---- Checks ------------------------------------------------------------------------------------
+
+#[test]
+fn a_check_counts_links_through_walls_and_draws_the_start() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("check");
+    let figures = ["--figures", folder.to_str().unwrap()];
+    let output = pleach(&[&["check", "scenarios/office.toml"][..], &figures].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output.stderr));
+    let report = said(&output.stdout).replace(folder.to_str().unwrap(), "FOLDER");
+    insta::assert_snapshot!("check", report);
+    assert!(std::fs::read_to_string(folder.join("start.svg")).unwrap().starts_with("<svg"));
+}
+
+#[test]
+fn a_check_names_tasks_that_no_robot_can_service() {
+    let output = pleach(&["check", "scenarios/unreachable.toml", "--no-figures"]);
+    assert_eq!(output.status.code(), Some(3));
+    let report = said(&output.stdout);
+    assert!(report.contains("task[1].position: no robot can service it: no way leads"), "{report}");
+    let task = ["--set", "task[0].position=[9, 9]", "--no-figures"];
+    let output = pleach(&[&["check", "tests/scenarios/room.toml"][..], &task].concat());
+    assert!(said(&output.stdout).contains("beyond the boundary or in a hole"));
+    let output = pleach(&["check", "tests/scenarios/faulty/robot-in-hole.toml", "--no-figures"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn shells_and_man_know_the_commands() {
+    for arguments in [&["completions", "bash"][..], &["completions", "fish"], &["man"]] {
+        let output = pleach(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        let said = said(&output.stdout);
+        assert!(said.contains("completions") && said.contains("check"), "{said}");
+    }
 }

@@ -1,6 +1,6 @@
 //! The same scenario gives the same bytes, whatever the settings.
 
-use crate::missions::{run, shipped};
+use crate::missions::{run, shipped, valid};
 use pleach::automaton::network::scenario::{MotionSolver, RoutingMethod, Scenario};
 use pleach::mission;
 use pleach::trace::TraceWriter;
@@ -9,7 +9,7 @@ use std::thread;
 /// The trace of a scenario as its file holds it.
 fn bytes(scenario: &Scenario) -> Vec<u8> {
     let mut writer = TraceWriter::new(Vec::new(), scenario).unwrap();
-    mission::run(scenario, &mut [&mut writer]).unwrap();
+    mission::run(&valid(scenario.clone()), &mut [&mut writer]).unwrap();
     writer.finish().unwrap()
 }
 

@@ -10,8 +10,8 @@ use std::{fs, io};
 use crate::generated::{is_update, read, root};
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::robot::GLOSSARY;
-use pleach::automaton::network::scenario::{Control, Scenario};
-use pleach::automaton::network::{Site, dealing_automaton, duty_automaton, mission_automaton};
+use pleach::automaton::network::scenario::{Control, Scenario, ValidScenario};
+use pleach::automaton::network::{dealing_automaton, duty_automaton, mission_automaton};
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::figures::Album;
@@ -21,7 +21,7 @@ use pleach::summary::Summary;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 9] = [
+const WRITTEN: [&str; 16] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
@@ -29,8 +29,15 @@ const WRITTEN: [&str; 9] = [
     "docs/model.md",
     "docs/semantics.md",
     "docs/automata.md",
+    "docs/robot.md",
     "docs/proofs.md",
     "docs/exploration.md",
+    "docs/how-to/link-model.md",
+    "docs/how-to/medium.md",
+    "docs/how-to/monitor.md",
+    "docs/how-to/trace.md",
+    "docs/how-to/mcap.md",
+    "docs/how-to/python.md",
 ];
 
 fn keep_up_to_date(path: &str, document: &str) {
@@ -175,9 +182,8 @@ const BEGIN_OF_RUN: &str =
     "<!-- begin of the run: PLEACH_UPDATE_DOCS=1 cargo test --test it documents -->";
 const END_OF_RUN: &str = "<!-- end of the run -->";
 
-fn album(scenario: &Scenario) -> Album {
-    let site = Site::new(scenario).unwrap();
-    Album::new(scenario, &site).unwrap()
+fn album(scenario: &ValidScenario) -> Album {
+    Album::new(scenario)
 }
 
 /// Copies the picture that is number `which` of those whose name contains `word`.
@@ -186,7 +192,7 @@ fn keep_picture(figures: &[PathBuf], word: &str, which: usize, name: &str) {
     fs::copy(named.nth(which).unwrap(), root().join("docs/pictures").join(name)).unwrap();
 }
 
-fn study() -> Scenario {
+fn study() -> ValidScenario {
     scenario_file::read(&root().join("scenarios/study-1.toml")).unwrap()
 }
 
@@ -309,5 +315,5 @@ fn the_readme_states_the_defaults() {
 }
 
 fn settled_control() -> Control {
-    Scenario { control: Control::default(), ..study() }.with_defaults().control
+    Scenario { control: Control::default(), ..study().into_scenario() }.with_defaults().control
 }

@@ -2,7 +2,7 @@
 
 use crate::missions::{Mission, Period, network_over, run, run_over, run_unmonitored, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
-use pleach::automaton::network::scenario::{RobotStart, Scenario};
+use pleach::automaton::network::scenario::{RobotStart, Scenario, ValidScenario};
 use pleach::automaton::network::{Message, Radio, Site};
 use pleach::automaton::node::{Delivery, Envelope, Medium};
 use pleach::continuous::Point;
@@ -223,7 +223,7 @@ fn a_robot_out_of_range_that_cannot_send_changes_nothing_for_the_others() {
 
 fn assert_unchanged_by_hermit(rate: f64) {
     let scenario = with_hermit(rate);
-    assert!(scenario.validate().is_err(), "no mission starts so by itself");
+    assert!(ValidScenario::new(scenario.clone()).is_err(), "no mission starts so by itself");
     let alone = run(without_hermit());
     let mut network = network_over(&scenario, Radio::new);
     let (periods, end) = run_unmonitored(&mut network, 5_000);

@@ -1,9 +1,9 @@
 //! Every mission ends, with an outcome that says what happened.
 
 use crate::missions::{Mission, run, run_over, shipped};
-use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
+use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Route};
 use pleach::automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
+    AccessPoint, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
 };
 use pleach::automaton::network::{Message, Radio, Site};
 use pleach::automaton::node::{Delivery, Envelope, Medium};
@@ -26,7 +26,7 @@ fn room(task: [f64; 2]) -> Scenario {
             boundary: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 0.9], [2.4, 1.0], [0.0, 1.0]],
             holes: vec![vec![[1.0, 0.4], [1.2, 0.4], [1.2, 0.6], [1.0, 0.6]]],
         },
-        link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+        link: LinkRanges::new(0.4, 0.5),
         control: Control {
             clearance: Some(CLEARANCE),
             service_radius: Some(SERVICE_RADIUS),
@@ -235,4 +235,17 @@ fn the_program_tells_outcomes_by_its_exit_status() {
         let said = String::from_utf8(output.stdout).unwrap();
         assert!(said.contains(outcome), "{said}");
     }
+}
+
+/// The link model is one that the scenario names, for robots and monitor alike.
+#[test]
+fn a_mission_with_logistic_links_is_serviced() {
+    let mut scenario = shipped("too-few");
+    scenario.task.truncate(1);
+    (scenario.link.model, scenario.link.steepness) = (LinkModel::Logistic, Some(3.0));
+    let mission = run(scenario);
+    let is_in_transition = |route: &&Route| (0.01..0.99).contains(&route.reliability);
+    let periods = mission.periods.iter().flat_map(|period| &period.snapshot.routes);
+    assert!(periods.filter(is_in_transition).count() > 10, "links of the tested kind are used");
+    mission.assert_serviced();
 }

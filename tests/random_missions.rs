@@ -6,7 +6,7 @@
 
 use crate::floor_plans::{Family, scenario};
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::ValidScenario;
 use pleach::discrete::network::Role;
 use pleach::mission::{Watcher, run};
 use proptest::prelude::*;
@@ -34,7 +34,7 @@ impl Watcher for Reserve {
 }
 
 /// How a mission ends, and how many robots nobody needs then.
-fn end_of(scenario: &Scenario) -> (End, usize) {
+fn end_of(scenario: &ValidScenario) -> (End, usize) {
     let mut reserve = Reserve::default();
     let end = run(scenario, &mut [&mut reserve]).unwrap().end;
     (end, reserve.redundant)

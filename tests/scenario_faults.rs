@@ -1,8 +1,9 @@
 //! Every mistake that a scenario can hold is told with file, line, column, key and what would be
 //! right. Each file in `tests/scenarios/faulty` holds one, but for the one that holds several.
 
-use pleach::scenario_file::{ScenarioError, read};
+use pleach::scenario_file::{ScenarioError, Setting, parse, parse_with, read};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 fn scenarios_in(folder: &str) -> Vec<PathBuf> {
     let mut paths: Vec<_> = std::fs::read_dir(folder)
@@ -76,5 +77,59 @@ fn a_scenario_with_every_default_written_out_reads_as_itself() {
     let scenario = read(Path::new("tests/scenarios/room.toml")).unwrap().with_defaults();
     let text = toml::to_string(&scenario).unwrap();
     let again = pleach::scenario_file::parse(&text, Path::new("room.toml")).unwrap();
-    assert_eq!(again, scenario);
+    assert_eq!(*again, scenario);
+}
+
+#[test]
+fn settings_replace_values_and_mistakes_in_them_are_told_as_such() {
+    let text = std::fs::read_to_string("tests/scenarios/room.toml").unwrap();
+    let parse = |settings: &[&str]| {
+        let settings: Vec<_> = settings.iter().map(|setting| setting.parse().unwrap()).collect();
+        parse_with(&text, Path::new("room.toml"), &settings)
+    };
+    let set = ["control.period=0.5", "robot[*].rate=0.01", "control.routing_method=dual"];
+    let scenario = parse(&set).unwrap();
+    assert_eq!(scenario.settings().period, 0.5);
+    assert!(scenario.robot.iter().all(|robot| robot.rate == 0.01));
+
+    let said = |setting: &str| parse(&[setting]).unwrap_err().to_string();
+    insta::assert_snapshot!(
+        "settings",
+        [
+            "control.period=-1",
+            "control.clearence=1",
+            "robot[7].rate=0.1",
+            "robot.rate=0.1",
+            "link.model=square",
+            "robot[0].position=[1e19, 0]",
+        ]
+        .map(said)
+        .join("\n")
+    );
+}
+
+#[test]
+fn a_setting_without_key_or_value_is_refused() {
+    for text in ["control.period", "=3", "control..period=1", "robot[x].rate=1", "robot[1=2"] {
+        assert!(text.parse::<Setting>().is_err(), "{text}");
+    }
+}
+
+/// Many robots in a large room: reading looks at near ones only.
+#[test]
+fn a_hundred_thousand_robots_are_read_in_a_moment() {
+    let side = 317;
+    let robots: String = (0..100_000)
+        .map(|robot| [robot % side, robot / side].map(|place| 0.1 + 0.1 * f64::from(place)))
+        .map(|[x, y]| format!("[[robot]]\nposition = [{x}, {y}]\nrate = 1e-6\n"))
+        .collect();
+    let text = format!(
+        "name = \"crowd\"\n[workspace]\nboundary = [[0, 0], [40, 0], [40, 40], [0, 40]]\n\
+         [link]\nfull_range = 0.4\nmax_range = 0.5\n[[access_point]]\nposition = [20, 20]\n{robots}"
+    );
+    let start = Instant::now();
+    let scenario = parse(&text, Path::new("crowd.toml")).unwrap();
+    assert_eq!(scenario.robot.len(), 100_000);
+    println!("read in {:?}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
 }

@@ -4,13 +4,14 @@ use std::ops::RangeInclusive;
 
 use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
 use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency};
-use pleach_guards::{EvaluationError, Guard, Predicate, Valuation};
+use pleach_guards::{EvaluationError, Guard, Predicate, Substitution, Valuation, constant};
 use thiserror::Error;
 
 use crate::builder::Builder;
 use crate::coordinates::Coordinates;
 use crate::flow::Flow;
 use crate::located::{Holds, Place};
+use crate::observed::Watch;
 use crate::reset::Reset;
 
 /// A hybrid automaton over locations `L`, events `E` and a state `S`.
@@ -62,8 +63,12 @@ pub struct Automaton<L, E, S> {
     /// What the model says of the coordinates' ranges, by name.
     pub(crate) ranges: Vec<(String, RangeInclusive<f64>)>,
     /// The names of all variables, where the type of the state tells.
-    pub(crate) known: Option<&'static [&'static str]>,
-    /// The nodes stand in the order of `L::ALL`.
+    pub(crate) known: Option<Vec<&'static str>>,
+    /// Names that stand for numbers, with these.
+    pub(crate) parameters: Vec<(String, f64)>,
+    pub(crate) locations: Vec<L>,
+    pub(crate) events: Vec<E>,
+    /// The nodes stand in the order of the locations.
     pub(crate) graph: DiGraph<L, Transition<E, S>>,
     /// By node.
     pub(crate) modes: Vec<Mode<S>>,
@@ -78,6 +83,8 @@ pub struct Transition<E, S> {
     pub event: E,
     /// When it may be taken.
     pub guard: Guard,
+    /// The same by numbers, where the state has them.
+    pub(crate) watch: Option<Watch<S>>,
     /// What it does to the state.
     pub reset: Reset<S>,
     /// Whether it has to be taken.
@@ -156,7 +163,34 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         declared.map_or(f64::NEG_INFINITY..=f64::INFINITY, |(_, range)| range.clone())
     }
 
-    /// The graph: a node for every location, in the order of `L::ALL`, and an edge for every row
+    /// The locations, in the order in which tables and diagrams show them.
+    pub fn locations(&self) -> &[L] {
+        &self.locations
+    }
+
+    /// The events, in the order in which tables and diagrams show them.
+    pub fn events(&self) -> &[E] {
+        &self.events
+    }
+
+    /// The names that stand for numbers, with these.
+    pub fn parameters(&self) -> impl ExactSizeIterator<Item = (&str, f64)> {
+        self.parameters.iter().map(|(name, value)| (name.as_str(), *value))
+    }
+
+    /// The parameters as what to put in the place of their names.
+    pub(crate) fn numbers(&self) -> Substitution {
+        Substitution::new(self.parameters.iter().map(|(name, value)| (name, constant(*value))))
+    }
+
+    /// The node of `location`, unless the automaton lacks it. Enums are small: looking through them
+    /// is faster than any map.
+    pub(crate) fn node(&self, location: L) -> Option<NodeIndex> {
+        self.locations.iter().position(|listed| *listed == location).map(NodeIndex::new)
+    }
+
+    /// The graph: a node for every location, in the order of [`locations`](Self::locations), and an
+    /// edge for every row
     /// of the table, in the order of the rows.
     pub fn graph(&self) -> &DiGraph<L, Transition<E, S>> {
         &self.graph
@@ -164,7 +198,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
 
     /// Flow and invariant of `location`.
     pub fn mode(&self, location: L) -> Option<&Mode<S>> {
-        self.modes.get(node(location)?.index())
+        self.modes.get(self.node(location)?.index())
     }
 
     /// The first transition in total order that leaves `location`, has to be taken (*must* or *at
@@ -231,7 +265,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         state: &S,
         eligible: impl Fn(&Transition<E, S>) -> bool,
     ) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
-        let leaving = node(location).and_then(|node| self.leaving.get(node.index()));
+        let leaving = self.node(location).and_then(|node| self.leaving.get(node.index()));
         for &edge in leaving.into_iter().flatten() {
             let transition = &self.graph[edge];
             if eligible(transition) && transition.allows(location, state)? {
@@ -249,10 +283,67 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     pub fn starting_in(initial: L) -> Builder<L, E, S> {
         Builder::over_coordinates(initial)
     }
+
+    /// The names of the coordinates, in their order.
+    pub fn names(&self) -> &[&'static str] {
+        self.known.as_deref().unwrap_or(S::NAMES)
+    }
+
+    /// The same automaton with another value of a parameter.
+    ///
+    /// # Errors
+    ///
+    /// [`UnknownParameter`] if it has no parameter of that name, or `value` is not finite.
+    pub fn with(&self, parameter: &str, value: f64) -> Result<Self, UnknownParameter> {
+        let mut changed = self.clone();
+        let place = changed.parameters.iter_mut().find(|(name, _)| name == parameter);
+        match place.filter(|_| value.is_finite()) {
+            Some((_, present)) => *present = value,
+            None => return Err(UnknownParameter { parameter: parameter.to_owned(), value }),
+        }
+        Ok(changed)
+    }
+
+    /// The same automaton with numbers in the place of its parameters: for
+    /// [`step`](Self::step) and other evaluations on states, which know coordinates only.
+    #[must_use]
+    pub fn with_numbers(&self) -> Self {
+        let numbers = self.numbers();
+        let mut changed = self.clone();
+        if changed.parameters.is_empty() {
+            return changed;
+        }
+        changed.parameters.clear();
+        for transition in changed.graph.edge_weights_mut() {
+            let guard = transition.guard.predicate().substitute(&numbers);
+            transition.guard = Guard::new(transition.guard.name(), guard);
+            transition.reset = transition.reset.substitute(&numbers);
+        }
+        for mode in &mut changed.modes {
+            mode.flow = mode.flow.take().map(|flow| flow.substitute(&numbers));
+            mode.invariant = mode.invariant.take().map(|it| it.substitute(&numbers));
+        }
+        changed
+    }
+}
+
+/// An automaton has no parameter of this name, or the value is none for it.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error(
+    "`{parameter}` cannot be set to {value}: the model has no such parameter, or the value is not finite"
+)]
+pub struct UnknownParameter {
+    /// The name.
+    pub parameter: String,
+    /// The value.
+    pub value: f64,
 }
 
 impl<E: Event, S: Valuation> Transition<E, S> {
     fn allows<L: Location>(&self, location: L, state: &S) -> Result<bool, TransitionError> {
+        if let Some(holds) = self.watch.as_ref().and_then(|watch| watch.holds(state)) {
+            return Ok(holds);
+        }
         let part = || format!("guard `{}`", self.guard.name());
         self.guard.holds(state).map_err(|source| self.error(location, part(), source))
     }
@@ -293,10 +384,4 @@ impl<'a, L: Location, E: Event, S> Step<'a, L, E, S> {
         *location = self.target;
         Ok(self.jump())
     }
-}
-
-/// The node of `location`, unless `L::ALL` lacks it. Enums are small: looking through them is
-/// faster than any map.
-pub(crate) fn node<L: Location>(location: L) -> Option<NodeIndex> {
-    L::ALL.iter().position(|listed| *listed == location).map(NodeIndex::new)
 }

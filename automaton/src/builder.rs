@@ -7,11 +7,12 @@ use pleach_discrete::{Event, Location, Row, TransitionTable};
 use pleach_guards::{Expression, Guard, Predicate, Valuation};
 use thiserror::Error;
 
-use crate::automaton::{Automaton, Mode, Transition, node};
+use crate::automaton::{Automaton, Mode, Transition};
 use crate::coordinates::{Coordinate, Coordinates};
 use crate::edge::Edge;
-use crate::flow::Flow;
+use crate::flow::{Flow, Rate};
 use crate::located::Transfer;
+use crate::observed::{Observed, Watch};
 use crate::reset::Reset;
 
 /// An [`Automaton`] that is being put together.
@@ -33,9 +34,15 @@ pub struct Builder<L, E, S> {
     invariants: Vec<(L, Predicate)>,
     ranges: Vec<(String, RangeInclusive<f64>)>,
     /// The names of all variables, where the type of the state tells.
-    known: Option<&'static [&'static str]>,
+    known: Option<Vec<&'static str>>,
+    /// Names that stand for numbers, with these.
+    parameters: Vec<(String, f64)>,
+    /// What changes alike in all locations.
+    throughout: Vec<Rate<S>>,
     /// The names of all variables and propositions, where the state is not its coordinates.
     observed: Option<Names>,
+    /// How a guard is looked up by numbers, where the state has them.
+    watch: fn(&Predicate) -> Option<Watch<S>>,
     transfers: Vec<Transfer<L, E, S>>,
 }
 
@@ -140,6 +147,26 @@ pub enum BuildError {
         /// The coordinate.
         coordinate: &'static str,
     },
+    /// A parameter is called like a coordinate or another parameter.
+    #[error("parameter `{parameter}` is called like a coordinate or another parameter: rename one")]
+    ParameterNameTaken {
+        /// The name.
+        parameter: String,
+    },
+    /// A parameter is infinite or NaN.
+    #[error("parameter `{parameter}` is {value}: it must be a finite number")]
+    ParameterNotFinite {
+        /// The name.
+        parameter: String,
+        /// Its value.
+        value: f64,
+    },
+    /// Rates are given for all locations, but the flow of one is a function.
+    #[error("the flow of `{location}` is a function, to which no rates can be added")]
+    NoRates {
+        /// The location.
+        location: &'static str,
+    },
     /// A range is declared for a variable that the state does not have.
     #[error("a range is declared for variable `{variable}`, which the state does not have")]
     RangeOfUnknownVariable {
@@ -181,7 +208,10 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             invariants: Vec::new(),
             ranges: Vec::new(),
             known: None,
+            parameters: Vec::new(),
+            throughout: Vec::new(),
             observed: None,
+            watch: |_| None,
             transfers: Vec::new(),
         }
     }
@@ -189,17 +219,6 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     /// What the row from one location on one event carries over, and when.
     pub fn carried_out(mut self, transfer: Transfer<L, E, S>) -> Self {
         self.transfers.push(transfer);
-        self
-    }
-
-    /// These are the variables and the propositions that the state has: no formula may name
-    /// another.
-    pub fn observing(
-        mut self,
-        variables: &'static [&'static str],
-        propositions: &'static [&'static str],
-    ) -> Self {
-        self.observed = Some((variables, propositions));
         self
     }
 
@@ -240,26 +259,43 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         self.check_table()?;
         self.match_transfers()?;
         self.check_parts()?;
-        if let Some(names) = self.known {
-            self.check_variables(|name| names.contains(&name))?;
+        self.spread_rates()?;
+        if let Some(names) = &self.known {
+            let is_parameter = |name: &str| self.parameters.iter().any(|(known, _)| known == name);
+            self.check_parameters(names)?;
+            self.check_variables(|name| names.contains(&name) || is_parameter(name))?;
             self.check_initial_state(names)?;
         }
         if let Some((variables, propositions)) = self.observed {
             self.check_variables(|name| variables.contains(&name))?;
             self.check_propositions(propositions)?;
         }
-        let mut graph = DiGraph::with_capacity(L::ALL.len(), self.rows.len());
-        for &location in L::ALL {
+        let (locations, events) = (self.locations(), self.events());
+        let mut graph = DiGraph::with_capacity(locations.len(), self.rows.len());
+        for &location in &locations {
             graph.add_node(location);
         }
         for (number, row) in self.rows.iter().enumerate() {
-            let (source, target) = (listed(row.source)?, listed(row.target)?);
+            let source = listed(&locations, row.source)?;
+            let target = listed(&locations, row.target)?;
             graph.add_edge(source, target, self.transition_of(number, row)?);
         }
-        let leaving = L::ALL.iter().map(|&location| self.leaving(location)).collect();
-        let modes = L::ALL.iter().map(|&location| self.mode(location)).collect();
-        let Builder { rows, initial, initial_state, ranges, known, .. } = self;
-        Ok(Automaton { rows, initial, initial_state, ranges, known, graph, modes, leaving })
+        let leaving = locations.iter().map(|&location| self.leaving(location)).collect();
+        let modes = locations.iter().map(|&location| self.mode(location)).collect();
+        let Builder { rows, initial, initial_state, ranges, known, parameters, .. } = self;
+        Ok(Automaton {
+            rows,
+            initial,
+            initial_state,
+            ranges,
+            known,
+            parameters,
+            locations,
+            events,
+            graph,
+            modes,
+            leaving,
+        })
     }
 
     /// The automaton, after a look at any one state of the model, whose values do not matter:
@@ -320,18 +356,74 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         Ok(())
     }
 
+    /// All locations, or those that are mentioned.
+    fn locations(&self) -> Vec<L> {
+        let in_rows = self.rows.iter().flat_map(|row| [row.source, row.target]);
+        let described = self.flows.iter().map(|(location, _)| *location);
+        let restricted = self.invariants.iter().map(|(location, _)| *location);
+        let mentioned =
+            [self.initial].into_iter().chain(in_rows).chain(described).chain(restricted);
+        let all = L::ALL.iter().copied();
+        if L::IS_OPEN { first_mentions(all.chain(mentioned)) } else { all.collect() }
+    }
+
+    /// All events, or those that are mentioned.
+    fn events(&self) -> Vec<E> {
+        let all = E::ALL.iter().copied();
+        let mentioned = self.rows.iter().map(|row| row.event);
+        if E::IS_OPEN { first_mentions(all.chain(mentioned)) } else { all.collect() }
+    }
+
+    /// Adds what changes throughout to the flow of every location.
+    fn spread_rates(&mut self) -> Result<(), BuildError> {
+        let throughout = std::mem::take(&mut self.throughout);
+        if throughout.is_empty() {
+            return Ok(());
+        }
+        for location in self.locations() {
+            let given = self.flows.iter_mut().find(|(place, _)| *place == location);
+            match given {
+                Some((_, flow)) => {
+                    let rates =
+                        flow.rates().ok_or(BuildError::NoRates { location: location.name() })?;
+                    *flow = rates.iter().chain(&throughout).cloned().collect::<Vec<_>>().into();
+                }
+                None => self.flows.push((location, throughout.clone().into())),
+            }
+        }
+        Ok(())
+    }
+
+    fn check_parameters(&self, names: &[&'static str]) -> Result<(), BuildError> {
+        for (position, (name, value)) in self.parameters.iter().enumerate() {
+            let is_taken = names.contains(&name.as_str())
+                || self.parameters[..position].iter().any(|(other, _)| other == name);
+            if is_taken {
+                return Err(BuildError::ParameterNameTaken { parameter: name.clone() });
+            }
+            if !value.is_finite() {
+                let (parameter, value) = (name.clone(), *value);
+                return Err(BuildError::ParameterNotFinite { parameter, value });
+            }
+        }
+        Ok(())
+    }
+
     fn check_vocabulary(&self) -> Result<(), BuildError> {
-        listed(self.initial)?;
+        let (locations, events) = (self.locations(), self.events());
+        listed(&locations, self.initial)?;
         for row in &self.rows {
-            listed(row.source)?;
-            listed(row.target)?;
-            if !E::ALL.contains(&row.event) {
+            listed(&locations, row.source)?;
+            listed(&locations, row.target)?;
+            if !events.contains(&row.event) {
                 return Err(BuildError::UnlistedEvent { event: format!("{:?}", row.event) });
             }
         }
         let described = self.flows.iter().map(|(location, _)| *location);
         let restricted = self.invariants.iter().map(|(location, _)| *location);
-        described.chain(restricted).try_for_each(|location| listed(location).map(|_| ()))
+        described
+            .chain(restricted)
+            .try_for_each(|location| listed(&locations, location).map(|_| ()))
     }
 
     fn check_table(&self) -> Result<(), BuildError> {
@@ -443,6 +535,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         Ok(Transition {
             event: row.event,
             guard: guard.clone(),
+            watch: (self.watch)(guard.predicate()),
             reset: reset.clone(),
             urgency: row.urgency,
             priority: row.priority,
@@ -468,14 +561,40 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     }
 }
 
+impl<L: Location, E: Event, S: Observed> Builder<L, E, S> {
+    /// No formula may name anything but the quantities and propositions of the state, and guards
+    /// are evaluated by their numbers.
+    pub fn observing(mut self) -> Self {
+        self.observed = Some((S::VARIABLES, S::PROPOSITIONS));
+        self.watch = Watch::of;
+        self
+    }
+}
+
 impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
     pub(crate) fn over_coordinates(initial: L) -> Self {
-        Builder { known: Some(S::NAMES), ..Builder::new(TransitionTable::new(&[]), initial) }
+        let known = Some(S::NAMES.to_vec());
+        Builder { known, ..Builder::new(TransitionTable::new(&[]), initial) }
     }
 
     /// Runs start in `state`, unless they are given another one.
     pub fn initially(mut self, state: S) -> Self {
+        self.known = Some(state.names().to_vec());
         self.initial_state = Some(state);
+        self
+    }
+
+    /// In all formulas of the model `name` stands for `value`, which
+    /// [`Automaton::with`](crate::Automaton::with) changes. Texts and drawings show the name.
+    pub fn parameter(mut self, name: &str, value: f64) -> Self {
+        self.parameters.push((name.to_owned(), value));
+        self
+    }
+
+    /// In every location, beside its flow, this changes, too: such as a clock that shows the time,
+    /// `time.rate(1.0)`.
+    pub fn throughout(mut self, rates: impl IntoIterator<Item = Rate<S>>) -> Self {
+        self.throughout.extend(rates);
         self
     }
 
@@ -517,8 +636,20 @@ impl Part {
     }
 }
 
-fn listed<L: Location>(location: L) -> Result<NodeIndex, BuildError> {
-    node(location).ok_or_else(|| BuildError::UnlistedLocation { location: format!("{location:?}") })
+fn listed<L: Location>(locations: &[L], location: L) -> Result<NodeIndex, BuildError> {
+    let place = locations.iter().position(|listed| *listed == location).map(NodeIndex::new);
+    place.ok_or_else(|| BuildError::UnlistedLocation { location: format!("{location:?}") })
+}
+
+/// Those that are new, in the order in which they occur first.
+fn first_mentions<T: PartialEq>(mentioned: impl Iterator<Item = T>) -> Vec<T> {
+    let mut new = Vec::new();
+    for one in mentioned {
+        if !new.contains(&one) {
+            new.push(one);
+        }
+    }
+    new
 }
 
 fn once<P: PartialEq + Copy>(

@@ -23,9 +23,20 @@ pub trait Coordinates: Valuation + Clone + Send + Sync + 'static {
     /// Writes the coordinates into `values`, which has as many places as there are names.
     fn write(&self, values: &mut [f64]);
 
+    /// The names of the coordinates of this state, in their order: those of the type, unless states
+    /// are [records](crate::Record) whose names are known at run time.
+    fn names(&self) -> &[&'static str] {
+        Self::NAMES
+    }
+
+    /// A state with the same names and these coordinates.
+    fn like(&self, values: &[f64]) -> Self {
+        Self::from_values(values)
+    }
+
     /// The coordinates in their order.
     fn to_values(&self) -> Vec<f64> {
-        let mut values = vec![0.0; Self::NAMES.len()];
+        let mut values = vec![0.0; self.names().len()];
         self.write(&mut values);
         values
     }
@@ -194,8 +205,8 @@ macro_rules! coordinates {
     )+) => {$(
         $(#[$attribute])*
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
-        $visibility struct $state<T = f64> {
-            $($(#[$note])* #[allow(missing_docs)] pub $field: T),+
+        $visibility struct $state<CoordinateValue = f64> {
+            $($(#[$note])* #[allow(missing_docs)] pub $field: CoordinateValue),+
         }
 
         impl $state {
@@ -287,8 +298,11 @@ impl<const N: usize> Valuation for Vector<N> {
 }
 
 impl<const N: usize> Coordinates for Vector<N> {
-    /// At most twelve; a longer vector does not compile.
-    const NAMES: &'static [&'static str] = SUBSCRIPTED.split_at(N).0;
+    /// At most a hundred; a longer vector does not compile.
+    const NAMES: &'static [&'static str] = {
+        assert!(N <= SUBSCRIPTED.len(), "a vector has at most 100 coordinates; a record has any");
+        SUBSCRIPTED.split_at(N).0
+    };
 
     fn from_values(values: &[f64]) -> Self {
         Vector(nalgebra::SVector::from_fn(|row, _| values.get(row).copied().unwrap_or(f64::NAN)))
@@ -301,8 +315,108 @@ impl<const N: usize> Coordinates for Vector<N> {
     }
 }
 
-const SUBSCRIPTED: &[&str] =
-    &["x₁", "x₂", "x₃", "x₄", "x₅", "x₆", "x₇", "x₈", "x₉", "x₁₀", "x₁₁", "x₁₂"];
+const SUBSCRIPTED: &[&str] = &[
+    "x₁",
+    "x₂",
+    "x₃",
+    "x₄",
+    "x₅",
+    "x₆",
+    "x₇",
+    "x₈",
+    "x₉",
+    "x₁₀",
+    "x₁₁",
+    "x₁₂",
+    "x₁₃",
+    "x₁₄",
+    "x₁₅",
+    "x₁₆",
+    "x₁₇",
+    "x₁₈",
+    "x₁₉",
+    "x₂₀",
+    "x₂₁",
+    "x₂₂",
+    "x₂₃",
+    "x₂₄",
+    "x₂₅",
+    "x₂₆",
+    "x₂₇",
+    "x₂₈",
+    "x₂₉",
+    "x₃₀",
+    "x₃₁",
+    "x₃₂",
+    "x₃₃",
+    "x₃₄",
+    "x₃₅",
+    "x₃₆",
+    "x₃₇",
+    "x₃₈",
+    "x₃₉",
+    "x₄₀",
+    "x₄₁",
+    "x₄₂",
+    "x₄₃",
+    "x₄₄",
+    "x₄₅",
+    "x₄₆",
+    "x₄₇",
+    "x₄₈",
+    "x₄₉",
+    "x₅₀",
+    "x₅₁",
+    "x₅₂",
+    "x₅₃",
+    "x₅₄",
+    "x₅₅",
+    "x₅₆",
+    "x₅₇",
+    "x₅₈",
+    "x₅₉",
+    "x₆₀",
+    "x₆₁",
+    "x₆₂",
+    "x₆₃",
+    "x₆₄",
+    "x₆₅",
+    "x₆₆",
+    "x₆₇",
+    "x₆₈",
+    "x₆₉",
+    "x₇₀",
+    "x₇₁",
+    "x₇₂",
+    "x₇₃",
+    "x₇₄",
+    "x₇₅",
+    "x₇₆",
+    "x₇₇",
+    "x₇₈",
+    "x₇₉",
+    "x₈₀",
+    "x₈₁",
+    "x₈₂",
+    "x₈₃",
+    "x₈₄",
+    "x₈₅",
+    "x₈₆",
+    "x₈₇",
+    "x₈₈",
+    "x₈₉",
+    "x₉₀",
+    "x₉₁",
+    "x₉₂",
+    "x₉₃",
+    "x₉₄",
+    "x₉₅",
+    "x₉₆",
+    "x₉₇",
+    "x₉₈",
+    "x₉₉",
+    "x₁₀₀",
+];
 
 #[cfg(test)]
 mod tests {
@@ -318,6 +432,25 @@ mod tests {
         let formula = 2.0 * &level + &inflow - level.power(2.0) / 3.0;
         assert_eq!(formula.to_string(), "2 · ℓ + inflow − ℓ² ÷ 3");
         assert_eq!((-&level).to_string(), "−ℓ");
+    }
+
+    crate::coordinates! {
+        struct T { x }
+    }
+
+    #[test]
+    fn states_may_be_called_as_they_like() {
+        let T { x } = T::coordinates();
+        assert_eq!((&x + 1.0).to_string(), "x + 1");
+        assert_eq!(T::from_values(&[2.0]), T { x: 2.0 });
+    }
+
+    #[test]
+    fn vectors_have_up_to_a_hundred_coordinates() {
+        assert_eq!(Vector::<13>::NAMES[12], "x₁₃");
+        assert_eq!(Vector::<100>::NAMES.last(), Some(&"x₁₀₀"));
+        let state = Vector::<13>::from_values(&[1.5; 13]);
+        assert_eq!((state.value("x₁₃"), state.value("x₁₄")), (Some(1.5), None));
     }
 
     #[test]

@@ -125,7 +125,7 @@ impl Coverage {
         let blueprint = Blueprint::of(automaton).map_err(failed)?;
         let events: Vec<String> = blueprint.events.iter().map(ToString::to_string).collect();
         let Parts { locations, transitions } = Parts::of(&blueprint, &events).map_err(failed)?;
-        let slots = (0..S::NAMES.len()).collect();
+        let slots = (0..automaton.names().len()).collect();
         let component = ComponentCoverage { name: NAME.into(), locations, transitions, slots };
         Ok(Coverage { components: vec![component], runs: 0 })
     }

@@ -5,7 +5,11 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use pleach_guards::Expression;
+use nalgebra::DMatrix;
+use pleach_guards::{Expression, Substitution, constant};
+use thiserror::Error;
+
+use crate::coordinates::Coordinate;
 
 /// The flow of a location.
 ///
@@ -60,6 +64,23 @@ impl<S> Rate<S> {
     }
 }
 
+/// A matrix or an offset does not have the dimension of its coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error(
+    "a matrix of {rows} rows and {columns} columns with an offset of {offset} entries makes no \
+     flow of {dimension} coordinates: all must be {dimension}"
+)]
+pub struct InvalidMatrix {
+    /// The rows of the matrix.
+    pub rows: usize,
+    /// Its columns.
+    pub columns: usize,
+    /// The entries of the offset.
+    pub offset: usize,
+    /// How many coordinates there are.
+    pub dimension: usize,
+}
+
 impl<S> Flow<S> {
     /// The flow whose exact solution `advance` computes: it carries a state over a duration ≥ 0
     /// in seconds. `name` is a formula such as `τ̇ = 1`.
@@ -102,6 +123,57 @@ impl<S> Flow<S> {
             }
             Motion::Rates(_) | Motion::Field(..) => false,
         }
+    }
+
+    /// The same flow with expressions in the place of variables, as far as it is data.
+    pub(crate) fn substitute(&self, substitution: &Substitution) -> Self {
+        match self.rates() {
+            Some(rates) => {
+                let changed = rates
+                    .iter()
+                    .map(|one| Rate::new(one.coordinate, one.rate.substitute(substitution)));
+                changed.collect::<Vec<_>>().into()
+            }
+            None => self.clone(),
+        }
+    }
+
+    /// The flow ẋ = A x + b of these coordinates; entries that are 0 leave no term.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidMatrix`] unless A has a row and a column and b an entry for each coordinate.
+    ///
+    /// ```
+    /// use nalgebra::dmatrix;
+    /// use pleach_automaton::{Flow, Vector};
+    ///
+    /// let turn = dmatrix![0.0, 1.0; -4.0, 0.0];
+    /// let flow = Flow::linear(&Vector::<2>::coordinates(), &turn, &[0.0, 2.5])?;
+    /// assert_eq!(flow.to_string(), "ẋ₁ = x₂, ẋ₂ = −4 · x₁ + 2.5");
+    /// # Ok::<(), pleach_automaton::InvalidMatrix>(())
+    /// ```
+    pub fn linear(
+        coordinates: &[Coordinate<S>],
+        matrix: &DMatrix<f64>,
+        offset: &[f64],
+    ) -> Result<Self, InvalidMatrix> {
+        let dimension = coordinates.len();
+        if matrix.shape() != (dimension, dimension) || offset.len() != dimension {
+            let (rows, columns) = matrix.shape();
+            return Err(InvalidMatrix { rows, columns, offset: offset.len(), dimension });
+        }
+        let rates = coordinates.iter().enumerate().map(|(row, coordinate)| {
+            let entries = coordinates.iter().enumerate();
+            let terms = entries.filter_map(|(column, other)| match matrix[(row, column)] {
+                0.0 => None,
+                1.0 => Some(other.into()),
+                entry => Some(entry * other),
+            });
+            let constant = (offset[row] != 0.0).then(|| constant(offset[row]));
+            coordinate.rate(terms.chain(constant).sum::<Expression>())
+        });
+        Ok(rates.collect::<Vec<_>>().into())
     }
 
     pub(crate) fn motion(&self) -> &Motion<S> {

@@ -30,16 +30,19 @@ pub mod executor;
 pub mod flow;
 pub mod located;
 pub mod moment;
+pub mod named;
 #[cfg(feature = "network")]
 pub mod network;
 pub mod node;
+pub mod observed;
 pub mod reset;
+mod sweep;
 pub mod time;
 pub mod trace;
 pub mod trajectory;
 pub mod zeno;
 
-pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError};
+pub use automaton::{Automaton, Jump, Mode, Step, Transition, TransitionError, UnknownParameter};
 pub use builder::{BuildError, Builder};
 pub use check::{Finding, Report};
 pub use composition::{
@@ -52,10 +55,13 @@ pub use edge::{Edge, from};
 pub use executor::{
     Ending, Executor, InvalidLimit, Limit, Observer, Reason, Round, Sliding, System,
 };
-pub use flow::{Flow, Rate};
+pub use flow::{Flow, InvalidMatrix, Rate};
 pub use located::{Current, DataOf, Holds, Place, Transfer};
 pub use moment::Moment;
+pub use named::{Name, Record, RepeatedName};
+pub use observed::Observed;
 pub use reset::{Assignment, Reset};
+pub use sweep::sweep;
 pub use time::HybridTime;
 
 pub use trace::{Participants, Trace, TraceEntry};

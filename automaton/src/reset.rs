@@ -5,7 +5,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use pleach_guards::{EvaluationError, Expression};
+use pleach_guards::{EvaluationError, Expression, Substitution};
 
 use crate::coordinates::Coordinates;
 
@@ -120,6 +120,21 @@ impl<S> Reset<S> {
     }
 }
 
+impl<S: Coordinates> Reset<S> {
+    /// The same reset with expressions in the place of variables, as far as it is data.
+    pub(crate) fn substitute(&self, substitution: &Substitution) -> Self {
+        match self.assignments() {
+            Some(assignments) => {
+                let changed = assignments
+                    .iter()
+                    .map(|one| Assignment::new(one.coordinate, one.value.substitute(substitution)));
+                changed.collect::<Vec<_>>().into()
+            }
+            None => self.clone(),
+        }
+    }
+}
+
 impl<S: Coordinates> From<Vec<Assignment<S>>> for Reset<S> {
     fn from(assignments: Vec<Assignment<S>>) -> Self {
         let assignments: Arc<[Assignment<S>]> = assignments.into();
@@ -149,12 +164,12 @@ fn assign<S: Coordinates>(assignments: &[Assignment<S>], before: &S) -> Result<S
     let mut after = before.to_values();
     for assignment in assignments {
         let value = assignment.value.evaluate(before)?;
-        let place = S::NAMES.iter().position(|name| *name == assignment.coordinate);
+        let place = before.names().iter().position(|name| *name == assignment.coordinate);
         let unknown =
             || EvaluationError::UnknownVariable { variable: assignment.coordinate.into() };
         after[place.ok_or_else(unknown)?] = value;
     }
-    Ok(S::from_values(&after))
+    Ok(before.like(&after))
 }
 
 // Written by hand, because derives would ask the same of S.

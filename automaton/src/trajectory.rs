@@ -277,7 +277,11 @@ impl Trajectory {
     ///
     /// [`FileError::Json`] if the writer fails.
     pub fn write(&self, writer: impl io::Write) -> Result<(), FileError> {
-        Ok(serde_json::to_writer(io::BufWriter::new(writer), self)?)
+        // Numbers are written one by one: unbuffered, each would be a call of the system.
+        let mut buffered = io::BufWriter::new(writer);
+        serde_json::to_writer(&mut buffered, self)?;
+        io::Write::flush(&mut buffered).map_err(serde_json::Error::io)?;
+        Ok(())
     }
 
     /// Reads what [`write`](Self::write) has written.

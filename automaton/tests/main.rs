@@ -13,6 +13,7 @@ mod error_messages;
 mod faulty_models;
 mod guarantees;
 mod many_components;
+mod models;
 mod pictures;
 mod sampled_rooms;
 mod semantics;

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use pleach::automaton::network::record::{End, Snapshot};
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Network, NetworkError};
 use pleach::automaton::node::NodeJump;
 use pleach::automaton::{Executor, Round, System};
@@ -16,7 +16,7 @@ const PATIENCE: usize = 10_000;
 
 /// A mission under way.
 pub struct Course {
-    scenario: Scenario,
+    scenario: ValidScenario,
     network: Endless,
     period: Executor,
 }
@@ -48,7 +48,7 @@ impl System for Endless {
 
 impl Course {
     /// A mission whose robots are about to make their first move.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &ValidScenario) -> Self {
         let network = Network::new(scenario).expect("a network");
         let period = Executor::new(network.site().settings.period, ROUND_LIMIT).expect("a limit");
         let mut course = Course { scenario: scenario.clone(), network: Endless(network), period };

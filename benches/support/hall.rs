@@ -5,7 +5,7 @@
 //! right wall an aisle is left empty, and the tasks lie there.
 
 use pleach::automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
+    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario, WorkspaceOutline,
 };
 
 /// Distance between robots next to each other. With the range of 0.5 a robot hears the twelve
@@ -26,8 +26,8 @@ const ACCESS_POINT: [f64; 2] = [3.0, 4.0];
 /// So small that the robots next to an access point can carry what comes from behind them.
 const RATE: f64 = 0.005;
 
-/// A hall with so many robots and tasks, `tasks` ≥ 0, `robots` ≥ 1.
-pub fn hall(robots: usize, tasks: usize) -> Scenario {
+/// A hall with `robots` ≥ 1 robots and `tasks` ≥ 0 tasks.
+pub fn hall(robots: usize, tasks: usize) -> ValidScenario {
     let blocks = robots.div_ceil(SIDE * SIDE);
     let rows = (blocks as f64).sqrt().ceil() as usize;
     let columns = blocks.div_ceil(rows);
@@ -46,7 +46,7 @@ pub fn hall(robots: usize, tasks: usize) -> Scenario {
             .map(|[right, up]| [x + right, y + up])
             .to_vec()
     };
-    Scenario {
+    let scenario = Scenario {
         name: format!("hall-{robots}"),
         description: None,
         workspace: WorkspaceOutline {
@@ -56,7 +56,7 @@ pub fn hall(robots: usize, tasks: usize) -> Scenario {
                 .flat_map(|&corner| PILLARS.map(|at| pillar(within(corner, at))))
                 .collect(),
         },
-        link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+        link: LinkRanges::new(0.4, 0.5),
         control: Control { routing_reserve: Some(RATE), ..Control::default() },
         access_point: corners
             .iter()
@@ -67,7 +67,8 @@ pub fn hall(robots: usize, tasks: usize) -> Scenario {
             .map(|task| (task as f64 + 0.5) / tasks as f64 * height)
             .map(|y| Task { position: [width - 0.1, y] })
             .collect(),
-    }
+    };
+    ValidScenario::new(scenario).expect("a hall is a valid scenario")
 }
 
 /// The places of a block's robots, the nearest to the access point first: a block that is not full

@@ -8,10 +8,10 @@ use std::path::Path;
 use std::time::Duration;
 
 use criterion::Criterion;
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::ValidScenario;
 
 /// Study I of the paper: 13 robots, 3 tasks.
-pub fn study_1() -> Scenario {
+pub fn study_1() -> ValidScenario {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/study-1.toml");
     pleach::scenario_file::read(&path).expect("Study I is a valid scenario")
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach::automaton::network::record::{MissionEvent, Route, Snapshot};
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Message, Robot, Site};
 use pleach::automaton::node::{Input, Node, Outputs};
 use pleach::continuous::Point;
@@ -21,7 +21,7 @@ const TEAM: usize = 2;
 /// What the network looks like at the moment, from outside.
 pub struct Scene {
     /// Study I.
-    pub scenario: Scenario,
+    pub scenario: ValidScenario,
     /// What its robots know from the beginning.
     pub site: Arc<Site>,
     /// The view of the observers.
@@ -34,7 +34,7 @@ impl Scene {
         let scenario = crate::study_1();
         let mut course = Course::new(&scenario);
         course.reach_advance(TEAM);
-        let site = Arc::new(Site::new(&scenario).expect("a valid site"));
+        let site = Arc::clone(scenario.site());
         Scene { snapshot: course.snapshot(), scenario, site }
     }
 
@@ -162,7 +162,7 @@ pub struct Crowd {
 impl Crowd {
     /// Robots that know nothing of each other yet.
     pub fn new(scene: &Scene) -> Self {
-        let mut scenario = scene.scenario.clone();
+        let mut scenario = scene.scenario.clone().into_scenario();
         scenario.control.rounds_per_period = Some(usize::MAX);
         let site = Arc::new(Site::new(&scenario).expect("a site"));
         let starts = scenario.robot.iter().enumerate();

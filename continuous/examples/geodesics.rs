@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use std::{env, fs};
 
 use pleach_continuous::Point;
-use pleach_continuous::geometry::{FreeSpace, Geodesic, Workspace, WorkspaceError};
+use pleach_continuous::geometry::{FreeSpace, Geodesic, Workspace};
 
 /// Clearance on game maps, as a fraction of their extent.
 const MAP_CLEARANCE: f64 = 1e-3;
@@ -25,8 +25,10 @@ const MAP_CLEARANCE: f64 = 1e-3;
 /// Places on each map between which paths are asked for.
 const PLACES: usize = 40;
 
-/// Deviations from an expected length that the tolerance of the free space explains, in tolerances.
-const ALLOWED_TOLERANCES: f64 = 20.0;
+/// The tolerance of the free space with which expected lengths are compared, as a fraction of the
+/// extent, and how far lengths may be off, as a fraction of it, too.
+const FINE_TOLERANCE: f64 = 1e-12;
+const ALLOWED_DEVIATION: f64 = 1e-9;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -80,16 +82,17 @@ impl Map {
         let guards = read_polygons(&guards)?.concat();
         let expected = read_polygons(&result)?.concat();
         let [from, to] = guards[..] else { return Err("expected two guards".into()) };
-        let (from, to) = (self.free_space.nearest(from), self.free_space.nearest(to));
+        let free_space = FreeSpace::with_tolerance(&self.workspace, 0.0, FINE_TOLERANCE)?;
+        let (from, to) = (free_space.nearest(from), free_space.nearest(to));
         let length: f64 = expected.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-        let found = self.free_space.geodesic(from, to).ok_or("no path between the guards")?;
-        let allowed = ALLOWED_TOLERANCES * self.free_space.tolerance();
+        let found = free_space.geodesic(from, to).ok_or("no path between the guards")?;
+        let allowed = ALLOWED_DEVIATION * self.workspace.extent();
         if (found.length - length).abs() > allowed {
             return Err(
                 format!("{}: length {} instead of {length}", self.name, found.length).into()
             );
         }
-        Ok(format!("{length:.6}, found {:.6}", found.length))
+        Ok(format!("{length:.10}, found {:.10}", found.length))
     }
 
     /// Checks paths between places spread over the map, and prints the line of the map.
@@ -183,22 +186,15 @@ fn radical_inverse(mut index: u32, base: u32) -> f64 {
     value
 }
 
-/// The workspace of the polygons, without the holes that touch what is there already: published
-/// maps have a few. Says which are left out.
-fn workspace(name: &str, mut polygons: Vec<Vec<Point>>) -> Result<Workspace> {
-    loop {
-        match Workspace::new(polygons[0].clone(), polygons[1..].to_vec()) {
-            Ok(workspace) => return Ok(workspace),
-            Err(error @ WorkspaceError::PolygonsMeet { second, .. }) => {
-                let pleach_continuous::geometry::Polygon::Hole(hole) = second.polygon else {
-                    return Err(error.into());
-                };
-                println!("{name}: leaves out hole {hole}: {error}");
-                polygons.remove(hole + 1);
-            }
-            Err(error) => return Err(error.into()),
-        }
+/// The workspace of the polygons. Published maps have holes that touch; says what was joined.
+fn workspace(name: &str, polygons: Vec<Vec<Point>>) -> Result<Workspace> {
+    let mut polygons = polygons.into_iter();
+    let boundary = polygons.next().unwrap_or_default();
+    let (workspace, repairs) = Workspace::repaired(boundary, polygons.collect())?;
+    for repair in repairs {
+        println!("{name}: {repair}");
     }
+    Ok(workspace)
 }
 
 /// Files of a folder with an extension, in the order of their names.

@@ -10,6 +10,10 @@ pub trait Location: Copy + Eq + Ord + Debug + 'static {
     /// Every location, each once, in the order in which tables and diagrams show them.
     const ALL: &'static [Self];
 
+    /// Whether there are locations beyond `ALL`, made while the program runs: an automaton has those
+    /// then that it mentions.
+    const IS_OPEN: bool = false;
+
     /// The name in traces, tables and diagrams: lower-case words, different for each location.
     fn name(self) -> &'static str;
 }
@@ -18,6 +22,10 @@ pub trait Location: Copy + Eq + Ord + Debug + 'static {
 pub trait Event: Copy + Eq + Ord + Debug + 'static {
     /// Every event, each once, in the order in which tables and diagrams show them.
     const ALL: &'static [Self];
+
+    /// Whether there are events beyond `ALL`, made while the program runs: an automaton has those
+    /// then that it mentions.
+    const IS_OPEN: bool = false;
 
     /// The name in traces, tables and diagrams: lower-case words, different for each event.
     fn name(self) -> &'static str;

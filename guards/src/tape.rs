@@ -20,6 +20,7 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::expression::{Choice, Expression};
 use crate::fold::Operands;
@@ -37,31 +38,48 @@ pub struct Tape {
     constants: Vec<f64>,
     /// Each writes the next place after the constants.
     instructions: Vec<Instruction>,
+    /// Instructions that follow each other and do the same, in their order.
+    runs: Vec<Run>,
     tables: Vec<Table>,
     /// The places of the results.
     results: Vec<u32>,
 }
 
-/// An operation on what earlier places hold.
+/// What an instruction does to the places that it is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Instruction {
-    Sum(u32, u32),
-    Difference(u32, u32),
-    Product(u32, u32),
-    Quotient(u32, u32),
+enum Action {
+    Sum,
+    Difference,
+    Product,
+    Quotient,
     /// a · b + c, rounded twice.
-    ProductSum(u32, u32, u32),
+    ProductSum,
     /// a · b − c, rounded twice.
-    ProductLess(u32, u32, u32),
+    ProductLess,
     /// c − a · b, rounded twice.
-    LessProduct(u32, u32, u32),
-    Unary(UnaryOperator, u32),
-    Binary(BinaryOperator, u32, u32),
+    LessProduct,
+    Unary(UnaryOperator),
+    Binary(BinaryOperator),
     /// A power, whose exponent has a place, too.
-    Power(u32, u32),
-    Lookup(u32, u32),
+    Power,
+    /// In the table with this number.
+    Lookup(u32),
     /// Left and right of the condition, then what it chooses from.
-    Choice(Relation, [u32; 4]),
+    Choice(Relation),
+}
+
+/// An action on what earlier places hold; those that it does not need are the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Instruction {
+    action: Action,
+    places: [u32; 4],
+}
+
+/// Instructions of one action, up to this number; they begin where the run before ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Run {
+    action: Action,
+    end: u32,
 }
 
 impl Tape {
@@ -105,9 +123,10 @@ impl Tape {
         let given = self.variables.min(values.len());
         places[..given].copy_from_slice(&values[..given]);
         places[given..self.variables].fill(f64::NAN);
-        let first = self.variables + self.constants.len();
-        for (place, instruction) in (first..).zip(&self.instructions) {
-            places[place] = instruction.apply(places, &self.tables);
+        let mut begin = 0;
+        for run in &self.runs {
+            self.execute(run.action, begin..run.end as usize, places);
+            begin = run.end as usize;
         }
         for (result, &place) in results.iter_mut().zip(&self.results) {
             *result = places[place as usize];
@@ -115,25 +134,37 @@ impl Tape {
     }
 }
 
-impl Instruction {
+impl Tape {
+    /// What to do is decided once for a run of instructions and not for each.
     #[inline]
-    fn apply(self, places: &[f64], tables: &[Table]) -> f64 {
-        let at = |place: u32| places[place as usize];
-        match self {
-            Instruction::Sum(a, b) => at(a) + at(b),
-            Instruction::Difference(a, b) => at(a) - at(b),
-            Instruction::Product(a, b) => at(a) * at(b),
-            Instruction::Quotient(a, b) => at(a) / at(b),
-            Instruction::ProductSum(a, b, c) => at(a) * at(b) + at(c),
-            Instruction::ProductLess(a, b, c) => at(a) * at(b) - at(c),
-            Instruction::LessProduct(a, b, c) => at(c) - at(a) * at(b),
-            Instruction::Unary(operator, a) => operator.apply(at(a)),
-            Instruction::Binary(operator, a, b) => operator.apply(at(a), at(b)),
-            Instruction::Power(a, exponent) => raise(at(a), at(exponent)),
-            Instruction::Lookup(table, a) => tables[table as usize].value(at(a)),
-            Instruction::Choice(relation, [a, b, then, otherwise]) => {
-                Choice::select(relation, (at(a), at(b)), (at(then), at(otherwise)))
+    fn execute(&self, action: Action, run: Range<usize>, places: &mut [f64]) {
+        match action {
+            Action::Sum => self.each(run, places, |[a, b, ..]| a + b),
+            Action::Difference => self.each(run, places, |[a, b, ..]| a - b),
+            Action::Product => self.each(run, places, |[a, b, ..]| a * b),
+            Action::Quotient => self.each(run, places, |[a, b, ..]| a / b),
+            Action::ProductSum => self.each(run, places, |[a, b, c, _]| a * b + c),
+            Action::ProductLess => self.each(run, places, |[a, b, c, _]| a * b - c),
+            Action::LessProduct => self.each(run, places, |[a, b, c, _]| c - a * b),
+            Action::Unary(operator) => self.each(run, places, |[a, ..]| operator.apply(a)),
+            Action::Binary(operator) => self.each(run, places, |[a, b, ..]| operator.apply(a, b)),
+            Action::Power => self.each(run, places, |[a, exponent, ..]| raise(a, exponent)),
+            Action::Lookup(table) => {
+                let table = &self.tables[table as usize];
+                self.each(run, places, |[a, ..]| table.value(a));
             }
+            Action::Choice(relation) => self.each(run, places, |[a, b, then, otherwise]| {
+                Choice::select(relation, (a, b), (then, otherwise))
+            }),
+        }
+    }
+
+    #[inline]
+    fn each(&self, run: Range<usize>, places: &mut [f64], result: impl Fn([f64; 4]) -> f64) {
+        let first = self.variables + self.constants.len() + run.start;
+        for (place, instruction) in (first..).zip(&self.instructions[run]) {
+            let operands = instruction.places.map(|operand| places[operand as usize]);
+            places[place] = result(operands);
         }
     }
 }
@@ -238,17 +269,78 @@ impl Writer<'_> {
     /// The tape of all that was written, with these results.
     fn tape(self, variables: usize, results: &[Value]) -> Tape {
         let merged = self.merged_products(results);
-        let mut places = Places { variables, constants: self.constants.len(), of: Vec::new() };
-        let mut instructions = Vec::new();
-        for (number, operation) in self.operations.iter().enumerate() {
-            places.of.push(instructions.len() as u32);
-            if !merged[number] {
-                instructions.push(self.instruction(*operation, &merged, &places));
+        let order = self.scheduled(&merged);
+        let mut places = Places {
+            variables,
+            constants: self.constants.len(),
+            of: vec![0; self.operations.len()],
+        };
+        for (place, &number) in (0..).zip(&order) {
+            places.of[number] = place;
+        }
+        let instruction = |&number: &usize| self.instruction(number, &merged, &places);
+        let instructions: Vec<Instruction> = order.iter().map(instruction).collect();
+        let mut runs: Vec<Run> = Vec::new();
+        for (number, instruction) in (0..).zip(&instructions) {
+            match runs.last_mut() {
+                Some(run) if run.action == instruction.action => run.end = number + 1,
+                _ => runs.push(Run { action: instruction.action, end: number + 1 }),
             }
         }
         let results = results.iter().map(|result| places.place(*result)).collect();
         let Writer { constants, tables, .. } = self;
-        Tape { variables, constants, instructions, tables, results }
+        Tape { variables, constants, instructions, runs, tables, results }
+    }
+
+    /// All operations but merged products, each after those whose results it needs, and such that
+    /// many of one action follow each other: of those that can be next, all of the commonest action.
+    fn scheduled(&self, merged: &[bool]) -> Vec<usize> {
+        let mut missing = vec![0; self.operations.len()];
+        let mut needed_by = vec![Vec::new(); self.operations.len()];
+        // Where places are does not matter for what is done.
+        let nowhere = Places { variables: 0, constants: 0, of: vec![0; self.operations.len()] };
+        let mut ready: BTreeMap<Action, Vec<usize>> = BTreeMap::new();
+        for number in (0..self.operations.len()).filter(|&number| !merged[number]) {
+            for needed in self.needs(number, merged) {
+                needed_by[needed].push(number);
+                missing[number] += 1;
+            }
+            if missing[number] == 0 {
+                ready.entry(self.action(number, merged, &nowhere)).or_default().push(number);
+            }
+        }
+        let mut order = Vec::new();
+        while let Some((&action, _)) = ready.iter().max_by_key(|(_, numbers)| numbers.len()) {
+            for number in ready.remove(&action).into_iter().flatten() {
+                order.push(number);
+                for &next in &needed_by[number] {
+                    missing[next] -= 1;
+                    if missing[next] == 0 {
+                        ready.entry(self.action(next, merged, &nowhere)).or_default().push(next);
+                    }
+                }
+            }
+        }
+        order
+    }
+
+    /// The operations whose results one needs, through merged products, each as often as it is used.
+    fn needs(&self, number: usize, merged: &[bool]) -> Vec<usize> {
+        let mut needed = Vec::new();
+        for value in self.operations[number].values() {
+            match value {
+                Value::Computed(operand) if merged[operand as usize] => {
+                    needed.extend(self.needs(operand as usize, merged));
+                }
+                Value::Computed(operand) => needed.push(operand as usize),
+                Value::Variable(_) | Value::Constant(_) => {}
+            }
+        }
+        needed
+    }
+
+    fn action(&self, number: usize, merged: &[bool], nowhere: &Places) -> Action {
+        self.instruction(number, merged, nowhere).action
     }
 
     /// Which products are used once, and there as a term: they need no place.
@@ -283,7 +375,7 @@ impl Writer<'_> {
         is_merged
     }
 
-    fn instruction(&self, operation: Operation, merged: &[bool], places: &Places) -> Instruction {
+    fn instruction(&self, number: usize, merged: &[bool], places: &Places) -> Instruction {
         let at = |value| places.place(value);
         let product = |value| match value {
             Value::Computed(number) if merged[number as usize] => {
@@ -294,35 +386,38 @@ impl Writer<'_> {
             }
             _ => None,
         };
-        match operation {
+        let (action, places) = match self.operations[number] {
             Operation::Binary(BinaryOperator::Sum, a, b) => match (product(a), product(b)) {
-                (_, Some((left, right))) => Instruction::ProductSum(left, right, at(a)),
-                (Some((left, right)), None) => Instruction::ProductSum(left, right, at(b)),
-                (None, None) => Instruction::Sum(at(a), at(b)),
+                (_, Some((left, right))) => (Action::ProductSum, [left, right, at(a), 0]),
+                (Some((left, right)), None) => (Action::ProductSum, [left, right, at(b), 0]),
+                (None, None) => (Action::Sum, [at(a), at(b), 0, 0]),
             },
             Operation::Binary(BinaryOperator::Difference, a, b) => match (product(a), product(b)) {
-                (_, Some((left, right))) => Instruction::LessProduct(left, right, at(a)),
-                (Some((left, right)), None) => Instruction::ProductLess(left, right, at(b)),
-                (None, None) => Instruction::Difference(at(a), at(b)),
+                (_, Some((left, right))) => (Action::LessProduct, [left, right, at(a), 0]),
+                (Some((left, right)), None) => (Action::ProductLess, [left, right, at(b), 0]),
+                (None, None) => (Action::Difference, [at(a), at(b), 0, 0]),
             },
-            Operation::Binary(BinaryOperator::Product, a, b) => Instruction::Product(at(a), at(b)),
-            Operation::Binary(BinaryOperator::Quotient, a, b) => {
-                Instruction::Quotient(at(a), at(b))
-            }
-            Operation::Binary(operator, a, b) => Instruction::Binary(operator, at(a), at(b)),
-            Operation::Unary(operator, a) => Instruction::Unary(operator, at(a)),
-            Operation::Power(a, exponent) => {
-                let Value::Constant(index) = exponent else {
-                    return Instruction::Power(at(a), at(exponent));
+            Operation::Binary(operator, a, b) => {
+                let action = match operator {
+                    BinaryOperator::Product => Action::Product,
+                    BinaryOperator::Quotient => Action::Quotient,
+                    operator => Action::Binary(operator),
                 };
-                if self.constants[index as usize] == 2.0 {
-                    return Instruction::Product(at(a), at(a));
-                }
-                Instruction::Power(at(a), at(exponent))
+                (action, [at(a), at(b), 0, 0])
             }
-            Operation::Lookup(table, a) => Instruction::Lookup(table, at(a)),
-            Operation::Choice(relation, parts) => Instruction::Choice(relation, parts.map(at)),
-        }
+            Operation::Unary(operator, a) => (Action::Unary(operator), [at(a), 0, 0, 0]),
+            Operation::Power(a, exponent) if self.is_two(exponent) => {
+                (Action::Product, [at(a), at(a), 0, 0])
+            }
+            Operation::Power(a, exponent) => (Action::Power, [at(a), at(exponent), 0, 0]),
+            Operation::Lookup(table, a) => (Action::Lookup(table), [at(a), 0, 0, 0]),
+            Operation::Choice(relation, parts) => (Action::Choice(relation), parts.map(at)),
+        };
+        Instruction { action, places }
+    }
+
+    fn is_two(&self, value: Value) -> bool {
+        matches!(value, Value::Constant(index) if self.constants[index as usize] == 2.0)
     }
 }
 

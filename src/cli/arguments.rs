@@ -1,7 +1,11 @@
 //! The arguments that the program understands.
 
+use super::sweep::Sweep;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use std::path::PathBuf;
+use std::str::FromStr;
+use std::thread;
 
 /// Robots grow a network of relays from fixed access points to the places where they are needed.
 #[derive(Debug, Parser)]
@@ -25,14 +29,30 @@ Start with: pleach run scenarios/study-1.toml";
 /// The things that the program does.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run the mission of a scenario and say how it went
+    /// Run the missions of scenarios and say how they went
     ///
     /// The robots start where the scenario puts them. Tasks are announced one after another,
     /// and for each the network grows a branch until a robot is close enough to service it.
     /// Progress is shown while the mission runs, then a summary: tasks serviced and when,
     /// recruits used, how close robots came to each other and to walls, the smallest residual
     /// of communication, and the time that each part of the computation took.
+    ///
+    /// Several scenarios, values to sweep or repeats give a table with a line for each run, and
+    /// the exit status of the worst: 1, then 4, then 3, then 0. Ctrl-C or SIGTERM ends a mission
+    /// in order: trace, summary and figures tell of it up to then, and the exit status is 3.
     Run(RunArguments),
+    /// Say whether a mission can start from scenarios, and draw their starts
+    ///
+    /// Nothing is run. Mistakes are told with file, line, key and what would be right (exit
+    /// status 2). Tasks that no robot can service are named (exit status 3), and the links of
+    /// the start that cross walls, which the model of the radio does not see, are counted.
+    Check(CheckArguments),
+    /// Make a scenario of a map: ROS map server, MovingAI, GeoJSON or SVG
+    ///
+    /// Prints a scenario that runs. Maps of cells are traced and simplified, and no robot gets
+    /// through a wall by it. What was simplified or left out, and passages too narrow for robots,
+    /// are told on the error output.
+    Import(ImportArguments),
     /// Judge a finished run from its trace alone
     ///
     /// Everything that the trace says is held against the definitions: motion, communication and
@@ -41,6 +61,14 @@ pub enum Command {
     /// first thing that is not is told, with the property, the step and the time; 2: the trace
     /// cannot be read.
     Judge(JudgeArguments),
+    /// Turn a trace into an MCAP recording, which Foxglove plays
+    #[cfg(feature = "mcap")]
+    Export {
+        /// The trace, as `pleach run --trace` writes it
+        trace: PathBuf,
+        /// The recording
+        recording: PathBuf,
+    },
     /// Draw one of the automata that the robots run
     ///
     /// The drawing is made from the transition table that the robots run, and printed.
@@ -51,18 +79,43 @@ pub enum Command {
     /// control period, curves, the story and a summary. It shows as much as there is of a trace
     /// that was cut off.
     Page(PageArguments),
+    /// Print a script that completes the arguments of pleach in a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page, or write one for each command into a folder
+    Man {
+        /// The folder, created if it is missing
+        folder: Option<PathBuf>,
+    },
 }
 
 /// The arguments of `pleach run`.
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_STATUS)]
 pub struct RunArguments {
-    /// The scenario, a TOML file: workspace, radio, access points, robots and tasks
-    pub scenario: PathBuf,
-    /// Write what happens to FILE, one JSON object a line
+    /// Scenarios: TOML files, folders of TOML files, or `-` for the standard input
+    #[arg(required = true, value_name = "SCENARIO")]
+    pub scenarios: Vec<PathBuf>,
+    /// Set a value of the scenario, such as control.step_radius=0.02 or robot[*].rate=0.05;
+    /// FROM..TO:COUNT runs it with COUNT values, several sweeps with all combinations
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<Sweep>,
+    /// Run every scenario COUNT times, each time with robots at other random starts
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub repeat: Option<u64>,
+    /// The seed of the first random starts; each repeat takes the next one
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "repeat")]
+    pub seed: u64,
+    /// Run up to COUNT missions at once [default: one for each processor]
+    #[arg(long, short, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
+    /// Write what happens to FILE, one JSON object a line; with several runs FILE is a folder
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
-    /// Write figures (SVG) into FOLDER [default: figures/<name of the scenario>]
+    /// Write figures (SVG) into FOLDER [default: figures/<name of the scenario>, and none with
+    /// several runs]
     #[arg(long, value_name = "FOLDER", conflicts_with = "no_figures")]
     pub figures: Option<PathBuf>,
     /// Write no figures
@@ -71,9 +124,99 @@ pub struct RunArguments {
     /// Write figures without titles, for papers with captions of their own
     #[arg(long)]
     pub plain: bool,
+    /// Write a table of the runs to FILE as comma-separated values
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write a table of the runs to FILE as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
     /// Show no progress, only the summary
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+impl RunArguments {
+    /// How many missions run at once.
+    pub fn jobs(&self) -> usize {
+        let processors = || thread::available_parallelism().map_or(1, |count| count.get());
+        self.jobs.map_or_else(processors, usize::from)
+    }
+}
+
+/// The arguments of `pleach check`.
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// Scenarios: TOML files, folders of TOML files, or `-` for the standard input
+    #[arg(required = true, value_name = "SCENARIO")]
+    pub scenarios: Vec<PathBuf>,
+    /// Set a value of the scenario, such as control.step_radius=0.02
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<Sweep>,
+    /// Draw the start (SVG) into FOLDER [default: figures/<name of the scenario>]
+    #[arg(long, value_name = "FOLDER", conflicts_with = "no_figures")]
+    pub figures: Option<PathBuf>,
+    /// Draw nothing
+    #[arg(long)]
+    pub no_figures: bool,
+}
+
+/// The arguments of `pleach import`.
+#[derive(Debug, Args)]
+pub struct ImportArguments {
+    /// The map: .yaml with its image, .map, .geojson, .json or .svg
+    pub map: PathBuf,
+    /// Write the scenario to FILE [default: the standard output]
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// The name of the scenario [default: that of the map]
+    #[arg(long)]
+    pub name: Option<String>,
+    /// How far the outline may deviate; the floor is narrowed by as much before, so that it stays
+    /// within free cells [default: one cell, or a thousandth of the extent for curves]
+    #[arg(long, value_name = "LENGTH")]
+    pub tolerance: Option<f64>,
+    /// The length of a unit of the map in the scenario
+    #[arg(long, value_name = "LENGTH", default_value_t = 1.0)]
+    pub scale: f64,
+    /// Coordinates of GeoJSON are lengths, not degrees
+    #[arg(long)]
+    pub planar: bool,
+    /// Links are fully reliable up to here [default: about a sixth of the extent]
+    #[arg(long, value_name = "LENGTH")]
+    pub full_range: Option<f64>,
+    /// Links end here [default: 1.25 times the full range]
+    #[arg(long, value_name = "LENGTH")]
+    pub max_range: Option<f64>,
+    /// The distance that robots keep from walls [default: a fortieth of the full range]
+    #[arg(long, value_name = "LENGTH")]
+    pub clearance: Option<f64>,
+    /// Put an access point here; several are possible [default: in the widest place]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub access_point: Vec<Spot>,
+    /// How many robots start around the access points
+    #[arg(long, value_name = "COUNT", default_value_t = 8)]
+    pub robots: u16,
+    /// Put a task here; several are possible [default: far from the access points]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub task: Vec<Spot>,
+    /// How many tasks are put far from the access points where none are named
+    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    pub far_tasks: u16,
+}
+
+/// A place, written `X,Y`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot(pub [f64; 2]);
+
+impl FromStr for Spot {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{text:?} is no place: write two numbers as X,Y");
+        let (x, y) = text.split_once(',').ok_or_else(wrong)?;
+        let number = |text: &str| text.trim().parse().map_err(|_| wrong());
+        Ok(Spot([number(x)?, number(y)?]))
+    }
 }
 
 /// The arguments of `pleach page`.

@@ -3,12 +3,13 @@
 //! On a terminal the telling events scroll by above a line that says where the mission stands.
 //! Elsewhere only the events are written, one a line.
 
+use super::terminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pleach::automaton::network::record::{End, MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::Scenario;
 use pleach::mission::Watcher;
 use pleach::story;
-use std::io::{self, IsTerminal};
+use std::io;
 
 /// An observer that shows the progress.
 #[derive(Debug)]
@@ -29,7 +30,7 @@ impl Progress {
     pub fn new(scenario: &Scenario, quiet: bool) -> Self {
         let display = if quiet {
             Display::Quiet
-        } else if io::stderr().is_terminal() {
+        } else if terminal::is_lively() {
             Display::Live(spinner())
         } else {
             Display::Lines
@@ -47,6 +48,11 @@ impl Progress {
 
 impl Watcher for Progress {
     fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        // The line first, so that it is never behind the story above it.
+        if let Display::Live(bar) = &self.display {
+            bar.set_message(standing(snapshot, self.tasks));
+            bar.inc(1);
+        }
         for event in events.iter().filter(|event| story::is_telling(event)) {
             let line = format!("k = {:<6} {}", snapshot.step, story::tell(event));
             match &self.display {
@@ -54,10 +60,6 @@ impl Watcher for Progress {
                 Display::Lines => eprintln!("{line}"),
                 Display::Live(bar) => bar.println(line),
             }
-        }
-        if let Display::Live(bar) = &self.display {
-            bar.set_message(standing(snapshot, self.tasks));
-            bar.inc(1);
         }
         Ok(())
     }
@@ -70,7 +72,7 @@ impl Watcher for Progress {
 
 fn spinner() -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    match ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
+    match ProgressStyle::with_template("{spinner} {elapsed} {wide_msg}") {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }
@@ -85,7 +87,7 @@ fn standing(snapshot: &Snapshot, tasks: usize) -> String {
     };
     let leader = match snapshot.primary_team.last() {
         Some(leader) => format!("robot {leader} leads"),
-        None => "nobody leads".into(),
+        None => "no leader".into(),
     };
     format!("k = {}  {phase}  {task}  {leader}", snapshot.step)
 }

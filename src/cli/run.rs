@@ -1,73 +1,161 @@
-//! `pleach run`.
+//! `pleach run`: one mission with its story, or many with a table.
 
 use super::arguments::RunArguments;
+use super::batch;
+use super::interrupt::Interrupt;
+use super::job::{self, Finished, Outputs};
+use super::plan::{Planned, plan};
 use super::progress::Progress;
+use super::record::{Record, write_csv, write_json};
+use super::source::STANDARD;
 use super::status::{Failure, Status};
-use pleach::automaton::network::Site;
-use pleach::automaton::network::scenario::Scenario;
-use pleach::figures::Album;
-use pleach::mission::{self, MissionError, Watcher};
-use pleach::scenario_file;
-use pleach::summary::Summary;
-use pleach::trace::TraceWriter;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use super::{table, terminal};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
-/// Runs the mission of a scenario.
+/// Runs the missions that the arguments ask for.
 pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
-    let scenario = scenario_file::read(&arguments.scenario)?;
-    let mut summary = Summary::new(&scenario);
-    let mut progress = Progress::new(&scenario, arguments.quiet);
-    let mut trace =
-        arguments.trace.as_deref().map(|path| start_trace(path, &scenario)).transpose()?;
-    let folder = figures_folder(arguments, &scenario);
-    if let Some(folder) = &folder {
-        create_folder(folder)?;
+    check_standard_output(arguments)?;
+    let runs = plan(arguments)?;
+    check_tables(arguments)?;
+    let interrupt = Interrupt::listen()?;
+    match runs.as_slice() {
+        [one] => run_one(one, arguments, &interrupt),
+        runs => run_many(runs, arguments, &interrupt),
     }
-    let mut album = folder.as_ref().map(|_| open_album(&scenario, arguments.plain)).transpose()?;
+}
 
-    let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, &mut progress];
-    watchers.extend(trace.as_mut().map(|trace| trace as &mut dyn Watcher));
-    watchers.extend(album.as_mut().map(|album| album as &mut dyn Watcher));
-    let clock = Instant::now();
-    let completed = mission::run(&scenario, &mut watchers)?;
-    let elapsed = clock.elapsed();
-    let end = completed.end.clone();
-
-    let mut output = io::stdout().lock();
-    write!(output, "{}", summary.completed(completed, elapsed))?;
+fn run_one(
+    run: &Planned,
+    arguments: &RunArguments,
+    interrupt: &Interrupt,
+) -> Result<Status, Failure> {
+    if !arguments.quiet {
+        warn_of_tasks(run);
+    }
+    let default_folder = || Path::new("figures").join(&run.scenario.name);
+    let outputs = Outputs {
+        trace: arguments.trace.clone(),
+        figures: (!arguments.no_figures)
+            .then(|| arguments.figures.clone().unwrap_or_else(default_folder)),
+        plain: arguments.plain,
+    };
+    let mut progress = Progress::new(&run.scenario, arguments.quiet);
+    let finished = job::run(run, &outputs, &mut progress, interrupt)?;
+    write_tables(arguments, std::slice::from_ref(&finished.record))?;
+    let mut said = finished.summary.to_string();
     if let Some(path) = &arguments.trace {
-        writeln!(output, "  trace               {}", path.display())?;
+        said += &format!("  trace               {}\n", path.display());
     }
-    if let (Some(album), Some(folder)) = (album, folder) {
-        let written = album.write(&folder, &end)?;
-        let index = written.last().unwrap_or(&folder);
-        writeln!(output, "  figures             {}: open {}", written.len(), index.display())?;
+    if let Some(page) = finished.figures.last() {
+        let count = finished.figures.len();
+        said += &format!("  figures             {count}: open {}\n", page.display());
     }
-    Ok(end.outcome.into())
+    say(arguments, &said)?;
+    Ok(status_of(&finished.record))
 }
 
-fn open_album(scenario: &Scenario, plain: bool) -> Result<Album, Failure> {
-    let site = Site::new(scenario).map_err(|error| Failure::Internal(error.to_string()))?;
-    let album = Album::new(scenario, &site).map_err(MissionError::from)?;
-    Ok(if plain { album.plain() } else { album })
+fn run_many(
+    runs: &[Planned],
+    arguments: &RunArguments,
+    interrupt: &Interrupt,
+) -> Result<Status, Failure> {
+    for folder in [&arguments.trace, &arguments.figures].into_iter().flatten() {
+        job::create_folder(folder)?;
+    }
+    let outputs = |run: &Planned| {
+        let name = run.file_name(runs.len());
+        Outputs {
+            trace: arguments.trace.as_ref().map(|folder| folder.join(format!("{name}.jsonl"))),
+            figures: arguments.figures.as_ref().map(|folder| folder.join(name)),
+            plain: arguments.plain,
+        }
+    };
+    let mission = |run: &Planned| -> Record {
+        let mut unseen = Progress::new(&run.scenario, true);
+        let finished = job::run(run, &outputs(run), &mut unseen, interrupt);
+        finished.map_or_else(
+            |failure| Record::failed(run, failure.to_string()),
+            |Finished { record, .. }| record,
+        )
+    };
+    let records = batch::run(runs, arguments.jobs(), arguments.quiet, interrupt, mission);
+    write_tables(arguments, &records)?;
+    let mut said = table::draw(&records, terminal::width());
+    for record in records.iter().filter(|record| !record.reason.is_empty()) {
+        said += &format!("run {}: {}\n", record.run, record.reason);
+    }
+    if records.len() < runs.len() {
+        said += &format!("{} of {} runs did not begin\n", runs.len() - records.len(), runs.len());
+    }
+    say(arguments, &said)?;
+    let worst = records.iter().map(status_of).max_by_key(|status| status.severity());
+    let incomplete = (records.len() < runs.len()).then_some(Status::Unserviced);
+    Ok([worst, incomplete]
+        .into_iter()
+        .flatten()
+        .max_by_key(|status| status.severity())
+        .unwrap_or(Status::Done))
 }
 
-fn start_trace(path: &Path, scenario: &Scenario) -> Result<TraceWriter<BufWriter<File>>, Failure> {
-    let file =
-        File::create(path).map_err(|source| Failure::Creation { path: path.to_owned(), source })?;
-    Ok(TraceWriter::new(BufWriter::new(file), scenario)?)
+fn status_of(record: &Record) -> Status {
+    Status::of_number(record.status)
 }
 
-/// A folder that cannot be written is told before the mission, not after it.
-fn create_folder(path: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(path).map_err(|source| Failure::Creation { path: path.to_owned(), source })
+/// A task that no robot can service is told before the mission, which will end with it.
+fn warn_of_tasks(run: &Planned) {
+    use pleach::automaton::network::scenario::Remark;
+    let remarks = run.scenario.remarks();
+    for remark in remarks.iter().filter(|remark| matches!(remark, Remark::Task { .. })) {
+        eprintln!("warning: {}: {}: {remark}", run.source, remark.key());
+    }
 }
 
-/// Where figures go, unless they are not wanted.
-fn figures_folder(arguments: &RunArguments, scenario: &Scenario) -> Option<PathBuf> {
-    let default = || Path::new("figures").join(&scenario.name);
-    (!arguments.no_figures).then(|| arguments.figures.clone().unwrap_or_else(default))
+/// Whether the standard output carries data, so that what people read goes to the error output.
+fn carries_data(arguments: &RunArguments) -> bool {
+    standard_outputs(arguments).count() > 0
+}
+
+fn standard_outputs(arguments: &RunArguments) -> impl Iterator<Item = &PathBuf> {
+    let files = [&arguments.trace, &arguments.csv, &arguments.json].into_iter().flatten();
+    files.filter(|path| path.as_os_str() == STANDARD)
+}
+
+fn check_standard_output(arguments: &RunArguments) -> Result<(), Failure> {
+    match standard_outputs(arguments).count() {
+        0 | 1 => Ok(()),
+        _ => Err(Failure::Usage("only one of --trace, --csv and --json can go to `-`".into())),
+    }
+}
+
+fn say(arguments: &RunArguments, text: &str) -> io::Result<()> {
+    match carries_data(arguments) {
+        true => io::stderr().lock().write_all(text.as_bytes()),
+        false => io::stdout().lock().write_all(text.as_bytes()),
+    }
+}
+
+/// A table that cannot be written is told before the missions, not after them.
+fn check_tables(arguments: &RunArguments) -> Result<(), Failure> {
+    for path in [&arguments.csv, &arguments.json].into_iter().flatten() {
+        output(path)?;
+    }
+    Ok(())
+}
+
+fn write_tables(arguments: &RunArguments, records: &[Record]) -> Result<(), Failure> {
+    if let Some(path) = &arguments.csv {
+        write_csv(records, output(path)?)?;
+    }
+    if let Some(path) = &arguments.json {
+        write_json(records, output(path)?)?;
+    }
+    Ok(())
+}
+
+fn output(path: &Path) -> Result<Box<dyn Write>, Failure> {
+    match path.as_os_str() == STANDARD {
+        true => Ok(Box::new(io::stdout().lock())),
+        false => Ok(Box::new(job::create_file(path)?)),
+    }
 }

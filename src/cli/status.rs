@@ -1,9 +1,11 @@
 //! Exit statuses, and the failures behind them.
 
 use pleach::automaton::network::record::Outcome;
+use pleach::import::{ImportError, SkeletonError};
 use pleach::mission::MissionError;
 use pleach::page::PageError;
 use pleach::scenario_file::ScenarioError;
+use pleach::starts::NoStarts;
 use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -32,7 +34,27 @@ impl From<Outcome> for Status {
             Outcome::InsufficientRobots
             | Outcome::UnreachableTask
             | Outcome::StepLimit
-            | Outcome::Blocked => Status::Unserviced,
+            | Outcome::Blocked
+            | Outcome::Interrupted => Status::Unserviced,
+        }
+    }
+}
+
+impl Status {
+    /// The status with this number.
+    pub fn of_number(number: u8) -> Self {
+        let all = [Status::Done, Status::BadInput, Status::Unserviced, Status::InvariantViolated];
+        all.into_iter().find(|&status| status as u8 == number).unwrap_or(Status::Failed)
+    }
+
+    /// How bad it is: of several runs the worst one decides.
+    pub fn severity(self) -> u8 {
+        match self {
+            Status::Done => 0,
+            Status::Unserviced => 1,
+            Status::BadInput => 2,
+            Status::InvariantViolated => 3,
+            Status::Failed => 4,
         }
     }
 }
@@ -49,6 +71,44 @@ pub enum Failure {
     /// No mission can start from the scenario.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
+    /// No mission can start from some of the scenarios.
+    #[error("{}", one_per_line(.0))]
+    Scenarios(Vec<ScenarioError>),
+    /// A folder without scenarios.
+    #[error("{}: no scenario is in this folder; name one with files that end in .toml", folder.display())]
+    NoScenarios {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The arguments ask for more runs than can be meant.
+    #[error("the arguments ask for {count} runs; at most {most} can be done in one call")]
+    TooManyRuns {
+        /// How many.
+        count: usize,
+        /// How many are possible.
+        most: usize,
+    },
+    /// Arguments that contradict each other.
+    #[error("{0}")]
+    Usage(String),
+    /// Robots cannot be placed at random.
+    #[error(transparent)]
+    Starts(#[from] NoStarts),
+    /// A map cannot be read.
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    /// No scenario comes of a map.
+    #[error(transparent)]
+    Skeleton(#[from] SkeletonError),
+    /// A trace cannot be read or recorded.
+    #[cfg(feature = "mcap")]
+    #[error("{}: {source}", path.display())]
+    Recording {
+        /// The trace.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: pleach::recording::RecordingError,
+    },
     /// No page can be made of a trace.
     #[error("{}: {error}", path.display())]
     Trace {
@@ -85,14 +145,27 @@ impl From<MissionError> for Failure {
     }
 }
 
+fn one_per_line(errors: &[ScenarioError]) -> String {
+    errors.iter().map(ScenarioError::to_string).collect::<Vec<_>>().join("\n")
+}
+
 impl Failure {
     /// The exit status that tells this failure.
     pub fn status(&self) -> Status {
         match self {
             Failure::Scenario(_)
+            | Failure::Scenarios(_)
+            | Failure::NoScenarios { .. }
+            | Failure::TooManyRuns { .. }
+            | Failure::Usage(_)
+            | Failure::Starts(_)
+            | Failure::Import(_)
+            | Failure::Skeleton(_)
             | Failure::Trace { .. }
             | Failure::Judge(_)
             | Failure::Creation { .. } => Status::BadInput,
+            #[cfg(feature = "mcap")]
+            Failure::Recording { .. } => Status::BadInput,
             Failure::Output(_) | Failure::Mission(_) | Failure::Internal(_) => Status::Failed,
         }
     }
@@ -110,6 +183,7 @@ mod tests {
         assert_eq!(status(Outcome::UnreachableTask), 3);
         assert_eq!(status(Outcome::StepLimit), 3);
         assert_eq!(status(Outcome::Blocked), 3);
+        assert_eq!(status(Outcome::Interrupted), 3);
         assert_eq!(status(Outcome::InvariantViolated), 4);
     }
 }

@@ -4,10 +4,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use pleach_automaton::network::Site;
 use pleach_automaton::network::record::{End, MissionEvent, Snapshot};
-use pleach_automaton::network::scenario::Scenario;
-use pleach_verify::network::LimitError;
+use pleach_automaton::network::scenario::ValidScenario;
 
 use crate::mission::Watcher;
 use crate::page::MissionPage;
@@ -53,18 +51,16 @@ struct Picture {
 }
 
 impl Album {
-    /// Opens an empty album of a mission of `scenario`, of which `site` is the site.
-    ///
-    /// # Errors
-    /// What makes the scenario one that no mission can be held against.
-    pub fn new(scenario: &Scenario, site: &Site) -> Result<Album, LimitError> {
+    /// Opens an empty album of a mission of `scenario`.
+    #[must_use]
+    pub fn new(scenario: &ValidScenario) -> Album {
         let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
-        let outline = site.free_space.outline().iter().map(corners).collect();
+        let outline = scenario.site().free_space.outline().iter().map(corners).collect();
         let robots = scenario.robot.len();
-        Ok(Album {
+        Album {
             plan: Plan::new(scenario, outline),
             walls: Walls::new(&scenario.workspace),
-            page: MissionPage::new(scenario, site)?,
+            page: MissionPage::new(scenario),
             pictures: Vec::new(),
             film: Film::default(),
             trails: Vec::new(),
@@ -74,7 +70,7 @@ impl Album {
             multipliers: Series::new(robots),
             signs: Vec::new(),
             tasks: Vec::new(),
-        })
+        }
     }
 
     /// The same album with figures that have no title, for papers with captions of their own.

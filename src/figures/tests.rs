@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use pleach_automaton::network::Site;
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
-use pleach_automaton::network::scenario::Scenario;
+use pleach_automaton::network::scenario::{Scenario, ValidScenario};
 use pleach_discrete::network::{Phase, Role};
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -139,8 +138,8 @@ fn mission() -> Album {
 }
 
 fn empty_album(scenario: &Scenario) -> Album {
-    let site = Site::new(scenario).expect("the scenario has a site");
-    Album::new(scenario, &site).expect("a mission can start")
+    let valid = ValidScenario::new(scenario.clone()).expect("a mission can start");
+    Album::new(&valid)
 }
 
 fn end() -> End {

@@ -2,12 +2,11 @@
 
 use std::io;
 
-use pleach_automaton::network::Site;
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use pleach_automaton::network::scenario::{Scenario, Settings};
+use pleach_automaton::network::scenario::{Scenario, Settings, ValidScenario};
 use pleach_continuous::geometry::{Destination, FreeSpace};
 use pleach_discrete::network::activity::may_follow;
-use pleach_verify::network::{Extreme, LimitError, Monitor, Violation};
+use pleach_verify::network::{Extreme, Monitor, Violation};
 use serde_json::{Map, Value, json};
 
 use crate::figures::{self, Mark, TaskState, Walls};
@@ -45,20 +44,17 @@ pub struct MissionPage {
 }
 
 impl MissionPage {
-    /// The page of a mission of `scenario` that has not begun; `site` is that of the scenario.
-    ///
-    /// # Errors
-    /// What makes the scenario one that no mission can be held against.
-    pub fn new(scenario: &Scenario, site: &Site) -> Result<MissionPage, LimitError> {
-        let settings = Settings::resolve(scenario);
-        let free_space = site.free_space.clone();
+    /// The page of a mission of `scenario` that has not begun.
+    pub fn new(scenario: &ValidScenario) -> MissionPage {
+        let settings = *scenario.settings();
+        let free_space = scenario.site().free_space.clone();
         let goal = |place: [f64; 2]| free_space.destination(free_space.nearest(place.into()));
         let decimals = (LENGTHS_PER_CLEARANCE / settings.clearance).log10().ceil();
-        Ok(MissionPage {
+        MissionPage {
             destinations: scenario.task.iter().map(|task| goal(task.position)).collect(),
             walls: Walls::new(&scenario.workspace),
             summary: Summary::new(scenario),
-            monitor: Monitor::new(scenario, may_follow)?,
+            monitor: Monitor::new(scenario, may_follow),
             violation: None,
             steps: Steps::new(decimals.clamp(0.0, 9.0) as i32),
             events: Vec::new(),
@@ -66,7 +62,7 @@ impl MissionPage {
             scenario: scenario.with_defaults(),
             settings,
             free_space,
-        })
+        }
     }
 
     /// The page so far, as an HTML document.

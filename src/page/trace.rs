@@ -3,8 +3,7 @@
 use std::io::{self, BufRead};
 
 use pleach_automaton::network::record::MissionEvent;
-use pleach_automaton::network::{Site, SiteError};
-use pleach_verify::network::LimitError;
+use pleach_automaton::network::scenario::{InvalidScenario, ValidScenario};
 use thiserror::Error;
 
 use super::MissionPage;
@@ -23,10 +22,7 @@ pub enum PageError {
     Trace(#[from] TraceError),
     /// The header holds a scenario that no mission starts from.
     #[error("the scenario in the header cannot be run: {0}")]
-    Scenario(#[from] LimitError),
-    /// The header holds a scenario without a site.
-    #[error("the scenario in the header cannot be run: {0}")]
-    Site(#[from] SiteError),
+    Scenario(#[from] InvalidScenario),
     /// A step cannot be put into the page.
     #[error("a step cannot be written: {0}")]
     Step(#[source] io::Error),
@@ -39,8 +35,8 @@ pub enum PageError {
 /// When the text is no trace, or the scenario in its header cannot be run.
 pub fn of_trace(trace: impl BufRead) -> Result<String, PageError> {
     let mut reader = TraceReader::new(trace)?;
-    let scenario = reader.scenario().clone();
-    let mut page = MissionPage::new(&scenario, &Site::new(&scenario)?)?;
+    let scenario = ValidScenario::new(reader.scenario().clone())?;
+    let mut page = MissionPage::new(&scenario);
     let mut events: Vec<MissionEvent> = Vec::new();
     while let Some(entry) = reader.next() {
         match entry {

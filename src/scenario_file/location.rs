@@ -1,6 +1,6 @@
 //! From keys and bytes to lines and columns.
 
-use super::Mistake;
+use super::Place;
 use crate::automaton::network::scenario::{KeyPath, KeyStep};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -36,22 +36,34 @@ fn start_below(value: &Spanned<DeValue<'_>>, steps: &[KeyStep]) -> usize {
     below.unwrap_or(value.span().start)
 }
 
-/// The line of `text` that holds byte `start`, without blanks at its ends.
-pub(super) fn line_around(text: &str, start: usize) -> &str {
-    let (before, after) = text.split_at(text.floor_char_boundary(start));
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    let line_end = before.len() + after.find('\n').unwrap_or(after.len());
-    text[line_start..line_end].trim()
+/// A text with the starts of its lines.
+pub(super) struct Lines<'t> {
+    text: &'t str,
+    starts: Vec<usize>,
 }
 
-/// The mistake whose first byte in `text` is `start`.
-pub(super) fn mistake(text: &str, start: usize, key: &str, message: &str) -> Mistake {
-    let before = &text[..text.floor_char_boundary(start)];
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    Mistake {
-        line: before.matches('\n').count() + 1,
-        column: before[line_start..].chars().count() + 1,
-        key: key.into(),
-        message: message.into(),
+impl<'t> Lines<'t> {
+    pub fn of(text: &'t str) -> Self {
+        let after_breaks = text.match_indices('\n').map(|(newline, _)| newline + 1);
+        Self { text, starts: std::iter::once(0).chain(after_breaks).collect() }
+    }
+
+    /// The line that holds byte `start`, without blanks at its ends.
+    pub fn around(&self, start: usize) -> &'t str {
+        let line = self.line_of(start);
+        let end = self.starts.get(line + 1).map_or(self.text.len(), |&next| next);
+        self.text[self.starts[line]..end].trim()
+    }
+
+    /// Line and column of byte `start`.
+    pub fn place(&self, start: usize) -> Place {
+        let line = self.line_of(start);
+        let before = &self.text[self.starts[line]..self.text.floor_char_boundary(start)];
+        Place::Text { line: line + 1, column: before.chars().count() + 1 }
+    }
+
+    /// The index of the line that holds byte `start`.
+    fn line_of(&self, start: usize) -> usize {
+        self.starts.partition_point(|&line| line <= start) - 1
     }
 }

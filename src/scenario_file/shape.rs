@@ -3,11 +3,12 @@
 //! The shape is checked before the file becomes a scenario, so that every mistake is found in one
 //! reading, and each is told with what would be right.
 
-use crate::automaton::network::scenario::KeyPath;
+use crate::automaton::network::scenario::{CONTROL, KeyPath, LinkModel, Values};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 /// What a value looks like.
+#[derive(Clone, Copy)]
 pub(super) enum Shape {
     Text,
     Number,
@@ -19,6 +20,7 @@ pub(super) enum Shape {
 }
 
 /// A key of a table.
+#[derive(Clone, Copy)]
 pub(super) struct Entry {
     name: &'static str,
     required: bool,
@@ -47,28 +49,13 @@ pub(super) const SCENARIO: &[Entry] = &[
     required(
         "link",
         Shape::Table(&[
+            optional("model", Shape::OneOf(LinkModel::NAMES)),
             required("full_range", Shape::Number),
             required("max_range", Shape::Number),
+            optional("steepness", Shape::Number),
         ]),
     ),
-    optional(
-        "control",
-        Shape::Table(&[
-            optional("clearance", Shape::Number),
-            optional("service_radius", Shape::Number),
-            optional("step_radius", Shape::Number),
-            optional("residual_tolerance", Shape::Number),
-            optional("max_steps", Shape::Count),
-            optional("period", Shape::Number),
-            optional("rounds_per_period", Shape::Count),
-            optional("routing_method", Shape::OneOf(&["dual", "accelerated_dual", "adal"])),
-            optional("routing_iterations", Shape::Count),
-            optional("routing_reserve", Shape::Number),
-            optional("slope_aversion", Shape::Number),
-            optional("tree_reliability", Shape::Number),
-            optional("motion_solver", Shape::OneOf(&["exact", "conic"])),
-        ]),
-    ),
+    optional("control", Shape::Table(&CONTROL_ENTRIES)),
     required("access_point", Shape::ListOf(&Shape::Table(&[required("position", Shape::Point)]))),
     required(
         "robot",
@@ -79,6 +66,22 @@ pub(super) const SCENARIO: &[Entry] = &[
     ),
     optional("task", Shape::ListOf(&Shape::Table(&[required("position", Shape::Point)]))),
 ];
+
+/// The keys of `[control]`, each with the shape of its values.
+const CONTROL_ENTRIES: [Entry; CONTROL.len()] = {
+    let mut entries = [optional("", Shape::Number); CONTROL.len()];
+    let mut row = 0;
+    while row < CONTROL.len() {
+        let shape = match CONTROL[row].values {
+            Values::Count(..) => Shape::Count,
+            Values::OneOf(words) => Shape::OneOf(words),
+            _ => Shape::Number,
+        };
+        entries[row] = optional(CONTROL[row].name, shape);
+        row += 1;
+    }
+    entries
+};
 
 /// A place where a file departs from its shape.
 pub(super) struct Departure {

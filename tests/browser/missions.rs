@@ -2,7 +2,7 @@
 
 use super::chromium::Page;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use pleach::automaton::network::{Site, scenario::Scenario};
+use pleach::automaton::network::scenario::ValidScenario;
 use pleach::mission::{self, Watcher};
 use pleach::page::{self, MissionPage};
 use pleach::scenario_file;
@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// A mission that has been run: its trace.
 struct Run {
-    scenario: Scenario,
+    scenario: ValidScenario,
     trace: String,
 }
 
@@ -271,8 +271,7 @@ fn a_violated_invariant_is_told_and_marked() {
     // Robot 0 jumps across the room.
     let other = snapshots[39].positions[1];
     snapshots[39].positions[0] = other + nalgebra::Vector2::new(0.001, 0.0);
-    let site = Site::new(&run.scenario).unwrap();
-    let mut made = MissionPage::new(&run.scenario, &site).unwrap();
+    let mut made = MissionPage::new(&run.scenario);
     for snapshot in &snapshots {
         made.observe(snapshot, &[] as &[MissionEvent]).unwrap();
     }

@@ -3,7 +3,7 @@
 #![allow(dead_code)] // not every test needs everything
 
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::ValidScenario;
 use pleach::discrete::network::{Phase, Role};
 use pleach::mission::Watcher;
 use std::path::Path;
@@ -28,7 +28,7 @@ pub fn end() -> End {
 }
 
 /// The scenario that the pretended mission belongs to.
-pub fn room() -> Scenario {
+pub fn room() -> ValidScenario {
     pleach::scenario_file::read(Path::new("tests/scenarios/room.toml")).expect("a valid scenario")
 }
 

@@ -89,7 +89,7 @@ impl Brief {
             name,
             description: None,
             workspace: outline,
-            link: LinkRanges { full_range: 1.0, max_range: self.max_range },
+            link: LinkRanges::new(1.0, self.max_range),
             control: self.control,
             access_point: (self.access_points.iter())
                 .map(|&position| AccessPoint { position })
@@ -140,10 +140,10 @@ impl Brief {
                 boundary: polygon(scenario.workspace.boundary),
                 holes: scenario.workspace.holes.into_iter().map(polygon).collect(),
             },
-            link: LinkRanges {
-                full_range: significant(self.unit),
-                max_range: significant(self.unit * scenario.link.max_range),
-            },
+            link: LinkRanges::new(
+                significant(self.unit),
+                significant(self.unit * scenario.link.max_range),
+            ),
             control: Control {
                 clearance: length(scenario.control.clearance),
                 service_radius: length(scenario.control.service_radius),
@@ -173,7 +173,7 @@ impl Brief {
             name: String::new(),
             description: None,
             workspace: WorkspaceOutline { boundary: Vec::new(), holes: Vec::new() },
-            link: LinkRanges { full_range: 1.0, max_range: self.max_range },
+            link: LinkRanges::new(1.0, self.max_range),
             control: self.control,
             access_point: Vec::new(),
             robot: Vec::new(),

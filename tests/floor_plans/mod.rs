@@ -1,7 +1,7 @@
 //! Random missions on floor plans that nobody tuned the robots to.
 //!
 //! A [`Family`] and a seed give a [`Scenario`], always the same one. It can start (it passes
-//! [`Scenario::validate`]), its tasks can be reached, and it has more robots than a tree of
+//! [`ValidScenario::new`]), its tasks can be reached, and it has more robots than a tree of
 //! shortest paths to its tasks needs.
 
 #![allow(dead_code)] // not every test needs everything
@@ -15,13 +15,13 @@ mod places;
 pub use families::Family;
 
 use dice::Dice;
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::ValidScenario;
 
 /// Drafts that may fail (a crowd that finds no room, walls that meet) before a family is at fault.
 const ATTEMPTS: u64 = 200;
 
 /// The mission of `family` with this seed.
-pub fn scenario(family: Family, seed: u64) -> Scenario {
+pub fn scenario(family: Family, seed: u64) -> ValidScenario {
     let name = format!("{}-{seed}", family.name());
     (0..ATTEMPTS)
         .filter_map(|attempt| {
@@ -29,6 +29,6 @@ pub fn scenario(family: Family, seed: u64) -> Scenario {
             let brief = family.brief(&mut dice);
             brief.scenario(name.clone(), &mut dice)
         })
-        .find(|scenario| scenario.validate().is_ok())
+        .find_map(|scenario| ValidScenario::new(scenario).ok())
         .unwrap_or_else(|| panic!("{name}: none of {ATTEMPTS} drafts is a valid scenario"))
 }

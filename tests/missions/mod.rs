@@ -3,7 +3,7 @@
 #![allow(dead_code)] // not every test needs everything
 
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use pleach::automaton::network::scenario::Scenario;
+use pleach::automaton::network::scenario::{Scenario, ValidScenario};
 use pleach::automaton::network::{Message, Network, Site};
 use pleach::automaton::node::Medium;
 use pleach::automaton::{Executor, HybridTime, Observer, Reason};
@@ -35,14 +35,21 @@ pub struct Mission {
 /// The scenario of that name among those that are shipped.
 pub fn shipped(name: &str) -> Scenario {
     let path = format!("scenarios/{name}.toml");
-    scenario_file::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}"))
+    scenario_file::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}")).into_scenario()
+}
+
+/// The scenario, from which a mission can start.
+pub fn valid(scenario: Scenario) -> ValidScenario {
+    ValidScenario::new(scenario).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The mission of a scenario, with the monitor watching.
 pub fn run(scenario: Scenario) -> Mission {
     let mut recorder = Recorder::default();
-    let completed = mission::run(&scenario, &mut [&mut recorder]).expect("a mission can start");
-    Mission::new(scenario, recorder, completed)
+    let scenario = valid(scenario);
+    let completed =
+        mission::run(&scenario, &mut [&mut recorder]).expect("a mission without errors");
+    Mission::new(scenario.into_scenario(), recorder, completed)
 }
 
 /// The same over a medium of the test's own.
@@ -52,9 +59,10 @@ pub fn run_over<M: Medium<Message, Point>>(
 ) -> (Mission, Network<M>) {
     let mut network = network_over(&scenario, medium);
     let mut recorder = Recorder::default();
+    let scenario = valid(scenario);
     let completed = mission::run_network(&scenario, &mut network, &mut [&mut recorder])
-        .expect("a mission can start");
-    (Mission::new(scenario, recorder, completed), network)
+        .expect("a mission without errors");
+    (Mission::new(scenario.into_scenario(), recorder, completed), network)
 }
 
 /// The network of a scenario over a medium of the test's own.

@@ -11,11 +11,12 @@
 
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::DiGraph;
-use pleach_guards::{Predicate, Substitution, variable};
+use pleach_guards::{Predicate, Substitution, not, variable};
 
 use super::inquiry::{Inquiry, closed, open};
 use super::reachability::Reach;
 use super::report::{Kind, Place};
+use crate::decision::State;
 
 /// The most cycles that are looked at, and the longest.
 const MOST_CYCLES: usize = 500;
@@ -53,6 +54,14 @@ impl Inquiry<'_> {
             self.note_with(Kind::TimelessCycle, place, message, witness);
             return;
         }
+        if let Some(witness) = self.for_ever(cycle, &round, &strict) {
+            let message = "no time passes while they follow each other for ever, each time in \
+                           another state, since what they wait for stays true: make one of the \
+                           guards false after the others"
+                .to_owned();
+            self.error(Kind::TimelessCycle, place, message, witness);
+            return;
+        }
         let again = strict.clone() & strict.substitute(&round.reset);
         if let Some(witness) = self.example(&again) {
             let message = "no time passes while they follow each other more than once; whether \
@@ -62,6 +71,33 @@ impl Inquiry<'_> {
             return;
         }
         self.witness(Kind::TimelessCycle, &place, &(loose & round.returns));
+    }
+
+    /// A state from which the cycle is gone round without end: wherever its guards hold and nothing
+    /// else goes first, that is so again after a round.
+    fn for_ever(&self, cycle: &[usize], round: &Round, strict: &Predicate) -> Option<State> {
+        let alone = Predicate::all([round.guards.clone(), self.unhindered(cycle)?]);
+        let witness = self.robust_example(&(strict.clone() & alone.clone()))?;
+        let ends = alone.clone() & not(alone.substitute(&round.reset));
+        (!self.is_possible(&ends)).then_some(witness)
+    }
+
+    /// That no other forced transition goes first on the way round.
+    fn unhindered(&self, cycle: &[usize]) -> Option<Predicate> {
+        let (mut reset, mut assigned) = (Substitution::default(), Vec::new());
+        let mut refused = Vec::new();
+        for &number in cycle {
+            let transition = &self.model.transitions[number];
+            let leaving = self.model.modes[transition.source].leaving.iter();
+            let first = leaving.take_while(|&&other| other != number);
+            let first = first.filter(|&&other| self.model.is_forced(other));
+            refused.extend(
+                first.map(|&other| self.model.transitions[other].refused().substitute(&reset)),
+            );
+            assigned.extend(transition.assignments().iter().map(|(name, _)| name.as_str()));
+            reset = after(&reset, &transition.substitution()?, &assigned);
+        }
+        Some(Predicate::all(refused))
     }
 
     /// Where the cycle can be gone round once, and what it does; nothing if a reset is a function.

@@ -5,6 +5,7 @@ use pleach_guards::{Comparison, Predicate, Relation, always};
 
 use super::model::Model;
 use super::report::{Finding, Kind, Place, Report, Severity};
+use super::robustness::{is_robust, ordinary, with_room};
 use crate::decision::{Decision, Doubt, Effort, State, decide};
 
 /// A model under inquiry, and what has been found out so far.
@@ -28,7 +29,16 @@ impl<'a> Inquiry<'a> {
         fault: &Predicate,
     ) -> Option<State> {
         match self.decide(fault) {
-            Decision::Witness(state) => Some(state),
+            Decision::Witness(state) => {
+                let known = self.robust(fault, state);
+                if known.is_none() {
+                    let message = format!(
+                        "it could be only where the last digits of numbers decide: `{fault}`"
+                    );
+                    self.note(kind, place.clone(), message);
+                }
+                known
+            }
             Decision::Impossible(proof) => {
                 self.report.exclude(kind, place.clone(), proof);
                 None
@@ -41,12 +51,31 @@ impl<'a> Inquiry<'a> {
         }
     }
 
+    /// A witness that does not rest on the rounding of the model's numbers: the one that is known,
+    /// or another one at ordinary numbers.
+    fn robust(&self, fault: &Predicate, known: State) -> Option<State> {
+        let fault = fault.negation_normal_form();
+        if is_robust(&fault, &known) {
+            return Some(known);
+        }
+        let region = ordinary(&self.model.region);
+        match decide(&with_room(&fault), &region, &self.effort) {
+            Ok(Decision::Witness(state)) => (fault.holds(&state) == Ok(true)).then_some(state),
+            _ => None,
+        }
+    }
+
     /// A state in which `predicate` holds, if one is found.
     pub(super) fn example(&self, predicate: &Predicate) -> Option<State> {
         match self.decide(predicate) {
             Decision::Witness(state) => Some(state),
             Decision::Impossible(_) | Decision::Undecided(_) => None,
         }
+    }
+
+    /// A state in which `predicate` holds and does not just by rounding, if one is found.
+    pub(super) fn robust_example(&self, predicate: &Predicate) -> Option<State> {
+        self.example(predicate).and_then(|state| self.robust(predicate, state))
     }
 
     /// Whether `predicate` holds somewhere, or could.
@@ -115,6 +144,13 @@ impl<'a> Inquiry<'a> {
             Urgency::Must => self.dwelling(one.source) & closed(&one.refused()) & closed(guard),
             Urgency::May => self.dwelling(one.source) & guard.clone(),
         }
+    }
+
+    /// None of the transitions that leave `location` has to be taken.
+    pub(super) fn no_forced_way_out(&self, location: usize) -> Predicate {
+        let leaving = self.model.modes[location].leaving.iter();
+        let forced = leaving.filter(|&&one| self.model.is_forced(one));
+        Predicate::all(forced.map(|&one| self.model.transitions[one].refused()))
     }
 
     /// None of the transitions that leave `location` can be taken.

@@ -165,7 +165,16 @@ fn report_deadlocks(
                 others.collect::<Vec<_>>().join(" and ")
             );
             let place = model.place_of(&waiting);
-            report.add(Finding::new(Kind::Deadlock, Severity::Warning, place, message));
+            let finding = if product.is_certain[state] {
+                Finding::new(Kind::Deadlock, Severity::Warning, place, message)
+            } else {
+                let message = format!(
+                    "{message}; whether they come there together depends on times and values, and \
+                     is open"
+                );
+                Finding::new(Kind::Deadlock, Severity::Note, place, message)
+            };
+            report.add(finding);
         }
     }
 }

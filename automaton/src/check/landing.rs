@@ -22,16 +22,33 @@ impl Inquiry<'_> {
         if mode.invariant == always() {
             return;
         }
-        let stuck = not(mode.invariant.clone()) & self.no_way_out(target);
-        let fault = self.departing(number) & stuck.substitute(reset);
+        let outside = not(mode.invariant.clone()).substitute(reset);
+        let stuck = self.no_way_out(target).substitute(reset);
+        let (entry, invariant) = (&mode.name, &mode.invariant);
         let place = self.model.place_of(&[number]);
+        let landing = self.departing(number) & outside;
+        let fault = landing.clone() & stuck;
         if let Some(witness) = self.witness(Kind::LandsOutside, &place, &fault) {
             let message = format!(
-                "it enters `{}` outside its invariant `{}`, where no transition leads on: \
-                 change the guard, the reset or the invariant",
-                mode.name, mode.invariant
+                "it enters `{entry}` outside its invariant `{invariant}`, where no transition \
+                 leads on: change the guard, the reset or the invariant"
             );
             self.error(Kind::LandsOutside, place, message, witness);
+            return;
+        }
+        let message = |way: &str| {
+            format!(
+                "it enters `{entry}` outside its invariant `{invariant}`, where no time can pass \
+                 and {way} leads on: enter it inside, or widen the invariant"
+            )
+        };
+        let unforced = landing.clone() & self.no_forced_way_out(target).substitute(reset);
+        if let Some(witness) = self.robust_example(&unforced) {
+            let message = message("only what may be taken");
+            self.warn_with(Kind::LandsOutside, place, message, witness);
+        } else if let Some(witness) = self.robust_example(&landing) {
+            let message = message("what has to be taken");
+            self.note_with(Kind::LandsOutside, place, message, witness);
         }
     }
 

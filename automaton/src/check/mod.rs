@@ -38,21 +38,22 @@
 //! | --- | --- | --- |
 //! | blocked | error | where the flow leaves the invariant, does a guard hold? |
 //! | empty invariant | warning | does the invariant hold anywhere? |
-//! | lands outside | error | do resets lead into the invariant of the target? |
+//! | lands outside | error; warning or note if a transition may or must lead on | do resets lead into the invariant of the target? |
+//! | no value | warning | has every formula a finite value where it is evaluated? |
 //! | leaves its range | warning | do they stay within the declared ranges? |
 //! | timeless cycle | error | do forced transitions follow each other for ever? |
 //! | overlap | warning | can two forced transitions be due together? |
 //! | choice | note | can two transitions be possible together that only may be taken? |
 //! | shadowed priority | warning | is there a state in which it is its turn? |
 //! | never fires, unreachable | warning | what can ever happen? |
-//! | starts outside | error | is the initial state within the invariant? |
+//! | starts outside | error, or warning if a transition leads on | is the initial state within the invariant? |
 //! | starts out of range, no initial state | warning | where does a run begin? |
 //! | nothing moves | warning | does what a location waits for change there? |
 //! | unchecked | note | what is a function? |
 //! | refused label | error | does every component of a label ever take it? |
 //! | blocked label | error | can they take it together? |
 //! | lonely label | warning | does more than one component know it? |
-//! | deadlock | warning | does a component wait for labels for ever? |
+//! | deadlock | warning, or note where it depends on times and values | does a component wait for labels for ever? |
 //! | unread input | warning | is what is connected read? |
 //! | unexplored | note | was something too large to be looked at? |
 //!
@@ -69,11 +70,15 @@
 //! That a transition never fires, on the other hand, is proven, for all runs that begin in the
 //! initial location.
 //!
+//! A witness does not rest on rounding, either: numbers of a model are rounded, and what could hold
+//! only where their last digits decide is a note.
+//!
 //! An automaton that is a part of a composition is best checked there: alone it knows neither who
 //! takes its events together with it, nor what moves the variables that it reads.
 
 mod blocking;
 mod cycle;
+mod definition;
 mod inquiry;
 mod labels;
 mod landing;
@@ -82,6 +87,7 @@ mod overlap;
 mod product;
 mod reachability;
 mod report;
+mod robustness;
 mod structure;
 
 pub use report::{Exclusion, Finding, Kind, Place, Report, Severity};
@@ -140,6 +146,7 @@ fn examined(model: &Model, effort: Effort) -> (Inquiry<'_>, Reach) {
     inquiry.report_start();
     inquiry.report_blocking(&reach);
     inquiry.report_landings(&reach);
+    inquiry.report_undefined(&reach);
     inquiry.report_cycles(&reach);
     inquiry.report_overlaps(&reach);
     let shadowed = inquiry.report_shadowed(&reach);

@@ -72,7 +72,7 @@ pub(crate) enum Effect {
 
 impl Model {
     pub(crate) fn of<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Self {
-        let modes = automaton.modes.iter().zip(L::ALL).zip(&automaton.leaving);
+        let modes = automaton.modes.iter().zip(&automaton.locations).zip(&automaton.leaving);
         let modes = modes.map(|((mode, location), leaving)| Mode {
             name: location.name(),
             motion: mode.flow.as_ref().map_or(Motion::Rates(Vec::new()), motion),
@@ -85,7 +85,7 @@ impl Model {
             Some(Transition {
                 source: source.index(),
                 target: target.index(),
-                event: E::ALL.iter().position(|event| *event == transition.event)?,
+                event: automaton.events.iter().position(|event| *event == transition.event)?,
                 urgency: transition.urgency,
                 priority: transition.priority,
                 guard: Guard::new(
@@ -99,15 +99,18 @@ impl Model {
             component: None,
             modes: modes.collect(),
             transitions: transitions.collect(),
-            events: E::ALL.iter().map(|event| event.name().to_owned()).collect(),
-            is_label: vec![false; E::ALL.len()],
-            initial: L::ALL.iter().position(|one| *one == automaton.initial).unwrap_or_default(),
+            events: automaton.events.iter().map(|event| event.name().to_owned()).collect(),
+            is_label: vec![false; automaton.events.len()],
+            initial: automaton.node(automaton.initial).map_or(0, |node| node.index()),
             initial_state: None,
             has_coordinates: automaton.known.is_some(),
             region: Region::new(),
             inputs: Vec::new(),
         };
-        let declared = automaton.known.into_iter().flatten().map(|name| (*name).to_owned());
+        if !automaton.parameters.is_empty() {
+            model.substitute(&automaton.numbers());
+        }
+        let declared = automaton.known.iter().flatten().map(|name| (*name).to_owned());
         let names: Vec<String> = declared.chain(model.variables()).collect();
         let propositions = propositions_of(automaton);
         for name in names {
@@ -121,6 +124,25 @@ impl Model {
             model.region.keys().filter_map(value).collect()
         });
         model
+    }
+
+    fn substitute(&mut self, numbers: &Substitution) {
+        let change = |formulas: &mut Vec<(String, Expression)>| {
+            formulas.iter_mut().for_each(|(_, formula)| *formula = formula.substitute(numbers));
+        };
+        for mode in &mut self.modes {
+            mode.invariant = mode.invariant.substitute(numbers);
+            if let Motion::Rates(rates) = &mut mode.motion {
+                change(rates);
+            }
+        }
+        for transition in &mut self.transitions {
+            let guard = transition.guard.predicate().substitute(numbers);
+            transition.guard = Guard::new(transition.guard.name(), guard);
+            if let Effect::Assignments(assignments) = &mut transition.effect {
+                change(assignments);
+            }
+        }
     }
 
     /// What formulas name.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use pleach_guards::always;
+
 use super::labels::Label;
 use super::model::Model;
 use super::reachability::Reach;
@@ -16,6 +18,9 @@ pub(super) struct Product {
     steps: Vec<Step>,
     /// Whether all combinations that can be reached are there.
     pub(super) is_complete: bool,
+    /// By combination: whether it is reached by jumps of which the guards concern one component at
+    /// most, so that the times at which several components jump do not matter.
+    pub(super) is_certain: Vec<bool>,
 }
 
 /// A jump between two combinations.
@@ -25,6 +30,8 @@ struct Step {
     label: Option<usize>,
     /// Who takes part.
     components: Vec<usize>,
+    /// Who of them has a guard.
+    guarded: Vec<usize>,
 }
 
 /// What can be reached by transitions that are live in their components, if partners take labels
@@ -32,14 +39,19 @@ struct Step {
 pub(super) fn explore(models: &[Model], reaches: &[Reach], labels: &[Label]) -> Product {
     let initial: Vec<usize> = models.iter().map(|model| model.initial).collect();
     let mut numbers = BTreeMap::from([(initial.clone(), 0)]);
-    let mut product = Product { states: vec![initial], steps: Vec::new(), is_complete: true };
+    let mut product = Product {
+        states: vec![initial],
+        steps: Vec::new(),
+        is_complete: true,
+        is_certain: Vec::new(),
+    };
     let mut from = 0;
     while from < product.states.len() {
         let here = product.states[from].clone();
         for (label, jump) in jumps(models, reaches, labels, &here) {
             let mut next = here.clone();
-            for &(component, target) in &jump {
-                next[component] = target;
+            for &(component, transition) in &jump {
+                next[component] = models[component].transitions[transition].target;
             }
             let to = match numbers.get(&next) {
                 Some(&known) => known,
@@ -53,15 +65,20 @@ pub(super) fn explore(models: &[Model], reaches: &[Reach], labels: &[Label]) -> 
                     product.states.len() - 1
                 }
             };
+            let is_guarded = |&&(component, transition): &&(usize, usize)| {
+                *models[component].transitions[transition].guard.predicate() != always()
+            };
+            let guarded = jump.iter().filter(is_guarded).map(|(component, _)| *component).collect();
             let components = jump.into_iter().map(|(component, _)| component).collect();
-            product.steps.push(Step { from, to, label, components });
+            product.steps.push(Step { from, to, label, components, guarded });
         }
         from += 1;
     }
+    product.find_certain(models.len());
     product
 }
 
-/// Components with where they go.
+/// Components with the transitions that they take.
 type Jump = Vec<(usize, usize)>;
 
 /// All jumps from one combination of locations, each with its label if it has one.
@@ -78,14 +95,14 @@ fn jumps(
     let mut jumps = Vec::new();
     for (component, model) in models.iter().enumerate() {
         for number in live(component).filter(|&number| model.is_own(number)) {
-            jumps.push((None, vec![(component, model.transitions[number].target)]));
+            jumps.push((None, vec![(component, number)]));
         }
     }
     for (number, label) in labels.iter().enumerate() {
         let part = |&(component, event): &(usize, usize)| {
             let transitions = &models[component].transitions;
             let transition = live(component).find(|&number| transitions[number].event == event)?;
-            Some((component, transitions[transition].target))
+            Some((component, transition))
         };
         if let Some(jump) = label.participants.iter().map(part).collect::<Option<Jump>>() {
             jumps.push((Some(number), jump));
@@ -95,6 +112,26 @@ fn jumps(
 }
 
 impl Product {
+    fn find_certain(&mut self, components: usize) {
+        let mut after = vec![Vec::new(); self.states.len()];
+        for (number, step) in self.steps.iter().enumerate() {
+            after[step.from].push(number);
+        }
+        self.is_certain = vec![false; self.states.len()];
+        for free in 0..components {
+            let mut is_seen = vec![false; self.states.len()];
+            let mut open = vec![0];
+            while let Some(state) = open.pop() {
+                if !std::mem::replace(&mut is_seen[state], true) {
+                    self.is_certain[state] = true;
+                    let steps = after[state].iter().map(|&number| &self.steps[number]);
+                    let certain = steps.filter(|step| step.guarded.iter().all(|one| *one == free));
+                    open.extend(certain.map(|step| step.to));
+                }
+            }
+        }
+    }
+
     /// Whether the label is ever taken.
     pub(super) fn takes(&self, label: usize) -> bool {
         self.steps.iter().any(|step| step.label == Some(label))

@@ -71,15 +71,18 @@ pub enum Kind {
     Blocked,
     /// An invariant that holds nowhere.
     EmptyInvariant,
-    /// A jump that lands outside the invariant of its target, where nothing can go on.
+    /// A jump that lands outside the invariant of its target; an error if nothing can go on there.
     LandsOutside,
+    /// A formula without a finite value in a state that the model admits.
+    Undefined,
     /// A jump that gives a coordinate a value outside its declared range.
     LeavesRange,
     /// Forced transitions that follow each other for ever while no time passes.
     TimelessCycle,
     /// Nothing says in which state a run starts.
     NoInitialState,
-    /// The initial state is outside the invariant of the initial location.
+    /// The initial state is outside the invariant of the initial location; an error if nothing can go
+    /// on there.
     StartsOutside,
     /// The initial state is outside the declared ranges.
     StartsOutOfRange,
@@ -205,6 +208,7 @@ impl Kind {
             Kind::Blocked => "blocked",
             Kind::EmptyInvariant => "empty invariant",
             Kind::LandsOutside => "lands outside",
+            Kind::Undefined => "no value",
             Kind::LeavesRange => "leaves its range",
             Kind::TimelessCycle => "timeless cycle",
             Kind::NoInitialState => "no initial state",

@@ -22,13 +22,17 @@ impl Inquiry<'_> {
         };
         let mode = &model.modes[model.initial];
         let is_inside = mode.invariant.holds(state);
-        let is_stuck = self.no_way_out(model.initial).holds(state);
-        if is_inside == Ok(false) && is_stuck == Ok(true) {
+        let is_stuck = self.no_way_out(model.initial).holds(state) == Ok(true);
+        if is_inside == Ok(false) {
+            let (invariant, start) = (&mode.invariant, place.clone());
             let message = format!(
-                "the initial state is outside the invariant `{}`: begin inside it",
-                mode.invariant
+                "the initial state is outside the invariant `{invariant}`: begin inside it"
             );
-            self.error(Kind::StartsOutside, place.clone(), message, state.clone());
+            if is_stuck {
+                self.error(Kind::StartsOutside, start, message, state.clone());
+            } else {
+                self.warn_with(Kind::StartsOutside, start, message, state.clone());
+            }
         }
         for (name, range) in &model.region {
             if state.value(name).is_some_and(|value| !range.contains(value)) {

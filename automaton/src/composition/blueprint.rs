@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::expression::{BinaryOperator, UnaryOperator};
 use pleach_guards::{
-    CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program, Tracker,
+    CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program, Tape, Tracker,
     Verdict,
 };
 
@@ -21,7 +21,7 @@ use crate::reset::Reset;
 pub(crate) struct Blueprint {
     pub(crate) places: Vec<Place>,
     pub(crate) events: Vec<&'static str>,
-    pub(crate) coordinates: &'static [&'static str],
+    pub(crate) coordinates: Vec<&'static str>,
     pub(crate) initial: usize,
     /// For pictures.
     pub(crate) sketch: Sketch,
@@ -31,6 +31,8 @@ pub(crate) struct Blueprint {
 pub(crate) struct Place {
     pub(crate) name: &'static str,
     pub(crate) motion: PlaceMotion,
+    /// The rates that are formulas, all together and in their order.
+    pub(crate) rates: Tape,
     pub(crate) invariant: Option<Condition>,
     /// In their total order.
     pub(crate) leaving: Vec<Leaving>,
@@ -61,7 +63,6 @@ pub(crate) struct Condition {
 /// The rate of a coordinate.
 pub(crate) struct RateProgram {
     pub(crate) coordinate: usize,
-    pub(crate) program: Program,
     /// Where it is one.
     pub(crate) form: Option<LinearForm>,
     /// Follows the rate, where it could grow without bound.
@@ -89,35 +90,42 @@ impl Blueprint {
     pub(crate) fn of<L: Location, E: Event, S: Coordinates>(
         automaton: &Automaton<L, E, S>,
     ) -> Result<Blueprint, EvaluationError> {
-        let graph = automaton.graph();
-        let mut places = Vec::with_capacity(L::ALL.len());
-        for (node, (&location, mode)) in L::ALL.iter().zip(&automaton.modes).enumerate() {
+        let sketch = Sketch::of(automaton);
+        let automaton = &automaton.with_numbers();
+        let (graph, names) = (automaton.graph(), automaton.names());
+        let shape = automaton.initial_state();
+        let mut places = Vec::with_capacity(automaton.locations().len());
+        let locations = automaton.locations().iter();
+        for (node, (&location, mode)) in locations.zip(&automaton.modes).enumerate() {
             let leaving = automaton.leaving[node].iter().map(|&edge| {
                 let transition = &graph[edge];
                 let (_, target) = graph.edge_endpoints(edge).unwrap_or_default();
                 Ok(Leaving {
-                    event: position(E::ALL, transition.event),
+                    event: position(automaton.events(), transition.event),
                     target: target.index(),
                     urgency: transition.urgency,
-                    guard: Condition::of(transition.guard.predicate(), S::NAMES)?,
-                    change: change(&transition.reset)?,
+                    guard: Condition::of(transition.guard.predicate(), names)?,
+                    change: change(&transition.reset, names, shape)?,
                 })
             });
             places.push(Place {
                 name: location.name(),
-                motion: mode.flow.as_ref().map_or(Ok(PlaceMotion::Rates(Vec::new())), motion)?,
+                rates: tape(mode.flow.as_ref(), names)?,
+                motion: match &mode.flow {
+                    Some(flow) => motion(flow, names, shape)?,
+                    None => PlaceMotion::Rates(Vec::new()),
+                },
                 invariant: mode
                     .invariant
                     .as_ref()
-                    .map(|invariant| Condition::of(invariant, S::NAMES))
+                    .map(|invariant| Condition::of(invariant, names))
                     .transpose()?,
                 leaving: leaving.collect::<Result<_, EvaluationError>>()?,
             });
         }
-        let events = E::ALL.iter().map(|event| event.name()).collect();
-        let initial = position(L::ALL, automaton.initial());
-        let sketch = Sketch::of(automaton);
-        Ok(Blueprint { places, events, coordinates: S::NAMES, initial, sketch })
+        let events = automaton.events().iter().map(|event| event.name()).collect();
+        let initial = position(automaton.locations(), automaton.initial());
+        Ok(Blueprint { places, events, coordinates: names.to_vec(), initial, sketch })
     }
 }
 
@@ -154,7 +162,7 @@ impl RateProgram {
         let form = rate.linear_form();
         let tracker =
             may_be_unbounded(rate).then(|| rate.at_least(0.0).track(names)).transpose()?;
-        Ok(RateProgram { coordinate, program: rate.compile(names)?, form, tracker })
+        Ok(RateProgram { coordinate, form, tracker })
     }
 }
 
@@ -185,24 +193,39 @@ fn position<T: PartialEq>(all: &[T], one: T) -> usize {
     all.iter().position(|listed| *listed == one).unwrap_or_default()
 }
 
-fn motion<S: Coordinates>(flow: &Flow<S>) -> Result<PlaceMotion, EvaluationError> {
+/// A state of the automaton with these coordinates.
+fn state_of<S: Coordinates>(shape: Option<&S>, values: &[f64]) -> S {
+    shape.map_or_else(|| S::from_values(values), |shape| shape.like(values))
+}
+
+fn tape<S>(flow: Option<&Flow<S>>, names: &[&'static str]) -> Result<Tape, EvaluationError> {
+    let rates = flow.and_then(Flow::rates).unwrap_or_default();
+    Tape::compile(rates.iter().map(crate::flow::Rate::rate), names)
+}
+
+fn motion<S: Coordinates>(
+    flow: &Flow<S>,
+    names: &[&'static str],
+    shape: Option<&S>,
+) -> Result<PlaceMotion, EvaluationError> {
+    let shape = shape.cloned();
     Ok(match flow.motion() {
         Motion::Rates(rates) => {
             let compile = |rate: &crate::flow::Rate<S>| {
-                RateProgram::of(place_of::<S>(rate.coordinate())?, rate.rate(), S::NAMES)
+                RateProgram::of(place_of(names, rate.coordinate())?, rate.rate(), names)
             };
             PlaceMotion::Rates(rates.iter().map(compile).collect::<Result<_, EvaluationError>>()?)
         }
         Motion::Field(_, field) => {
             let field = field.clone();
             PlaceMotion::Field(Arc::new(move |values: &[f64], rates: &mut [f64]| {
-                field(&S::from_values(values)).write(rates);
+                field(&state_of(shape.as_ref(), values)).write(rates);
             }))
         }
         Motion::Exact(_, advance) => {
             let advance = advance.clone();
             PlaceMotion::Exact(Arc::new(move |values: &mut [f64], duration: f64| {
-                let mut state = S::from_values(values);
+                let mut state = state_of(shape.as_ref(), values);
                 advance(&mut state, duration);
                 state.write(values);
             }))
@@ -210,24 +233,28 @@ fn motion<S: Coordinates>(flow: &Flow<S>) -> Result<PlaceMotion, EvaluationError
     })
 }
 
-fn change<S: Coordinates>(reset: &Reset<S>) -> Result<Change, EvaluationError> {
+fn change<S: Coordinates>(
+    reset: &Reset<S>,
+    names: &[&'static str],
+    shape: Option<&S>,
+) -> Result<Change, EvaluationError> {
     if let Some(assignments) = reset.assignments() {
         let compile = |assignment: &crate::reset::Assignment<S>| {
-            let value = assignment.value().compile(S::NAMES)?;
-            Ok((place_of::<S>(assignment.coordinate())?, value))
+            let value = assignment.value().compile(names)?;
+            Ok((place_of(names, assignment.coordinate())?, value))
         };
         return Ok(Change::Assignments(assignments.iter().map(compile).collect::<Result<_, _>>()?));
     }
-    let reset = reset.clone();
+    let (reset, shape) = (reset.clone(), shape.cloned());
     Ok(Change::Function(Arc::new(move |values: &mut [f64]| {
-        let mut state = S::from_values(values);
+        let mut state = state_of(shape.as_ref(), values);
         reset.apply(&mut state)?;
         state.write(values);
         Ok(())
     })))
 }
 
-fn place_of<S: Coordinates>(name: &str) -> Result<usize, EvaluationError> {
+fn place_of(names: &[&'static str], name: &str) -> Result<usize, EvaluationError> {
     let unknown = || EvaluationError::UnknownVariable { variable: name.to_owned() };
-    S::NAMES.iter().position(|listed| *listed == name).ok_or_else(unknown)
+    names.iter().position(|listed| *listed == name).ok_or_else(unknown)
 }

@@ -136,12 +136,20 @@ impl CompositionBuilder {
         automaton: &Automaton<L, E, S>,
         state: S,
     ) -> Self {
-        match Blueprint::of(automaton) {
-            Ok(blueprint) => self.parts.push(Part {
+        let initial = |blueprint: Blueprint| -> Result<(Blueprint, Vec<f64>), EvaluationError> {
+            let value = |name: &&'static str| {
+                let unknown = || EvaluationError::UnknownVariable { variable: (*name).to_owned() };
+                state.value(name).ok_or_else(unknown)
+            };
+            let values = blueprint.coordinates.iter().map(value).collect::<Result<_, _>>()?;
+            Ok((blueprint, values))
+        };
+        match Blueprint::of(automaton).and_then(initial) {
+            Ok((blueprint, initial)) => self.parts.push(Part {
                 name: name.to_owned(),
                 blueprint: Arc::new(blueprint),
                 model: Arc::new(Model::of(automaton)),
-                initial: state.to_values(),
+                initial,
                 renamed: Vec::new(),
                 accumulation: None,
                 continuation: None,
@@ -312,8 +320,8 @@ impl CompositionBuilder {
 
     fn full_names(&self) -> Vec<String> {
         let of_part = |part: &Part| {
-            let name = part.name.clone();
-            part.blueprint.coordinates.iter().map(move |coordinate| format!("{name}.{coordinate}"))
+            let named = |coordinate: &&'static str| format!("{}.{coordinate}", part.name);
+            part.blueprint.coordinates.iter().map(named).collect::<Vec<_>>()
         };
         self.parts.iter().flat_map(of_part).collect()
     }

@@ -33,6 +33,8 @@ pub(super) struct Field<'a> {
     pub(super) start: Vec<f64>,
     /// Room for the coordinates of a component and their rates, and for a state.
     scratch: RefCell<[Vec<f64>; 3]>,
+    /// By moving component: the places of its tape, once they are needed.
+    places: RefCell<Vec<Vec<f64>>>,
 }
 
 /// ẋ = A x + b of some variables.
@@ -73,7 +75,14 @@ impl<'a> Field<'a> {
                 }
             }
         }
-        Field { moving, solved, rows, start, scratch: RefCell::default() }
+        Field {
+            moving,
+            solved,
+            rows,
+            start,
+            places: RefCell::default(),
+            scratch: RefCell::default(),
+        }
     }
 
     /// Whether all variables move along lines, or are solved by themselves.
@@ -98,7 +107,7 @@ impl<'a> Field<'a> {
                 let (form, row) = (rate.form.as_ref()?, component.places[rate.coordinate]);
                 offsets[row] = *form.constant();
                 for (name, coefficient) in form.coefficients() {
-                    let names = component.blueprint.coordinates;
+                    let names = &component.blueprint.coordinates;
                     let column = component.places[names.iter().position(|one| *one == name)?];
                     match self.rows[column] {
                         Row::Line(0.0) => offsets[row] += coefficient * self.start[column],
@@ -130,12 +139,20 @@ impl<'a> Field<'a> {
     }
 
     fn add_rates(&self, state: &[f64], rates: &mut [f64]) {
-        for (component, place) in &self.moving {
+        let mut tapes = self.places.borrow_mut();
+        tapes.resize(self.moving.len(), Vec::new());
+        for ((component, place), places) in self.moving.iter().zip(&mut *tapes) {
             match &place.motion {
                 PlaceMotion::Rates(formulas) => {
-                    for rate in formulas {
-                        rates[component.places[rate.coordinate]] =
-                            rate.program.evaluate_at(state, &component.places);
+                    let [own, change, _] = &mut *self.scratch.borrow_mut();
+                    component.gather(state, &component.places, own);
+                    change.resize(formulas.len(), 0.0);
+                    if places.is_empty() {
+                        *places = place.rates.places();
+                    }
+                    place.rates.evaluate(own, places, change);
+                    for (rate, change) in formulas.iter().zip(change) {
+                        rates[component.places[rate.coordinate]] = *change;
                     }
                 }
                 PlaceMotion::Field(field) => {

@@ -103,7 +103,7 @@ impl Parts {
                 let mut conditions = Vec::new();
                 conditions_of(leaving.guard.predicate(), &mut conditions);
                 let boundaries = conditions.into_iter().map(|condition| {
-                    let condition = condition.compile(blueprint.coordinates)?;
+                    let condition = condition.compile(&blueprint.coordinates)?;
                     Ok(BoundaryCoverage { condition, held: 0, failed: 0 })
                 });
                 transitions.push(TransitionCoverage {

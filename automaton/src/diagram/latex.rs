@@ -21,14 +21,18 @@ use crate::flow::Flow;
 pub fn latex<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>) -> String {
     let mut definition = Definition { lines: Vec::new() };
     definition.put("H", r"(Q, X, \mathrm{Init}, f, \mathrm{Inv}, E, G, R)");
-    let names: Vec<String> = L::ALL.iter().map(|location| text(location.name())).collect();
+    let names: Vec<String> =
+        automaton.locations().iter().map(|location| text(location.name())).collect();
     definition.put("Q", &set(&names));
     definition.put("X", &states(automaton));
     definition.put(r"\mathrm{Init}", &initial(automaton));
-    let modes = L::ALL.iter().map(|&location| (text(location.name()), automaton.mode(location)));
+    let modes = automaton
+        .locations()
+        .iter()
+        .map(|&location| (text(location.name()), automaton.mode(location)));
     let modes: Vec<_> = modes.filter_map(|(name, mode)| Some((name, mode?))).collect();
     for (name, mode) in &modes {
-        definition.put(&format!("f({name}, x)"), &flow(mode.flow.as_ref()));
+        definition.put(&format!("f({name}, x)"), &flow(automaton.names(), mode.flow.as_ref()));
     }
     for (name, mode) in &modes {
         let invariant = mode.invariant.as_ref().map(|invariant| invariant.to_latex());
@@ -52,7 +56,7 @@ pub fn latex<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, 
         definition.put(&format!("G(e_{{{number}}})"), &where_it_holds(formula));
     }
     for (number, edge) in numbers() {
-        definition.put(&format!("R(e_{{{number}}}, x)"), &reset(edge.weight()));
+        definition.put(&format!("R(e_{{{number}}}, x)"), &reset(automaton.names(), edge.weight()));
     }
     definition.finish()
 }
@@ -93,13 +97,13 @@ fn column(entries: &[String]) -> String {
     }
 }
 
-fn names<S: Coordinates>() -> Vec<String> {
-    S::NAMES.iter().map(|name| variable(name).to_latex()).collect()
+fn names(coordinates: &[&'static str]) -> Vec<String> {
+    coordinates.iter().map(|name| variable(name).to_latex()).collect()
 }
 
 fn states<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>) -> String {
     let number = |value: f64| constant(value).to_latex();
-    let ranges = S::NAMES.iter().map(|name| {
+    let ranges = automaton.names().iter().map(|name| {
         let range = automaton.range(name);
         let (lower, upper) = (*range.start(), *range.end());
         match (lower.is_finite(), upper.is_finite()) {
@@ -117,7 +121,7 @@ fn states<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>)
         }
         some => some.join(r" \times "),
     };
-    format!(r"{product}, \quad x = {}", column(&names::<S>()))
+    format!(r"{product}, \quad x = {}", column(&names(automaton.names())))
 }
 
 fn initial<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>) -> String {
@@ -134,13 +138,13 @@ fn initial<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>
 }
 
 /// The rates of all coordinates, or the name of the flow.
-fn flow<S: Coordinates>(flow: Option<&Flow<S>>) -> String {
+fn flow<S>(names: &[&'static str], flow: Option<&Flow<S>>) -> String {
     let rates = match flow {
         None => Some(&[][..]),
         Some(flow) => flow.rates(),
     };
     match (rates, flow) {
-        (Some(rates), _) => column(&of_coordinates::<S>(|name| {
+        (Some(rates), _) => column(&of_coordinates(names, |name| {
             let rate = rates.iter().find(|rate| rate.coordinate() == name);
             rate.map_or_else(|| "0".to_owned(), |rate| rate.rate().to_latex())
         })),
@@ -149,10 +153,10 @@ fn flow<S: Coordinates>(flow: Option<&Flow<S>>) -> String {
 }
 
 /// What becomes of all coordinates, or the name of the reset.
-fn reset<E, S: Coordinates>(transition: &Transition<E, S>) -> String {
+fn reset<E, S>(names: &[&'static str], transition: &Transition<E, S>) -> String {
     match transition.reset.assignments() {
         Some([]) => "x".to_owned(),
-        Some(assignments) => column(&of_coordinates::<S>(|name| {
+        Some(assignments) => column(&of_coordinates(names, |name| {
             let assignment = assignments.iter().find(|one| one.coordinate() == name);
             assignment.map_or_else(|| variable(name).to_latex(), |one| one.value().to_latex())
         })),
@@ -160,8 +164,8 @@ fn reset<E, S: Coordinates>(transition: &Transition<E, S>) -> String {
     }
 }
 
-fn of_coordinates<S: Coordinates>(entry: impl Fn(&'static str) -> String) -> Vec<String> {
-    S::NAMES.iter().map(|name| entry(name)).collect()
+fn of_coordinates(names: &[&'static str], entry: impl Fn(&'static str) -> String) -> Vec<String> {
+    names.iter().map(|name| entry(name)).collect()
 }
 
 /// Words in upright type within mathematics.

@@ -4,7 +4,7 @@ use petgraph::visit::EdgeRef;
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::{Valuation, constant};
 
-use crate::automaton::{Automaton, Transition, node};
+use crate::automaton::{Automaton, Transition};
 use crate::reset::Reset;
 
 /// An automaton in words, without its types: diagrams only have to arrange it.
@@ -79,10 +79,12 @@ impl Sketch {
             links: edges
                 .map(|edge| {
                     let (source, target) = (edge.source().index(), edge.target().index());
-                    Link::of(edge.weight(), source, target, rank(edge.id()))
+                    let event = &edge.weight().event;
+                    let number = automaton.events().iter().position(|one| one == event);
+                    Link::of(edge.weight(), source, target, rank(edge.id()), number.unwrap_or(0))
                 })
                 .collect(),
-            initial: node(automaton.initial()).map(|node| node.index()),
+            initial: automaton.node(automaton.initial()).map(|node| node.index()),
             start: start(automaton),
         }
     }
@@ -113,13 +115,14 @@ impl Link {
         source: usize,
         target: usize,
         rank: usize,
+        event_number: usize,
     ) -> Link {
         Link {
             source,
             target,
             rank,
             event: transition.event.name().to_owned(),
-            event_number: E::ALL.iter().position(|one| *one == transition.event).unwrap_or(0),
+            event_number,
             guard: transition.guard.predicate().to_string(),
             reset: reset_formulas(&transition.reset),
             urgency: transition.urgency,

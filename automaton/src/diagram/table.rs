@@ -87,7 +87,7 @@ fn rows<L: Location, E: Event, S: Valuation>(
 ) -> Vec<Row<'_, L, E, S>> {
     let table = automaton.table();
     let mut rows = Vec::new();
-    for event in E::ALL {
+    for event in automaton.events() {
         let of_event: Vec<_> = automaton
             .graph()
             .edge_weights()

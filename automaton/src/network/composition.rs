@@ -19,8 +19,8 @@ use super::member::{Member, MemberView, Sense};
 use super::message::Message;
 use super::record::{End, MissionEvent, Outcome};
 use super::robot::{Robot, RobotError, Stage};
-use super::scenario::Scenario;
-use super::site::{Site, SiteError};
+use super::scenario::{Scenario, ValidScenario};
+use super::site::Site;
 use super::user::User;
 use crate::executor::{Round, System};
 use crate::node::{Ensemble, Medium, NodeJump};
@@ -28,9 +28,6 @@ use crate::node::{Ensemble, Medium, NodeJump};
 /// What went wrong inside the simulator.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
-    /// The floor plan, the radio or an automaton is not valid.
-    #[error(transparent)]
-    Site(#[from] SiteError),
     /// A node cannot go on.
     #[error(transparent)]
     Node(#[from] RobotError),
@@ -77,9 +74,9 @@ impl Network<Radio> {
     /// The network of a scenario at its start, with the synchronous medium.
     ///
     /// # Errors
-    /// When the scenario's floor plan or radio is not valid.
-    pub fn new(scenario: &Scenario) -> Result<Self, NetworkError> {
-        let site = Arc::new(Site::new(scenario)?);
+    /// When an automaton is not well formed.
+    pub fn new(scenario: &ValidScenario) -> Result<Self, NetworkError> {
+        let site = Arc::clone(scenario.site());
         let medium = Radio::new(&site);
         Network::with_medium(scenario, site, medium)
     }

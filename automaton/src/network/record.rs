@@ -141,6 +141,8 @@ pub enum Outcome {
     Blocked,
     /// A monitored property failed.
     InvariantViolated,
+    /// A person or program ended it.
+    Interrupted,
 }
 
 impl Outcome {
@@ -153,6 +155,7 @@ impl Outcome {
             Outcome::StepLimit => "step_limit",
             Outcome::Blocked => "blocked",
             Outcome::InvariantViolated => "invariant_violated",
+            Outcome::Interrupted => "interrupted",
         }
     }
 }

@@ -5,8 +5,10 @@ use std::fmt::Debug;
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
-use pleach_continuous::network::reliability::{CubicReliability, ReliabilityError};
+use pleach_continuous::network::LinkReliability;
+use pleach_continuous::network::reliability::ReliabilityError;
 
+use super::Link;
 use super::automata::Automata;
 use super::scenario::{Scenario, Settings};
 use crate::builder::BuildError;
@@ -20,8 +22,8 @@ pub struct Site {
     pub free_space: FreeSpace,
     /// Where the access points stand.
     pub access_points: Vec<Point>,
-    /// Eq. (27).
-    pub link: CubicReliability,
+    /// How reliable a link is over a distance, eq. (27).
+    pub link: Link,
     /// The control settings, every default filled in.
     pub settings: Settings,
     /// Number of robots.
@@ -30,6 +32,8 @@ pub struct Site {
     pub build_length: f64,
     /// d_hard: the geodesic length that no link of the tree exceeds.
     pub hard_length: f64,
+    /// Whether links behave as a model of the caller's says, and not as `[link]` does.
+    has_own_link: bool,
     /// The automata that every robot runs.
     pub automata: Automata,
     /// How ways are measured where they are not those of the floor plan.
@@ -69,7 +73,7 @@ impl Site {
         let settings = Settings::resolve(scenario);
         let workspace = scenario.workspace()?;
         let free_space = FreeSpace::new(&workspace, settings.clearance)?;
-        let link = CubicReliability::new(scenario.link.full_range, scenario.link.max_range)?;
+        let link = scenario.link.link()?;
         Ok(Site {
             workspace,
             free_space,
@@ -79,9 +83,24 @@ impl Site {
             build_length: settings.longest_new_link(),
             hard_length: settings.longest_tree_link(),
             settings,
+            has_own_link: false,
             automata: Automata::new()?,
             measure: None,
         })
+    }
+
+    /// The same site where links behave as `model` says. The lengths of links follow.
+    #[must_use]
+    pub fn with_link(self, model: impl LinkReliability + 'static) -> Self {
+        let link = Link::new(model);
+        let hard_length = link.distance_at(self.settings.tree_reliability);
+        let build_length = hard_length - self.settings.service_radius;
+        Site { link, hard_length, build_length, has_own_link: true, ..self }
+    }
+
+    /// Whether links behave as the model given to [`with_link`](Self::with_link) says.
+    pub const fn has_own_link(&self) -> bool {
+        self.has_own_link
     }
 
     /// The same site where the lengths of ways are those of `measure`.

@@ -1,9 +1,9 @@
 //! Witnesses, tried out on the model that they speak against.
 
-use pleach_automaton::check::{Finding, Kind};
+use pleach_automaton::check::{Finding, Kind, Severity};
 use pleach_automaton::{Coordinates, Transition};
 use pleach_discrete::{Event, Location, Urgency};
-use pleach_guards::Predicate;
+use pleach_guards::{Expression, Predicate};
 
 use super::{Cue, Machine, Point, Room};
 
@@ -37,9 +37,10 @@ pub fn confirm(machine: &Machine, finding: &Finding) {
         Kind::LandsOutside => {
             let (transition, target) = transitions[0];
             let landing = after(transition, point);
+            let is_error = finding.severity == Severity::Error;
             holds(transition, point)
                 && !invariant(machine, target).holds(&landing).expect("it has a value")
-                && is_stuck(machine, target, landing)
+                && is_stuck(machine, target, landing) == is_error
         }
         Kind::LeavesRange => {
             let (transition, _) = transitions[0];
@@ -47,21 +48,49 @@ pub fn confirm(machine: &Machine, finding: &Finding) {
         }
         Kind::TimelessCycle => {
             let (mut here, mut now) = (location, point);
-            for (transition, target) in &transitions {
-                let is_taken = holds(transition, now) && transition.urgency.is_forced();
-                assert!(is_taken, "{finding} is not taken");
-                (here, now) = (*target, after(transition, now));
+            // Unless the state is the same again, it takes many rounds to believe it.
+            for round in 0..1000 {
+                for (transition, target) in &transitions {
+                    let is_taken = holds(transition, now) && transition.urgency.is_forced();
+                    assert!(is_taken, "{finding} is not taken in round {round}");
+                    (here, now) = (*target, after(transition, now));
+                }
+                assert_eq!(here, location, "{finding} does not come back");
+                if now == point {
+                    break;
+                }
             }
-            (here, now) == (location, point)
+            true
         }
         Kind::StartsOutside => {
+            let is_error = finding.severity == Severity::Error;
             !invariant(machine, location).holds(&point).expect("it has a value")
-                && is_stuck(machine, location, point)
+                && is_stuck(machine, location, point) == is_error
         }
+        Kind::Undefined => lacks_value(machine, location, &transitions, point),
         Kind::StartsOutOfRange => !is_in_range(machine, point),
         _ => panic!("{finding} needs no witness"),
     };
     assert!(shown, "{finding} is not shown by its witness");
+}
+
+/// A rate of the location, or the guard or reset of the transition, has no finite value.
+fn lacks_value(
+    machine: &Machine,
+    location: Room,
+    transitions: &[(&Transition<Cue, Point>, Room)],
+    point: Point,
+) -> bool {
+    let is_lacking = |formula: &Expression| !formula.evaluate(&point).is_ok_and(f64::is_finite);
+    let flow = machine.mode(location).and_then(|mode| mode.flow.as_ref());
+    let rates = flow.and_then(|flow| flow.rates()).unwrap_or_default();
+    rates.iter().any(|one| is_lacking(one.rate()))
+        || transitions.iter().any(|(transition, _)| {
+            let margin = transition.guard.evaluate(&point).map(|verdict| verdict.margin);
+            let assignments = transition.reset.assignments().unwrap_or_default();
+            !margin.is_ok_and(f64::is_finite)
+                || assignments.iter().any(|one| is_lacking(one.value()))
+        })
 }
 
 fn transition<'a>(

@@ -1,8 +1,8 @@
 //! Automata with one fault each.
 
-use pleach_automaton::check::Severity;
+use pleach_automaton::check::{Kind, Severity};
 use pleach_automaton::from;
-use pleach_guards::{always, norm};
+use pleach_guards::{Expression, always, constant, norm, piecewise};
 
 use super::Cue::{Back, Go, On, Turn};
 use super::Room::{A, B, C};
@@ -288,6 +288,26 @@ fn resets_that_leave_the_ranges() {
     check(parts, &["warning: leaves its range: location `a`, on `turn`"]);
 }
 
+#[test]
+fn resets_that_land_outside_where_a_guard_holds() {
+    let Point { x, y } = Point::coordinates();
+    let turn = from(B).on(Turn).to(C).may(y.at_most(5.0)).then(y.becomes(&y + 8.0));
+    let parts = machine()
+        .flow(A, x.rate(1.0))
+        .invariant(C, y.at_most(10.0))
+        .transition(from(A).on(Go).to(B).must(x.at_least(1.0)))
+        .transition(turn);
+    let home = || [x.becomes(0.0), y.becomes(0.0)];
+    let back = from(C).on(Back).to(A).may(y.at_least(10.0)).then(home());
+    check(parts.clone().transition(back), &["warning: lands outside: location `b`, on `turn`"]);
+
+    let back = from(C).on(Back).to(A).must(y.at_least(10.0)).then(home());
+    let report = parts.transition(back).build().expect("the parts fit").check();
+    assert_eq!(faults(&report), [""; 0], "{report}");
+    let note = report.findings().iter().find(|one| one.kind == Kind::LandsOutside);
+    assert!(note.is_some_and(|note| note.message.contains("what has to be taken")), "{report}");
+}
+
 // ---- Timeless cycles ---------------------------------------------------------------------------
 
 #[test]
@@ -335,6 +355,72 @@ fn counting_is_no_timeless_cycle() {
     check(parts, &[]);
 }
 
+/// x grows for ever, and with it what the transition waits for.
+#[test]
+fn loops_whose_reset_leaves_the_guard_true() {
+    let Point { x, .. } = Point::coordinates();
+    let again = from(A).on(Go).to(A).must(x.at_least(1.0)).then(x.becomes(&x + 1.0));
+    let parts = machine()
+        .flow(A, x.rate(1.0))
+        .transition(again)
+        .transition(from(A).on(Turn).to(B).may(x.at_least(0.5)))
+        .transition(from(B).on(Go).to(C).may(x.at_least(0.0)));
+    check(parts, &["error: timeless cycle: location `a`, on `go`"]);
+}
+
+/// The way out goes first as soon as it can.
+#[test]
+fn loops_that_another_transition_ends() {
+    let Point { x, y } = Point::coordinates();
+    let parts = machine()
+        .flow(A, x.rate(1.0))
+        .transition(from(A).on(Go).to(B).must(x.at_least(5.0)).then(y.becomes(0.0)))
+        .transition(from(A).on(Turn).to(C).may(x.at_least(3.0)))
+        .transition(from(B).on(Turn).to(C).at_once(y.at_least(4.5)))
+        .transition(
+            from(B).on(On).to(B).at_once(y.at_least(0.0)).then(y.becomes(&y + 1.0)).priority(1),
+        );
+    check(parts, &["warning: leaves its range: location `b`, on `on`"]);
+}
+
+// ---- Formulas without a value ------------------------------------------------------------------
+
+/// Goes from `a` to `b`, where y changes like this, and from there to `c`.
+fn ride(rate: impl Into<Expression>) -> Parts {
+    let Point { x, y } = Point::coordinates();
+    machine()
+        .flow(A, x.rate(1.0))
+        .flow(B, [x.rate(1.0), y.rate(rate)])
+        .transition(from(A).on(Go).to(B).must(x.at_least(0.5)))
+        .transition(from(B).on(Go).to(C).may(x.at_least(0.75)))
+}
+
+#[test]
+fn rates_that_divide_by_zero() {
+    let Point { x, .. } = Point::coordinates();
+    check(ride(1.0 / (&x - 1.0)), &["warning: no value: location `b`"]);
+    check(ride(1.0 / (&x - 1.0)).invariant(B, x.less_than(0.9)), &[]);
+}
+
+#[test]
+fn roots_logarithms_and_rates_that_are_no_numbers() {
+    let Point { x, .. } = Point::coordinates();
+    for rate in [(&x - 1.0).square_root(), (&x + 10.0).ln(), x.power(-2.0), constant(f64::NAN)] {
+        check(ride(rate), &["warning: no value: location `b`"]);
+    }
+    let safe = piecewise([(x.at_least(1.0), (&x - 1.0).square_root())], 0.0);
+    check(ride(safe.expect("a comparison")), &[]);
+}
+
+#[test]
+fn guards_and_resets_without_a_value() {
+    let Point { x, y } = Point::coordinates();
+    let turn = from(B).on(Turn).to(C).may((&y - 1.0).square_root().at_least(3.0));
+    check(tour().transition(turn), &["warning: no value: location `b`, on `turn`"]);
+    let turn = from(B).on(Turn).to(C).may(y.at_least(1.0)).then(y.becomes((&x - 1.5).ln()));
+    check(tour().transition(turn), &["warning: no value: location `b`, on `turn`"]);
+}
+
 // ---- The beginning, and what rests -------------------------------------------------------------
 
 #[test]
@@ -353,6 +439,13 @@ fn beginnings_outside_the_invariant() {
         tour().invariant(A, x.at_least(0.5)),
         &["error: starts outside: location `a`", "error: lands outside: location `c`, on `go`"],
     );
+}
+
+#[test]
+fn beginnings_outside_the_invariant_where_a_guard_holds() {
+    let Point { x, .. } = Point::coordinates();
+    let parts = tour().initially(Point { x: 2.0, y: 0.0 }).invariant(A, x.at_most(1.0));
+    check(parts, &["warning: starts outside: location `a`"]);
 }
 
 #[test]

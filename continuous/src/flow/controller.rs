@@ -12,13 +12,16 @@ pub(super) struct Controller {
     last_error: f64,
     /// Whether the step before was rejected, after which the next must not grow.
     rejected: bool,
+    /// How much the error of this step counts, and that of the step before.
+    proportional: f64,
+    integral: f64,
 }
 
-/// How much the error of this step counts. An error of order 5 suggests 1/5; what the integral
-/// part adds, the proportional part gives back.
-const PROPORTIONAL: f64 = 0.2 - 0.75 * INTEGRAL;
-/// How much the error of the step before counts: the value that Hairer and Wanner recommend.
-const INTEGRAL: f64 = 0.04;
+/// How much the error of the step before counts, as a fraction of what that of this step does: a
+/// fifth, as Hairer and Wanner recommend for order 5.
+const INTEGRAL: f64 = 0.2;
+/// How much of what the integral part adds the proportional part gives back.
+const GIVEN_BACK: f64 = 0.75;
 /// Aim a little below what is allowed, so that few steps are rejected.
 const SAFETY: f64 = 0.9;
 /// No step is longer than the one before by more than this factor.
@@ -29,9 +32,11 @@ const LARGEST_SHRINKAGE: f64 = 0.2;
 const SMALLEST_ERROR: f64 = 1e-4;
 
 impl Controller {
-    /// The controller before the first step.
-    pub(super) fn new() -> Self {
-        Controller { last_error: SMALLEST_ERROR.ln(), rejected: false }
+    /// The controller before the first step of a method whose error is of this order.
+    pub(super) fn new(order: f64) -> Self {
+        let integral = INTEGRAL / order;
+        let proportional = 1.0 / order - GIVEN_BACK * integral;
+        Controller { last_error: SMALLEST_ERROR.ln(), rejected: false, proportional, integral }
     }
 
     /// By which factor the next step is longer, after one with this error was accepted.
@@ -39,7 +44,8 @@ impl Controller {
     /// The error is a fraction of what is allowed, so at most 1.
     pub(super) fn accept(&mut self, error: f64) -> f64 {
         let logarithm = error.ln();
-        let wanted = SAFETY * (INTEGRAL * self.last_error - PROPORTIONAL * logarithm).exp();
+        let wanted =
+            SAFETY * (self.integral * self.last_error - self.proportional * logarithm).exp();
         let largest = if self.rejected { 1.0 } else { LARGEST_GROWTH };
         self.last_error = logarithm.max(SMALLEST_ERROR.ln());
         self.rejected = false;
@@ -50,6 +56,6 @@ impl Controller {
     pub(super) fn reject(&mut self, error: f64) -> f64 {
         self.rejected = true;
         // `max` ignores the NaN that an undefined error gives.
-        (SAFETY * error.powf(-PROPORTIONAL)).max(LARGEST_SHRINKAGE)
+        (SAFETY * error.powf(-self.proportional)).max(LARGEST_SHRINKAGE)
     }
 }

@@ -1,4 +1,4 @@
-//! The integrator: steps of Dormand and Prince's method, each as long as accuracy allows.
+//! The integrator: steps of an explicit or an implicit method, each as long as accuracy allows.
 
 use std::cell::RefCell;
 use std::mem;
@@ -6,18 +6,32 @@ use std::mem;
 use thiserror::Error;
 
 use super::controller::Controller;
-use super::dormand_prince::{
-    ERROR, FIFTH, FOURTH, NODES, SECOND, SIXTH, SOLUTION, STAGES, THIRD, combine,
-};
-use super::step::{Inside, Step};
+use super::explicit::Explicit;
+use super::implicit::Implicit;
+use super::step::{Inside, Stages, Step};
 use super::{Tolerances, VectorField};
+
+/// How an [`Integrator`] makes its steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Explicit where the flow is not stiff, and implicit where it is; both are noticed.
+    #[default]
+    Automatic,
+    /// Dormand and Prince's method of order 8.
+    Explicit,
+    /// The Rosenbrock method Rodas5P of order 5.
+    Implicit,
+}
 
 /// A solution of ẋ = f(t, x) in the making.
 ///
-/// The method is Dormand and Prince's Runge–Kutta pair of orders 5 and 4
-/// (doi:10.1016/0771-050X(80)90013-3), which advances with order 5; inside, a [`Step`] has order 5
-/// as well. The length of the steps keeps the error within the tolerances. Made for flows that are smooth and not stiff: at a kink of the field the steps become short, and
-/// in a stiff flow they stay short.
+/// Flows that are not stiff are solved by Dormand and Prince's explicit Runge–Kutta method of order
+/// 8 with error estimates of orders 5 and 3 (doi:10.1016/0771-050X(81)90010-3), stiff ones by
+/// Steinebach's Rosenbrock method Rodas5P of order 5 (doi:10.1007/s10543-023-00967-x), which solves
+/// eight systems of linear equations per step. A flow is *stiff* where stability and not accuracy
+/// limits explicit steps. Inside, a [`Step`] is the continuous extension of its method. The length
+/// of the steps keeps the error within the tolerances. At a kink of the field the steps become
+/// short.
 ///
 /// ```
 /// use pleach_continuous::flow::{Curve, Integrator, Tolerances};
@@ -35,36 +49,43 @@ use super::{Tolerances, VectorField};
 /// # Ok::<(), pleach_continuous::flow::IntegrationFailure>(())
 /// ```
 ///
-/// Memory is taken at construction; a step takes none.
+/// Memory is taken at construction, and when the method first becomes implicit; a step takes none.
 #[derive(Debug)]
 pub struct Integrator<'f, F: ?Sized> {
     field: &'f F,
     tolerances: Tolerances,
+    method: Method,
     controller: Controller,
     /// How long the next step should be; not yet known before the first.
     proposal: Option<f64>,
-    slope: Slope,
-    time: f64,
-    state: Vec<f64>,
+    /// Whether the rates of `present` are known.
+    is_begun: bool,
+    /// Where the next step begins.
+    present: Origin,
     /// Where the last step began.
-    origin_time: f64,
-    origin: Vec<f64>,
-    /// The state at which a stage is evaluated, in the end the one that may be accepted.
-    trial: Vec<f64>,
-    stages: [Vec<f64>; STAGES],
+    past: Origin,
+    /// The end of a step that may be accepted.
+    trial: Trial,
+    explicit: Explicit,
+    implicit: Option<Implicit>,
+    /// Whether steps are implicit.
+    is_implicit: bool,
+    /// How many steps have spoken for the other method, and how many since then have not.
+    objections: u32,
+    calm: u32,
     inside: RefCell<Inside>,
 }
 
-/// Which stage holds the rates at the present state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Slope {
-    /// None yet.
-    Unknown,
-    /// The first.
-    First,
-    /// The last, since a step ended here.
-    Last,
+/// Time, state and rates where a step begins or ends.
+#[derive(Clone, Debug)]
+pub(super) struct Origin {
+    pub(super) time: f64,
+    pub(super) state: Vec<f64>,
+    pub(super) rates: Vec<f64>,
 }
+
+/// The end of a step that is being tried.
+pub(super) type Trial = Origin;
 
 /// Steps of fewer spacings of the floating-point numbers around the present time cannot be told
 /// from rounding.
@@ -72,34 +93,65 @@ const SMALLEST_STEP: f64 = 4.0 * f64::EPSILON;
 /// A step that falls short of the limit by less than this fraction is stretched to end there, so
 /// that no tiny step follows.
 const STRETCH: f64 = 0.01;
+/// |h λ| near the boundary of the region in which the explicit method is stable, which is at 6.1.
+const STABLE: f64 = 5.0;
+/// So many steps near the boundary make a flow stiff, and so many others in a row clear it of the
+/// suspicion: Hairer and Wanner's numbers.
+const STIFF_STEPS: u32 = 15;
+const CALM_STEPS: u32 = 6;
+/// With |h λ| from here on, the continuous extension of an explicit step may magnify the errors of
+/// its stages.
+const SUSPECT: f64 = 2.0;
+/// Implicit steps with |h λ| below this are as long as explicit ones would be.
+const HARMLESS: f64 = 1.0;
+/// After so many of them in a row, steps are explicit again.
+const HARMLESS_STEPS: u32 = 25;
 
 impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
-    /// The solution that is in `state` at `start_time`, in seconds since the start of the flow.
+    /// The solution that is in `state` at `start_time`, in seconds since the start of the flow, by
+    /// the method that suits the flow.
     pub fn new(field: &'f F, start_time: f64, state: &[f64], tolerances: Tolerances) -> Self {
+        let present = Origin { time: start_time, state: state.to_vec(), rates: state.to_vec() };
         Integrator {
             field,
             tolerances,
-            controller: Controller::new(),
+            method: Method::Automatic,
+            controller: Controller::new(EXPLICIT_ORDER),
             proposal: None,
-            slope: Slope::Unknown,
-            time: start_time,
-            state: state.to_vec(),
-            origin_time: start_time,
-            origin: state.to_vec(),
-            trial: state.to_vec(),
-            stages: std::array::from_fn(|_| vec![0.0; state.len()]),
+            is_begun: false,
+            past: present.clone(),
+            trial: present.clone(),
+            present,
+            explicit: Explicit::new(state.len()),
+            implicit: None,
+            is_implicit: false,
+            objections: 0,
+            calm: 0,
             inside: RefCell::new(Inside::new(state.len())),
         }
     }
 
+    /// The same solution by `method`.
+    #[must_use]
+    pub fn with_method(mut self, method: Method) -> Self {
+        self.method = method;
+        self.turn(method == Method::Implicit);
+        self
+    }
+
     /// The present time, in seconds since the start of the flow.
     pub fn time(&self) -> f64 {
-        self.time
+        self.present.time
     }
 
     /// The present state.
     pub fn state(&self) -> &[f64] {
-        &self.state
+        &self.present.state
+    }
+
+    /// Whether the next step is implicit.
+    pub fn is_implicit(&self) -> bool {
+        self.is_implicit
     }
 
     /// Takes the longest step that the tolerances allow, at most to `limit`.
@@ -111,11 +163,12 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
     ///
     /// [`IntegrationFailure`]; time and state then remain as they were.
     pub fn step(&mut self, limit: f64) -> Result<Step<'_, F>, IntegrationFailure> {
-        let remaining = limit - self.time;
+        let time = self.present.time;
+        let remaining = limit - time;
         if remaining.is_nan() || remaining <= 0.0 {
-            return Err(IntegrationFailure::LimitNotAhead { time: self.time, limit });
+            return Err(IntegrationFailure::LimitNotAhead { time, limit });
         }
-        self.know_first_stage()?;
+        self.begin()?;
         let longest = remaining.min(self.tolerances.largest_step());
         let proposal = match self.proposal {
             Some(proposal) => proposal,
@@ -127,13 +180,12 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
             if lands {
                 step = remaining;
             }
-            let end = if lands { limit } else { self.time + step };
-            let error = self.attempt(step, end);
+            self.trial.time = if lands { limit } else { time + step };
+            let error = self.attempt(step);
             if error <= 1.0 {
                 let next = step * self.controller.accept(error);
                 self.proposal = Some(if lands { next.max(proposal) } else { next });
-                self.accept(end);
-                return Ok(self.last_step());
+                return Ok(self.accept(step));
             }
             step *= self.controller.reject(error);
             if step < self.smallest_step() {
@@ -142,19 +194,16 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
         }
     }
 
-    /// Evaluates the field at the present state, unless the last step has done so.
-    fn know_first_stage(&mut self) -> Result<(), IntegrationFailure> {
-        match self.slope {
-            Slope::First => {}
-            Slope::Last => self.stages.swap(0, STAGES - 1),
-            Slope::Unknown => {
-                self.field.rates(self.time, &self.state, &mut self.stages[0]);
-                if !self.stages[0].iter().all(|rate| rate.is_finite()) {
-                    return Err(self.undefined());
-                }
+    /// Evaluates the field at the start, unless that has been done.
+    fn begin(&mut self) -> Result<(), IntegrationFailure> {
+        if !self.is_begun {
+            let Origin { time, state, rates } = &mut self.present;
+            self.field.rates(*time, state, rates);
+            if !rates.iter().all(|rate| rate.is_finite()) {
+                return Err(self.undefined());
             }
+            self.is_begun = true;
         }
-        self.slope = Slope::First;
         Ok(())
     }
 
@@ -165,109 +214,131 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
     /// second derivative; the guess is a step whose error these two derivatives suggest to be a
     /// hundredth of what is allowed.
     fn first_step(&mut self, longest: f64) -> f64 {
-        let [rates, moved_rates, ..] = &mut self.stages;
-        let size = weighted_norm(&self.tolerances, &self.state, |i| self.state[i]);
-        let speed = weighted_norm(&self.tolerances, &self.state, |i| rates[i]);
+        let Origin { time, state, rates } = &self.present;
+        let size = weighted_norm(&self.tolerances, state, |i| state[i]);
+        let speed = weighted_norm(&self.tolerances, state, |i| rates[i]);
         let small = size < 1e-5 || speed < 1e-5;
         let euler = if small { 1e-6 } else { 0.01 * size / speed }.min(longest);
 
-        combine(&mut self.trial, &self.state, euler, [1.0], [rates]);
-        self.field.rates(self.time + euler, &self.trial, moved_rates);
-        let change = |i: usize| (moved_rates[i] - rates[i]) / euler;
-        let bend = weighted_norm(&self.tolerances, &self.state, change);
+        let moved = state.iter().zip(rates).map(|(x, rate)| x + euler * rate);
+        self.trial.state.iter_mut().zip(moved).for_each(|(place, x)| *place = x);
+        self.field.rates(time + euler, &self.trial.state, &mut self.trial.rates);
+        let change = |i: usize| (self.trial.rates[i] - rates[i]) / euler;
+        let bend = weighted_norm(&self.tolerances, state, change);
 
         let largest = speed.max(bend);
-        let guess = if largest <= 1e-15 { euler * 1e-3 } else { (0.01 / largest).powf(0.2) };
+        let exponent = 1.0 / self.order();
+        let guess = if largest <= 1e-15 { euler * 1e-3 } else { (0.01 / largest).powf(exponent) };
         guess.max(1e-6).min(100.0 * euler)
     }
 
-    /// Computes all stages of a step to `end`, and its error as a fraction of what is allowed.
-    fn attempt(&mut self, step: f64, end: f64) -> f64 {
-        let (field, time, state, trial) = (self.field, self.time, &self.state, &mut self.trial);
-        let at = |stage: usize| time + NODES[stage] * step;
-        let [k1, k2, k3, k4, k5, k6, k7] = &mut self.stages;
-
-        combine(trial, state, step, SECOND, [k1]);
-        field.rates(at(1), trial, k2);
-        combine(trial, state, step, THIRD, [k1, k2]);
-        field.rates(at(2), trial, k3);
-        combine(trial, state, step, FOURTH, [k1, k2, k3]);
-        field.rates(at(3), trial, k4);
-        combine(trial, state, step, FIFTH, [k1, k2, k3, k4]);
-        field.rates(at(4), trial, k5);
-        combine(trial, state, step, SIXTH, [k1, k2, k3, k4, k5]);
-        field.rates(end, trial, k6);
-        combine(trial, state, step, SOLUTION, [k1, k3, k4, k5, k6]);
-        field.rates(end, trial, k7);
-        estimate(&self.tolerances, state, trial, step, [k1, k3, k4, k5, k6, k7])
+    /// The error of a step as a fraction of what is allowed; not finite where the field is not.
+    fn attempt(&mut self, step: f64) -> f64 {
+        let (field, tolerances, present) = (self.field, &self.tolerances, &self.present);
+        let error = match &mut self.implicit {
+            Some(implicit) if self.is_implicit => {
+                implicit.attempt(field, tolerances, present, step, &mut self.trial)
+            }
+            _ => self.explicit.attempt(field, tolerances, present, step, &mut self.trial),
+        };
+        if error <= 1.0 {
+            let Trial { time, state, rates } = &mut self.trial;
+            field.rates(*time, state, rates);
+            // The next step begins with these rates, and the sum is finite only if all are.
+            return error + 0.0 * rates.iter().sum::<f64>();
+        }
+        error
     }
 
-    /// Makes the trial state the present one.
-    fn accept(&mut self, end: f64) {
-        self.origin_time = mem::replace(&mut self.time, end);
-        mem::swap(&mut self.origin, &mut self.state);
-        mem::swap(&mut self.state, &mut self.trial);
-        self.slope = Slope::Last;
+    /// Makes the trial the present.
+    fn accept(&mut self, step: f64) -> Step<'_, F> {
+        let was_implicit = self.is_implicit;
+        let motion = match &mut self.implicit {
+            Some(implicit) if was_implicit => {
+                let motion = implicit.stiffness(step);
+                implicit.forget();
+                motion
+            }
+            _ => self.explicit.stiffness(step, &self.trial),
+        };
+        mem::swap(&mut self.past, &mut self.present);
+        mem::swap(&mut self.present, &mut self.trial);
         self.inside.get_mut().forget();
-    }
-
-    fn last_step(&self) -> Step<'_, F> {
-        let [k1, _, k3, k4, k5, k6, k7] = &self.stages;
+        self.judge(motion);
+        let stages = match &self.implicit {
+            Some(implicit) if was_implicit => Stages::Implicit(implicit),
+            _ => Stages::Explicit { explicit: &self.explicit, is_suspect: motion > SUSPECT },
+        };
         Step {
             field: self.field,
-            start: self.origin_time,
-            end: self.time,
-            first: &self.origin,
-            last: &self.state,
-            stages: [k1, k3, k4, k5, k6, k7],
+            start: self.past.time,
+            end: self.present.time,
+            first: &self.past.state,
+            last: &self.present.state,
+            rates: [&self.past.rates, &self.present.rates],
+            stages,
             inside: &self.inside,
             tolerances: self.tolerances,
         }
     }
 
+    /// Turns to the other method after enough steps that speak for it.
+    fn judge(&mut self, motion: f64) {
+        let (objects, most) = if self.is_implicit {
+            (motion < HARMLESS, HARMLESS_STEPS)
+        } else {
+            (motion > STABLE, STIFF_STEPS)
+        };
+        if objects {
+            self.objections += 1;
+            self.calm = 0;
+        } else {
+            self.calm += 1;
+            if self.is_implicit || self.calm >= CALM_STEPS {
+                self.objections = 0;
+            }
+        }
+        if self.objections >= most && self.method == Method::Automatic {
+            self.turn(!self.is_implicit);
+        }
+    }
+
+    fn turn(&mut self, to_implicit: bool) {
+        if to_implicit && self.implicit.is_none() {
+            self.implicit = Some(Implicit::new(self.present.state.len()));
+        }
+        self.is_implicit = to_implicit;
+        self.objections = 0;
+        self.controller = Controller::new(self.order());
+    }
+
+    fn order(&self) -> f64 {
+        if self.is_implicit { IMPLICIT_ORDER } else { EXPLICIT_ORDER }
+    }
+
     fn smallest_step(&self) -> f64 {
-        (SMALLEST_STEP * self.time.abs()).max(f64::MIN_POSITIVE)
+        (SMALLEST_STEP * self.present.time.abs()).max(f64::MIN_POSITIVE)
     }
 
     fn failure(&self, error: f64, step: f64) -> IntegrationFailure {
         if error.is_finite() {
-            IntegrationFailure::StepTooSmall { time: self.time, state: self.state.clone(), step }
+            let Origin { time, state, .. } = self.present.clone();
+            IntegrationFailure::StepTooSmall { time, state, step }
         } else {
             self.undefined()
         }
     }
 
     fn undefined(&self) -> IntegrationFailure {
-        IntegrationFailure::Undefined { time: self.time, state: self.state.clone() }
+        let Origin { time, state, .. } = self.present.clone();
+        IntegrationFailure::Undefined { time, state }
     }
 }
 
-/// The largest error of a component, as a fraction of what is allowed; not finite where a stage is
-/// not.
-fn estimate(
-    tolerances: &Tolerances,
-    before: &[f64],
-    after: &[f64],
-    step: f64,
-    stages: [&[f64]; 6],
-) -> f64 {
-    let dimension = after.len();
-    let before = &before[..dimension];
-    let stages = stages.map(|stage| &stage[..dimension]);
-    let weights = ERROR.map(|weight| step * weight);
-    // `max` ignores NaN; the sum does not.
-    let (mut largest, mut sum) = (0.0_f64, 0.0);
-    for i in 0..dimension {
-        let mut error = 0.0;
-        for stage in 0..6 {
-            error += weights[stage] * stages[stage][i];
-        }
-        let fraction = error.abs() / tolerances.allowed(before[i].abs().max(after[i].abs()));
-        largest = largest.max(fraction);
-        sum += fraction + 0.0 * after[i];
-    }
-    if sum.is_finite() { largest } else { sum }
-}
+/// The order of the error that the explicit method estimates.
+const EXPLICIT_ORDER: f64 = 8.0;
+/// The order of the error that the implicit method estimates.
+const IMPLICIT_ORDER: f64 = 5.0;
 
 /// The largest component, as a multiple of the error allowed in `state`.
 fn weighted_norm(tolerances: &Tolerances, state: &[f64], component: impl Fn(usize) -> f64) -> f64 {

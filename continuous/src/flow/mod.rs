@@ -39,17 +39,21 @@ mod constant;
 mod controller;
 mod dormand_prince;
 mod event;
+mod explicit;
+mod factorisation;
+mod implicit;
 mod integrator;
 mod isolation;
 mod linear;
 mod piece;
 mod root;
+mod rosenbrock;
 mod step;
 mod tolerances;
 
 pub use constant::ConstantFlow;
 pub use event::{EventSearch, InvalidSearch, Onset, first_instant};
-pub use integrator::{IntegrationFailure, Integrator};
+pub use integrator::{IntegrationFailure, Integrator, Method};
 pub use isolation::{Doubt, Finding, Lost, Uncertainty, Watch, isolate};
 pub use linear::{InvalidFlow, LinearFlow};
 pub use piece::Piece;
@@ -78,6 +82,12 @@ pub trait VectorField {
     /// state. A rate that is not a finite number says that the field is undefined there; nothing
     /// may be read from what `rates` held before.
     fn rates(&self, time: f64, state: &[f64], rates: &mut [f64]);
+
+    /// Writes ∂f/∂x at `time` and `state` to `jacobian`, row by row, if the field knows it, and
+    /// says so; otherwise an implicit method takes differences.
+    fn jacobian(&self, _time: f64, _state: &[f64], _jacobian: &mut [f64]) -> bool {
+        false
+    }
 }
 
 impl<F: Fn(f64, &[f64], &mut [f64])> VectorField for F {

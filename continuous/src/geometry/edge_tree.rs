@@ -55,22 +55,38 @@ impl EdgeTree {
     /// Whether `point` lies inside the rings that the edges form (even-odd rule). Exact, but for
     /// points on an edge either answer may come.
     pub(super) fn encloses(&self, point: Point) -> bool {
-        let inside = Cell::new(false);
+        let mut inside = false;
+        if self.surrounds(point) {
+            self.for_each_right_of(point, |_| inside = !inside);
+        }
+        inside
+    }
+
+    /// Whether `point` lies in the box around all edges.
+    pub(super) fn surrounds(&self, point: Point) -> bool {
+        let holds = |bounds: &Bounds| {
+            (0..2).all(|axis| bounds.low[axis] <= point[axis] && point[axis] <= bounds.high[axis])
+        };
+        self.nodes.first().is_some_and(|root| holds(&root.bounds))
+    }
+
+    /// Visits every edge that a ray from `point` to the right crosses, by its index. Exact, but for
+    /// points on an edge, which may be visited or not.
+    pub(super) fn for_each_right_of(&self, point: Point, mut visit: impl FnMut(usize)) {
         self.any(
             |bounds| {
                 bounds.low.y <= point.y && point.y <= bounds.high.y && point.x <= bounds.high.x
             },
-            |_, edge| {
+            |index, edge| {
                 let rises = edge.to.y > point.y;
                 if (edge.from.y > point.y) != rises
                     && (side(edge.from, edge.to, point) > 0.0) == rises
                 {
-                    inside.set(!inside.get());
+                    visit(index);
                 }
                 false
             },
         );
-        inside.get()
     }
 
     /// Distance from `point` to the nearest edge; infinite without edges.
@@ -80,7 +96,9 @@ impl EdgeTree {
 
     /// The nearest edge, by its index, and its point nearest to `point`.
     pub(super) fn nearest(&self, point: Point) -> Option<(usize, Point)> {
-        let best = Cell::new((f64::INFINITY, None));
+        // No farther than the nearest in the leaf that seems nearest: so most boxes are left out.
+        let bound = self.leaf_near(point).iter().map(|entry| entry.edge.distance_squared(point));
+        let best = Cell::new((bound.fold(f64::INFINITY, f64::min).next_up(), None));
         self.any(
             |bounds| bounds.distance_squared(point) < best.get().0,
             |index, edge| {
@@ -107,6 +125,18 @@ impl EdgeTree {
             },
         );
         best.get()
+    }
+
+    /// Whether `path` meets an edge or comes closer to one than `distance`.
+    pub(super) fn is_near(&self, path: &Segment, distance: f64) -> bool {
+        let around = Bounds::of(path);
+        self.any(
+            |bounds| bounds.gap(&around) <= distance,
+            |_, edge| {
+                let apart = edge.distance_to(path);
+                apart < distance || apart == 0.0
+            },
+        )
     }
 
     /// Visits every edge with a point within `radius` of `center`.
@@ -141,6 +171,20 @@ impl EdgeTree {
                 false
             },
         );
+    }
+
+    /// The edges of a leaf near `point`: the one reached by way of the boxes that are nearer.
+    fn leaf_near(&self, point: Point) -> &[TaggedEdge] {
+        let distance = |node: usize| self.nodes[node].bounds.distance_squared(point);
+        let mut at = 0;
+        while let Some(node) = self.nodes.get(at) {
+            if node.last > node.first {
+                return &self.edges[node.first..node.last];
+            }
+            let (one, other) = (at + 1, self.nodes[at + 1].next);
+            at = if distance(one) <= distance(other) { one } else { other };
+        }
+        &[]
     }
 
     /// Walks the tree below every box that `enter` admits, until `visit` says that an edge settles

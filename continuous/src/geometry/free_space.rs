@@ -14,7 +14,8 @@ use thiserror::Error;
 
 use super::edge_tree::EdgeTree;
 use super::erosion::{Region, erode};
-use super::visibility::VisibilityGraph;
+use super::triangulation::Seen;
+use super::visibility::{Corner, Link, VisibilityGraph};
 use super::workspace::{COORDINATE_LIMIT, edges_of};
 use super::{Segment, Workspace};
 use crate::Point;
@@ -23,6 +24,9 @@ use crate::Point;
 /// robots are sent. Large against rounding (1e-16), small against anything that a robot would
 /// notice.
 const RELATIVE_TOLERANCE: f64 = 1e-6;
+
+/// The fractions that may be asked for: rounding takes what is smaller.
+const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-12..=1e-3;
 
 /// As a fraction of τ: the deviation from a straight line below which a vertex of the outline is
 /// left out. Small, so that the sight set stays around the planning set.
@@ -55,6 +59,15 @@ pub enum FreeSpaceError {
     InvalidClearance {
         /// The clearance asked for.
         clearance: f64,
+    },
+    /// The tolerance is too small or too large a part of the workspace.
+    #[error(
+        "the tolerance is {fraction} of the extent; it is at least {} and at most {}",
+        TOLERANCES.start(), TOLERANCES.end()
+    )]
+    InvalidTolerance {
+        /// The fraction asked for.
+        fraction: f64,
     },
     /// No room for a robot anywhere.
     #[error(
@@ -100,18 +113,44 @@ impl FreeSpace {
     ///
     /// If the clearance is not a length, if no place keeps it, or if rounding spoils the result.
     pub fn new(workspace: &Workspace, clearance: f64) -> Result<FreeSpace, FreeSpaceError> {
+        FreeSpace::with_tolerance(workspace, clearance, RELATIVE_TOLERANCE)
+    }
+
+    /// As [`FreeSpace::new`], with the tolerance τ as a fraction of the extent of the workspace
+    /// instead of a millionth: between 1e-12 and 1e-3.
+    ///
+    /// A shortest path is longer than the one that keeps ρ alone, or shorter, by at most a few τ
+    /// for each of its corners. With 1e-12, geodesics are exact to about 1e-11 of the extent for
+    /// each corner. That is for computing; robots, whose places are rounded, are better off with
+    /// room between the two nested sets.
+    ///
+    /// # Errors
+    ///
+    /// As [`FreeSpace::new`], and if the fraction is out of its range.
+    pub fn with_tolerance(
+        workspace: &Workspace,
+        clearance: f64,
+        fraction: f64,
+    ) -> Result<FreeSpace, FreeSpaceError> {
         if !(clearance.is_finite() && clearance >= 0.0) {
             return Err(FreeSpaceError::InvalidClearance { clearance });
         }
+        if !TOLERANCES.contains(&fraction) {
+            return Err(FreeSpaceError::InvalidTolerance { fraction });
+        }
         let extent = workspace.extent();
-        let tolerance = RELATIVE_TOLERANCE * extent;
+        if clearance > extent {
+            return Err(FreeSpaceError::Empty { clearance, extent });
+        }
+        let tolerance = fraction * extent;
         let outline =
             |slack: f64| Outline::new(erode(workspace, clearance + slack, NEGLIGIBLE * tolerance));
         let (planning, sight) = (outline(tolerance), outline(tolerance / 2.0));
         if planning.rings.is_empty() {
             return Err(FreeSpaceError::Empty { clearance, extent });
         }
-        let graph = VisibilityGraph::new(&planning.rings, &sight.tree, tolerance);
+        let walls: Vec<Segment> = sight.edges().collect();
+        let graph = VisibilityGraph::new(&planning.rings, &walls, tolerance);
         let reach = REACH * (clearance + tolerance);
         let free_space = FreeSpace { clearance, tolerance, reach, planning, sight, graph };
         free_space.certify(workspace)?;
@@ -168,7 +207,7 @@ impl FreeSpace {
     /// out](super::reentry).
     pub fn sees(&self, from: Point, to: Point) -> bool {
         if self.contains(from) {
-            return self.is_clear(&Segment::new(from, to));
+            return self.sight.tree.surrounds(to) && self.is_clear(&Segment::new(from, to));
         }
         let (Some(entry), Some(exit)) = (self.entry(from), self.entry(to)) else { return false };
         (to - exit).norm() <= (from - entry).norm() && self.is_clear(&Segment::new(entry, exit))
@@ -179,8 +218,23 @@ impl FreeSpace {
         !self.sight.tree.is_crossed_by(path)
     }
 
-    pub(super) fn graph(&self) -> &VisibilityGraph {
-        &self.graph
+    pub(super) fn corners(&self) -> &[Corner] {
+        self.graph.corners()
+    }
+
+    /// The corners that shortest paths may go to from a corner.
+    pub(super) fn links(&self, corner: usize) -> &[Link] {
+        self.graph.links(corner, &self.sight.tree)
+    }
+
+    /// The corners that a robot at a point of the sight set sees, ascending, with the distances.
+    pub(super) fn corners_seen_from(&self, point: Point) -> impl Iterator<Item = (usize, f64)> {
+        let seen =
+            self.sight.tree.nearest(point).map(|(wall, _)| self.graph.seen_from(point, wall));
+        seen.into_iter().flatten().filter_map(move |Seen { place, may_touch }| {
+            let path = Segment::new(point, self.corners()[place].at);
+            (!may_touch || self.is_clear(&path)).then(|| (place, path.length()))
+        })
     }
 
     /// Visits the edges of the sight set within `radius` of `center`.
@@ -194,26 +248,30 @@ impl FreeSpace {
     }
 
     /// Checks that both outlines keep the clearance and that the planning set lies within the
-    /// sight set. An outline that keeps the clearance encloses no part of ∂W unless it encloses
-    /// a whole polygon of it, which is checked by one vertex of each.
+    /// sight set. What keeps away from ∂W lies wholly inside or outside W, ring by ring, so one
+    /// vertex of each tells. An outline that keeps the clearance encloses no part of ∂W unless it
+    /// encloses a whole polygon of it, which is checked by one vertex of each, too.
     fn certify(&self, workspace: &Workspace) -> Result<(), FreeSpaceError> {
-        let failed = |at: Point| FreeSpaceError::Uncertified { at, tolerance: self.tolerance };
-        for edge in self.sight.edges().chain(self.planning.edges()) {
-            if workspace.segment_clearance(edge.from, edge.to) < self.clearance {
-                return Err(failed(edge.from));
+        let failed = |at: Point| Err(FreeSpaceError::Uncertified { at, tolerance: self.tolerance });
+        for outline in [&self.sight, &self.planning] {
+            if let Some(edge) = outline.edges().find(|edge| workspace.is_near(edge, self.clearance))
+            {
+                return failed(edge.from);
+            }
+            if let Some(ring) = outline.rings.iter().find(|ring| !workspace.contains(ring[0])) {
+                return failed(ring[0]);
             }
         }
-        for edge in self.planning.edges() {
-            if !(self.contains(edge.from) && self.is_clear(&edge)) {
-                return Err(failed(edge.from));
-            }
+        let strays = |edge: &Segment| !self.is_clear(edge);
+        if let Some(edge) = self.planning.edges().find(strays) {
+            return failed(edge.from);
         }
-        for ring in workspace.polygons() {
-            if self.contains(ring[0]) {
-                return Err(failed(ring[0]));
-            }
+        let enclosed = |ring: &&Vec<Point>| self.contains(ring[0]);
+        let not_enclosed = self.planning.rings.iter().find(|ring| !enclosed(ring));
+        match not_enclosed.or_else(|| workspace.polygons().iter().find(enclosed)) {
+            Some(ring) => failed(ring[0]),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 

@@ -65,7 +65,7 @@ impl Destination {
     }
 
     fn waypoints_from(&self, corner: usize, exit: Point, space: &FreeSpace) -> Vec<Point> {
-        let corners = space.graph().corners();
+        let corners = space.corners();
         let chain = std::iter::successors(Some(corner), |&at| self.ways[at].next);
         chain.filter_map(|at| corners.get(at)).map(|corner| corner.at).chain([exit]).collect()
     }
@@ -98,24 +98,20 @@ impl FreeSpace {
     /// The shortest ways to `goal` from everywhere, for many questions about the same goal.
     /// A goal farther outside the free space than the reach of re-entry is reached from nowhere.
     pub fn destination(&self, goal: Point) -> Destination {
-        let graph = self.graph();
         let unreached = Way { length: f64::INFINITY, next: None };
-        let mut ways = vec![unreached; graph.corners().len()];
+        let mut ways = vec![unreached; self.corners().len()];
         let exit = self.entry(goal);
         let Some(start) = exit else { return Destination { goal, exit, ways } };
         let mut frontier = BinaryHeap::new();
-        for (index, corner) in graph.corners().iter().enumerate() {
-            let path = Segment::new(start, corner.at);
-            if self.is_clear(&path) {
-                ways[index].length = path.length();
-                frontier.push(Ranked { cost: path.length(), item: index });
-            }
+        for (corner, length) in self.corners_seen_from(start) {
+            ways[corner].length = length;
+            frontier.push(Ranked { cost: length, item: corner });
         }
         while let Some(Ranked { cost, item: corner }) = frontier.pop() {
             if cost > ways[corner].length {
                 continue;
             }
-            for link in graph.links(corner) {
+            for link in self.links(corner) {
                 let length = cost + link.length;
                 if length < ways[link.corner].length {
                     ways[link.corner] = Way { length, next: Some(corner) };
@@ -146,7 +142,7 @@ impl FreeSpace {
         if self.is_clear(&Segment::new(from, exit)) {
             return Some(Geodesic::new(from, vec![exit]));
         }
-        let corners = self.graph().corners();
+        let corners = self.corners();
         let mut candidates: BinaryHeap<Ranked<usize>> = corners
             .iter()
             .zip(&destination.ways)

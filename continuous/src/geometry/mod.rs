@@ -4,6 +4,7 @@
 //! | chapter | what it holds |
 //! | --- | --- |
 //! | [`workspace`] | the polygon with holes W that bounds the robots' world, validated |
+//! | [`repair`] | workspaces from maps whose polygons touch |
 //! | [`free_space`] | W_f, the points that keep a clearance ρ from ∂W (Algorithm 6, repaired) |
 //! | [`geodesic`] | shortest paths in W_f (Definition 4.1), and the way to a fixed destination |
 //! | [`reentry`] | robots slightly outside W_f, and how they come back |
@@ -47,9 +48,11 @@ pub mod geodesic;
 pub mod neighbours;
 mod ranked;
 pub mod reentry;
+pub mod repair;
 mod search;
 pub mod segment;
 pub mod shape;
+mod triangulation;
 mod visibility;
 pub mod workspace;
 
@@ -57,6 +60,7 @@ pub use cell::{convex_region, voronoi_half_planes};
 pub use free_space::{FreeSpace, FreeSpaceError};
 pub use geodesic::{Destination, Geodesic};
 pub use neighbours::Neighbours;
+pub use repair::Repair;
 pub use segment::Segment;
 pub use shape::{Capsule, Disc, HalfPlane};
 pub use workspace::{Polygon, Workspace, WorkspaceError};

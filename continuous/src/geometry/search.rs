@@ -60,7 +60,7 @@ struct Step {
 impl<'a> Search<'a> {
     fn new(space: &'a FreeSpace, from: Point, to: Point, discs: &'a [Disc]) -> Search<'a> {
         let mut nodes = vec![from, to];
-        nodes.extend(space.graph().corners().iter().map(|corner| corner.at));
+        nodes.extend(space.corners().iter().map(|corner| corner.at));
         let first_rim = nodes.len();
         let is_usable = |corner: &Point| {
             space.contains(*corner) && avoids(&Segment::new(*corner, *corner), discs)
@@ -101,7 +101,7 @@ impl<'a> Search<'a> {
     fn for_each_step(&self, from: usize, mut visit: impl FnMut(Step)) {
         visit(Step { to: GOAL, from });
         if self.is_corner(from) {
-            for link in self.space.graph().links(from - FIRST_CORNER) {
+            for link in self.space.links(from - FIRST_CORNER) {
                 visit(Step { to: link.corner + FIRST_CORNER, from });
             }
         } else {

@@ -3,10 +3,16 @@
 //! A shortest path bends only at reflex corners, and each of its segments is tangent to the
 //! obstacle at both ends: only such *taut* links are kept.
 
+use std::sync::OnceLock;
+
 use super::Segment;
 use super::edge_tree::EdgeTree;
 use super::segment::side;
-use crate::Point;
+use super::triangulation::{Seen, Triangulation};
+use crate::{Point, Vector};
+
+/// By how much, relatively, directions that are left out miss the tolerance: more than rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// A reflex vertex of the planning outline, around which shortest paths bend.
 #[derive(Debug, Clone, Copy)]
@@ -24,40 +30,72 @@ pub(super) struct Link {
 }
 
 /// The reflex corners of the free space, and the taut links between those that see each other.
+///
+/// Links are found when somebody asks for them first, corner by corner: in a large hall of pillars
+/// there are millions, and most are never needed.
 #[derive(Debug, Clone)]
 pub(super) struct VisibilityGraph {
     corners: Vec<Corner>,
-    links: Vec<Vec<Link>>,
+    links: Vec<OnceLock<Vec<Link>>>,
+    /// The walls, with the corners as places; `None` if there is nothing to triangulate.
+    triangulation: Option<Triangulation>,
+    tolerance: f64,
 }
 
 impl VisibilityGraph {
-    /// The graph of the corners of `rings` (the set on their left) that see each other between the
-    /// edges of `walls`, a slightly larger set. Links count as taut up to `tolerance`.
-    pub(super) fn new(rings: &[Vec<Point>], walls: &EdgeTree, tolerance: f64) -> VisibilityGraph {
+    /// The graph of the corners of `rings` (the set on their left) that see each other between
+    /// `walls`, the edges of a slightly larger set. Links count as taut up to `tolerance`.
+    pub(super) fn new(rings: &[Vec<Point>], walls: &[Segment], tolerance: f64) -> VisibilityGraph {
         let corners: Vec<Corner> = rings.iter().flat_map(|ring| reflex_corners(ring)).collect();
-        let mut links = vec![Vec::new(); corners.len()];
-        for (index, corner) in corners.iter().enumerate() {
-            for (other_index, other) in corners.iter().enumerate().take(index) {
-                let path = Segment::new(corner.at, other.at);
-                if corner.is_touched_by(&path, tolerance)
-                    && other.is_touched_by(&path, tolerance)
-                    && !walls.is_crossed_by(&path)
-                {
-                    let length = path.length();
-                    links[index].push(Link { corner: other_index, length });
-                    links[other_index].push(Link { corner: index, length });
-                }
-            }
+        let places: Vec<Point> = corners.iter().map(|corner| corner.at).collect();
+        let triangulation = Triangulation::new(walls, &places);
+        let links = vec![OnceLock::new(); corners.len()];
+        VisibilityGraph { corners, links, triangulation, tolerance }
+    }
+
+    /// The links of a corner, in ascending order of the other one. Takes the walls that the graph
+    /// was made with.
+    pub(super) fn links(&self, corner: usize, walls: &EdgeTree) -> &[Link] {
+        self.links[corner].get_or_init(|| self.find_links(corner, walls))
+    }
+
+    fn find_links(&self, index: usize, walls: &EdgeTree) -> Vec<Link> {
+        let corner = &self.corners[index];
+        let link_to = |Seen { place, may_touch }: Seen| {
+            let other = &self.corners[place];
+            let path = Segment::new(corner.at, other.at);
+            let is_link = place != index
+                && corner.is_touched_by(&path, self.tolerance)
+                && other.is_touched_by(&path, self.tolerance)
+                && !(may_touch && walls.is_crossed_by(&path));
+            is_link.then(|| Link { corner: place, length: path.length() })
+        };
+        self.seen_from_corner(index).into_iter().filter_map(link_to).collect()
+    }
+
+    /// Corners that are seen from a corner in taut directions, ascending, and perhaps more.
+    fn seen_from_corner(&self, index: usize) -> Vec<Seen> {
+        let skips = |right: Vector, left: Vector| {
+            self.corners[index].is_between(right, left, self.tolerance)
+        };
+        match &self.triangulation {
+            Some(triangulation) => triangulation.seen_from_place(index, skips),
+            None => self.all_corners(),
         }
-        VisibilityGraph { corners, links }
+    }
+
+    /// Corners that are seen from a point near a wall, ascending, and perhaps more.
+    pub(super) fn seen_from(&self, point: Point, wall: usize) -> Vec<Seen> {
+        let seen = self.triangulation.as_ref().and_then(|it| it.seen_from(point, wall));
+        seen.unwrap_or_else(|| self.all_corners())
+    }
+
+    fn all_corners(&self) -> Vec<Seen> {
+        (0..self.corners.len()).map(|place| Seen { place, may_touch: true }).collect()
     }
 
     pub(super) fn corners(&self) -> &[Corner] {
         &self.corners
-    }
-
-    pub(super) fn links(&self, corner: usize) -> &[Link] {
-        &self.links[corner]
     }
 }
 
@@ -70,6 +108,23 @@ impl Corner {
         let after = normal.dot(&(self.after - self.at));
         before.min(after) >= -tolerance || before.max(after) <= tolerance
     }
+
+    /// Whether all directions from `right` to `left` lead into the obstacle here, or away from its
+    /// inside, by more than `tolerance`: for none of them is the corner touched.
+    ///
+    /// The obstacle's edges then lie on different sides of both limits, the same edge on the left
+    /// of both; how far they reach to that side is a concave function of the direction.
+    fn is_between(&self, right: Vector, left: Vector, tolerance: f64) -> bool {
+        let least = tolerance * (1.0 + ROUNDING);
+        let (before, after) = (self.before - self.at, self.after - self.at);
+        let lie_apart = |on_left: &Vector, on_right: &Vector| {
+            [right, left].iter().all(|direction| {
+                let reach = least * direction.norm();
+                direction.perp(on_left) > reach && direction.perp(on_right) < -reach
+            })
+        };
+        lie_apart(&before, &after) || lie_apart(&after, &before)
+    }
 }
 
 fn reflex_corners(ring: &[Point]) -> impl Iterator<Item = Corner> {
@@ -81,4 +136,59 @@ fn reflex_corners(ring: &[Point]) -> impl Iterator<Item = Corner> {
             after: ring[(index + 1) % count],
         })
         .filter(|corner| side(corner.before, corner.at, corner.after) < 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{FreeSpace, Workspace};
+
+    /// A hall with square pillars, each turned by its number times `turn`, and free places between.
+    fn hall(pillars: usize, turn: f64) -> (FreeSpace, Vec<Point>) {
+        let side = (pillars as f64).sqrt().ceil();
+        let middle = |index: usize| {
+            Point::new((index as f64 % side).floor() + 0.5, (index as f64 / side).floor() + 0.5)
+        };
+        let square = |center: Point, turn: f64, radius: f64| -> Vec<Point> {
+            let angle = |corner: i32| (f64::from(corner) + turn) * std::f64::consts::FRAC_PI_2;
+            let corner = |at: i32| center + Vector::new(angle(at).cos(), angle(at).sin()) * radius;
+            (0..4).map(corner).collect()
+        };
+        let center = Point::new(side / 2.0, side / 2.0);
+        let boundary = square(center, 0.5, side);
+        let holes = (0..pillars).map(|index| square(middle(index), 0.5 + turn * index as f64, 0.3));
+        let workspace = Workspace::new(boundary, holes.collect()).unwrap();
+        let places = (0..pillars).map(|index| middle(index) + Vector::new(0.0, 0.5)).collect();
+        (FreeSpace::new(&workspace, 0.05).unwrap(), places)
+    }
+
+    /// Corners in rows see each other along the rows, past all between: everything is on the edge
+    /// of being hidden.
+    #[test]
+    fn links_and_sight_are_those_of_trying_every_pair() {
+        for turn in [0.0, 0.25, 0.03, 0.5] {
+            let (space, places) = hall(20, turn);
+            let (corners, tolerance) = (space.corners(), space.tolerance());
+            let is_taut = |path: &Segment, one: usize, other: usize| {
+                [one, other].iter().all(|&end| corners[end].is_touched_by(path, tolerance))
+            };
+            for (index, corner) in corners.iter().enumerate() {
+                let tried: Vec<usize> = (0..corners.len())
+                    .filter(|&other| {
+                        let path = Segment::new(corner.at, corners[other].at);
+                        other != index && is_taut(&path, index, other) && space.is_clear(&path)
+                    })
+                    .collect();
+                let found: Vec<usize> = space.links(index).iter().map(|link| link.corner).collect();
+                assert_eq!(found, tried, "from corner {index}, turned by {turn}");
+            }
+            for from in places.into_iter().chain(corners.iter().map(|corner| corner.at)) {
+                let found: Vec<usize> =
+                    space.corners_seen_from(from).map(|(seen, _)| seen).collect();
+                let sees = |&other: &usize| space.is_clear(&Segment::new(from, corners[other].at));
+                let tried: Vec<usize> = (0..corners.len()).filter(sees).collect();
+                assert_eq!(found, tried, "from {from}, turned by {turn}");
+            }
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! The workspace W: a polygon with polygonal holes (Sec. II).
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use thiserror::Error;
@@ -30,6 +31,13 @@ pub enum Polygon {
     Boundary,
     /// A hole, by its index in the list of holes, from 0.
     Hole(usize),
+}
+
+impl Polygon {
+    /// The polygons of a workspace, in the order that they are listed in.
+    pub(super) fn all() -> impl Iterator<Item = Polygon> {
+        (0..).map(name_of)
+    }
 }
 
 impl fmt::Display for Polygon {
@@ -145,6 +153,19 @@ pub enum WorkspaceError {
     },
 }
 
+impl WorkspaceError {
+    /// Whether coordinates are none to compute with.
+    pub(super) fn is_about_numbers(&self) -> bool {
+        matches!(self, WorkspaceError::NotFinite { .. })
+    }
+
+    /// Whether polygons meet themselves or each other where they must not.
+    pub(super) fn is_about_contact(&self) -> bool {
+        use WorkspaceError::{PolygonsMeet, RepeatedVertex, SelfIntersecting};
+        matches!(self, RepeatedVertex { .. } | SelfIntersecting { .. } | PolygonsMeet { .. })
+    }
+}
+
 impl Workspace {
     /// The workspace within `boundary` and outside every one of `holes`. Vertices are listed in
     /// order, clockwise or counter-clockwise; vertices on a straight line with their neighbours
@@ -154,6 +175,7 @@ impl Workspace {
     ///
     /// Unless every polygon is simple and encloses an area, and the holes lie strictly inside the
     /// boundary and apart from each other. Decided exactly, without tolerances.
+    /// [`Workspace::repaired`] also takes polygons that touch.
     pub fn new(boundary: Vec<Point>, holes: Vec<Vec<Point>>) -> Result<Workspace, WorkspaceError> {
         let mut polygons = vec![boundary];
         polygons.extend(holes);
@@ -167,9 +189,14 @@ impl Workspace {
                 vertices.reverse();
             }
         }
+        Ok(Workspace::of_rings(polygons))
+    }
+
+    /// The workspace that rings bound, the outer one first, with W on their left.
+    pub(super) fn of_rings(polygons: Vec<Vec<Point>>) -> Workspace {
         let tree = EdgeTree::new(polygons.iter().flat_map(|vertices| edges_of(vertices)));
         let extent = extent_of(&polygons[0]);
-        Ok(Workspace { polygons, tree, extent })
+        Workspace { polygons, tree, extent }
     }
 
     /// Vertices of the outer boundary, counter-clockwise.
@@ -213,6 +240,11 @@ impl Workspace {
         }
     }
 
+    /// Whether a segment meets ∂W or comes closer to it than `distance`.
+    pub(super) fn is_near(&self, path: &Segment, distance: f64) -> bool {
+        self.tree.is_near(path, distance)
+    }
+
     /// The larger side of the box around W.
     pub fn extent(&self) -> f64 {
         self.extent
@@ -253,34 +285,36 @@ fn check_vertices(polygon: Polygon, vertices: &[Point]) -> Result<(), WorkspaceE
 }
 
 fn check_edges(polygons: &[Vec<Point>]) -> Result<(), WorkspaceError> {
+    match contacts(polygons).next() {
+        None => Ok(()),
+        Some((first, second)) if first.polygon == second.polygon => {
+            Err(WorkspaceError::SelfIntersecting { first, second })
+        }
+        Some((first, second)) => Err(WorkspaceError::PolygonsMeet { first, second }),
+    }
+}
+
+/// The edges that meet others where they must not, each with the first one after it that it meets.
+pub(super) fn contacts(polygons: &[Vec<Point>]) -> impl Iterator<Item = (NamedEdge, NamedEdge)> {
     let named: Vec<NamedEdge> = polygons
         .iter()
-        .enumerate()
-        .flat_map(|(polygon, vertices)| {
-            edges_of(vertices).enumerate().map(move |(index, segment)| NamedEdge {
-                polygon: name_of(polygon),
-                index,
-                segment,
-            })
+        .zip(Polygon::all())
+        .flat_map(|(vertices, polygon)| {
+            let edges = edges_of(vertices).enumerate();
+            edges.map(move |(index, segment)| NamedEdge { polygon, index, segment })
         })
         .collect();
     let tree = EdgeTree::new(named.iter().map(|edge| edge.segment));
-    for (index, first) in named.iter().enumerate() {
+    (0..named.len()).filter_map(move |index| {
+        let first = named[index];
         let mut met: Option<usize> = None;
         tree.for_each_overlapping(&first.segment, |other, edge| {
             if other > index && wrongly_meets(&first.segment, edge) {
                 met = Some(met.map_or(other, |found| found.min(other)));
             }
         });
-        if let Some(second) = met.map(|other| named[other]) {
-            return Err(if first.polygon == second.polygon {
-                WorkspaceError::SelfIntersecting { first: *first, second }
-            } else {
-                WorkspaceError::PolygonsMeet { first: *first, second }
-            });
-        }
-    }
-    Ok(())
+        Some((first, named[met?]))
+    })
 }
 
 /// Whether two edges have a point in common other than a vertex that joins one to the next.
@@ -299,16 +333,28 @@ fn wrongly_meets(first: &Segment, second: &Segment) -> bool {
     }
 }
 
+/// Where the holes lie, told by their first vertices: polygons that do not meet are apart or one
+/// inside the other. A vertex lies inside those that a ray from it crosses an odd number of times.
 fn check_nesting(polygons: &[Vec<Point>]) -> Result<(), WorkspaceError> {
-    let trees: Vec<EdgeTree> =
-        polygons.iter().map(|vertices| EdgeTree::new(edges_of(vertices))).collect();
+    let edges = || polygons.iter().flat_map(|vertices| edges_of(vertices));
+    let tree = EdgeTree::new(edges());
+    let polygon_of_edge: Vec<usize> = (polygons.iter().enumerate())
+        .flat_map(|(polygon, vertices)| std::iter::repeat_n(polygon, vertices.len()))
+        .collect();
     for (hole, vertices) in polygons[1..].iter().enumerate() {
-        if !trees[0].encloses(vertices[0]) {
+        let mut around = BTreeSet::new();
+        tree.for_each_right_of(vertices[0], |edge| {
+            let polygon = polygon_of_edge[edge];
+            if !around.remove(&polygon) {
+                around.insert(polygon);
+            }
+        });
+        if !around.contains(&0) {
             return Err(WorkspaceError::HoleOutside { hole, at: vertices[0] });
         }
-        let around = |outer: &usize| *outer != hole && trees[outer + 1].encloses(vertices[0]);
-        if let Some(outer) = (0..polygons.len() - 1).find(around) {
-            return Err(WorkspaceError::NestedHoles { inner: hole, outer });
+        if let Some(outer) = around.into_iter().find(|&polygon| polygon != 0 && polygon != hole + 1)
+        {
+            return Err(WorkspaceError::NestedHoles { inner: hole, outer: outer - 1 });
         }
     }
     Ok(())

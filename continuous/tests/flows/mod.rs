@@ -4,4 +4,5 @@ mod events;
 mod exact;
 mod integration;
 mod isolation;
+mod stiff;
 mod support;

@@ -1,6 +1,6 @@
 //! What the tests share.
 
-use pleach_continuous::flow::{Curve, Integrator, Tolerances, VectorField};
+use pleach_continuous::flow::{Curve, Integrator, Method, Tolerances, VectorField};
 use pleach_guards::Verdict;
 
 /// The state of a curve at one instant.
@@ -35,7 +35,18 @@ pub fn compare(
     tolerances: Tolerances,
     exact: impl Fn(f64) -> Vec<f64>,
 ) -> Run {
-    let mut integrator = Integrator::new(field, 0.0, &exact(0.0), tolerances);
+    compare_by(Method::Automatic, field, end, tolerances, &exact)
+}
+
+/// As [`compare`], by one method.
+pub fn compare_by(
+    method: Method,
+    field: &impl VectorField,
+    end: f64,
+    tolerances: Tolerances,
+    exact: &impl Fn(f64) -> Vec<f64>,
+) -> Run {
+    let mut integrator = Integrator::new(field, 0.0, &exact(0.0), tolerances).with_method(method);
     let mut run = Run { steps: 0, at_ends: 0.0, within: 0.0 };
     while integrator.time() < end {
         let step = integrator.step(end).unwrap();

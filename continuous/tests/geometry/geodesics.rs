@@ -109,6 +109,19 @@ proptest! {
         prop_assert!(found == told || (found - told).abs() < 4.0 * tolerance, "{found} {told}");
     }
 
+    /// Without a clearance, among the vertices of the workspace itself.
+    #[test]
+    fn geodesics_are_exact_to_a_billionth(environment in environment(), a in place(), b in place()) {
+        let workspace = &environment.workspace;
+        let space = FreeSpace::with_tolerance(workspace, 0.0, 1e-12).unwrap();
+        let (a, b) = (space.nearest(a), space.nearest(b));
+        let expected = plain::shortest(workspace.polygons(), &[], |_, _| true, a, b, 1e-11);
+        let found = space.distance(a, b);
+        prop_assert!(found == expected || (found - expected).abs() < 1e-9, "{found} {expected}");
+        let told = space.distance_to(a, &space.destination(b));
+        prop_assert!(told == expected || (told - expected).abs() < 1e-9, "{told} {expected}");
+    }
+
     #[test]
     fn geodesics_keep_the_clearance(environment in environment(), a in place(), b in place()) {
         let free_space = &environment.free_space;

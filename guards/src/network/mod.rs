@@ -44,7 +44,7 @@ pub mod mission {
     /// and every link is at its limit or every robot bunched behind the next.
     pub fn trapped() -> Guard {
         let at_rest = variable("still").at_least(variable("window"));
-        let stuck = !proposition("slack").and(!proposition("pending"));
+        let stuck = !proposition("slack") & !proposition("pending");
         disengaged(
             "trapped",
             proposition("first").and(at_rest).and(stuck).and(!proposition("bound")),

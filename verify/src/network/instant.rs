@@ -124,15 +124,15 @@ pub fn reliability(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violation
     let places = places(snapshot, limits);
     for route in &snapshot.routes {
         let distance = places.distance(route.from, route.to);
-        let stated = link::reliability(distance, limits.full_range(), limits.max_range());
+        let stated = limits.reliability(distance);
         if (route.reliability - stated).abs() > SLACK {
             return Err(Instant::of(snapshot).violation(
                 Property::Reliability,
                 &[route.from, route.to],
                 (route.reliability, stated),
                 format!(
-                    "the link {} → {} of length {distance:.6} reports R = {:.6}, eq. (27) gives \
-                     {stated:.6}",
+                    "the link {} → {} of length {distance:.6} reports R = {:.6}, the model of links \
+                     gives {stated:.6}",
                     route.from, route.to, route.reliability
                 ),
             ));

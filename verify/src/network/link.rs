@@ -73,11 +73,10 @@ pub struct HeldFlow {
 
 /// h = Σ F / R: the share of its time that a sender needs to hold its flows.
 ///
-/// Infinite if a link in use is out of range.
-pub fn load(flows: &[HeldFlow], full_range: f64, max_range: f64) -> f64 {
-    flows.iter().filter(|held| held.flow > 0.0).fold(0.0, |load, held| {
-        load + held.flow / reliability(held.distance, full_range, max_range)
-    })
+/// Infinite if a link in use is out of range. `reliability` is R of the distance.
+pub fn load(flows: &[HeldFlow], reliability: impl Fn(f64) -> f64) -> f64 {
+    let in_use = flows.iter().filter(|held| held.flow > 0.0);
+    in_use.fold(0.0, |load, held| load + held.flow / reliability(held.distance))
 }
 
 /// The places of the nodes: robots first, then access points.
@@ -158,7 +157,7 @@ mod tests {
                         distance: (sender.at(s) - receiver.at(s)).norm(),
                     })
                     .collect();
-                load(&held, l, u)
+                load(&held, |distance| reliability(distance, l, u))
             };
             let ends = load_at(0.0).max(load_at(1.0));
             for sample in 1..200 {
@@ -186,16 +185,17 @@ mod tests {
                     held[end].push(HeldFlow { flow, distance });
                 }
             }
-            let worst = held.iter().map(|held| load(held, l, u)).fold(0.0, f64::max);
+            let worst = held.iter().map(|held| load(held, |distance| reliability(distance, l, u))).fold(0.0, f64::max);
             prop_assert!(worst <= worst_load(sender, &accepted, &radio) + 1e-12);
         }
     }
 
     #[test]
     fn a_flow_out_of_range_needs_endless_time() {
+        let study = |distance| reliability(distance, 0.4, 0.5);
         let held = [HeldFlow { flow: 0.1, distance: 0.5 }];
-        assert_eq!(load(&held, 0.4, 0.5), f64::INFINITY);
+        assert_eq!(load(&held, study), f64::INFINITY);
         let idle = [HeldFlow { flow: 0.0, distance: 0.5 }];
-        assert_eq!(load(&idle, 0.4, 0.5), 0.0);
+        assert_eq!(load(&idle, study), 0.0);
     }
 }

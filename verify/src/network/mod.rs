@@ -24,24 +24,24 @@
 //! use nalgebra::point;
 //! use pleach_automaton::network::record::{Route, Snapshot};
 //! use pleach_automaton::network::scenario::{
-//!     AccessPoint, Control, LinkRanges, RobotStart, Scenario, WorkspaceOutline,
+//!     AccessPoint, Control, LinkRanges, RobotStart, Scenario, ValidScenario, WorkspaceOutline,
 //! };
 //! use pleach_discrete::network::{Phase, Role};
 //! use pleach_verify::network::{Monitor, Property};
 //!
-//! let scenario = Scenario {
+//! let scenario = ValidScenario::new(Scenario {
 //!     name: "alone".to_owned(),
 //!     description: None,
 //!     workspace: WorkspaceOutline {
 //!         boundary: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
 //!         holes: Vec::new(),
 //!     },
-//!     link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+//!     link: LinkRanges::new(0.4, 0.5),
 //!     control: Control::default(),
 //!     access_point: vec![AccessPoint { position: [0.5, 0.2] }],
 //!     robot: vec![RobotStart { position: [0.5, 0.5], rate: 0.075 }],
 //!     task: Vec::new(),
-//! };
+//! })?;
 //! let mut snapshot = Snapshot {
 //!     step: 0,
 //!     time: 0.0,
@@ -61,7 +61,7 @@
 //!     posts: Vec::new(),
 //! };
 //! let any_role_change = |_, _| true;
-//! let mut monitor = Monitor::new(&scenario, any_role_change)?;
+//! let mut monitor = Monitor::new(&scenario, any_role_change);
 //! monitor.observe(&snapshot)?;
 //! assert_eq!(monitor.extremes().clearance.as_ref().map(|extreme| extreme.value), Some(0.5));
 //!
@@ -99,7 +99,7 @@ mod violation;
 
 pub use extremes::{Extreme, Extremes};
 pub use judge::Judge;
-pub use limits::{LimitError, Limits, SLACK};
+pub use limits::{Limits, SLACK};
 pub use monitor::{Monitor, RoleTable, audit};
 pub use property::Property;
 pub use violation::{Instant, Violation};

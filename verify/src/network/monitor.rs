@@ -3,12 +3,12 @@
 use std::fmt;
 
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
-use pleach_automaton::network::scenario::Scenario;
+use pleach_automaton::network::scenario::ValidScenario;
 use pleach_discrete::network::Role;
 
 use super::duty::{self, RoleRelation};
 use super::extremes::{Extremes, keep_larger, keep_smaller};
-use super::limits::{LimitError, Limits};
+use super::limits::Limits;
 use super::period::Period;
 use super::property::Property;
 use super::violation::{Instant, Violation};
@@ -32,21 +32,14 @@ pub struct Monitor<'a> {
 impl<'a> Monitor<'a> {
     /// A monitor that has seen nothing yet; `role_table` tells whether a role may turn into
     /// another in one transition.
-    ///
-    /// # Errors
-    ///
-    /// What makes the scenario one that no mission can be held against.
-    pub fn new(
-        scenario: &Scenario,
-        role_table: impl Fn(Role, Role) -> bool + 'a,
-    ) -> Result<Self, LimitError> {
-        Ok(Monitor {
-            limits: Limits::of(scenario)?,
+    pub fn new(scenario: &ValidScenario, role_table: impl Fn(Role, Role) -> bool + 'a) -> Self {
+        Monitor {
+            limits: Limits::of(scenario),
             role_relation: duty::closure(&role_table),
             role_table: Box::new(role_table),
             previous: None,
             extremes: Extremes::default(),
-        })
+        }
     }
 
     /// Checks the period that ends with this snapshot, and the snapshot.

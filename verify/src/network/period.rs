@@ -200,7 +200,7 @@ fn load_in(snapshot: &Snapshot, routes: &[&Route], limits: &Limits) -> f64 {
             distance: places.distance(route.from, route.to),
         })
         .collect();
-    link::load(&held, limits.full_range(), limits.max_range())
+    link::load(&held, |distance| limits.reliability(distance))
 }
 
 fn load_sentence(routes: &[&Route], load: f64) -> String {
@@ -369,11 +369,11 @@ mod tests {
         #[test]
         fn clearance_is_what_dense_sampling_tends_to(from in place(), to in place()) {
             let hole = [[0.4, -0.3], [0.9, -0.1], [0.6, 0.4]];
-            let mut scenario = sample::scenario();
+            let mut scenario = sample::stated();
             scenario.workspace.holes = vec![hole.to_vec()];
-            scenario.control.clearance = Some(1e-9);
+            scenario.control.clearance = Some(1e-6);
             scenario.robot.truncate(1);
-            let limits = Limits::of(&scenario).unwrap();
+            let limits = Limits::of(&sample::valid(scenario.clone()));
             let polygons = [&scenario.workspace.boundary[..], &hole];
             let walls: Vec<_> = polygons
                 .iter()

@@ -7,7 +7,7 @@
 use nalgebra::point;
 use pleach_automaton::network::record::{PostView, Route, Snapshot};
 use pleach_automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
+    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario, WorkspaceOutline,
 };
 use pleach_discrete::network::{Phase, Role};
 
@@ -15,7 +15,17 @@ use super::link::{Places, reliability, residuals};
 
 pub(super) const RATE: f64 = 0.075;
 
-pub(super) fn scenario() -> Scenario {
+pub(super) fn scenario() -> ValidScenario {
+    valid(stated())
+}
+
+/// A scenario that tests have changed.
+pub(super) fn valid(scenario: Scenario) -> ValidScenario {
+    ValidScenario::new(scenario).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The scenario, to be changed.
+pub(super) fn stated() -> Scenario {
     let robots = [[0.3, 0.0], [0.6, 0.0], [0.1, 0.2], [0.2, -0.2]];
     Scenario {
         name: "sample".to_owned(),
@@ -24,7 +34,7 @@ pub(super) fn scenario() -> Scenario {
             boundary: vec![[-1.0, -1.0], [2.0, -1.0], [2.0, 1.0], [-1.0, 1.0]],
             holes: Vec::new(),
         },
-        link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+        link: LinkRanges::new(0.4, 0.5),
         control: Control::default(),
         access_point: vec![AccessPoint { position: [0.0, 0.0] }],
         robot: robots.into_iter().map(|position| RobotStart { position, rate: RATE }).collect(),

@@ -4,11 +4,11 @@ use nalgebra::point;
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_discrete::network::{Phase, Role};
 
-use super::sample::{role_table, route, scenario, snapshot};
+use super::sample::{role_table, route, scenario, snapshot, stated, valid};
 use super::{Extremes, Monitor, Property, Violation, audit};
 
 fn monitor() -> Monitor<'static> {
-    Monitor::new(&scenario(), role_table).unwrap()
+    Monitor::new(&scenario(), role_table)
 }
 
 /// Audits three snapshots, after the last two were changed.
@@ -85,7 +85,7 @@ fn cross(gap: f64) -> impl Fn(&mut Snapshot, &mut Snapshot) {
 #[test]
 fn robots_that_come_too_near_between_the_snapshots() {
     // The journey of robot 3 to the crossing breaks other bounds: only the period is asked.
-    let limits = super::Limits::of(&scenario()).unwrap();
+    let limits = super::Limits::of(&scenario());
     let separation = |gap: f64| {
         let (mut before, mut after) = (snapshot(1), snapshot(2));
         cross(gap)(&mut before, &mut after);
@@ -111,10 +111,10 @@ fn robots_that_start_too_near() {
 fn a_robot_that_brushes_a_corner_between_the_snapshots() {
     // The tip of a spike from below stands under the middle of robot 1's first motion.
     let brush = |tip: f64| {
-        let mut scenario = scenario();
+        let mut scenario = stated();
         let spike = [[0.595, -1.0], [0.605, tip], [0.615, -1.0]];
         scenario.workspace.boundary.splice(1..1, spike);
-        audit(Monitor::new(&scenario, role_table).unwrap(), &[0, 1].map(snapshot))
+        audit(Monitor::new(&valid(scenario.clone()), role_table), &[0, 1].map(snapshot))
     };
     let violation = brush(-0.0099).unwrap_err();
     assert_eq!((violation.property, violation.robots), (Property::Clearance, vec![1]));
@@ -193,7 +193,7 @@ fn send_far(share: f64, distance: f64) -> impl Fn(&mut Snapshot, &mut Snapshot) 
 
 #[test]
 fn a_flow_that_cannot_be_held_during_a_motion() {
-    let limits = super::Limits::of(&scenario()).unwrap();
+    let limits = super::Limits::of(&scenario());
     let load = |share: f64, distance: f64| {
         let (mut before, mut after) = (snapshot(1), snapshot(2));
         send_far(share, distance)(&mut before, &mut after);
@@ -223,12 +223,12 @@ fn a_robot_whose_information_goes_in_a_circle() {
     assert_eq!(violation.property, Property::Residual);
     let mut circling = snapshot(2);
     circle(0.0)(&mut snapshot(1), &mut circling);
-    let limits = super::Limits::of(&scenario()).unwrap();
+    let limits = super::Limits::of(&scenario());
     let violation = super::instant::connectivity(&circling, &limits).unwrap_err();
     assert_eq!((violation.property, violation.robots), (Property::Connectivity, vec![2]));
-    let mut tolerant = scenario();
+    let mut tolerant = stated();
     tolerant.control.residual_tolerance = Some(0.2);
-    let mut monitor = Monitor::new(&tolerant, role_table).unwrap();
+    let mut monitor = Monitor::new(&valid(tolerant), role_table);
     let violation = monitor.observe(&circling).unwrap_err();
     assert_eq!(violation.property, Property::Connectivity);
     keeps(circle(0.2));
@@ -250,7 +250,7 @@ fn a_tree_edge_out_of_range() {
     assert_eq!(violation.robots, [1, 4]);
     breaks(Property::TreeRange, |_, after| after.tree[1] = (1, 4));
     // An edge that leaves the range during the period is missed by neither snapshot's tree.
-    let limits = super::Limits::of(&scenario()).unwrap();
+    let limits = super::Limits::of(&scenario());
     let range = |end: f64| {
         let (mut before, mut after) = (snapshot(1), snapshot(2));
         before.tree[1] = (1, 4);
@@ -359,13 +359,13 @@ fn lift(height: f64) -> impl Fn(&mut Snapshot, &mut Snapshot) {
 
 #[test]
 fn a_robot_that_leaves_its_task() {
-    let mut scenario = scenario();
+    let mut scenario = stated();
     scenario.control.step_radius = Some(0.06);
     scenario.control.service_radius = Some(0.03);
     let audit_lifted = |height: f64| {
         let (opening, mut before, mut after) = (snapshot(0), snapshot(1), snapshot(2));
         lift(height)(&mut before, &mut after);
-        let monitor = Monitor::new(&scenario, role_table).unwrap();
+        let monitor = Monitor::new(&valid(scenario.clone()), role_table);
         audit(monitor, [&opening, &before, &after])
     };
     breaks(Property::Service, |_, after| after.serviced = vec![(0, 2)]);
@@ -378,9 +378,9 @@ fn a_robot_that_leaves_its_task() {
 
 #[test]
 fn a_task_stays_serviced_while_another_robot_takes_over() {
-    let mut scenario = scenario();
+    let mut scenario = stated();
     scenario.control.step_radius = Some(0.06);
-    let limits = super::Limits::of(&scenario).unwrap();
+    let limits = super::Limits::of(&valid(scenario));
     // Robot 0 leaves downwards; robot 3 arrives from above, at this height.
     let relieved = |height: f64| {
         let (mut before, mut after) = (snapshot(1), snapshot(2));

@@ -14,7 +14,6 @@ use crate::{Automaton, BuildError, Transfer, TransitionError};
 use super::super::duty::Duty;
 use super::super::record::MissionEvent;
 use super::Robot;
-use super::facts::{PROPOSITIONS, VARIABLES};
 
 /// The automaton of the exchange of duties.
 pub type DealingAutomaton = Automaton<Dealing, DealingEvent, Robot>;
@@ -242,7 +241,7 @@ where
 pub fn dealing_automaton() -> Result<DealingAutomaton, BuildError> {
     use DealingEvent as On;
     Automaton::builder(DEALINGS, Dealing::Free)
-        .observing(VARIABLES, PROPOSITIONS)
+        .observing()
         .carried_out(Transfer::where_known(On::Offers, guards::offers(), "offer the duty", offer))
         .carried_out(Transfer::where_known(On::Gives, guards::gives(), "give the duty", give))
         .carried_out(refuses::<Free, Refusing>())

@@ -23,7 +23,6 @@ use super::super::duty::{
 };
 use super::super::record::MissionEvent;
 use super::Robot;
-use super::facts::{PROPOSITIONS, VARIABLES};
 
 /// The automaton of a robot's duty.
 pub type DutyAutomaton = Automaton<Activity, DutyEvent, Robot>;
@@ -134,9 +133,9 @@ impl Robot {
         self.label == Label::Mission(step)
     }
 
-    /// Whether it takes over a duty whose activity has this name.
-    pub(super) fn takes_over_duty_called(&self, activity: &str) -> bool {
-        matches!(self.label, Label::Exchange(duty, _) if duty.location().name() == activity)
+    /// Whether it takes over a duty of this kind.
+    pub(super) fn takes_over(&self, activity: Activity) -> bool {
+        matches!(self.label, Label::Exchange(duty, _) if duty.location() == activity)
     }
 
     /// Whether it has won the leader election that is over now.
@@ -423,7 +422,7 @@ fn attached<A: DataOf<Duty> + Holder + From<Held>>() -> Row {
 pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
     use DutyEvent as On;
     let automaton = Automaton::builder(DUTIES, Activity::Standby)
-        .observing(VARIABLES, PROPOSITIONS)
+        .observing()
         .carried_out(Transfer::new(On::Elected, guards::elected(), "lead", lead))
         .carried_out(bound::<Standby>())
         .carried_out(bound::<Relay>())

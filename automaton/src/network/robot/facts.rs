@@ -3,8 +3,11 @@
 //! Numbers end here. The guards turn what is measured into events, and the tables of the duty and
 //! mission automata know events only.
 
-use pleach_discrete::network::{MissionStep, Phase, Post};
+use pleach_discrete::Location as _;
+use pleach_discrete::network::{Activity, MissionStep, Phase, Post};
 use pleach_guards::Valuation;
+
+use crate::Observed;
 
 use super::super::beacon::Notice;
 use super::super::duty::{AwaitingRelease, Duty, Waiting};
@@ -33,8 +36,6 @@ macro_rules! facts {
 
         /// The names of the propositions that guards may speak of.
         pub const PROPOSITIONS: &[&str] = &[
-            $(stringify!($name),)+
-            $(stringify!($live),)+
             "takes standby",
             "takes relay",
             "takes junction",
@@ -45,7 +46,47 @@ macro_rules! facts {
             "takes shifting along the path",
             "takes following the team",
             "takes leading the team",
+            $(stringify!($name),)+
+            $(stringify!($live),)+
         ];
+
+        /// The numbers of the quantities.
+        #[allow(non_camel_case_types)]
+        enum Quantity { $($quantity,)+ $($live_quantity,)+ }
+
+        /// The numbers of the propositions, behind those of the duties to be taken over.
+        #[allow(non_camel_case_types)]
+        enum Proposition { $($name,)+ $($live,)+ }
+
+        impl Observed for Robot {
+            const VARIABLES: &'static [&'static str] = VARIABLES;
+            const PROPOSITIONS: &'static [&'static str] = PROPOSITIONS;
+
+            fn quantity(&self, number: usize) -> f64 {
+                let $robot = self;
+                $(if number == Quantity::$quantity as usize {
+                    return $robot.facts.$quantity;
+                })+
+                $(if number == Quantity::$live_quantity as usize {
+                    return $number;
+                })+
+                f64::NAN
+            }
+
+            fn proposition(&self, number: usize) -> bool {
+                let $robot = self;
+                let Some(number) = number.checked_sub(Activity::ALL.len()) else {
+                    return $robot.takes_over(Activity::ALL[number]);
+                };
+                $(if number == Proposition::$name as usize {
+                    return $robot.facts.$name;
+                })+
+                $(if number == Proposition::$live as usize {
+                    return $holds;
+                })+
+                false
+            }
+        }
 
         /// Quantities and propositions with what they say, in the order of their declaration.
         pub const GLOSSARY: &[(&str, &str)] = &[
@@ -57,24 +98,13 @@ macro_rules! facts {
 
         impl Valuation for Robot {
             fn value(&self, variable: &str) -> Option<f64> {
-                let $robot = self;
-                match variable {
-                    $(stringify!($quantity) => Some($robot.facts.$quantity),)+
-                    $(stringify!($live_quantity) => Some($number),)+
-                    _ => None,
-                }
+                let number = VARIABLES.iter().position(|name| *name == variable)?;
+                Some(self.quantity(number))
             }
 
             fn truth(&self, proposition: &str) -> Option<bool> {
-                let $robot = self;
-                match proposition {
-                    $(stringify!($name) => Some($robot.facts.$name),)+
-                    $(stringify!($live) => Some($holds),)+
-                    _ => {
-                        let activity = proposition.strip_prefix("takes ")?;
-                        Some($robot.takes_over_duty_called(activity))
-                    }
-                }
+                let number = PROPOSITIONS.iter().position(|name| *name == proposition)?;
+                Some(self.proposition(number))
             }
         }
     };

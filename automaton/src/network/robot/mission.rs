@@ -18,12 +18,11 @@ use crate::{Automaton, BuildError, Transfer, TransitionError};
 use super::super::beacon::Notice;
 use super::super::duty::Hop;
 use super::super::mission::{
-    Advance, Ended, Idle, KnowsPath, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
+    Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
 };
 use super::super::record::MissionEvent;
 use super::super::shared::Shared;
 use super::duties::Label;
-use super::facts::{PROPOSITIONS, VARIABLES};
 use super::{Robot, TaskNotice, leader, path, recruit, team};
 
 /// The automaton of the mission as one robot sees it.
@@ -151,11 +150,11 @@ fn announced<A: DataOf<Mission>>() -> Row {
     Transfer::where_known(MissionStep::Announced, guards::announced(), name, leader::place_bid::<A>)
 }
 
-fn called<A: DataOf<Mission> + KnowsPath>() -> Row {
+fn called<A: DataOf<Mission>>() -> Row {
     Transfer::new(MissionStep::Called, guards::called(), "answer the call", recruit::answer::<A>)
 }
 
-fn resumed<A: DataOf<Mission> + KnowsPath>() -> Row {
+fn resumed<A: DataOf<Mission>>() -> Row {
     Transfer::new(MissionStep::Resumed, guards::resumed(), "go on", path::resume::<A>)
 }
 
@@ -166,7 +165,7 @@ fn resumed<A: DataOf<Mission> + KnowsPath>() -> Row {
 pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
     Automaton::builder(MISSION, Phase::Idle)
-        .observing(VARIABLES, PROPOSITIONS)
+        .observing()
         .carried_out(ended::<Idle>())
         .carried_out(ended::<LeaderElection>())
         .carried_out(ended::<Advance>())

@@ -7,7 +7,7 @@ use pleach_discrete::network::{Agreement, NodeId, Post, PostId, PostKind, Subgro
 
 use super::super::beacon::Notice;
 use super::super::duty::{Duty, Hop, Path, Shifting, Waiting};
-use super::super::mission::{Advance, KnowsPath, PathAgreement, RecruitElection, Shift};
+use super::super::mission::{Advance, PathAgreement, RecruitElection, Shift};
 use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
@@ -57,13 +57,13 @@ pub(super) fn announce_advance(shift: &Shift, robot: &Robot, effects: &mut Effec
         _ => None,
     });
     effects.extend([MissionEffect::Issue(Notice::Advance { joined }), MissionEffect::Restart]);
-    Advance { path: shift.known_path() }
+    Advance { path: Some(Arc::clone(&shift.path)) }
 }
 
 /// The primary team is the active team again.
-pub(super) fn resume<A: KnowsPath>(phase: &A, _: &Robot, effects: &mut Effects) -> Advance {
+pub(super) fn resume<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Advance {
     effects.push(MissionEffect::Restart);
-    Advance { path: phase.known_path() }
+    Advance { path: robot.mission.path().cloned() }
 }
 
 impl Robot {

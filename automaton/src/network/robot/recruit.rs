@@ -6,7 +6,7 @@ use pleach_discrete::network::{Anchor, Bid, Election, IdSet, Phase};
 
 use super::super::beacon::{Beacon, Notice};
 use super::super::duty::{Hop, Path, Place};
-use super::super::mission::{Advance, KnowsPath, PathAgreement, RecruitElection};
+use super::super::mission::{Advance, PathAgreement, RecruitElection};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::shared::Shared;
 use super::Robot;
@@ -34,18 +34,14 @@ pub(super) fn call(advance: &Advance, robot: &Robot, effects: &mut Effects) -> R
 }
 
 /// A recruit is called for.
-pub(super) fn answer<A: KnowsPath>(
-    phase: &A,
-    robot: &Robot,
-    effects: &mut Effects,
-) -> RecruitElection {
+pub(super) fn answer<A>(_: &A, robot: &Robot, effects: &mut Effects) -> RecruitElection {
     let number = robot.bulletin.sequence();
     let is_caller = matches!(*robot.bulletin.notice(),
         Notice::Call { caller, .. } if caller == robot.id);
     let own = is_caller.then(|| robot.own_hop(Vec::new())).flatten();
     let route = own.map(|hop| (number, Shared::new(vec![hop])));
     effects.push(MissionEffect::Elect(Election::new(number), None, route));
-    RecruitElection { before: phase.known_path() }
+    RecruitElection { before: robot.mission.path().cloned() }
 }
 
 /// The recruit announces the path Σ that it has found.

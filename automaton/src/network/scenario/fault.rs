@@ -1,7 +1,26 @@
 //! What can be wrong with a scenario.
 
 use super::KeyPath;
+use std::fmt;
 use thiserror::Error;
+
+/// Everything that keeps a mission from starting; at least one fault.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub struct InvalidScenario {
+    /// The faults, in the order of the keys.
+    pub faults: Vec<Fault>,
+}
+
+impl fmt::Display for InvalidScenario {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("no mission can start from the scenario: ")?;
+        for (index, fault) in self.faults.iter().enumerate() {
+            let separator = if index == 0 { "" } else { "; " };
+            write!(formatter, "{separator}{fault}")?;
+        }
+        Ok(())
+    }
+}
 
 /// A value of a scenario that no mission can start from.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -25,6 +44,9 @@ pub enum Problem {
          one of them"
     )]
     NotAFileName { name: String },
+    /// A name that is too long for a file name.
+    #[error("the name takes {length} bytes: it names files, so at most {most}")]
+    LongName { length: usize, most: usize },
     /// NaN or infinite.
     #[error("{value} is not a finite number: write one, such as 0.5")]
     NotFinite { value: f64 },
@@ -37,6 +59,18 @@ pub enum Problem {
     /// A number of times that must be at least one.
     #[error("0 leaves nothing to do: it must be at least 1")]
     Zero,
+    /// A number that is too small or too large to be meant.
+    #[error("{value} is out of range: it must lie from {least} to {most}")]
+    OutOfRange { value: f64, least: f64, most: f64 },
+    /// More of something than can be meant.
+    #[error("{count} is too many: it must be at most {most}")]
+    TooMany { count: usize, most: usize },
+    /// A coordinate that is too large for distances to be exact.
+    #[error(
+        "{value} is too far away: coordinates are at most 1000000 times max_range = {most}; move \
+         the workspace to the origin, or choose another unit"
+    )]
+    TooFarAway { value: f64, most: f64 },
     /// A rate or reserve outside [0, 1].
     #[error("{value} is not a share of the radio's rate: it must lie from 0 to 1")]
     NotAShare { value: f64 },
@@ -52,6 +86,18 @@ pub enum Problem {
          full_range to 0 at max_range, so full_range < max_range"
     )]
     RangesReversed { full_range: f64, max_range: f64 },
+    /// A link model that is none.
+    #[error("the model of the links cannot be used: {0}")]
+    LinkModel(String),
+    /// A steepness for a model that has none.
+    #[error("only the model \"logistic\" has a steepness: leave it out, or set the model")]
+    SteepnessWithoutUse,
+    /// l too close to u for the slope of the reliability to make sense.
+    #[error(
+        "{full_range} is too close to max_range = {max_range}: reliability needs a distance of \
+         at least {least} to fall from 1 to 0"
+    )]
+    RangesTooClose { full_range: f64, max_range: f64, least: f64 },
     /// δ too small against ρ (Remark 5.5).
     #[error(
         "{service_radius} is too small for clearance = {clearance}: two robots that hand \
@@ -79,6 +125,9 @@ pub enum Problem {
     /// Nobody to do anything.
     #[error("there is none: a mission needs at least one [[robot]]")]
     NoRobot,
+    /// Places for another number of robots than there are.
+    #[error("there are {stated} robots and places for {given}: give one place for each")]
+    OtherNumber { stated: usize, given: usize },
     /// A polygon of the workspace is not what it should be.
     #[error("{0}")]
     Outline(String),
@@ -107,6 +156,13 @@ pub enum Problem {
          nearer to an access point or to another robot"
     )]
     CutOff { longest: f64 },
+    /// Rates that the access points cannot receive.
+    #[error(
+        "no routing carries the rates from where the robots start: together the robots generate \
+         {total:.6}, and those in range of an access point can pass on at most {most:.6}; lower \
+         the rates, or place more robots or access points in each other's range"
+    )]
+    RatesAboveAccess { total: f64, most: f64 },
     /// Rates that the links cannot carry.
     #[error(
         "no routing carries the rates from where the robots start: with the best one some robot \
@@ -120,5 +176,11 @@ impl Problem {
     /// This problem at `key`.
     pub(super) fn at(self, key: KeyPath) -> Fault {
         Fault { key, problem: self }
+    }
+}
+
+impl From<Vec<Fault>> for InvalidScenario {
+    fn from(faults: Vec<Fault>) -> Self {
+        Self { faults }
     }
 }

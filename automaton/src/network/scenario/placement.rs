@@ -1,84 +1,88 @@
 //! Whether robots and access points stand where a mission can start.
 
-use super::validation::{ROUNDING, robot_key};
-use super::{Fault, KeyPath, LinkRanges, Problem, Scenario, Settings};
-use nalgebra::distance;
+use std::collections::VecDeque;
+
 use pleach_continuous::Point;
 use pleach_continuous::geometry::workspace::Polygon;
-use pleach_continuous::geometry::{FreeSpace, Workspace, WorkspaceError};
-use pleach_continuous::network::CubicReliability;
+use pleach_continuous::geometry::{Workspace, WorkspaceError};
+use pleach_continuous::network::LinkReliability;
+use pleach_continuous::network::rates::Receiver;
 use pleach_continuous::network::routing::central::widest_reserve;
-use pleach_continuous::network::routing::problem::RoutingProblem;
+use pleach_continuous::network::routing::problem::{DirectedLink, RoutingProblem};
+
+use super::buckets::Buckets;
+use super::validation::{ROUNDING, robot_key};
+use super::{Fault, KeyPath, Problem, Scenario};
+use crate::network::{Site, SiteError};
 
 /// The rate that may be missing where rates just fit, well above the solver's 1e-8.
 const RATE_TOLERANCE: f64 = 1e-6;
 
-/// What is wrong with the workspace and with where robots and access points stand in it.
-pub(super) fn faults(scenario: &Scenario) -> Vec<Fault> {
-    let ground = match Ground::of(scenario) {
-        Ok(ground) => ground,
-        Err(fault) => return vec![fault],
-    };
-    let checks = [Ground::outside, Ground::too_close_to_walls, Ground::robots_too_close];
-    let mut faults: Vec<_> = checks.iter().flat_map(|check| check(&ground)).collect();
-    if faults.is_empty() {
-        faults = ground.cut_off();
-    }
-    if faults.is_empty() {
-        faults.extend(ground.overloaded());
-    }
-    faults
+/// The site of a scenario whose values are in range.
+pub(super) fn site(scenario: &Scenario) -> Result<Site, Fault> {
+    Site::new(scenario).map_err(|error| {
+        let key = match &error {
+            SiteError::Workspace(error) => key_of_outline(error),
+            SiteError::FreeSpace(_) => KeyPath::root().key("control").key("clearance"),
+            SiteError::Range(_) => KeyPath::root().key("link"),
+            SiteError::Build(_) => KeyPath::root(),
+        };
+        Problem::Outline(error.to_string()).at(key)
+    })
 }
 
-/// A workspace and who starts in it.
-struct Ground {
-    settings: Settings,
-    workspace: Workspace,
-    free_space: FreeSpace,
-    access_points: Vec<Point>,
+/// What is wrong with where robots and access points of `scenario` stand in `site`.
+pub(super) fn faults(scenario: &Scenario, site: &Site) -> Vec<Fault> {
+    let ground = Ground {
+        site,
+        robots: scenario.robot.iter().map(|robot| robot.position.into()).collect(),
+        rates: scenario.robot.iter().map(|robot| robot.rate).collect(),
+    };
+    let checks = [Ground::outside, Ground::too_close_to_walls, Ground::robots_too_close];
+    let faults: Vec<_> = checks.iter().flat_map(|check| check(&ground)).collect();
+    if !faults.is_empty() {
+        return faults;
+    }
+    match ground.tree() {
+        Ok(tree) => ground.overloaded(&tree).into_iter().collect(),
+        Err(cut_off) => cut_off,
+    }
+}
+
+/// A site and who starts in it.
+struct Ground<'a> {
+    site: &'a Site,
     robots: Vec<Point>,
     rates: Vec<f64>,
 }
 
-impl Ground {
-    fn of(scenario: &Scenario) -> Result<Self, Fault> {
-        let settings = Settings::resolve(scenario);
-        let workspace = scenario
-            .workspace()
-            .map_err(|error| Problem::Outline(error.to_string()).at(key_of_outline(&error)))?;
-        let free_space = FreeSpace::new(&workspace, settings.clearance).map_err(|error| {
-            let key = KeyPath::root().key("control").key("clearance");
-            Problem::Outline(error.to_string()).at(key)
-        })?;
-        Ok(Self {
-            settings,
-            workspace,
-            free_space,
-            access_points: (scenario.access_point.iter())
-                .map(|access_point| access_point.position.into())
-                .collect(),
-            robots: scenario.robot.iter().map(|robot| robot.position.into()).collect(),
-            rates: scenario.robot.iter().map(|robot| robot.rate).collect(),
-        })
-    }
+/// A robot as a tree of shortest hops reaches it.
+struct Attached {
+    robot: usize,
+    parent: Receiver,
+    /// R of the link to the parent.
+    reliability: f64,
+}
 
+impl Ground<'_> {
     /// Robots and access points outside the boundary or in a hole.
     fn outside(&self) -> Vec<Fault> {
-        let access_points = (self.access_points.iter().enumerate())
+        let access_points = (self.site.access_points.iter().enumerate())
             .map(|(index, place)| (KeyPath::root().key("access_point").index(index), place));
         let robots = self.robots.iter().enumerate().map(|(index, place)| (robot_key(index), place));
         (access_points.chain(robots))
-            .filter(|&(_, &place)| !self.workspace.contains(place))
+            .filter(|&(_, &place)| !self.site.workspace.contains(place))
             .map(|(key, place)| Problem::Outside { x: place.x, y: place.y }.at(key.key("position")))
             .collect()
     }
 
     /// Robots closer than ρ to a wall.
     fn too_close_to_walls(&self) -> Vec<Fault> {
-        let clearance = self.settings.clearance;
+        let clearance = self.site.settings.clearance;
+        let workspace = &self.site.workspace;
         (self.robots.iter().enumerate())
-            .filter(|&(_, &place)| self.workspace.contains(place))
-            .map(|(index, &place)| (index, place, self.workspace.clearance(place)))
+            .filter(|&(_, &place)| workspace.contains(place))
+            .map(|(index, &place)| (index, place, workspace.clearance(place)))
             .filter(|&(.., distance)| distance < clearance * (1.0 - ROUNDING))
             .map(|(index, Point { coords }, distance)| {
                 Problem::TooCloseToWall { x: coords.x, y: coords.y, distance, clearance }
@@ -87,65 +91,119 @@ impl Ground {
             .collect()
     }
 
-    /// Robots closer than 2ρ to each other; each robot is compared with those before it.
+    /// Robots closer than 2ρ to one before them that keeps its distance itself.
     fn robots_too_close(&self) -> Vec<Fault> {
-        let least = 2.0 * self.settings.clearance;
-        let nearest_before = |index: usize| {
-            (self.robots[..index].iter().enumerate())
-                .map(|(other, place)| (other, distance(place, &self.robots[index])))
-                .min_by(|left, right| left.1.total_cmp(&right.1))
-        };
-        (0..self.robots.len())
-            .filter_map(|index| Some((index, nearest_before(index)?)))
-            .filter(|&(_, (_, distance))| distance < least * (1.0 - ROUNDING))
-            .map(|(index, (other, distance))| {
-                Problem::RobotsTooClose { other, distance, least }
-                    .at(robot_key(index).key("position"))
-            })
-            .collect()
-    }
-
-    /// Robots that no chain of new tree links connects to an access point, found by walking
-    /// outwards from the access points.
-    fn cut_off(&self) -> Vec<Fault> {
-        let longest = self.settings.longest_new_link();
-        let mut reached = self.access_points.clone();
-        let mut missing: Vec<usize> = (0..self.robots.len()).collect();
-        while let Some(place) = reached.pop() {
-            let (linked, apart): (Vec<_>, Vec<_>) =
-                missing.into_iter().partition(|&robot| self.link(place, self.robots[robot]));
-            missing = apart;
-            reached.extend(linked.into_iter().map(|robot| self.robots[robot]));
+        let least = 2.0 * self.site.settings.clearance;
+        let mut apart = Buckets::new(least);
+        let mut faults = Vec::new();
+        for (index, &place) in self.robots.iter().enumerate() {
+            let nearest = (apart.near(place))
+                .map(|(other, point)| (other, (point - place).norm()))
+                .min_by(|left, right| left.1.total_cmp(&right.1).then(left.0.cmp(&right.0)));
+            match nearest {
+                Some((other, distance)) if distance < least * (1.0 - ROUNDING) => faults.push(
+                    Problem::RobotsTooClose { other, distance, least }
+                        .at(robot_key(index).key("position")),
+                ),
+                _ => apart.insert(index, place),
+            }
         }
-        (missing.into_iter())
+        faults
+    }
+
+    /// A tree of new links from the access points to all robots, parents before children; the
+    /// robots that no chain of such links reaches are faults.
+    fn tree(&self) -> Result<Vec<Attached>, Vec<Fault>> {
+        let longest = self.site.build_length * (1.0 + ROUNDING);
+        let mut missing = Buckets::of(&self.robots, longest);
+        let mut tree = Vec::with_capacity(self.robots.len());
+        let mut reached: VecDeque<(Receiver, Point)> = (self.site.access_points.iter().enumerate())
+            .map(|(number, &place)| (Receiver::AccessPoint(number), place))
+            .collect();
+        while let Some((parent, from)) = reached.pop_front() {
+            let mut linked = missing.take(from, |place| self.site.distance(from, place) <= longest);
+            linked.sort_unstable_by_key(|&(robot, _)| robot);
+            for (robot, place) in linked {
+                let reliability = self.site.link.reliability((place - from).norm());
+                tree.push(Attached { robot, parent, reliability });
+                reached.push_back((Receiver::Robot(robot), place));
+            }
+        }
+        if tree.len() == self.robots.len() {
+            return Ok(tree);
+        }
+        let mut is_missing = vec![true; self.robots.len()];
+        tree.iter().for_each(|attached| is_missing[attached.robot] = false);
+        let longest = self.site.build_length;
+        Err((0..self.robots.len())
+            .filter(|&robot| is_missing[robot])
             .map(|robot| Problem::CutOff { longest }.at(robot_key(robot).key("position")))
-            .collect()
+            .collect())
     }
 
-    /// Rates that no routing carries from where the robots start: with the best one, some robot
-    /// receives and generates more than it sends. A solver without an answer proves nothing.
-    fn overloaded(&self) -> Option<Fault> {
-        let missing = -self.widest_reserve()?;
-        (missing > RATE_TOLERANCE)
-            .then(|| Problem::RatesTooHigh { missing }.at(KeyPath::root().key("robot")))
+    /// Rates that no routing carries from where the robots start. Three questions, the cheap ones
+    /// first: whether `tree` alone carries them, whether the robots that hear an access point can
+    /// pass on what all generate, and what the best routing gives.
+    fn overloaded(&self, tree: &[Attached]) -> Option<Fault> {
+        if self.is_carried_by(tree) {
+            return None;
+        }
+        let robots = KeyPath::root().key("robot");
+        let links = self.links();
+        let total: f64 = self.rates.iter().sum();
+        let most = self.most_to_access_points(&links);
+        if total > most + RATE_TOLERANCE {
+            return Some(Problem::RatesAboveAccess { total, most }.at(robots));
+        }
+        // A solver without an answer proves nothing.
+        let routing = RoutingProblem::new(links, self.rates.clone(), 0.0).ok()?;
+        let missing = -widest_reserve(&routing).ok()?;
+        (missing > RATE_TOLERANCE).then(|| Problem::RatesTooHigh { missing }.at(robots))
     }
 
-    /// The largest residual that some routing gives to every robot at once.
-    fn widest_reserve(&self) -> Option<f64> {
-        let Self { settings, robots, access_points, rates, .. } = self;
-        let LinkRanges { full_range, max_range } = settings.link;
-        let link = CubicReliability::new(full_range, max_range).ok()?;
-        let aversion = settings.slope_aversion;
-        let routing =
-            RoutingProblem::of_places(robots, access_points, rates, &link, aversion, 0.0).ok()?;
-        widest_reserve(&routing).ok()
+    /// Whether every robot can send to its parent all that its subtree generates.
+    fn is_carried_by(&self, tree: &[Attached]) -> bool {
+        let mut flows = self.rates.clone();
+        tree.iter().rev().all(|&Attached { robot, parent, reliability }| {
+            let flow = flows[robot];
+            if let Receiver::Robot(parent) = parent {
+                flows[parent] += flow;
+            }
+            flow <= reliability
+        })
     }
 
-    /// Whether a link of the tree may be built between two places. A link through a wall cannot
-    /// be walked, so its length is that of the geodesic.
-    fn link(&self, from: Point, to: Point) -> bool {
-        let longest = self.settings.longest_new_link() * (1.0 + ROUNDING);
-        distance(&from, &to) <= longest && self.free_space.distance(from, to) <= longest
+    /// What the access points can receive at most: each robot sends for at most all of its time.
+    fn most_to_access_points(&self, links: &[DirectedLink]) -> f64 {
+        let mut best = vec![0.0_f64; self.robots.len()];
+        for link in links.iter().filter(|link| matches!(link.receiver, Receiver::AccessPoint(_))) {
+            best[link.sender] = best[link.sender].max(link.reliability);
+        }
+        best.iter().sum()
+    }
+
+    /// Every link with R > 0 from a robot. Weights play no part in what can be carried.
+    fn links(&self) -> Vec<DirectedLink> {
+        let nodes: Vec<Point> =
+            self.robots.iter().chain(&self.site.access_points).copied().collect();
+        let buckets = Buckets::of(&nodes, self.site.link.range());
+        let count = self.robots.len();
+        let mut links = Vec::new();
+        for (sender, &place) in self.robots.iter().enumerate() {
+            let mut heard: Vec<_> =
+                buckets.near(place).filter(|&(node, _)| node != sender).collect();
+            heard.sort_unstable_by_key(|&(node, _)| node);
+            links.extend(heard.into_iter().filter_map(|(node, other)| {
+                let reliability = self.site.link.reliability((other - place).norm());
+                let receiver = match node.checked_sub(count) {
+                    Some(number) => Receiver::AccessPoint(number),
+                    None => Receiver::Robot(node),
+                };
+                let link = DirectedLink { sender, receiver, reliability, weight: 1.0 };
+                (reliability > 0.0).then_some(link)
+            }));
+        }
+        links
     }
 }
 

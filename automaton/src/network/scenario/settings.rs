@@ -1,7 +1,6 @@
 //! The control settings with every default filled in.
 
 use super::{Control, LinkRanges, MotionSolver, RoutingMethod, Scenario};
-use pleach_continuous::network::{CubicReliability, LinkReliability};
 
 /// The settings of the control scheme, none of them left open.
 ///
@@ -9,7 +8,7 @@ use pleach_continuous::network::{CubicReliability, LinkReliability};
 /// scenario's unit, times in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The two distances of the radio, eq. (27).
+    /// The radio.
     pub link: LinkRanges,
     /// ρ: distance kept from walls; robots keep 2ρ from each other.
     pub clearance: f64,
@@ -95,15 +94,6 @@ impl Settings {
     }
 }
 
-impl LinkRanges {
-    /// The distance at which the reliability (27) is `reliability`, a number between 0 and 1;
-    /// for ranges that are no model of a link, l.
-    pub fn distance_of(&self, reliability: f64) -> f64 {
-        CubicReliability::new(self.full_range, self.max_range)
-            .map_or(self.full_range, |link| link.distance_at(reliability))
-    }
-}
-
 impl From<Settings> for Control {
     fn from(settings: Settings) -> Self {
         Self {
@@ -125,10 +115,14 @@ impl From<Settings> for Control {
 }
 
 impl Scenario {
-    /// The same scenario with every default of its control settings written out.
+    /// The same scenario with every default of its radio and control settings written out.
     #[must_use]
     pub fn with_defaults(&self) -> Self {
-        Self { control: Settings::resolve(self).into(), ..self.clone() }
+        Self {
+            link: self.link.with_defaults(),
+            control: Settings::resolve(self).into(),
+            ..self.clone()
+        }
     }
 }
 
@@ -145,7 +139,7 @@ mod tests {
                 boundary: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]],
                 holes: vec![],
             },
-            link: LinkRanges { full_range: 0.4, max_range: 0.5 },
+            link: LinkRanges::new(0.4, 0.5),
             control,
             access_point: vec![AccessPoint { position: [0.5, 0.2] }],
             robot: vec![RobotStart { position: [0.6, 0.2], rate: 0.075 }],

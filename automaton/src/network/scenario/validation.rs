@@ -1,6 +1,8 @@
-//! Whether a mission can start from a scenario.
+//! Whether the values of a scenario are in their ranges and fit each other.
 
-use super::{Control, Fault, KeyPath, LinkRanges, Problem, Scenario, Settings, placement};
+use super::control::{CONTROL, FARTHEST, SHORTEST, Values};
+use super::radio::STEEPEST;
+use super::{Fault, KeyPath, LinkModel, LinkRanges, Problem, Scenario, Settings};
 
 /// Two robots 2ρ apart must both be able to service while they hand over a task; they approach
 /// 2ρ without ever reaching it, so δ is at least this many clearances (2 in Remark 5.5).
@@ -10,81 +12,59 @@ const LEAST_SERVICE_RADIUS_IN_CLEARANCES: f64 = 2.3;
 /// 2.3 · 0.01.
 pub(super) const ROUNDING: f64 = 1e-9;
 
+/// The largest range of links: beyond it squares of lengths come near the largest numbers.
+const LARGEST_RANGE: f64 = 1e30;
+
+/// The most rows of one table, and corners of one polygon.
+const MOST_ROWS: usize = 1_000_000;
+
+/// The most characters of a name: with an ending it must be the name of a file.
+const LONGEST_NAME: usize = 100;
+
 impl Scenario {
-    /// Everything that keeps a mission from starting.
-    ///
-    /// A task in a wall or out of reach is no fault: it ends the mission with an outcome of its
-    /// own.
-    ///
-    /// # Errors
-    /// The faults, in the order of the keys. Later checks presuppose earlier ones (numbers are
-    /// finite, then settings fit each other, then polygons are simple, then robots stand well,
-    /// then they are connected), so only the first kind of check that fails is reported.
-    pub fn validate(&self) -> Result<(), Vec<Fault>> {
+    /// Everything that is wrong with the values, without a look at the geometry.
+    pub(super) fn check_values(&self) -> Result<(), Vec<Fault>> {
         let checks: [fn(&Scenario) -> Vec<Fault>; 4] =
-            [numbers_are_finite, values_are_in_range, settings_fit_each_other, placement::faults];
+            [numbers_are_finite, values_are_in_range, places_are_near, settings_fit_each_other];
         match checks.iter().map(|check| check(self)).find(|faults| !faults.is_empty()) {
             Some(faults) => Err(faults),
             None => Ok(()),
         }
     }
 
-    /// Every number that the scenario states, with its key.
-    fn numbers(&self) -> Vec<(KeyPath, f64)> {
-        let outlines = self.outlines().into_iter().flat_map(|(key, polygon)| {
-            let corners = polygon.iter().enumerate();
-            corners.flat_map(move |(corner, point)| coordinates(key.clone().index(corner), point))
-        });
-        let places = self.places().into_iter().flat_map(|(key, point)| coordinates(key, point));
-        let link = [("full_range", self.link.full_range), ("max_range", self.link.max_range)]
-            .map(|(name, value)| (KeyPath::root().key("link").key(name), value));
-        let control =
-            self.control.numbers().into_iter().filter_map(|(name, value)| {
-                Some((KeyPath::root().key("control").key(name), value?))
-            });
-        let rates = (self.robot.iter().enumerate())
-            .map(|(index, robot)| (robot_key(index).key("rate"), robot.rate));
-        outlines.chain(link).chain(control).chain(places).chain(rates).collect()
+    /// The two distances of the radio, by their keys.
+    fn ranges(&self) -> [(&'static str, f64); 2] {
+        [("full_range", self.link.full_range), ("max_range", self.link.max_range)]
     }
 
-    /// The polygons of the workspace with their keys: the boundary, then the holes.
-    fn outlines(&self) -> Vec<(KeyPath, &[[f64; 2]])> {
-        let key = |name| KeyPath::root().key("workspace").key(name);
-        let holes = (self.workspace.holes.iter().enumerate())
-            .map(|(hole, polygon)| (key("holes").index(hole), polygon.as_slice()));
-        [(key("boundary"), self.workspace.boundary.as_slice())].into_iter().chain(holes).collect()
-    }
-
-    /// The positions of access points, robots and tasks with their keys.
-    fn places(&self) -> Vec<(KeyPath, &[f64; 2])> {
-        fn keyed<'a>(
-            table: &'static str,
-            positions: impl Iterator<Item = &'a [f64; 2]>,
-        ) -> impl Iterator<Item = (KeyPath, &'a [f64; 2])> {
-            positions.enumerate().map(move |(index, position)| {
-                (KeyPath::root().key(table).index(index).key("position"), position)
-            })
+    /// A fault for each coordinate in which `problem` sees one.
+    fn coordinate_faults(&self, problem: impl Fn(f64) -> Option<Problem>) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        let mut look = |key: &dyn Fn() -> KeyPath, point: &[f64; 2]| {
+            for (axis, &value) in point.iter().enumerate() {
+                faults.extend(problem(value).map(|problem| problem.at(key().index(axis))));
+            }
+        };
+        let workspace = || KeyPath::root().key("workspace");
+        for (corner, point) in self.workspace.boundary.iter().enumerate() {
+            look(&|| workspace().key("boundary").index(corner), point);
         }
-        keyed("access_point", self.access_point.iter().map(|point| &point.position))
-            .chain(keyed("robot", self.robot.iter().map(|robot| &robot.position)))
-            .chain(keyed("task", self.task.iter().map(|task| &task.position)))
-            .collect()
-    }
-}
-
-impl Control {
-    /// The real-valued settings by their keys.
-    fn numbers(&self) -> [(&'static str, Option<f64>); 8] {
-        [
-            ("clearance", self.clearance),
-            ("service_radius", self.service_radius),
-            ("step_radius", self.step_radius),
-            ("residual_tolerance", self.residual_tolerance),
-            ("period", self.period),
-            ("routing_reserve", self.routing_reserve),
-            ("slope_aversion", self.slope_aversion),
-            ("tree_reliability", self.tree_reliability),
-        ]
+        for (hole, polygon) in self.workspace.holes.iter().enumerate() {
+            for (corner, point) in polygon.iter().enumerate() {
+                look(&|| workspace().key("holes").index(hole).index(corner), point);
+            }
+        }
+        let position = |table: &str, row| KeyPath::root().key(table).index(row).key("position");
+        for (row, access_point) in self.access_point.iter().enumerate() {
+            look(&|| position("access_point", row), &access_point.position);
+        }
+        for (row, robot) in self.robot.iter().enumerate() {
+            look(&|| position("robot", row), &robot.position);
+        }
+        for (row, task) in self.task.iter().enumerate() {
+            look(&|| position("task", row), &task.position);
+        }
+        faults
     }
 }
 
@@ -93,123 +73,171 @@ pub(super) fn robot_key(index: usize) -> KeyPath {
     KeyPath::root().key("robot").index(index)
 }
 
-/// The two coordinates of the point at `key`, each with its own key.
-fn coordinates(key: KeyPath, point: &[f64; 2]) -> impl Iterator<Item = (KeyPath, f64)> {
-    let [x, y] = *point;
-    [(key.clone().index(0), x), (key.index(1), y)].into_iter()
+fn link_key(name: &str) -> KeyPath {
+    KeyPath::root().key("link").key(name)
+}
+
+fn control_key(name: &str) -> KeyPath {
+    KeyPath::root().key("control").key(name)
 }
 
 fn numbers_are_finite(scenario: &Scenario) -> Vec<Fault> {
-    (scenario.numbers().into_iter().filter(|(_, value)| !value.is_finite()))
-        .map(|(key, value)| Problem::NotFinite { value }.at(key))
-        .collect()
-}
-
-/// Values that are wrong by themselves. What the file leaves to the defaults is right if the rest
-/// is.
-fn values_are_in_range(scenario: &Scenario) -> Vec<Fault> {
-    let Scenario { control: stated, link: ranges, .. } = scenario;
-    let link = |name| KeyPath::root().key("link").key(name);
-    let control = |name| KeyPath::root().key("control").key(name);
-
-    let name = (!is_file_name(&scenario.name)).then(|| {
-        Problem::NotAFileName { name: scenario.name.clone() }.at(KeyPath::root().key("name"))
+    let not_finite = |value: f64| (!value.is_finite()).then_some(Problem::NotFinite { value });
+    let stated =
+        scenario.ranges().into_iter().chain(scenario.link.steepness.map(|p| ("steepness", p)));
+    let link = stated.filter_map(|(name, value)| Some(not_finite(value)?.at(link_key(name))));
+    let control = CONTROL.iter().filter_map(|key| {
+        let value = key.values.number(&scenario.control)?;
+        Some(not_finite(value)?.at(control_key(key.name)))
     });
-    let not_positive = offences(
-        [
-            (link("full_range"), Some(ranges.full_range)),
-            (link("max_range"), Some(ranges.max_range)),
-            (control("clearance"), stated.clearance),
-            (control("service_radius"), stated.service_radius),
-            (control("step_radius"), stated.step_radius),
-            (control("period"), stated.period),
-        ],
-        |&value| value <= 0.0,
-        |value| Problem::NotPositive { value },
-    );
-    let negative = offences(
-        [
-            (control("residual_tolerance"), stated.residual_tolerance),
-            (control("slope_aversion"), stated.slope_aversion),
-        ],
-        |&value| value < 0.0,
-        |value| Problem::Negative { value },
-    );
-    let zero = offences(
-        [
-            (control("max_steps"), stated.max_steps),
-            (control("rounds_per_period"), stated.rounds_per_period),
-            (control("routing_iterations"), stated.routing_iterations),
-        ],
-        |&count| count == 0,
-        |_| Problem::Zero,
-    );
     let rates = (scenario.robot.iter().enumerate())
-        .map(|(index, robot)| (robot_key(index).key("rate"), Some(robot.rate)));
-    let no_share = offences(
-        rates.chain([(control("routing_reserve"), stated.routing_reserve)]),
-        |value| !(0.0..=1.0).contains(value),
-        |value| Problem::NotAShare { value },
-    );
-    let no_reliability = offences(
-        [(control("tree_reliability"), stated.tree_reliability)],
-        |&value| value <= 0.0 || value >= 1.0,
-        |value| Problem::NotAReliability { value },
-    );
-    let nobody = [
-        (scenario.access_point.is_empty(), "access_point", Problem::NoAccessPoint),
-        (scenario.robot.is_empty(), "robot", Problem::NoRobot),
-    ]
-    .into_iter()
-    .filter(|(missing, ..)| *missing)
-    .map(|(_, table, problem)| problem.at(KeyPath::root().key(table)));
+        .filter_map(|(row, robot)| Some(not_finite(robot.rate)?.at(robot_key(row).key("rate"))));
+    let coordinates = scenario.coordinate_faults(not_finite);
+    coordinates.into_iter().chain(link).chain(control).chain(rates).collect()
+}
 
-    (name.into_iter().chain(not_positive).chain(negative).chain(zero))
-        .chain(no_share)
-        .chain(no_reliability)
-        .chain(nobody)
+/// Values that are wrong by themselves, or against the range of the links. What the file leaves
+/// to the defaults is right if the rest is.
+fn values_are_in_range(scenario: &Scenario) -> Vec<Fault> {
+    let name = name_problem(&scenario.name).map(|problem| problem.at(KeyPath::root().key("name")));
+    let range = scenario.link.max_range;
+    let link = scenario.ranges().into_iter().filter_map(|(name, value)| {
+        Some(length_problem(value, LARGEST_RANGE.recip(), LARGEST_RANGE)?.at(link_key(name)))
+    });
+    let steepness = steepness_problem(&scenario.link).map(|p| p.at(link_key("steepness")));
+    let control = CONTROL.iter().filter_map(|key| {
+        Some(control_problem(key.values, scenario, range)?.at(control_key(key.name)))
+    });
+    let rates = (scenario.robot.iter().enumerate()).filter_map(|(row, robot)| {
+        Some((share_problem(robot.rate)?).at(robot_key(row).key("rate")))
+    });
+    let mut faults: Vec<Fault> =
+        name.into_iter().chain(link).chain(steepness).chain(control).chain(rates).collect();
+    faults.extend(table_faults(scenario));
+    faults
+}
+
+fn control_problem(values: Values, scenario: &Scenario, range: f64) -> Option<Problem> {
+    let control = &scenario.control;
+    match values {
+        Values::Length(stated) => length_problem(stated(control)?, SHORTEST * range, range),
+        Values::Time(least, most, stated) => length_problem(stated(control)?, least, most),
+        Values::UpTo(most, stated) => match stated(control)? {
+            value if value < 0.0 => Some(Problem::Negative { value }),
+            value if value > most => Some(Problem::OutOfRange { value, least: 0.0, most }),
+            _ => None,
+        },
+        Values::Share(stated) => share_problem(stated(control)?),
+        Values::Reliability(stated) => {
+            let value = stated(control)?;
+            (value <= 0.0 || value >= 1.0).then_some(Problem::NotAReliability { value })
+        }
+        Values::Count(most, stated) => match stated(control)? {
+            0 => Some(Problem::Zero),
+            count if count > most => Some(Problem::TooMany { count, most }),
+            _ => None,
+        },
+        Values::OneOf(_) => None,
+    }
+}
+
+/// What is wrong with a length or time that must be above 0 and within bounds.
+fn length_problem(value: f64, least: f64, most: f64) -> Option<Problem> {
+    if value <= 0.0 {
+        Some(Problem::NotPositive { value })
+    } else if value < least || value > most {
+        Some(Problem::OutOfRange { value, least, most })
+    } else {
+        None
+    }
+}
+
+fn steepness_problem(link: &LinkRanges) -> Option<Problem> {
+    match (link.model, link.steepness?) {
+        (LinkModel::Logistic, value) if (2.0..=STEEPEST).contains(&value) => None,
+        (LinkModel::Logistic, value) => {
+            Some(Problem::OutOfRange { value, least: 2.0, most: STEEPEST })
+        }
+        (LinkModel::Cubic, _) => Some(Problem::SteepnessWithoutUse),
+    }
+}
+
+fn share_problem(value: f64) -> Option<Problem> {
+    (!(0.0..=1.0).contains(&value)).then_some(Problem::NotAShare { value })
+}
+
+/// Tables without a row, and tables and polygons with too many.
+fn table_faults(scenario: &Scenario) -> Vec<Fault> {
+    let Scenario { access_point, robot, task, workspace, .. } = scenario;
+    let root = |table: &str| KeyPath::root().key(table);
+    let empty = [
+        (access_point.is_empty(), "access_point", Problem::NoAccessPoint),
+        (robot.is_empty(), "robot", Problem::NoRobot),
+    ];
+    let boundary = root("workspace").key("boundary");
+    let holes = root("workspace").key("holes");
+    let corners = workspace.holes.iter().map(Vec::len).sum();
+    let counts = [
+        (access_point.len(), root("access_point")),
+        (robot.len(), root("robot")),
+        (task.len(), root("task")),
+        (workspace.boundary.len(), boundary),
+        (corners, holes),
+    ];
+    let empty = empty.into_iter().filter(|(is_empty, ..)| *is_empty);
+    let large = counts.into_iter().filter(|&(count, _)| count > MOST_ROWS);
+    (empty.map(|(_, table, problem)| problem.at(root(table))))
+        .chain(large.map(|(count, key)| Problem::TooMany { count, most: MOST_ROWS }.at(key)))
         .collect()
 }
 
-/// A fault for each value that is stated and wrong.
-fn offences<V: Copy>(
-    stated: impl IntoIterator<Item = (KeyPath, Option<V>)>,
-    wrong: impl Fn(&V) -> bool,
-    problem: impl Fn(V) -> Problem,
-) -> impl Iterator<Item = Fault> {
-    (stated.into_iter())
-        .filter_map(|(key, value)| Some((key, value?)))
-        .filter(move |(_, value)| wrong(value))
-        .map(move |(key, value)| problem(value).at(key))
+/// Coordinates that are too large against the range of the links for distances to be exact.
+fn places_are_near(scenario: &Scenario) -> Vec<Fault> {
+    let most = FARTHEST * scenario.link.max_range;
+    scenario.coordinate_faults(|value| {
+        (value.abs() > most).then_some(Problem::TooFarAway { value, most })
+    })
 }
 
 fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
     let settings = Settings::resolve(scenario);
-    let LinkRanges { full_range, max_range } = settings.link;
-    let control = |name| KeyPath::root().key("control").key(name);
+    let LinkRanges { full_range, max_range, .. } = settings.link;
 
     if full_range >= max_range {
-        let key = KeyPath::root().key("link").key("full_range");
-        return vec![Problem::RangesReversed { full_range, max_range }.at(key)];
+        let problem = Problem::RangesReversed { full_range, max_range };
+        return vec![problem.at(link_key("full_range"))];
+    }
+    if max_range - full_range < SHORTEST * max_range {
+        let least = SHORTEST * max_range;
+        let problem = Problem::RangesTooClose { full_range, max_range, least };
+        return vec![problem.at(link_key("full_range"))];
     }
     let Settings { clearance, service_radius, step_radius, tree_reliability, .. } = settings;
     let least = LEAST_SERVICE_RADIUS_IN_CLEARANCES * clearance;
     let service = (service_radius < least * (1.0 - ROUNDING)).then(|| {
         Problem::ServiceRadiusTooSmall { service_radius, clearance, least }
-            .at(control("service_radius"))
+            .at(control_key("service_radius"))
     });
     let most = (max_range - 2.0 * clearance) / 2.0;
     let step = (step_radius > most * (1.0 + ROUNDING))
-        .then(|| Problem::StepTooLong { step_radius, most }.at(control("step_radius")));
+        .then(|| Problem::StepTooLong { step_radius, most }.at(control_key("step_radius")));
     let longest = settings.longest_tree_link();
     let links = (settings.longest_new_link() <= 0.0).then(|| {
         Problem::TreeLinksTooShort { tree_reliability, longest, service_radius }
-            .at(control("tree_reliability"))
+            .at(control_key("tree_reliability"))
     });
     [service, step, links].into_iter().flatten().collect()
 }
 
-/// Whether `name` can name a file wherever the program runs.
-fn is_file_name(name: &str) -> bool {
-    !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_')
+/// What keeps `name` from being the name of a file wherever the program runs.
+fn name_problem(name: &str) -> Option<Problem> {
+    let is_file_name =
+        !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');
+    if !is_file_name {
+        Some(Problem::NotAFileName { name: name.into() })
+    } else if name.len() > LONGEST_NAME {
+        Some(Problem::LongName { length: name.len(), most: LONGEST_NAME })
+    } else {
+        None
+    }
 }

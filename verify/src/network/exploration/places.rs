@@ -18,7 +18,7 @@ pub type Place = usize;
 const STEP: f64 = 0.97;
 
 /// l and u of the radio; nothing depends on them.
-const RANGES: LinkRanges = LinkRanges { full_range: 1.0, max_range: 1.2 };
+const RANGES: LinkRanges = LinkRanges::new(1.0, 1.2);
 
 /// A connected graph of places with robots, access points and tasks on it.
 ///

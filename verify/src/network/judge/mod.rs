@@ -19,11 +19,11 @@ mod ledger;
 mod places;
 
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use pleach_automaton::network::scenario::Scenario;
+use pleach_automaton::network::scenario::ValidScenario;
 use pleach_discrete::network::Role;
 
 use super::extremes::Extremes;
-use super::limits::{LimitError, Limits, SLACK};
+use super::limits::{Limits, SLACK};
 use super::monitor::Monitor;
 use super::property::Property;
 use super::violation::{Instant, Violation};
@@ -82,18 +82,11 @@ pub struct Judge<'a> {
 impl<'a> Judge<'a> {
     /// A judge that has seen nothing yet; `role_table` tells whether a role may turn into another
     /// in one transition.
-    ///
-    /// # Errors
-    ///
-    /// What makes the scenario one that no mission can be held against.
-    pub fn new(
-        scenario: &Scenario,
-        role_table: impl Fn(Role, Role) -> bool + 'a,
-    ) -> Result<Self, LimitError> {
-        let monitor = Monitor::new(scenario, role_table)?;
+    pub fn new(scenario: &ValidScenario, role_table: impl Fn(Role, Role) -> bool + 'a) -> Self {
+        let monitor = Monitor::new(scenario, role_table);
         let (robots, nodes) = (monitor.limits().robots(), monitor.limits().nodes());
         let settings = monitor.limits().settings();
-        Ok(Judge {
+        Judge {
             period: settings.period,
             max_steps: settings.max_steps,
             starts: scenario.robot.iter().map(|robot| robot.position).collect(),
@@ -102,7 +95,7 @@ impl<'a> Judge<'a> {
             places: Places::new(robots),
             previous: None,
             monitor,
-        })
+        }
     }
 
     /// Judges the control period that ends with this snapshot, its events, and the snapshot.

@@ -1,0 +1,131 @@
+//! `[control]`: the settings of the control scheme, and what may stand at each of their keys.
+
+use serde::{Deserialize, Serialize};
+
+/// How the routing variables are computed in every control period.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RoutingMethod {
+    /// The dual iteration (13)–(14).
+    Dual,
+    /// The dual iteration with momentum.
+    #[default]
+    AcceleratedDual,
+    /// The accelerated distributed augmented Lagrangian method of Remark 3.1.
+    Adal,
+}
+
+/// How the motion problem (21)–(22) is solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionSolver {
+    /// Exact enumeration of the active constraints in the plane.
+    #[default]
+    Exact,
+    /// The second-order cone program, by clarabel.
+    Conic,
+}
+
+/// Settings of the control scheme; a key left out takes the default that its text states.
+/// [`CONTROL`] has the range of each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Control {
+    /// ρ: distance kept from walls; robots keep 2ρ from each other. Default l/40.
+    pub clearance: Option<f64>,
+    /// δ: how close a robot must be to service a task, eq. (2). Default 3ρ.
+    pub service_radius: Option<f64>,
+    /// σ: radius of the trust region, eq. (21). Default (u − l)/10.
+    pub step_radius: Option<f64>,
+    /// c_min: residuals stay ≥ −c_min. Default 0.
+    pub residual_tolerance: Option<f64>,
+    /// Control periods after which the mission is given up. Default 20000.
+    pub max_steps: Option<usize>,
+    /// Δt: length of a control period in seconds. Default 1.
+    pub period: Option<f64>,
+    /// Rounds of coordination messages in a control period. Default 8.
+    pub rounds_per_period: Option<usize>,
+    /// How routes are computed. Default `accelerated_dual`.
+    pub routing_method: Option<RoutingMethod>,
+    /// Iterations of the routing method in a control period. Default 5.
+    pub routing_iterations: Option<usize>,
+    /// η: the residual that routes aim at. Default 0.02.
+    pub routing_reserve: Option<f64>,
+    /// κ: how strongly traffic avoids links whose reliability changes with distance. Default 10.
+    pub slope_aversion: Option<f64>,
+    /// Reliability that a link of the tree never falls below. Default 0.8.
+    pub tree_reliability: Option<f64>,
+    /// How the motion problem is solved. Default `exact`.
+    pub motion_solver: Option<MotionSolver>,
+}
+
+/// A key of `[control]`.
+#[derive(Clone, Copy, Debug)]
+pub struct ControlKey {
+    /// The key.
+    pub name: &'static str,
+    /// What may stand there.
+    pub values: Values,
+}
+
+/// What may stand at a key, with access to what does.
+#[derive(Clone, Copy, Debug)]
+pub enum Values {
+    /// A length, at least `SHORTEST` and at most 1 time the range of the links.
+    Length(fn(&Control) -> Option<f64>),
+    /// A time in seconds, from the first number to the second.
+    Time(f64, f64, fn(&Control) -> Option<f64>),
+    /// A number from 0 to this one.
+    UpTo(f64, fn(&Control) -> Option<f64>),
+    /// A share of the radio's rate, from 0 to 1.
+    Share(fn(&Control) -> Option<f64>),
+    /// A reliability above 0 and below 1.
+    Reliability(fn(&Control) -> Option<f64>),
+    /// A whole number from 1 to this one.
+    Count(usize, fn(&Control) -> Option<usize>),
+    /// One of these words.
+    OneOf(&'static [&'static str]),
+}
+
+/// The shortest length that a setting may have, in ranges of the links: what a robot could not
+/// cover within the longest mission, or what coordinates of [`FARTHEST`] cannot resolve, is a
+/// slip of the pen.
+pub const SHORTEST: f64 = 1e-6;
+
+/// The largest magnitude of a coordinate, in ranges of the links.
+pub const FARTHEST: f64 = 1e6;
+
+/// The keys of `[control]`, in the order of the documentation.
+pub const CONTROL: &[ControlKey] = &[
+    key("clearance", Values::Length(|control| control.clearance)),
+    key("service_radius", Values::Length(|control| control.service_radius)),
+    key("step_radius", Values::Length(|control| control.step_radius)),
+    key("residual_tolerance", Values::UpTo(1.0, |control| control.residual_tolerance)),
+    key("max_steps", Values::Count(1_000_000_000, |control| control.max_steps)),
+    key("period", Values::Time(1e-6, 1e6, |control| control.period)),
+    key("rounds_per_period", Values::Count(10_000, |control| control.rounds_per_period)),
+    key("routing_method", Values::OneOf(&["dual", "accelerated_dual", "adal"])),
+    key("routing_iterations", Values::Count(10_000, |control| control.routing_iterations)),
+    key("routing_reserve", Values::Share(|control| control.routing_reserve)),
+    key("slope_aversion", Values::UpTo(1e6, |control| control.slope_aversion)),
+    key("tree_reliability", Values::Reliability(|control| control.tree_reliability)),
+    key("motion_solver", Values::OneOf(&["exact", "conic"])),
+];
+
+const fn key(name: &'static str, values: Values) -> ControlKey {
+    ControlKey { name, values }
+}
+
+impl Values {
+    /// The number that `control` states at this key, unless it is a count or a word.
+    pub fn number(&self, control: &Control) -> Option<f64> {
+        match self {
+            Values::Length(stated)
+            | Values::Time(_, _, stated)
+            | Values::UpTo(_, stated)
+            | Values::Share(stated)
+            | Values::Reliability(stated) => stated(control),
+            Values::Count(..) | Values::OneOf(_) => None,
+        }
+    }
+}

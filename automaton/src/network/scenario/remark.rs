@@ -1,0 +1,134 @@
+//! What does not keep a mission from starting, but may surprise.
+
+use std::fmt;
+
+use pleach_continuous::Point;
+use pleach_continuous::network::LinkReliability;
+
+use super::buckets::Buckets;
+use super::{KeyPath, ValidScenario};
+
+/// Something about a valid scenario that its author may not have meant.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Remark {
+    /// No robot can service a task: the mission will end with the outcome `unreachable_task`.
+    Task {
+        /// Which task, counted from 0.
+        task: usize,
+        /// Why not.
+        remark: TaskRemark,
+    },
+    /// Links whose ends do not see each other. The radio of the paper reaches through walls.
+    ThroughWalls {
+        /// Pairs of nodes with R > 0 at the start whose straight line leaves the workspace.
+        crossing: usize,
+        /// All pairs of nodes with R > 0 at the start, but for pairs of access points.
+        links: usize,
+    },
+}
+
+/// Why no robot can service a task.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TaskRemark {
+    /// It is farther than δ from every place where a robot may stand.
+    TooDeep {
+        /// Whether it lies in the workspace: then it is too near to a wall, otherwise beyond the
+        /// boundary or in a hole.
+        is_inside: bool,
+        /// How far it is from the nearest place where a robot may stand.
+        gap: f64,
+        /// δ.
+        service_radius: f64,
+    },
+    /// The place nearest to it lies in a part of the free space in which no robot starts.
+    Elsewhere,
+}
+
+impl Remark {
+    /// The key of the scenario that it concerns.
+    pub fn key(&self) -> KeyPath {
+        match self {
+            Remark::Task { task, .. } => KeyPath::root().key("task").index(*task).key("position"),
+            Remark::ThroughWalls { .. } => KeyPath::root().key("link"),
+        }
+    }
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Remark::Task {
+                remark: TaskRemark::TooDeep { is_inside, gap, service_radius }, ..
+            } => {
+                let place = match is_inside {
+                    true => "too close to a wall",
+                    false => "beyond the boundary or in a hole",
+                };
+                write!(
+                    formatter,
+                    "no robot can service it: it lies {place}, {gap:.6} away from the nearest \
+                     place where a robot may stand, and service_radius is {service_radius}"
+                )
+            }
+            Remark::Task { remark: TaskRemark::Elsewhere, .. } => write!(
+                formatter,
+                "no robot can service it: no way leads to it from where the robots start; \
+                 passages narrower than 2 clearances are closed to them"
+            ),
+            Remark::ThroughWalls { crossing, links } => write!(
+                formatter,
+                "{crossing} of the {links} links at the start cross walls, which the model of \
+                 the radio does not see; ranges should be those that hold through walls"
+            ),
+        }
+    }
+}
+
+impl ValidScenario {
+    /// Everything worth a remark, tasks first.
+    pub fn remarks(&self) -> Vec<Remark> {
+        let tasks = self.task.iter().enumerate().filter_map(|(task, place)| {
+            let remark = self.task_remark(place.position.into())?;
+            Some(Remark::Task { task, remark })
+        });
+        let (links, crossing) = self.count_links();
+        let walls = (crossing > 0).then_some(Remark::ThroughWalls { crossing, links });
+        tasks.chain(walls).collect()
+    }
+
+    /// Why no robot can service a task at this place, if none can; robots decide alike.
+    fn task_remark(&self, task: Point) -> Option<TaskRemark> {
+        let site = self.site();
+        let service_radius = site.settings.service_radius;
+        let target = site.free_space.nearest(task);
+        let gap = (target - task).norm();
+        if gap > service_radius {
+            let is_inside = site.workspace.contains(task);
+            return Some(TaskRemark::TooDeep { is_inside, gap, service_radius });
+        }
+        let region = site.free_space.region(target);
+        let region_of =
+            |start: [f64; 2]| site.free_space.region(site.free_space.nearest(start.into()));
+        let is_reached = self.robot.iter().any(|robot| region_of(robot.position) == region);
+        (!is_reached).then_some(TaskRemark::Elsewhere)
+    }
+
+    /// The links with R > 0 at the start but for those between access points, and how many of
+    /// them cross walls.
+    pub fn count_links(&self) -> (usize, usize) {
+        let site = self.site();
+        let robots: Vec<Point> = self.robot.iter().map(|robot| robot.position.into()).collect();
+        let nodes: Vec<Point> = robots.iter().chain(&site.access_points).copied().collect();
+        let buckets = Buckets::of(&nodes, site.link.range());
+        let (mut links, mut crossing) = (0, 0);
+        for (robot, &place) in robots.iter().enumerate() {
+            let later = buckets.near(place).filter(|&(other, _)| other > robot);
+            for (_, other) in later.filter(|(_, o)| (o - place).norm() < site.link.range()) {
+                links += 1;
+                crossing += usize::from(site.workspace.segment_clearance(place, other) <= 0.0);
+            }
+        }
+        (links, crossing)
+    }
+}

@@ -1,0 +1,152 @@
+//! States that are not their coordinates: what guards may speak of, by name and by number.
+//!
+//! Guards name what they speak of. Where the names are known when the automaton is built, each is
+//! looked up once, and a guard is evaluated by numbers from then on.
+
+use std::sync::Arc;
+
+use pleach_guards::{Comparison, Expression, Predicate, Relation, Valuation};
+
+/// A state with quantities and propositions that have names and numbers.
+pub trait Observed: Valuation {
+    /// The names of the quantities, each different.
+    const VARIABLES: &'static [&'static str];
+    /// The names of the propositions, each different.
+    const PROPOSITIONS: &'static [&'static str];
+
+    /// The quantity whose name is `VARIABLES[number]`; NaN beyond the end.
+    fn quantity(&self, number: usize) -> f64;
+
+    /// Whether the proposition whose name is `PROPOSITIONS[number]` is true; false beyond the end.
+    fn proposition(&self, number: usize) -> bool;
+}
+
+/// A guard over quantities and propositions by their numbers.
+pub(crate) struct Watch<S> {
+    test: Test,
+    quantity: fn(&S, usize) -> f64,
+    proposition: fn(&S, usize) -> bool,
+}
+
+#[derive(Clone, Debug)]
+enum Test {
+    Proposition(usize),
+    Comparison(Operand, Relation, Operand),
+    Not(Box<Test>),
+    All(Arc<[Test]>),
+    Any(Arc<[Test]>),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Operand {
+    Constant(f64),
+    Quantity(usize),
+}
+
+impl<S: Observed> Watch<S> {
+    /// The guard by numbers; none where an operand is more than a quantity or a constant, or a name
+    /// is not known.
+    pub(crate) fn of(predicate: &Predicate) -> Option<Self> {
+        Some(Watch {
+            test: Test::of::<S>(predicate)?,
+            quantity: S::quantity,
+            proposition: S::proposition,
+        })
+    }
+}
+
+impl<S> Watch<S> {
+    /// Whether the guard holds; none where a quantity is not a number, so that it has no verdict.
+    #[inline]
+    pub(crate) fn holds(&self, state: &S) -> Option<bool> {
+        self.judge(&self.test, state)
+    }
+
+    fn judge(&self, test: &Test, state: &S) -> Option<bool> {
+        Some(match test {
+            Test::Proposition(number) => (self.proposition)(state, *number),
+            Test::Comparison(left, relation, right) => {
+                let (left, right) = (self.value(*left, state), self.value(*right, state));
+                if left.is_nan() || right.is_nan() {
+                    return None;
+                }
+                match relation {
+                    Relation::AtMost => left <= right,
+                    Relation::LessThan => left < right,
+                    Relation::AtLeast => left >= right,
+                    Relation::MoreThan => left > right,
+                }
+            }
+            Test::Not(inner) => !self.judge(inner, state)?,
+            Test::All(parts) => {
+                for part in parts.iter() {
+                    if !self.judge(part, state)? {
+                        return Some(false);
+                    }
+                }
+                true
+            }
+            Test::Any(parts) => {
+                for part in parts.iter() {
+                    if self.judge(part, state)? {
+                        return Some(true);
+                    }
+                }
+                false
+            }
+        })
+    }
+
+    fn value(&self, operand: Operand, state: &S) -> f64 {
+        match operand {
+            Operand::Constant(value) => value,
+            Operand::Quantity(number) => (self.quantity)(state, number),
+        }
+    }
+}
+
+impl Test {
+    fn of<S: Observed>(predicate: &Predicate) -> Option<Test> {
+        let each = |parts: &[Predicate]| -> Option<Arc<[Test]>> {
+            parts.iter().map(Test::of::<S>).collect()
+        };
+        Some(match predicate {
+            Predicate::Proposition(name) => Test::Proposition(number(S::PROPOSITIONS, name)?),
+            Predicate::Comparison(Comparison { left, relation, right }) => {
+                Test::Comparison(Operand::of::<S>(left)?, *relation, Operand::of::<S>(right)?)
+            }
+            Predicate::Not(inner) => Test::Not(Box::new(Test::of::<S>(inner)?)),
+            Predicate::All(parts) => Test::All(each(parts)?),
+            Predicate::Any(parts) => Test::Any(each(parts)?),
+            _ => return None,
+        })
+    }
+}
+
+impl Operand {
+    fn of<S: Observed>(expression: &Expression) -> Option<Operand> {
+        match expression {
+            Expression::Constant(value) => Some(Operand::Constant(*value)),
+            Expression::Variable(name) => Some(Operand::Quantity(number(S::VARIABLES, name)?)),
+            _ => None,
+        }
+    }
+}
+
+fn number(names: &[&str], name: &str) -> Option<usize> {
+    names.iter().position(|known| *known == name)
+}
+
+// Written by hand, because derives would ask the same of S.
+
+impl<S> Clone for Watch<S> {
+    fn clone(&self) -> Self {
+        Watch { test: self.test.clone(), ..*self }
+    }
+}
+
+impl<S> std::fmt::Debug for Watch<S> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "Watch({:?})", self.test)
+    }
+}

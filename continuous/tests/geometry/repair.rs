@@ -1,0 +1,164 @@
+//! Maps whose polygons touch.
+
+use pleach_continuous::Point;
+use pleach_continuous::geometry::{FreeSpace, Repair, Workspace, WorkspaceError};
+use proptest::prelude::*;
+
+use super::environments::{environment, place, ring};
+use super::plain;
+
+fn room() -> Vec<Point> {
+    ring(&[(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)])
+}
+
+/// The distance to the edges of all polygons, as they were given.
+fn distance_to(polygons: &[Vec<Point>], point: Point) -> f64 {
+    plain::distance(&plain::edges(polygons), point)
+}
+
+/// Repairs a map; checks that its points keep their distance from its walls, and that there is a
+/// free space.
+fn repaired(boundary: Vec<Point>, holes: Vec<Vec<Point>>) -> (Workspace, Vec<Repair>) {
+    let (workspace, repairs) = Workspace::repaired(boundary.clone(), holes.clone()).unwrap();
+    let polygons: Vec<Vec<Point>> = std::iter::once(boundary).chain(holes).collect();
+    let free_space = FreeSpace::new(&workspace, 0.05).unwrap();
+    for step in 0..2000 {
+        let share = |prime: usize| (step * prime % 1999) as f64 / 1999.0;
+        let place = Point::new(4.0 * share(37), 3.0 * share(911));
+        if workspace.contains(place) {
+            let expected = distance_to(&polygons, place);
+            assert!((workspace.clearance(place) - expected).abs() < 1e-9, "{place}");
+        }
+        assert!(!free_space.contains(place) || distance_to(&polygons, place) >= 0.05);
+    }
+    (workspace, repairs)
+}
+
+#[test]
+fn a_hole_that_touches_the_boundary_is_joined() {
+    let at_a_vertex = ring(&[(2.0, 3.0), (1.5, 2.0), (2.5, 2.0)]);
+    let along_an_edge = ring(&[(0.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)]);
+    for hole in [at_a_vertex, along_an_edge] {
+        assert!(Workspace::new(room(), vec![hole.clone()]).is_err());
+        let (workspace, repairs) = repaired(room(), vec![hole]);
+        assert!(matches!(repairs[..], [Repair::Contact { .. }, ..]), "{repairs:?}");
+        assert!(repairs.iter().all(|repair| repair.to_string().contains("joined")));
+        assert!(
+            !workspace.contains(Point::new(2.0, 2.2)) || !workspace.contains(Point::new(0.5, 1.5))
+        );
+    }
+}
+
+#[test]
+fn holes_that_touch_each_other_are_joined() {
+    let left = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
+    let beside = ring(&[(2.0, 1.2), (3.0, 1.2), (3.0, 1.8), (2.0, 1.8)]);
+    let at_a_corner = ring(&[(2.0, 2.0), (3.0, 2.0), (3.0, 2.5), (2.0, 2.5)]);
+    for other in [beside, at_a_corner] {
+        let (workspace, repairs) = repaired(room(), vec![left.clone(), other]);
+        assert!(!repairs.is_empty());
+        // Nothing passes between them.
+        let free_space = FreeSpace::new(&workspace, 0.05).unwrap();
+        let path = free_space.geodesic(Point::new(1.5, 0.5), Point::new(1.5, 2.5)).unwrap();
+        assert!(path.length > 2.2, "{}", path.length);
+    }
+}
+
+#[test]
+fn spikes_and_repeated_vertices_are_left_out() {
+    let mut boundary = room();
+    boundary.push(boundary[0]);
+    boundary.splice(2..2, ring(&[(4.0, 1.0), (3.0, 1.0), (4.0, 1.0)]));
+    let line = ring(&[(1.0, 1.0), (2.0, 1.0), (1.5, 1.0)]);
+    let (workspace, repairs) = Workspace::repaired(boundary, vec![line]).unwrap();
+    assert_eq!(workspace.boundary().len(), 5);
+    assert!(workspace.holes().is_empty());
+    let count = |is: fn(&Repair) -> bool| repairs.iter().filter(|repair| is(repair)).count();
+    assert!(count(|repair| matches!(repair, Repair::Spike { .. })) >= 2, "{repairs:?}");
+    assert!(count(|repair| matches!(repair, Repair::RepeatedVertex { .. })) >= 1);
+}
+
+#[test]
+fn only_the_largest_piece_is_kept() {
+    let wall = ring(&[(1.0, 0.0), (1.2, 0.0), (1.2, 3.0), (1.0, 3.0)]);
+    let (workspace, repairs) = Workspace::repaired(room(), vec![wall]).unwrap();
+    assert!(workspace.contains(Point::new(2.0, 1.0)) && !workspace.contains(Point::new(0.5, 1.0)));
+    let Some(Repair::PieceLeftOut { area, .. }) = repairs.last() else { panic!("{repairs:?}") };
+    assert!((area - 3.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_polygon_that_touches_itself_is_taken() {
+    // Two rooms that meet at a point, and a hole in the form of an hour-glass.
+    let pinched = ring(&[
+        (0.0, 0.0),
+        (4.0, 0.0),
+        (4.0, 3.0),
+        (2.0, 1.5),
+        (0.0, 3.0),
+        (0.0, 2.0),
+        (2.0, 1.5),
+        (0.0, 1.0),
+    ]);
+    let (_, repairs) = Workspace::repaired(pinched, vec![]).unwrap();
+    assert!(repairs.iter().any(|repair| matches!(repair, Repair::Pinch { .. })), "{repairs:?}");
+}
+
+#[test]
+fn what_crosses_or_overlaps_stays_an_error() {
+    let bow_tie = ring(&[(0.0, 0.0), (4.0, 3.0), (4.0, 0.0), (0.0, 3.0)]);
+    assert!(matches!(
+        Workspace::repaired(bow_tie, vec![]),
+        Err(WorkspaceError::SelfIntersecting { .. })
+    ));
+    let square = |x: f64, y: f64| ring(&[(x, y), (x + 1.0, y), (x + 1.0, y + 1.0), (x, y + 1.0)]);
+    let overlapping = vec![square(1.0, 1.0), square(1.5, 1.5)];
+    assert!(matches!(
+        Workspace::repaired(room(), overlapping),
+        Err(WorkspaceError::PolygonsMeet { .. })
+    ));
+    assert!(Workspace::repaired(room(), vec![square(3.5, 1.0)]).is_err(), "half outside");
+    assert!(Workspace::repaired(room(), vec![square(4.0, 1.0)]).is_err(), "outside, touching");
+    assert!(Workspace::repaired(room(), vec![square(9.0, 9.0)]).is_err(), "outside");
+    let mut infinite = room();
+    infinite[0].x = f64::INFINITY;
+    assert!(matches!(Workspace::repaired(infinite, vec![]), Err(WorkspaceError::NotFinite { .. })));
+}
+
+proptest! {
+    /// What is right is left as it is; with a hole shifted onto the wall, points keep their distance.
+    #[test]
+    fn maps_without_contact_are_left_alone(environment in environment()) {
+        let workspace = &environment.workspace;
+        let (same, repairs) =
+            Workspace::repaired(workspace.boundary().to_vec(), workspace.holes().to_vec()).unwrap();
+        prop_assert_eq!(same.polygons(), workspace.polygons());
+        prop_assert!(repairs.is_empty());
+    }
+
+    #[test]
+    fn holes_in_pieces_are_the_same_workspace(environment in environment(), places in prop::collection::vec(place(), 50)) {
+        // Every hole is cut in two along a diagonal: its halves share an edge.
+        let workspace = &environment.workspace;
+        let halves = |hole: &Vec<Point>| {
+            let middle = nalgebra::center(&hole[0], &hole[1]);
+            let opposite = hole.len() / 2 + 1;
+            let mut one = vec![middle];
+            one.extend(&hole[1..=opposite.min(hole.len() - 1)]);
+            let mut other = hole[opposite.min(hole.len() - 1)..].to_vec();
+            other.extend([hole[0], middle]);
+            [one, other]
+        };
+        let holes: Vec<Vec<Point>> = workspace.holes().iter().flat_map(halves).collect();
+        prop_assume!(holes.iter().all(|hole| hole.len() >= 3));
+        let Ok((joined, repairs)) = Workspace::repaired(workspace.boundary().to_vec(), holes) else {
+            // Halves of a hole that is not convex may cross.
+            return Ok(());
+        };
+        prop_assert_eq!(repairs.is_empty(), workspace.holes().is_empty());
+        for place in places {
+            let (ours, before) = (joined.clearance(place), workspace.clearance(place));
+            prop_assert!((ours - before).abs() < 1e-9, "{place}: {ours} {before}");
+        }
+    }
+}

@@ -1,0 +1,61 @@
+"""The wheel, as a user of it would see it."""
+
+import pathlib
+
+import numpy
+import pytest
+
+import pleach
+
+SCENARIOS = pathlib.Path(__file__).parents[2] / "scenarios"
+
+
+@pytest.fixture(scope="module")
+def mission():
+    return pleach.run(SCENARIOS / "too-few.toml")
+
+
+def test_arrays_have_one_row_for_each_period(mission):
+    periods, robots = mission.times.size, len(mission.scenario["robot"])
+    assert mission.positions.shape == (periods, robots, 2)
+    for array in (mission.residuals, mission.multipliers, mission.roles):
+        assert array.shape == (periods, robots)
+    assert mission.positions.dtype == numpy.float64
+    assert numpy.all(mission.residuals >= -1e-6)
+    assert numpy.all(numpy.diff(mission.times) > 0)
+    assert mission.roles.max() < len(pleach.ROLES)
+    assert mission.tree.shape[1] == 3 and mission.routes.shape[1] == 5
+
+
+def test_the_story_is_that_of_the_scenario(mission):
+    assert mission.outcome == "insufficient_robots" and mission.reason
+    assert mission.events[0] == {"event": "task_announced", "task": 0, "k": 1}
+    assert "too-few" in repr(mission)
+    assert mission.scenario["control"]["max_steps"] == 20000
+
+
+def test_robots_move_at_most_a_step(mission):
+    steps = numpy.linalg.norm(numpy.diff(mission.positions, axis=0), axis=2)
+    assert 0 < steps.max() <= mission.scenario["control"]["step_radius"] + 1e-9
+
+
+def test_settings_and_seeds(mission):
+    short = pleach.run(SCENARIOS / "too-few.toml", {"control.max_steps": 10, "robot[*].rate": 0.05})
+    assert short.outcome == "step_limit" and short.times.size == 10
+    assert short.scenario["robot"][0]["rate"] == 0.05
+    one, two, again = (
+        pleach.run(SCENARIOS / "too-few.toml", {"control.max_steps": 2}, seed=seed)
+        for seed in (1, 2, 1)
+    )
+    assert not numpy.array_equal(one.positions, two.positions)
+    assert numpy.array_equal(one.positions, again.positions)
+
+
+def test_mistakes_are_told():
+    with pytest.raises(pleach.ScenarioError, match="control.period: -1 is not positive"):
+        pleach.run(SCENARIOS / "too-few.toml", {"control.period": -1})
+    with pytest.raises(ValueError, match="<text>:1:8: name"):
+        pleach.run_text("name = 3")
+    with pytest.raises(FileNotFoundError):
+        pleach.check("nowhere.toml")
+    assert any("no robot can service it" in r for r in pleach.check(SCENARIOS / "unreachable.toml"))

@@ -1,0 +1,123 @@
+//! `pleach check`: whether a mission can start, and how it would.
+
+use super::arguments::CheckArguments;
+use super::job;
+use super::plan::Planned;
+use super::source::Source;
+use super::status::{Failure, Status};
+use super::sweep::Sweep;
+use pleach::automaton::network::record::{MissionEvent, Snapshot};
+use pleach::automaton::network::scenario::{Remark, ValidScenario};
+use pleach::figures::{Plan, Scene};
+use pleach::mission::{self, Watcher};
+use std::fs;
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+/// Checks scenarios one after another, and draws their starts.
+pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
+    let mut worst = Status::Done;
+    let mut mistakes = Vec::new();
+    for source in Source::all(&arguments.scenarios)? {
+        for settings in Sweep::combinations(&arguments.set) {
+            let scenario = match source.parse(&settings) {
+                Ok(scenario) => scenario,
+                Err(error) => {
+                    mistakes.push(error);
+                    continue;
+                }
+            };
+            let drawing = draw(&scenario, arguments)?;
+            let name = source.name.display().to_string();
+            let planned = Planned { number: 1, source: name, scenario, settings, seed: None };
+            let remarks = planned.scenario.remarks();
+            io::stdout().lock().write_all(report(&planned, &remarks, drawing).as_bytes())?;
+            if remarks.iter().any(|remark| matches!(remark, Remark::Task { .. })) {
+                worst = Status::Unserviced;
+            }
+        }
+    }
+    if mistakes.is_empty() { Ok(worst) } else { Err(Failure::Scenarios(mistakes)) }
+}
+
+/// What the scenario holds, and what is worth a remark.
+fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> String {
+    let Planned { source, scenario, settings, .. } = planned;
+    let resolved = scenario.settings();
+    let set: String = settings.iter().map(|setting| format!(" with {setting}")).collect();
+    let (links, crossing) = scenario.count_links();
+    let site = scenario.site();
+    let mut rows = vec![
+        ("workspace", workspace(scenario)),
+        ("access points", scenario.access_point.len().to_string()),
+        ("robots", scenario.robot.len().to_string()),
+        ("tasks", scenario.task.len().to_string()),
+        ("links", format!("{links} at the start, {crossing} of them through walls")),
+        ("longest new link", format!("{:.6}, along the shortest way", site.build_length)),
+        (
+            "clearance",
+            format!(
+                "{}; passages from {} on are open",
+                resolved.clearance,
+                2.0 * resolved.clearance
+            ),
+        ),
+    ];
+    rows.extend(drawing.map(|path| ("start", path.display().to_string())));
+    rows.extend(remarks.iter().map(|remark| ("remark", format!("{}: {remark}", remark.key()))));
+    let rows = rows.iter().map(|(label, text)| format!("  {label:<19} {text}\n"));
+    format!("{source}{set}: a mission can start\n{}", rows.collect::<String>())
+}
+
+fn workspace(scenario: &ValidScenario) -> String {
+    let side = |axis: usize| {
+        let values = scenario.workspace.boundary.iter().map(|corner| corner[axis]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        high - low
+    };
+    let holes = match scenario.workspace.holes.len() {
+        1 => "1 hole".to_owned(),
+        count => format!("{count} holes"),
+    };
+    format!("{:.4} by {:.4}, {holes}", side(0), side(1))
+}
+
+/// Draws the network before its first move, and says where.
+fn draw(scenario: &ValidScenario, arguments: &CheckArguments) -> Result<Option<PathBuf>, Failure> {
+    if arguments.no_figures {
+        return Ok(None);
+    }
+    let default = || PathBuf::from("figures").join(&scenario.name);
+    let folder = arguments.figures.clone().unwrap_or_else(default);
+    job::create_folder(&folder)?;
+    let mut opening = Opening::default();
+    mission::run(scenario, &mut [&mut opening])?;
+    let Some(snapshot) = opening.snapshot else { return Ok(None) };
+    let outline = scenario.site().free_space.outline().iter();
+    let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
+    let plan = Plan::new(scenario, outline.map(corners).collect());
+    let title = format!("{}: the start", scenario.name);
+    let picture = plan.render(&Scene { snapshot: &snapshot, title: &title, trails: &[] });
+    let path = folder.join("start.svg");
+    fs::write(&path, picture).map_err(|source| Failure::Creation { path: path.clone(), source })?;
+    Ok(Some(path))
+}
+
+/// Keeps the first snapshot of a mission and ends it.
+#[derive(Default)]
+struct Opening {
+    snapshot: Option<Snapshot>,
+}
+
+impl Watcher for Opening {
+    fn observe(&mut self, snapshot: &Snapshot, _: &[MissionEvent]) -> io::Result<()> {
+        self.snapshot = Some(snapshot.clone());
+        Ok(())
+    }
+
+    fn interruption(&self) -> Option<String> {
+        Some("only the start is looked at".into())
+    }
+}

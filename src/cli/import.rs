@@ -1,0 +1,56 @@
+//! `pleach import`: maps of other programs as scenarios.
+
+use super::arguments::ImportArguments;
+use super::job;
+use super::source::STANDARD;
+use super::status::{Failure, Status};
+use pleach::import::{self, Choices, Reading};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Reads a map and writes a scenario.
+pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
+    let reading = Reading {
+        tolerance: arguments.tolerance,
+        scale: arguments.scale,
+        planar: arguments.planar,
+    };
+    let plan = import::read(&arguments.map, &reading)?;
+    let choices = Choices {
+        name: arguments.name.clone().unwrap_or_else(|| name_of(&arguments.map)),
+        full_range: arguments.full_range,
+        max_range: arguments.max_range,
+        clearance: arguments.clearance,
+        access_points: arguments.access_point.iter().map(|place| place.0).collect(),
+        robots: usize::from(arguments.robots),
+        tasks: arguments.task.iter().map(|place| place.0).collect(),
+        far_tasks: usize::from(arguments.far_tasks),
+    };
+    let (scenario, more) = import::skeleton(&plan, &choices)?;
+    let notes: Vec<String> = plan.notes.iter().cloned().chain(more).collect();
+    for note in &notes {
+        eprintln!("{}: {note}", arguments.map.display());
+    }
+    for remark in scenario.remarks() {
+        eprintln!("{}: {}: {remark}", arguments.map.display(), remark.key());
+    }
+    let origin = arguments.map.file_name().unwrap_or_default().to_string_lossy();
+    let text = import::text(&scenario, &origin, &notes);
+    match arguments.output.as_deref() {
+        Some(path) if path.as_os_str() != STANDARD => {
+            let mut file = job::create_file(path)?;
+            file.write_all(text.as_bytes())?;
+            file.flush()?;
+        }
+        _ => io::stdout().lock().write_all(text.as_bytes())?,
+    }
+    Ok(Status::Done)
+}
+
+/// A name for the scenario: that of the file, with `-` for what cannot be in a name.
+fn name_of(map: &Path) -> String {
+    let stem = map.file_stem().unwrap_or_default().to_string_lossy();
+    let name: String =
+        stem.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { '-' }).collect();
+    if name.is_empty() { "map".into() } else { name }
+}

@@ -1,0 +1,92 @@
+//! One run with everything that it writes.
+
+use super::interrupt::Interrupt;
+use super::plan::Planned;
+use super::progress::Progress;
+use super::record::Record;
+use super::source::STANDARD;
+use super::status::Failure;
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::figures::Album;
+use pleach::mission::{self, Watcher};
+use pleach::summary::Summary;
+use pleach::trace::TraceWriter;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What a run writes besides its record.
+#[derive(Clone, Debug, Default)]
+pub struct Outputs {
+    /// The file of its trace; `-` for the standard output.
+    pub trace: Option<PathBuf>,
+    /// The folder of its figures.
+    pub figures: Option<PathBuf>,
+    /// Whether figures go without titles.
+    pub plain: bool,
+}
+
+/// A run that has ended.
+pub struct Finished {
+    /// What tables say of it.
+    pub record: Record,
+    /// What a person reads.
+    pub summary: Summary,
+    /// The files of its figures, the page last.
+    pub figures: Vec<PathBuf>,
+}
+
+/// Runs a mission. Files that cannot be written are told before it begins.
+pub fn run(
+    planned: &Planned,
+    outputs: &Outputs,
+    progress: &mut Progress,
+    interrupt: &Interrupt,
+) -> Result<Finished, Failure> {
+    let scenario = &planned.scenario;
+    let mut interrupt = interrupt.clone();
+    let mut summary = Summary::new(scenario);
+    let mut trace = outputs.trace.as_deref().map(|path| start_trace(path, scenario)).transpose()?;
+    if let Some(folder) = &outputs.figures {
+        create_folder(folder)?;
+    }
+    let open = |album: Album| if outputs.plain { album.plain() } else { album };
+    let mut album = outputs.figures.as_ref().map(|_| open(Album::new(scenario)));
+
+    let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, progress, &mut interrupt];
+    watchers.extend(trace.as_mut().map(|trace| trace as &mut dyn Watcher));
+    watchers.extend(album.as_mut().map(|album| album as &mut dyn Watcher));
+    let clock = Instant::now();
+    let completed = mission::run(scenario, &mut watchers)?;
+    let elapsed = clock.elapsed();
+
+    let record = Record::of(planned, &summary, &completed);
+    let figures = match (album, &outputs.figures) {
+        (Some(album), Some(folder)) => album.write(folder, &completed.end)?,
+        _ => Vec::new(),
+    };
+    Ok(Finished { record, summary: summary.completed(completed, elapsed), figures })
+}
+
+fn start_trace(
+    path: &Path,
+    scenario: &ValidScenario,
+) -> Result<TraceWriter<Box<dyn Write>>, Failure> {
+    let output: Box<dyn Write> = match path.as_os_str() == STANDARD {
+        true => Box::new(io::stdout().lock()),
+        false => Box::new(create_file(path)?),
+    };
+    Ok(TraceWriter::new(output, scenario)?)
+}
+
+/// A new file, buffered.
+pub fn create_file(path: &Path) -> Result<BufWriter<File>, Failure> {
+    let file = File::create(path);
+    file.map(BufWriter::new).map_err(|source| Failure::Creation { path: path.to_owned(), source })
+}
+
+/// A folder that cannot be written is told before the mission, not after it.
+pub fn create_folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(|source| Failure::Creation { path: path.to_owned(), source })
+}

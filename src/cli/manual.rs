@@ -1,0 +1,29 @@
+//! What the shell and `man` know of the program, made from its arguments.
+
+use super::arguments::Arguments;
+use super::job;
+use super::status::{Failure, Status};
+use clap::CommandFactory;
+use clap_complete::Shell;
+use std::io;
+use std::path::Path;
+
+/// Prints the completions for a shell.
+pub fn print_completions(shell: Shell) -> Result<Status, Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "pleach", &mut script);
+    io::Write::write_all(&mut io::stdout().lock(), &script)?;
+    Ok(Status::Done)
+}
+
+/// Prints the manual page of the program, or writes those of all commands into a folder.
+pub fn write_manual(folder: Option<&Path>) -> Result<Status, Failure> {
+    match folder {
+        None => clap_mangen::Man::new(Arguments::command()).render(&mut io::stdout().lock())?,
+        Some(folder) => {
+            job::create_folder(folder)?;
+            clap_mangen::generate_to(Arguments::command(), folder)?;
+        }
+    }
+    Ok(Status::Done)
+}

@@ -1,0 +1,80 @@
+//! Which runs are asked for: scenarios, times values that are set, times random starts.
+
+use super::arguments::RunArguments;
+use super::source::Source;
+use super::status::Failure;
+use super::sweep::Sweep;
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::scenario_file::Setting;
+use pleach::starts;
+
+/// The most runs of one call.
+const MOST_RUNS: usize = 100_000;
+
+/// A run that is going to happen.
+#[derive(Clone, Debug)]
+pub struct Planned {
+    /// The number of the run, from 1.
+    pub number: usize,
+    /// The file that the scenario comes from.
+    pub source: String,
+    /// The scenario, settings and starts included.
+    pub scenario: ValidScenario,
+    /// What was set, one value for each key.
+    pub settings: Vec<Setting>,
+    /// The seed of the random starts.
+    pub seed: Option<u64>,
+}
+
+/// Every run that the arguments ask for. All scenarios are read before any of them runs, and all
+/// mistakes in them are told.
+pub fn plan(arguments: &RunArguments) -> Result<Vec<Planned>, Failure> {
+    let sources = Source::all(&arguments.scenarios)?;
+    let combinations = Sweep::combinations(&arguments.set);
+    let seeds: Vec<Option<u64>> = match arguments.repeat {
+        None => vec![None],
+        Some(repeats) => (0..repeats).map(|run| Some(arguments.seed.wrapping_add(run))).collect(),
+    };
+    let count = sources.len().saturating_mul(combinations.len()).saturating_mul(seeds.len());
+    if count > MOST_RUNS {
+        return Err(Failure::TooManyRuns { count, most: MOST_RUNS });
+    }
+    let mut runs = Vec::with_capacity(count);
+    let mut mistakes = Vec::new();
+    for source in &sources {
+        for settings in &combinations {
+            let scenario = match source.parse(settings) {
+                Ok(scenario) => scenario,
+                Err(error) => {
+                    mistakes.push(error);
+                    continue;
+                }
+            };
+            for &seed in &seeds {
+                let scenario = match seed {
+                    None => scenario.clone(),
+                    Some(seed) => starts::draw(&scenario, seed)?,
+                };
+                runs.push(Planned {
+                    number: runs.len() + 1,
+                    source: source.name.display().to_string(),
+                    scenario,
+                    settings: settings.clone(),
+                    seed,
+                });
+            }
+        }
+    }
+    if mistakes.is_empty() { Ok(runs) } else { Err(Failure::Scenarios(mistakes)) }
+}
+
+impl Planned {
+    /// A name for the files of this run, one of `count`.
+    pub fn file_name(&self, count: usize) -> String {
+        let digits = count.to_string().len();
+        match count {
+            1 => self.scenario.name.clone(),
+            _ => format!("{:0digits$}-{}", self.number, self.scenario.name),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Where scenarios come from: files, folders of files, and the standard input.
+
+use super::status::Failure;
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::scenario_file::{self, ScenarioError, Setting};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+/// The name that stands for standard input or output.
+pub const STANDARD: &str = "-";
+
+/// The text of a scenario, and what messages call it.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Its path, or `<stdin>`.
+    pub name: PathBuf,
+    text: String,
+}
+
+impl Source {
+    /// The sources that the paths name: `-` the standard input, a folder its TOML files in order
+    /// of their names.
+    pub fn all(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
+        let mut sources = Vec::new();
+        for path in paths {
+            if path.as_os_str() == STANDARD {
+                sources.push(Self::standard_input()?);
+            } else if path.is_dir() {
+                let files = files_of(path)?;
+                sources.extend(files.into_iter().map(Self::file).collect::<Result<Vec<_>, _>>()?);
+            } else {
+                sources.push(Self::file(path.clone())?);
+            }
+        }
+        Ok(sources)
+    }
+
+    fn file(name: PathBuf) -> Result<Self, Failure> {
+        let unreadable = |source| ScenarioError::Unreadable { path: name.clone(), source };
+        let text = std::fs::read_to_string(&name).map_err(unreadable)?;
+        Ok(Self { name, text })
+    }
+
+    fn standard_input() -> Result<Self, Failure> {
+        let name = PathBuf::from("<stdin>");
+        let mut text = String::new();
+        let read = io::stdin().read_to_string(&mut text);
+        read.map_err(|source| ScenarioError::Unreadable { path: name.clone(), source })?;
+        Ok(Self { name, text })
+    }
+
+    /// The scenario with these settings.
+    pub fn parse(&self, settings: &[Setting]) -> Result<ValidScenario, ScenarioError> {
+        scenario_file::parse_with(&self.text, &self.name, settings)
+    }
+}
+
+/// The scenario files directly in a folder, in order of their names.
+fn files_of(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let unreadable = |source| ScenarioError::Unreadable { path: folder.into(), source };
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        if path.extension().is_some_and(|extension| extension == "toml") && path.is_file() {
+            files.push(path);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        return Err(Failure::NoScenarios { folder: folder.into() });
+    }
+    Ok(files)
+}

@@ -1,0 +1,130 @@
+//! `--set KEY=VALUE` and `--set KEY=FROM..TO:COUNT`: one value of a key, or many.
+
+use pleach::scenario_file::Setting;
+use std::str::FromStr;
+
+/// A key with the values that it takes, one run for each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    settings: Vec<Setting>,
+}
+
+/// The most values of one key.
+const MOST_VALUES: usize = 100_000;
+
+impl FromStr for Sweep {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let setting: Setting = text.parse().map_err(|error| format!("{error}"))?;
+        let settings = match Range::of(setting.value())? {
+            None => vec![setting],
+            Some(range) => {
+                range.values().into_iter().map(|value| setting.with_value(value)).collect()
+            }
+        };
+        Ok(Self { settings })
+    }
+}
+
+impl Sweep {
+    /// Every combination of a value of each sweep, the values of the last one changing first.
+    pub fn combinations(sweeps: &[Sweep]) -> Vec<Vec<Setting>> {
+        sweeps.iter().fold(vec![Vec::new()], |combinations, sweep| {
+            let extended = |combination: &Vec<Setting>, setting: &Setting| {
+                combination.iter().chain([setting]).cloned().collect()
+            };
+            (combinations.iter())
+                .flat_map(|combination| {
+                    sweep.settings.iter().map(move |setting| extended(combination, setting))
+                })
+                .collect()
+        })
+    }
+}
+
+/// `FROM..TO:COUNT`: evenly spaced values, both ends among them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Range {
+    from: f64,
+    to: f64,
+    count: usize,
+}
+
+impl Range {
+    /// The range that a value is, if it looks like one.
+    fn of(value: &str) -> Result<Option<Self>, String> {
+        let Some((from, rest)) = value.split_once("..") else { return Ok(None) };
+        let wrong = || {
+            format!(
+                "{value:?} is no range: write FROM..TO:COUNT with two numbers and the count of \
+                 values, at least 2, such as 0.01..0.03:5"
+            )
+        };
+        let (to, count) = rest.split_once(':').ok_or_else(wrong)?;
+        let number =
+            |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+        let (from, to) = (number(from).ok_or_else(wrong)?, number(to).ok_or_else(wrong)?);
+        let count = count.trim().parse().ok().filter(|count| (2..=MOST_VALUES).contains(count));
+        Ok(Some(Self { from, to, count: count.ok_or_else(wrong)? }))
+    }
+
+    /// The values as they are written; whole numbers where all of them are.
+    fn values(self) -> Vec<String> {
+        let Self { from, to, count } = self;
+        let share = |index: usize| index as f64 / (count - 1) as f64;
+        let values: Vec<f64> =
+            (0..count).map(|index| shortened(from + (to - from) * share(index))).collect();
+        let whole = values.iter().all(|value| value.fract() == 0.0 && value.abs() < 1e15);
+        let written = |value: &f64| match whole {
+            true => format!("{value:.0}"),
+            false => format!("{value:?}"),
+        };
+        values.iter().map(written).collect()
+    }
+}
+
+/// A number without the rounding of its last digits: 0.35 for 0.35000000000000003.
+fn shortened(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(text: &str) -> Vec<String> {
+        let sweep: Sweep = text.parse().unwrap();
+        sweep.settings.iter().map(|setting| setting.value().to_owned()).collect()
+    }
+
+    #[test]
+    fn a_range_holds_both_ends_and_round_numbers() {
+        assert_eq!(values("link.full_range=0.3..0.4:3"), ["0.3", "0.35", "0.4"]);
+        assert_eq!(values("link.full_range=0.3..0.6:7")[1..3], ["0.35", "0.4"]);
+        assert_eq!(values("control.max_steps=100..500:5")[1], "200");
+        assert_eq!(values("control.period=-1..1:3"), ["-1", "0", "1"]);
+        assert_eq!(values("control.routing_method=dual"), ["dual"]);
+    }
+
+    #[test]
+    fn a_range_that_is_none_is_refused() {
+        for text in ["a=1..2", "a=1..2:1", "a=1..:3", "a=nan..2:3", "a=1..2:-3", "a"] {
+            assert!(text.parse::<Sweep>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn sweeps_are_combined() {
+        let sweeps =
+            ["a=1..2:2".parse().unwrap(), "b=3".parse().unwrap(), "c=5..6:2".parse().unwrap()];
+        let written: Vec<Vec<String>> = Sweep::combinations(&sweeps)
+            .iter()
+            .map(|combination| combination.iter().map(Setting::to_string).collect())
+            .collect();
+        assert_eq!(written.len(), 4);
+        assert_eq!(written[0], ["a=1", "b=3", "c=5"]);
+        assert_eq!(written[1], ["a=1", "b=3", "c=6"]);
+        assert_eq!(Sweep::combinations(&[]), [Vec::new()]);
+    }
+}

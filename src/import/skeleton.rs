@@ -1,0 +1,318 @@
+//! From a floor plan to a scenario that runs.
+
+use super::Plan;
+use super::gaps;
+use crate::automaton::network::Site;
+use crate::automaton::network::scenario::{
+    AccessPoint, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Settings, Task,
+    ValidScenario,
+};
+use crate::continuous::Point;
+use crate::starts::{self, Dice};
+use std::fmt::Write;
+use thiserror::Error;
+
+/// What a floor plan leaves open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choices {
+    /// The name of the scenario.
+    pub name: String,
+    /// l: by default a sixth of the extent.
+    pub full_range: Option<f64>,
+    /// u: by default 1.25 l.
+    pub max_range: Option<f64>,
+    /// ρ: by default l/40.
+    pub clearance: Option<f64>,
+    /// Where access points stand: by default where the map says, or else in the middle of the
+    /// widest place.
+    pub access_points: Vec<[f64; 2]>,
+    /// How many robots start around the access points, where the map names none.
+    pub robots: usize,
+    /// Where tasks are; by default where the map says, or else far from the access points.
+    pub tasks: Vec<[f64; 2]>,
+    /// How many tasks are placed far from the access points and from each other, where none are
+    /// named.
+    pub far_tasks: usize,
+}
+
+impl Choices {
+    /// Everything left to the defaults: eight robots and a task.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            full_range: None,
+            max_range: None,
+            clearance: None,
+            access_points: Vec::new(),
+            robots: 8,
+            tasks: Vec::new(),
+            far_tasks: 1,
+        }
+    }
+}
+
+/// Why no scenario comes of a floor plan.
+#[derive(Debug, Error)]
+pub enum SkeletonError {
+    /// No mission can start on it.
+    #[error("no scenario comes of this map: {0}")]
+    Invalid(#[from] InvalidScenario),
+    /// The outline cannot be used.
+    #[error("no scenario comes of this map: {0}")]
+    Site(#[from] crate::automaton::network::SiteError),
+    /// There is no room.
+    #[error(
+        "no place was found for {0}: the clearance may be too large for this floor, or the links \
+         too short; give --clearance, --full-range and --max-range, or places"
+    )]
+    NoRoom(&'static str),
+}
+
+/// The share of the extent that links are long by default.
+const RANGE: f64 = 1.0 / 6.0;
+/// u / l by default.
+const TRANSITION: f64 = 1.25;
+/// Places along the longer side of the map that are looked at for access points and tasks.
+const LATTICE: usize = 48;
+/// Decimals of coordinates, relative to the extent: a millionth of it.
+const DIGITS: i32 = 6;
+
+/// A scenario on the floor of a plan, and what is to be said about it: passages that are too
+/// narrow, and parts that robots cannot reach.
+///
+/// # Errors
+/// When no access point, robots or tasks find a place.
+pub fn skeleton(
+    plan: &Plan,
+    choices: &Choices,
+) -> Result<(ValidScenario, Vec<String>), SkeletonError> {
+    let mut scenario = outline(plan, choices);
+    let settings = Settings::resolve(&scenario);
+    let mut notes = narrow_passages(&scenario, &settings);
+
+    let site = Site::new(&scenario)?;
+    let places = Places::of(&site);
+    let access_points = first_of([&choices.access_points, &plan.places.access_points]);
+    scenario.access_point = match access_points.is_empty() {
+        false => access_points,
+        true => vec![places.widest(&site).ok_or(SkeletonError::NoRoom("an access point"))?],
+    }
+    .into_iter()
+    .map(|position| AccessPoint { position })
+    .collect();
+    let site = Site::new(&scenario)?;
+    let starts = match plan.places.robots.is_empty() {
+        false => plan.places.robots.clone(),
+        true => (0..STARTS)
+            .find_map(|draft| starts::places(&site, choices.robots, &mut Dice::new(1, draft)))
+            .ok_or(SkeletonError::NoRoom("the robots"))?,
+    };
+    let rate = RATES / starts.len().max(1) as f64;
+    scenario.robot = starts
+        .into_iter()
+        .map(|position| RobotStart {
+            position: rounded(position, &scenario),
+            rate: rounded_rate(rate),
+        })
+        .collect();
+    let tasks = first_of([&choices.tasks, &plan.places.tasks]);
+    scenario.task = match tasks.is_empty() {
+        false => tasks,
+        true => places.far_apart(&site, choices.far_tasks),
+    }
+    .into_iter()
+    .map(|position| Task { position })
+    .collect();
+    let unreached = places.unreached(&site);
+    if unreached > 0.005 {
+        notes.push(format!("robots cannot reach {:.1} % of the floor", 100.0 * unreached));
+    }
+    Ok((ValidScenario::new(scenario)?, notes))
+}
+
+/// Drafts of starts that are tried.
+const STARTS: u64 = 50;
+
+/// What all robots together generate by default: one robot in range of an access point carries it.
+const RATES: f64 = 0.6;
+
+/// The scenario without access points, robots and tasks.
+fn outline(plan: &Plan, choices: &Choices) -> Scenario {
+    let extent = extent(&plan.workspace.boundary);
+    let step = 10f64.powf((extent * RANGE).log10().floor() - 1.0);
+    let full_range = choices.full_range.unwrap_or((extent * RANGE / step).round() * step);
+    let max_range = choices.max_range.unwrap_or(TRANSITION * full_range);
+    let mut scenario = Scenario {
+        name: choices.name.clone(),
+        description: None,
+        workspace: plan.workspace.clone(),
+        link: LinkRanges::new(trimmed(full_range), trimmed(max_range)),
+        control: Control { clearance: choices.clearance, ..Control::default() },
+        access_point: Vec::new(),
+        robot: Vec::new(),
+        task: Vec::new(),
+    };
+    let round = |ring: &[[f64; 2]]| {
+        let mut ring: Vec<_> = ring.iter().map(|&corner| rounded_to(corner, extent)).collect();
+        ring.dedup();
+        ring
+    };
+    scenario.workspace.boundary = round(&plan.workspace.boundary);
+    scenario.workspace.holes = plan.workspace.holes.iter().map(|hole| round(hole)).collect();
+    scenario
+}
+
+fn first_of(lists: [&Vec<[f64; 2]>; 2]) -> Vec<[f64; 2]> {
+    lists.into_iter().find(|list| !list.is_empty()).cloned().unwrap_or_default()
+}
+
+fn narrow_passages(scenario: &Scenario, settings: &Settings) -> Vec<String> {
+    let width = 2.0 * settings.clearance;
+    let gaps = gaps::narrower_than(&scenario.workspace, width);
+    gaps.iter()
+        .map(|gap| {
+            let [x, y] = rounded(gap.at, scenario);
+            format!(
+                "the passage at ({x}, {y}) is {:.4} wide: robots need 2 clearances = {width}",
+                gap.width
+            )
+        })
+        .collect()
+}
+
+/// Places on a lattice in the free space, with their distance from walls.
+struct Places {
+    places: Vec<Point>,
+}
+
+impl Places {
+    fn of(site: &Site) -> Self {
+        let corners = site.workspace.boundary();
+        let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));
+        let step = site.workspace.extent() / LATTICE as f64;
+        let lattice = (0..LATTICE).flat_map(|row| (0..LATTICE).map(move |column| (column, row)));
+        let places = lattice
+            .map(|(column, row)| {
+                low + nalgebra::Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * step
+            })
+            .filter(|&place| site.free_space.contains(place))
+            .collect();
+        Self { places }
+    }
+
+    /// The place farthest from walls.
+    fn widest(&self, site: &Site) -> Option<[f64; 2]> {
+        let clearance = |place: &Point| site.workspace.clearance(*place);
+        let widest = self.places.iter().max_by(|a, b| clearance(a).total_cmp(&clearance(b)))?;
+        Some(rounded_to((*widest).into(), site.workspace.extent()))
+    }
+
+    /// Places far from the access points and from each other, one after another.
+    fn far_apart(&self, site: &Site, count: usize) -> Vec<[f64; 2]> {
+        let mut chosen = site.access_points.clone();
+        let nearest = |place: Point, chosen: &[Point]| {
+            chosen.iter().map(|&other| site.distance(other, place)).fold(f64::INFINITY, f64::min)
+        };
+        let mut distances: Vec<f64> =
+            self.places.iter().map(|&place| nearest(place, &chosen)).collect();
+        let fixed = chosen.len();
+        for _ in 0..count {
+            let reached = (0..distances.len()).filter(|&place| distances[place].is_finite());
+            let Some(farthest) = reached.max_by(|&a, &b| distances[a].total_cmp(&distances[b]))
+            else {
+                break;
+            };
+            chosen.push(self.places[farthest]);
+            for (place, distance) in self.places.iter().zip(&mut distances) {
+                *distance = distance.min(site.distance(chosen[chosen.len() - 1], *place));
+            }
+        }
+        let extent = site.workspace.extent();
+        chosen[fixed..].iter().map(|&place| rounded_to(place.into(), extent)).collect()
+    }
+
+    /// The share of the places that no way leads to from an access point.
+    fn unreached(&self, site: &Site) -> f64 {
+        let reached = |place: &&Point| {
+            site.access_points.iter().any(|&from| site.distance(from, **place).is_finite())
+        };
+        1.0 - self.places.iter().filter(reached).count() as f64 / self.places.len().max(1) as f64
+    }
+}
+
+fn extent(ring: &[[f64; 2]]) -> f64 {
+    let side = |axis: usize| {
+        let values = ring.iter().map(|corner| corner[axis]);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        high - low
+    };
+    side(0).max(side(1))
+}
+
+fn rounded(place: [f64; 2], scenario: &Scenario) -> [f64; 2] {
+    rounded_to(place, extent(&scenario.workspace.boundary))
+}
+
+/// A place to a millionth of the extent.
+fn rounded_to(place: [f64; 2], extent: f64) -> [f64; 2] {
+    let decimals = (DIGITS - extent.log10().floor() as i32).clamp(0, 15) as usize;
+    place.map(|value| format!("{value:.decimals$}").parse().unwrap_or(value))
+}
+
+fn rounded_rate(rate: f64) -> f64 {
+    (rate * 1e4).floor() / 1e4
+}
+
+/// A number without the rounding of its last digits.
+fn trimmed(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
+}
+
+/// The scenario as a file for people: places in rows, with comments.
+pub fn text(scenario: &Scenario, origin: &str, notes: &[String]) -> String {
+    let mut text = format!("# Imported from {origin}.\n");
+    for note in notes {
+        // Writing into a text does not fail.
+        let _ = writeln!(text, "# - {note}");
+    }
+    let _ = write!(text, "\nname = {:?}\n\n[workspace]\n", scenario.name);
+    let _ = writeln!(text, "boundary = {}", polygon(&scenario.workspace.boundary, ""));
+    if !scenario.workspace.holes.is_empty() {
+        text += "holes = [\n";
+        for hole in &scenario.workspace.holes {
+            let _ = writeln!(text, "    {},", polygon(hole, "    "));
+        }
+        text += "]\n";
+    }
+    let LinkRanges { full_range, max_range, .. } = scenario.link;
+    let _ = write!(
+        text,
+        "\n[link] # links reach through walls: choose ranges that hold through them\n\
+         full_range = {full_range}\nmax_range = {max_range}\n"
+    );
+    if let Some(clearance) = scenario.control.clearance {
+        let _ = write!(text, "\n[control]\nclearance = {clearance}\n");
+    }
+    for AccessPoint { position } in &scenario.access_point {
+        let _ = write!(text, "\n[[access_point]]\nposition = {position:?}\n");
+    }
+    for RobotStart { position, rate } in &scenario.robot {
+        let _ = write!(text, "\n[[robot]]\nposition = {position:?}\nrate = {rate}\n");
+    }
+    for Task { position } in &scenario.task {
+        let _ = write!(text, "\n[[task]]\nposition = {position:?}\n");
+    }
+    text
+}
+
+/// A polygon with a few corners in each line.
+fn polygon(ring: &[[f64; 2]], indent: &str) -> String {
+    const IN_A_LINE: usize = 6;
+    let line = |corners: &[[f64; 2]]| {
+        let corners: Vec<String> = corners.iter().map(|corner| format!("{corner:?}")).collect();
+        format!("{indent}    {},\n", corners.join(", "))
+    };
+    format!("[\n{}{indent}]", ring.chunks(IN_A_LINE).map(line).collect::<String>())
+}

@@ -1,0 +1,140 @@
+//! Maps of other programs become scenarios, and no robot gets through their walls.
+
+use pleach::automaton::network::record::Outcome;
+use pleach::continuous::Point;
+use pleach::import::{self, Choices, Plan, Reading};
+use pleach::mission;
+use pleach::scenario_file;
+use std::path::Path;
+
+fn plan(map: &str, reading: &Reading) -> Plan {
+    import::read(&Path::new("tests/maps").join(map), reading).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn corners(plan: &Plan) -> usize {
+    let rings = std::iter::once(&plan.workspace.boundary).chain(&plan.workspace.holes);
+    rings.map(Vec::len).sum()
+}
+
+/// The image of the flat, read by this test itself: rows from the top.
+fn pixels() -> (usize, usize, Vec<u8>) {
+    let bytes = std::fs::read("tests/maps/flat.pgm").unwrap();
+    let header = b"P5\n# drawn for the tests of pleach\n180 110\n255\n";
+    (180, 110, bytes.strip_prefix(header).unwrap().to_vec())
+}
+
+#[test]
+fn a_map_of_the_map_server_is_traced_without_a_wall_inside() {
+    let (width, height, pixels) = pixels();
+    for tolerance in [0.0, 0.05, 0.1] {
+        let reading = Reading { tolerance: Some(tolerance), ..Reading::default() };
+        let plan = plan("flat.yaml", &reading);
+        let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(|&corner| Point::from(corner)).collect();
+        let workspace = pleach::continuous::geometry::Workspace::new(
+            ring(&plan.workspace.boundary),
+            plan.workspace.holes.iter().map(ring).collect(),
+        )
+        .unwrap();
+        assert_eq!(plan.workspace.holes.len(), 3, "oblique wall, pillar, cupboard: {tolerance}");
+        for (index, _) in pixels.iter().enumerate().filter(|(_, shade)| **shade < 250) {
+            let (column, row) = ((index % width) as f64, (height - 1 - index / width) as f64);
+            for [x, y] in [[0.5, 0.5], [0.02, 0.02], [0.98, 0.02], [0.02, 0.98], [0.98, 0.98]] {
+                let place = Point::new(-2.0 + 0.05 * (column + x), -1.0 + 0.05 * (row + y));
+                assert!(!workspace.contains(place), "a wall at {place} is floor: {tolerance}");
+            }
+        }
+    }
+    let [exact, simple] = [0.0, 0.05].map(|tolerance| {
+        corners(&plan("flat.yaml", &Reading { tolerance: Some(tolerance), ..Reading::default() }))
+    });
+    assert!(simple * 2 < exact, "{simple} of {exact} corners");
+}
+
+#[test]
+fn an_imported_flat_is_serviced() {
+    let plan = plan("flat.yaml", &Reading::default());
+    let choices = Choices { robots: 12, ..Choices::named("flat") };
+    let (scenario, notes) = import::skeleton(&plan, &choices).unwrap();
+    let text = import::text(&scenario, "flat.yaml", &notes);
+    let again = scenario_file::parse(&text, Path::new("flat.toml")).unwrap();
+    assert_eq!(again.workspace, scenario.workspace);
+    assert_eq!(again.robot, scenario.robot);
+    let end = mission::run(&again, &mut []).unwrap().end;
+    assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
+}
+
+#[test]
+fn a_benchmark_map_keeps_its_walls() {
+    let plan = plan("cellar.map", &Reading { tolerance: Some(0.0), ..Reading::default() });
+    assert_eq!(plan.workspace.holes.len(), 2);
+    assert!(plan.notes[0].contains("40 by 24 cells"), "{:?}", plan.notes);
+    assert!(
+        plan.workspace.boundary.contains(&[1.0, 1.0])
+            && plan.workspace.boundary.contains(&[39.0, 23.0])
+    );
+}
+
+/// A hall of 30 m by 20 m and an annexe of 10 m by 8 m share a wall with an opening.
+#[test]
+fn degrees_become_metres_and_touching_polygons_one_floor() {
+    let plan = plan("hall.geojson", &Reading::default());
+    let area = |ring: &Vec<[f64; 2]>| {
+        let sides = ring.iter().zip(ring.iter().cycle().skip(1));
+        (sides.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0).abs()
+    };
+    let floor = area(&plan.workspace.boundary) - plan.workspace.holes.iter().map(area).sum::<f64>();
+    let walls = 0.2 * 2.1 + 0.2 * 2.0; // in the hall, and in the annexe
+    assert!((floor - (600.0 - 24.0 + 80.0 - walls)).abs() < 0.5, "{floor}");
+    let (scenario, _) = import::skeleton(&plan, &Choices::named("hall")).unwrap();
+    assert_eq!((scenario.access_point.len(), scenario.task.len()), (1, 1));
+    let planar = Reading { planar: true, ..Reading::default() };
+    assert!(corners(&self::plan("hall.geojson", &planar)) == corners(&plan));
+}
+
+#[test]
+fn shapes_of_a_drawing_bound_the_floor() {
+    let reading = Reading { scale: 0.01, tolerance: Some(0.002), ..Reading::default() };
+    let plan = plan("gallery.svg", &reading);
+    assert_eq!(plan.workspace.holes.len(), 3);
+    assert!(
+        plan.notes[0].starts_with("chords of curves are at most 0.002 away"),
+        "{:?}",
+        plan.notes
+    );
+    let highest = plan.workspace.boundary.iter().map(|corner| corner[1]).fold(0.0, f64::max);
+    assert!((highest - 2.0).abs() < 1e-6, "the vertical axis points up");
+    let bevel = plan.workspace.boundary.iter().filter(|corner| corner[0] > 2.4 && corner[1] > 1.4);
+    assert!(bevel.count() > 5, "the rounded corner is at the top right");
+}
+
+#[test]
+fn narrow_passages_and_closed_parts_are_told() {
+    let plan = plan("cellar.map", &Reading::default());
+    let choices =
+        Choices { clearance: Some(3.5), full_range: Some(20.0), ..Choices::named("cellar") };
+    let told = match import::skeleton(&plan, &choices) {
+        Ok((_, notes)) => notes.join("\n"),
+        Err(error) => error.to_string(),
+    };
+    assert!(told.contains("the passage at") || told.contains("no place was found"), "{told}");
+}
+
+#[test]
+fn maps_that_are_none_are_refused() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    for (name, text, said) in [
+        ("a.map", "type octile\nheight 2\nwidth 3\nmap\n...\n..\n", "line 6: the row has 2 cells"),
+        ("b.map", "height x\n", "line 1: \"height x\" states no whole number"),
+        ("c.yaml", "image: none.png\nresolution: 0.05\n", "none.png: cannot be read"),
+        ("d.yaml", "resolution: 0.05\n", "image is missing"),
+        ("e.geojson", "{}", "e.geojson: "),
+        ("f.svg", "<svg><path d='M0,0 Q1'/></svg>", "path: "),
+        ("g.svg", "<svg></svg>", "no floor"),
+        ("h.txt", "", "the ending says no kind of map"),
+    ] {
+        let path = folder.join(name);
+        std::fs::write(&path, text).unwrap();
+        let error = import::read(&path, &Reading::default()).unwrap_err().to_string();
+        assert!(error.contains(said), "{name}: {error}");
+    }
+}
