@@ -20,6 +20,7 @@ mod medium;
 mod outcomes;
 mod proofs;
 mod random_missions;
+mod records;
 mod scenario_faults;
 mod story;
 mod studies;

@@ -4,7 +4,7 @@ use super::change::{Change, changes};
 use pleach::automaton::network::record::Outcome;
 
 pub const ALL: &[Change] = changes! {
-    "a control period is dropped" => |record, site| drop(record.periods.remove(site));
+    "a control period is dropped" => |record, site| record.periods.remove(site);
     "a control period is duplicated" => |record, site| {
         let period = record.periods[site].clone();
         record.periods.insert(site, period);

@@ -59,10 +59,11 @@ fn rename(record: &mut Record, site: usize, kind: Kind) {
 /// Changes the first event of a kind.
 macro_rules! edit {
     ($record:ident, $site:ident, $pattern:pat => $make:expr) => {
-        if let Some($pattern) =
-            $record.events($site).iter_mut().find(|event| matches!(event, $pattern))
-        {
-            $make
+        for event in $record.events($site) {
+            if let $pattern = event {
+                $make;
+                break;
+            }
         }
     };
 }
@@ -73,7 +74,6 @@ macro_rules! of_kind {
             Change {
                 name: concat!($name, ": it is dropped"),
                 make: |record, site| {
-                    #[allow(unused_variables)]
                     drop_one(record, site, |event| matches!(event, $pattern));
                 },
             },
@@ -127,13 +127,13 @@ pub const FALSE: &[Change] = changes! {
         edit!(record, site, Event::Stationary { team, .. } => team.clear());
     };
     "recruit elected: a robot of the path is dropped" => |record, site| {
-        edit!(record, site, Event::RecruitElected { path, .. } => drop(path.remove(0)));
+        edit!(record, site, Event::RecruitElected { path, .. } => path.remove(0));
     };
     "recruit elected: the path is in another order" => |record, site| {
         edit!(record, site, Event::RecruitElected { path, .. } => path.reverse());
     };
     "recruit elected: break points are one short" => |record, site| {
-        edit!(record, site, Event::RecruitElected { break_points, .. } => drop(break_points.pop()));
+        edit!(record, site, Event::RecruitElected { break_points, .. } => break_points.pop());
     };
     "recruit elected: a break point between is dropped" => |record, site| {
         edit!(record, site, Event::RecruitElected { break_points, .. } => {
@@ -152,10 +152,10 @@ pub const FALSE: &[Change] = changes! {
         });
     };
     "subgroup started: a robot is dropped" => |record, site| {
-        edit!(record, site, Event::SubgroupStarted { robots, .. } => drop(robots.pop()));
+        edit!(record, site, Event::SubgroupStarted { robots, .. } => robots.pop());
     };
     "subgroup arrived: a robot is dropped" => |record, site| {
-        edit!(record, site, Event::SubgroupArrived { robots, .. } => drop(robots.pop()));
+        edit!(record, site, Event::SubgroupArrived { robots, .. } => robots.pop());
     };
     "joined primary: the team is emptied" => |record, site| {
         edit!(record, site, Event::JoinedPrimary { team, .. } => team.clear());

@@ -70,7 +70,7 @@ pub const ALL: &[Change] = changes! {
         let now = record.at(site);
         now.positions[0] = now.positions[1];
     };
-    "positions: one is dropped" => |record, site| drop(record.at(site).positions.pop());
+    "positions: one is dropped" => |record, site| record.at(site).positions.pop();
     "positions: one is not a number" => |record, site| record.at(site).positions[0].x = f64::NAN;
     "roles: a redundant robot is a node" => |record, site| {
         let now = record.at(site);
@@ -99,7 +99,7 @@ pub const ALL: &[Change] = changes! {
     "roles: everybody is redundant from here on" => |record, site| {
         record.from(site).for_each(|now| now.roles.fill(Role::Redundant));
     };
-    "roles: one is dropped" => |record, site| drop(record.at(site).roles.pop());
+    "roles: one is dropped" => |record, site| record.at(site).roles.pop();
     "phase: it is the next one" => |record, site| {
         let now = record.at(site);
         let at = Phase::ALL.iter().position(|phase| *phase == now.phase).unwrap();
@@ -139,7 +139,7 @@ pub const ALL: &[Change] = changes! {
     "active: it is in another order" => |record, site| reverse(&mut record.at(site).active);
     "active team: it is emptied" => |record, site| record.at(site).active_team.clear();
     "active team: the last is dropped" => |record, site| {
-        drop(record.at(site).active_team.pop());
+        record.at(site).active_team.pop();
     };
     "active team: it is in another order" => |record, site| {
         reverse(&mut record.at(site).active_team);
@@ -184,7 +184,7 @@ pub const ALL: &[Change] = changes! {
         duplicate_first(&mut record.at(site).primary_team);
     };
     "path: it is emptied" => |record, site| record.at(site).path.clear();
-    "path: the last is dropped" => |record, site| drop(record.at(site).path.pop());
+    "path: the last is dropped" => |record, site| record.at(site).path.pop();
     "path: it is in another order" => |record, site| reverse(&mut record.at(site).path);
     "path: the first is another robot" => |record, site| {
         let now = record.at(site);
@@ -202,15 +202,15 @@ pub const ALL: &[Change] = changes! {
     };
     "residuals: one is shifted by 10⁻³" => |record, site| record.at(site).residuals[0] += 1e-3;
     "residuals: one is negative" => |record, site| record.at(site).residuals[0] *= -1.0;
-    "residuals: one is dropped" => |record, site| drop(record.at(site).residuals.pop());
+    "residuals: one is dropped" => |record, site| record.at(site).residuals.pop();
     "multipliers: one is negative" => |record, site| record.at(site).multipliers[0] = -0.1;
     "multipliers: one is not a number" => |record, site| {
         record.at(site).multipliers[0] = f64::NAN;
     };
-    "multipliers: one is dropped" => |record, site| drop(record.at(site).multipliers.pop());
+    "multipliers: one is dropped" => |record, site| record.at(site).multipliers.pop();
     "multipliers: one is shifted by 0.1" => |record, site| record.at(site).multipliers[0] += 0.1;
     "multipliers: two are swapped" => |record, site| swap_ends(&mut record.at(site).multipliers);
-    "routes: one is dropped" => |record, site| drop(record.at(site).routes.remove(0));
+    "routes: one is dropped" => |record, site| record.at(site).routes.remove(0);
     "routes: all are dropped" => |record, site| record.at(site).routes.clear();
     "routes: one is duplicated" => |record, site| duplicate_first(&mut record.at(site).routes);
     "routes: a share is shifted by 10⁻³" => |record, site| {
@@ -294,7 +294,7 @@ pub const ALL: &[Change] = changes! {
     };
     "serviced: it is emptied" => |record, site| record.at(site).serviced.clear();
     "serviced: a task is dropped from here on" => |record, site| {
-        record.from(site).for_each(|now| drop(now.serviced.pop()));
+        record.from(site).for_each(|now| { now.serviced.pop(); });
     };
     "serviced: a task is duplicated" => |record, site| {
         duplicate_first(&mut record.at(site).serviced);
@@ -324,7 +324,7 @@ pub const ALL: &[Change] = changes! {
     "posts: those of junctions are dropped" => |record, site| {
         record.at(site).posts.retain(|post| !post.junction);
     };
-    "posts: one is dropped" => |record, site| drop(record.at(site).posts.pop());
+    "posts: one is dropped" => |record, site| record.at(site).posts.pop();
     "posts: one is duplicated" => |record, site| duplicate_first(&mut record.at(site).posts);
     "posts: one is held by a redundant robot" => |record, site| {
         let now = record.at(site);

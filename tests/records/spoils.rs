@@ -17,9 +17,11 @@ fn first(record: &Record, kind: fn(&Event) -> bool) -> usize {
 }
 
 pub const ALL: [Spoil; 27] = [
-    ("no task is ever held", |record| record.from(0).for_each(|now| now.serviced.clear()), &[
-        Property::Duties,
-    ]),
+    (
+        "no task is ever held",
+        |record| record.from(0).for_each(|now| now.serviced.clear()),
+        &[Property::Duties],
+    ),
     (
         "no robot records the tasks that it services",
         |record| {
@@ -52,9 +54,11 @@ pub const ALL: [Spoil; 27] = [
         },
         &[Property::ActiveTeam],
     ),
-    ("there are no posts", |record| record.from(0).for_each(|now| now.posts.clear()), &[
-        Property::Posts,
-    ]),
+    (
+        "there are no posts",
+        |record| record.from(0).for_each(|now| now.posts.clear()),
+        &[Property::Posts],
+    ),
     (
         "no post is a junction",
         |record| {
@@ -80,7 +84,7 @@ pub const ALL: [Spoil; 27] = [
                 period.events.retain(|event| !matches!(event, Event::RoleChanged { .. }));
             }
         },
-        &[Property::Events, Property::Teams, Property::Duties, Property::Posts],
+        &[Property::LeaderLast, Property::Teams],
     ),
     (
         "the robot that answers for a task is redundant and has no parent",
@@ -103,9 +107,11 @@ pub const ALL: [Spoil; 27] = [
         |record| record.from(0).for_each(|now| now.task = now.task.map(|task| (task + 1) % 3)),
         &[Property::Stage],
     ),
-    ("no task is pursued", |record| record.from(0).for_each(|now| now.task = None), &[
-        Property::Stage,
-    ]),
+    (
+        "no task is pursued",
+        |record| record.from(0).for_each(|now| now.task = None),
+        &[Property::Stage],
+    ),
     (
         "the phase is “idle”",
         |record| record.from(0).for_each(|now| now.phase = Phase::Idle),
@@ -162,7 +168,8 @@ pub const ALL: [Spoil; 27] = [
         "robots far apart exchange duties",
         |record| {
             let mover = record.at(LATE).active_team[0];
-            let parked = record.at(LATE).roles.iter().position(|it| *it == Role::Redundant).unwrap();
+            let parked =
+                record.at(LATE).roles.iter().position(|it| *it == Role::Redundant).unwrap();
             record.events(LATE).push(Event::DutiesExchanged { mover, parked });
         },
         &[Property::Events],

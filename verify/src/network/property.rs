@@ -226,7 +226,7 @@ impl Property {
                 "A robot that is not of the active team stays within δ of the place of its post, \
                  or comes no farther from it than it is."
             }
-            Property::Multipliers => "No multiplier λ_i is negative, eq. (9).",
+            Property::Multipliers => "No multiplier λ_i of a dual method is negative, eq. (9).",
             Property::Events => {
                 "Every event is true at its instant, and follows from those before it by \
                  Algorithms 1, 3 and 4."

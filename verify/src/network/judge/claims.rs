@@ -3,7 +3,8 @@
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_discrete::network::{Phase, Role};
 
-use super::ledger::{Ledger, Walk};
+use super::ledger::Ledger;
+use super::walk::Walk;
 use super::{Dispute, Scene};
 use crate::network::limits::{Limits, SLACK};
 use crate::network::property::Property;
@@ -83,7 +84,8 @@ pub(super) fn is_true(event: &MissionEvent, ledger: &Ledger, scene: &Scene) -> R
             ledger.walk.as_ref().map_or(Ok(()), |walk| has_come(walk, *subgroup, scene))
         }
         MissionEvent::DutiesExchanged { mover, parked } => touch(*mover, *parked, scene),
-        MissionEvent::Reattached { robot, parent } => is_attached(*robot, *parent, scene),
+        MissionEvent::Reattached { robot, parent } => is_attached(*robot, *parent, ledger, scene),
+        MissionEvent::RouteInfeasible { robot } => is_infeasible(*robot, scene),
         _ => Ok(()),
     }
 }
@@ -123,18 +125,34 @@ fn is_free(robot: usize, scene: &Scene) -> Result<(), Dispute> {
     }
 }
 
-/// Sec. V-B2: the break points are the recruit, the last robot that is relieved, and between them
-/// whoever services a task, has a neighbour in the tree off Σ, or stands where Σ leaves the tree.
+/// Sec. V-B2: the break points are those of the tree at the beginning or at the end of the period;
+/// the first subgroups may have arrived in the period in which Σ is announced.
 fn divides(
     path: &[usize],
     break_points: &[usize],
     ledger: &Ledger,
     scene: &Scene,
 ) -> Result<(), Dispute> {
-    let robots = scene.snapshot.positions.len();
+    let derived = |snapshot: &Snapshot| break_points_by_tree(path, ledger, snapshot);
+    let before = scene.previous.map(derived);
+    let now = derived(scene.snapshot);
+    if now == break_points || before.as_deref() == Some(break_points) {
+        return Ok(());
+    }
+    let sentence = format!(
+        "the break points of the path {path:?} are {now:?} by the tree, and {break_points:?} are \
+         reported"
+    );
+    Err(Dispute::of(Property::Subgroups, path, sentence))
+}
+
+/// The recruit, the last robot that is relieved, and between them each robot that services a task,
+/// has a neighbour in the tree off Σ, or stands where Σ leaves the tree.
+fn break_points_by_tree(path: &[usize], ledger: &Ledger, snapshot: &Snapshot) -> Vec<usize> {
+    let robots = snapshot.positions.len();
     let mut parents = vec![None; robots];
-    // Who has two parents is told by another property.
-    let _ = tree::parents_of(&scene.snapshot.tree, &mut parents);
+    // A robot with two parents is told by another property.
+    let _ = tree::parents_of(&snapshot.tree, &mut parents);
     let joins =
         |one: usize, other: usize| parents[one] == Some(other) || parents[other] == Some(one);
     let is_on = |node: usize| path.contains(&node);
@@ -143,7 +161,7 @@ fn divides(
             || (0..robots).any(|child| parents[child] == Some(robot) && !is_on(child))
     };
     let Some(last) = path.len().checked_sub(if ledger.awaits_release { 1 } else { 2 }) else {
-        return Ok(());
+        return Vec::new();
     };
     let is_break_point = |place: usize| {
         let robot = path[place];
@@ -154,25 +172,17 @@ fn divides(
             || !joins(path[place - 1], robot)
             || !joins(robot, path[place + 1])
     };
-    let derived: Vec<usize> =
-        (0..=last).filter(|&place| is_break_point(place)).map(|place| path[place]).collect();
-    if derived == break_points {
-        return Ok(());
-    }
-    let sentence = format!(
-        "the break points of the path {path:?} are {derived:?} by the tree, and {break_points:?} \
-         are reported"
-    );
-    Err(Dispute::of(Property::Subgroups, path, sentence))
+    (0..=last).filter(|&place| is_break_point(place)).map(|place| path[place]).collect()
 }
 
 /// Eq. (26): each member is within δ of the place of the robot ahead, or stands right behind that.
-fn has_come(walk: &Walk, subgroup: usize, scene: &Scene) -> Result<(), Dispute> {
+pub(super) fn has_come(walk: &Walk, subgroup: usize, scene: &Scene) -> Result<(), Dispute> {
     let (radius, contact) = (scene.limits.service_radius(), CONTACT * scene.limits.clearance());
     for place in walk.subgroup(subgroup).unwrap_or_default() {
         let (robot, ahead) = (walk.path[place], walk.path[place + 1]);
         let position = scene.snapshot.positions[robot];
-        let Some(target) = scene.places.on_path(place + 1) else { continue };
+        let Some((target, is_fixed)) = scene.places.on_path(place + 1) else { continue };
+        let radius = if is_fixed { radius } else { radius + contact };
         let distance = (position - target).norm();
         let queues = (position - scene.snapshot.positions[ahead]).norm() <= contact + SLACK;
         if !queues {
@@ -199,12 +209,33 @@ fn touch(mover: usize, parked: usize, scene: &Scene) -> Result<(), Dispute> {
     })
 }
 
-fn is_attached(robot: usize, parent: usize, scene: &Scene) -> Result<(), Dispute> {
-    if scene.snapshot.tree.contains(&(robot, parent)) {
+/// Remark 5.6: a robot of the primary team hangs on this node.
+fn is_attached(robot: usize, parent: usize, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
+    let is_edge = |parent: usize| scene.snapshot.tree.contains(&(robot, parent));
+    // It may have attached to several nodes in one period, one after the other.
+    let goes_on = scene.events.iter().any(|event| {
+        matches!(*event, MissionEvent::Reattached { robot: it, parent } if it == robot && is_edge(parent))
+    });
+    let clause = match is_edge(parent) || goes_on {
+        false => "which is not its parent",
+        true if !ledger.primary_team.contains(&robot) => "and is not of the primary team",
+        true => return Ok(()),
+    };
+    let sentence = format!("robot {robot} attaches to {parent}, {clause}");
+    Err(Dispute::of(Property::Events, &[robot, parent], sentence))
+}
+
+/// The residual of the robot is below −c_min.
+fn is_infeasible(robot: usize, scene: &Scene) -> Result<(), Dispute> {
+    let (residual, bound) = (scene.snapshot.residuals[robot], scene.limits.least_residual());
+    if residual < bound {
         return Ok(());
     }
-    let sentence = format!("robot {robot} attaches to {parent}, which is not its parent");
-    Err(Dispute::of(Property::Events, &[robot, parent], sentence))
+    let sentence = format!(
+        "the routes of robot {robot} are reported infeasible, and its residual is {residual:.6}, \
+         not less than {bound:.6}"
+    );
+    Err(Dispute::of(Property::Events, &[robot], sentence).measuring(residual, bound))
 }
 
 /// The teams that events name are those at the end of the period, when observers complete them.

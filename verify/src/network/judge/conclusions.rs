@@ -1,11 +1,13 @@
 //! Whether what observers conclude is what the events and the world give.
 
-use pleach_automaton::network::record::{MissionEvent, PostView, Snapshot};
+use pleach_automaton::network::record::{MissionEvent, Snapshot};
+use pleach_automaton::network::scenario::RoutingMethod;
 use pleach_discrete::network::{Phase, Role};
 
 use super::lately::Lately;
 use super::ledger::{Ledger, Stage};
-use super::{Dispute, Scene};
+use super::walk::Walk;
+use super::{Dispute, Scene, claims, posts};
 use crate::network::property::Property;
 
 /// A robot this share of ρ from the place of its post has come to rest.
@@ -23,12 +25,21 @@ pub struct Conclusions {
     task: Lately<Option<usize>>,
     stage: Lately<Stage>,
     active_team: Lately<Vec<usize>>,
+    primary_team: Lately<Vec<usize>>,
     path: Lately<Vec<usize>>,
     serviced: Lately<Vec<(usize, usize)>>,
     /// The last step with an event.
     last_event: Option<usize>,
     /// What was seen of Σ before it was announced: its robots, and a team that moves along it.
     early: Vec<(Vec<usize>, Vec<usize>)>,
+    /// Robots that set out along Σ before it was announced.
+    early_movers: Vec<usize>,
+    /// Since when the phase has been ahead of the events.
+    ahead: Option<usize>,
+    /// Robots that have changed their role, each with the step at which it did.
+    changed: Vec<(usize, usize)>,
+    /// Robots that have exchanged duties, each with the step at which that was told.
+    exchanging: Vec<(usize, usize)>,
     /// The step at which the robots first knew that the mission has ended.
     ended: Option<usize>,
 }
@@ -41,10 +52,15 @@ impl Conclusions {
             task: Lately::new(None),
             stage: Lately::new(Stage::Idle),
             active_team: Lately::new(Vec::new()),
+            primary_team: Lately::new(Vec::new()),
             path: Lately::new(Vec::new()),
             serviced: Lately::new(Vec::new()),
             last_event: None,
             early: Vec::new(),
+            early_movers: Vec::new(),
+            ahead: None,
+            changed: Vec::new(),
+            exchanging: Vec::new(),
             ended: None,
         }
     }
@@ -59,6 +75,13 @@ impl Conclusions {
     ) -> Result<(), Dispute> {
         self.last_event = Some(step);
         self.update(ledger, step);
+        match *event {
+            MissionEvent::RoleChanged { robot, .. } => self.changed.push((robot, step)),
+            MissionEvent::DutiesExchanged { mover, parked } => {
+                self.exchanging.extend([(mover, step), (parked, step)]);
+            }
+            _ => {}
+        }
         let MissionEvent::RecruitElected { path, break_points, .. } = event else { return Ok(()) };
         let second = break_points.get(1).and_then(|point| path.iter().position(|it| it == point));
         let first_team = &path[..second.unwrap_or(0)];
@@ -71,7 +94,16 @@ impl Conclusions {
                 return Err(Dispute::of(Property::Subgroups, path, sentence));
             }
         }
-        Ok(())
+        match self.early_movers.drain(..).find(|robot| !first_team.contains(robot)) {
+            None => Ok(()),
+            Some(robot) => {
+                let sentence = format!(
+                    "robot {robot} was on its way before the path {path:?} was announced, and it \
+                     is not of the first subgroup {first_team:?}"
+                );
+                Err(Dispute::of(Property::ActiveTeam, &[robot], sentence))
+            }
+        }
     }
 
     /// The ledger after an event.
@@ -81,6 +113,7 @@ impl Conclusions {
         self.task.update(ledger.task(), step, patience);
         self.stage.update(ledger.stage(), step, patience);
         self.active_team.update(ledger.active_team().to_vec(), step, patience);
+        self.primary_team.update(ledger.primary_team.clone(), step, patience);
         self.path.update(remaining.to_vec(), step, patience);
         let serviced = ledger.serviced.iter().map(|(&task, &robot)| (task, robot)).collect();
         self.serviced.update(serviced, step, patience);
@@ -97,11 +130,15 @@ impl Conclusions {
     }
 
     /// Compares every conclusion of observers.
-    pub fn compare(&mut self, ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
+    pub(super) fn compare(&mut self, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
+        let snapshot = scene.snapshot;
         self.update(ledger, snapshot.step);
+        let patience = self.patience;
+        self.changed.retain(|(_, step)| step + patience >= snapshot.step);
+        self.exchanging.retain(|(_, step)| step + patience >= snapshot.step);
         roles_are_those(ledger, snapshot)?;
-        multipliers_are_prices(snapshot)?;
-        holders_hold(snapshot)?;
+        multipliers_are_prices(scene)?;
+        posts::holders_hold(snapshot)?;
         // Robots that have given up hold no team and no place of Σ any more.
         if snapshot.phase == Phase::Ended {
             self.ended.get_or_insert(snapshot.step);
@@ -112,14 +149,26 @@ impl Conclusions {
             return Err(Dispute::of(Property::Stage, &[], sentence));
         }
         self.stage_is_that(snapshot)?;
-        self.teams_are_those(ledger, snapshot)?;
-        self.path_is_that(ledger, snapshot)?;
-        self.duties_are_those(snapshot)?;
-        posts_are_held(ledger, snapshot)?;
-        if self.is_settled(snapshot.step) { posts_are_those(ledger, snapshot) } else { Ok(()) }
+        // Robots may act on the arrival of a subgroup before the one that tells of it knows.
+        let under_way = ledger.walk.as_ref().filter(|walk| {
+            walk.is_under_way && claims::has_come(walk, walk.arrived, scene).is_ok()
+        });
+        let next = under_way.map(|_| ledger.after_arrival());
+        self.teams_are_those(ledger, next.as_ref(), snapshot)?;
+        self.path_is_that(ledger, next.as_ref(), snapshot)?;
+        self.duties_are_those(next.as_ref(), snapshot)?;
+        let moves = |robot| self.primary_team.values().any(|team| team.contains(&robot));
+        posts::are_held(moves, snapshot)?;
+        if self.is_settled(snapshot.step) { posts::are_those(ledger, snapshot) } else { Ok(()) }
     }
 
-    fn stage_is_that(&self, snapshot: &Snapshot) -> Result<(), Dispute> {
+    /// These robots, but for those that are exchanging duties: for some rounds both have one duty.
+    fn apart(&self, robots: &[usize]) -> Vec<usize> {
+        let exchanges = |robot: usize| self.exchanging.iter().any(|(it, _)| *it == robot);
+        robots.iter().copied().filter(|&robot| !exchanges(robot)).collect()
+    }
+
+    fn stage_is_that(&mut self, snapshot: &Snapshot) -> Result<(), Dispute> {
         if !self.task.values().any(|task| *task == snapshot.task) {
             let sentence = format!(
                 "the task is reported as {:?}, and the events make it {:?}",
@@ -128,7 +177,14 @@ impl Conclusions {
             );
             return Err(Dispute::of(Property::Stage, &[], sentence));
         }
-        if !self.stage.values().any(|&stage| is_phase_of(stage, snapshot.phase)) {
+        let is_known = self.stage.values().any(|&stage| is_phase_of(stage, snapshot.phase));
+        // A robot may know that an election is over before its winner tells observers.
+        let is_ahead = foreshadows(*self.stage.current(), snapshot.phase)
+            && snapshot.step - *self.ahead.get_or_insert(snapshot.step) <= self.patience;
+        if is_known {
+            self.ahead = None;
+        }
+        if !is_known && !is_ahead {
             let sentence = format!(
                 "the phase is reported as “{}”, and the mission is {:?}",
                 snapshot.phase.name(),
@@ -139,8 +195,13 @@ impl Conclusions {
         Ok(())
     }
 
-    fn teams_are_those(&self, ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
-        if snapshot.primary_team != ledger.primary_team {
+    fn teams_are_those(
+        &self,
+        ledger: &Ledger,
+        next: Option<&Ledger>,
+        snapshot: &Snapshot,
+    ) -> Result<(), Dispute> {
+        if self.apart(&snapshot.primary_team) != self.apart(&ledger.primary_team) {
             let sentence = format!(
                 "the primary team is reported as {:?}, and the events make it {:?}",
                 snapshot.primary_team, ledger.primary_team
@@ -148,7 +209,8 @@ impl Conclusions {
             return Err(Dispute::of(Property::Teams, &snapshot.primary_team, sentence));
         }
         let leads = |robot: &usize| snapshot.roles[*robot] == Role::Leader;
-        if let Some(leader) = ledger.leader.filter(|leader| !leads(leader)) {
+        let is_alone = |robot: &usize| !self.apart(&[*robot]).is_empty();
+        if let Some(leader) = ledger.leader.filter(|leader| !leads(leader) && is_alone(leader)) {
             let sentence = format!("robot {leader} is elected, and its role is not leader");
             return Err(Dispute::of(Property::Teams, &[leader], sentence));
         }
@@ -156,24 +218,33 @@ impl Conclusions {
             Some(walk) => !walk.is_under_way,
             None => ledger.stage() != Stage::Advancing,
         };
-        let team = &snapshot.active_team;
+        let team = self.apart(&snapshot.active_team);
         let is_early = ledger.walk.is_none() && ledger.stage() == Stage::Calling;
-        let is_known = self.active_team.values().any(|known| known == team);
+        let is_known = self.active_team.values().any(|known| self.apart(known) == team)
+            || next.is_some_and(|next| self.apart(next.active_team()) == team);
         if is_known || is_early || team.is_empty() && may_be_none {
             return Ok(());
         }
         let sentence = format!(
-            "the active team is reported as {team:?}, and the events make it {:?}",
+            "the active team is reported as {:?}, and the events make it {:?}",
+            snapshot.active_team,
             self.active_team.current()
         );
-        Err(Dispute::of(Property::ActiveTeam, team, sentence))
+        Err(Dispute::of(Property::ActiveTeam, &snapshot.active_team, sentence))
     }
 
-    fn path_is_that(&mut self, ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
+    fn path_is_that(
+        &mut self,
+        ledger: &Ledger,
+        next: Option<&Ledger>,
+        snapshot: &Snapshot,
+    ) -> Result<(), Dispute> {
         let path = &snapshot.path;
+        let remaining = next.unwrap_or(ledger).walk.as_ref().map_or(&[][..], Walk::remaining);
         // Members of a subgroup that has arrived leave Σ one by one, as they hear of it.
-        let has_all = self.path.current().iter().all(|robot| path.contains(robot));
-        if has_all && self.path.values().any(|known| is_part(path, known)) {
+        let has_all = self.apart(remaining).iter().all(|robot| path.contains(robot));
+        let seen = self.apart(path);
+        if has_all && self.path.values().any(|known| is_part(&seen, known)) {
             return Ok(());
         }
         if ledger.walk.is_none() && ledger.stage() == Stage::Calling {
@@ -190,8 +261,18 @@ impl Conclusions {
         Err(Dispute::of(Property::Teams, path, sentence))
     }
 
-    fn duties_are_those(&self, snapshot: &Snapshot) -> Result<(), Dispute> {
-        if self.serviced.values().any(|known| *known == snapshot.serviced) {
+    fn duties_are_those(&self, next: Option<&Ledger>, snapshot: &Snapshot) -> Result<(), Dispute> {
+        let next: Option<Vec<_>> =
+            next.map(|next| next.serviced.iter().map(|(&task, &robot)| (task, robot)).collect());
+        let is_alone = |robot: usize| !self.apart(&[robot]).is_empty();
+        let agrees = |known: &Vec<(usize, usize)>| {
+            known.len() == snapshot.serviced.len()
+                && known.iter().zip(&snapshot.serviced).all(|(known, seen)| {
+                    known.0 == seen.0
+                        && (known.1 == seen.1 || !is_alone(known.1) && !is_alone(seen.1))
+                })
+        };
+        if self.serviced.values().chain(&next).any(agrees) {
             return Ok(());
         }
         let sentence = format!(
@@ -202,9 +283,32 @@ impl Conclusions {
         Err(Dispute::of(Property::Duties, &[], sentence))
     }
 
+    /// Part of [`Property::Posts`]: posts stay as they are but for those of robots that move with a
+    /// team, or have changed their duty.
+    pub(super) fn posts_stay(&self, scene: &Scene) -> Result<(), Dispute> {
+        let Scene { snapshot, previous, .. } = scene;
+        let Some(previous) = previous.filter(|_| snapshot.phase != Phase::Ended) else {
+            return Ok(());
+        };
+        let teams = || self.active_team.values().chain(self.primary_team.values()).flatten();
+        let is_early = |robot: usize| {
+            let active = [previous, *snapshot].into_iter().flat_map(|it| &it.active);
+            snapshot.path.contains(&robot) && active.into_iter().any(|it| *it == robot)
+        };
+        posts::stay(previous, snapshot, |robot| {
+            teams().any(|it| *it == robot)
+                || self.changed.iter().chain(&self.exchanging).any(|(it, _)| *it == robot)
+                || is_early(robot)
+        })
+    }
+
     /// Part of [`Property::ActiveTeam`]: a robot that may move and is not of the active team is on
     /// its way to the place of its post, or makes way.
-    pub(super) fn moves_have_a_cause(&self, scene: &Scene) -> Result<(), Dispute> {
+    pub(super) fn moves_have_a_cause(
+        &mut self,
+        ledger: &Ledger,
+        scene: &Scene,
+    ) -> Result<(), Dispute> {
         let Scene { snapshot, limits, places, .. } = scene;
         let teams = || self.active_team.values().chain([&snapshot.active_team]).flatten();
         for &robot in &snapshot.active {
@@ -217,7 +321,12 @@ impl Conclusions {
                 let distance = (snapshot.positions[*mover] - position).norm();
                 distance <= MAKING_WAY * limits.clearance()
             };
-            if settled && !teams().any(is_near) {
+            let sets_out_early = ledger.walk.is_none()
+                && ledger.stage() == Stage::Calling
+                && snapshot.path.contains(&robot);
+            if settled && sets_out_early {
+                self.early_movers.push(robot);
+            } else if settled && !teams().any(is_near) {
                 let sentence = format!(
                     "robot {robot} may move, and it is at its post, not of the active team, and in \
                      nobody's way"
@@ -240,11 +349,17 @@ const fn is_phase_of(stage: Stage, phase: Phase) -> bool {
         Stage::Idle => matches!(phase, Phase::Idle),
         Stage::Electing => matches!(phase, Phase::LeaderElection),
         Stage::Advancing => matches!(phase, Phase::Advance),
-        // Robots agree on break points, and set out, before the recruit tells observers.
-        Stage::Calling => {
-            matches!(phase, Phase::RecruitElection | Phase::PathAgreement | Phase::Shift)
-        }
+        Stage::Calling => matches!(phase, Phase::RecruitElection | Phase::PathAgreement),
         Stage::Shifting => matches!(phase, Phase::Shift),
+    }
+}
+
+/// Whether robots may be in this phase before an event ends the stage.
+const fn foreshadows(stage: Stage, phase: Phase) -> bool {
+    match stage {
+        Stage::Electing => matches!(phase, Phase::Advance),
+        Stage::Calling => matches!(phase, Phase::Shift),
+        _ => false,
     }
 }
 
@@ -264,108 +379,17 @@ fn roles_are_those(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> 
     }
 }
 
-/// [`Property::Multipliers`].
-fn multipliers_are_prices(snapshot: &Snapshot) -> Result<(), Dispute> {
-    match snapshot.multipliers.iter().position(|&multiplier| multiplier < 0.0) {
+/// [`Property::Multipliers`]: of the dual methods, which project them.
+fn multipliers_are_prices(scene: &Scene) -> Result<(), Dispute> {
+    let multipliers = &scene.snapshot.multipliers;
+    let is_projected = scene.limits.settings().routing_method != RoutingMethod::Adal;
+    match multipliers.iter().position(|&multiplier| is_projected && multiplier < 0.0) {
         None => Ok(()),
         Some(robot) => {
-            let multiplier = snapshot.multipliers[robot];
+            let multiplier = multipliers[robot];
             let sentence = format!("the multiplier of robot {robot} is {multiplier}");
             let dispute = Dispute::of(Property::Multipliers, &[robot], sentence);
             Err(dispute.measuring(multiplier, 0.0))
-        }
-    }
-}
-
-/// Who answers for a task is in the tree, and a leaf, or the leader that is not yet released.
-fn holders_hold(snapshot: &Snapshot) -> Result<(), Dispute> {
-    for &(task, robot) in &snapshot.serviced {
-        let role = snapshot.roles[robot];
-        let is_in_tree = snapshot.tree.iter().any(|&(child, _)| child == robot);
-        if !is_in_tree || !matches!(role, Role::Leaf | Role::Leader) {
-            let sentence = format!(
-                "robot {robot} answers for task {task}, and it is a {} {} the tree",
-                role.name(),
-                if is_in_tree { "in" } else { "outside of" }
-            );
-            return Err(Dispute::of(Property::Duties, &[robot], sentence));
-        }
-    }
-    Ok(())
-}
-
-fn post_of(robot: usize, snapshot: &Snapshot) -> Option<&PostView> {
-    snapshot.posts.iter().find(|post| post.holder == robot)
-}
-
-/// Part of [`Property::Posts`]: who is a node, junction or leaf and neither moves with the primary
-/// team nor walks holds one post, and redundant robots hold none.
-fn posts_are_held(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
-    for (robot, role) in snapshot.roles.iter().enumerate() {
-        let posts = snapshot.posts.iter().filter(|post| post.holder == robot).count();
-        let moves = ledger.primary_team.contains(&robot) || snapshot.path.contains(&robot);
-        let (least, most) = match role {
-            Role::Redundant => (0, 0),
-            Role::Recruit | Role::Leader => (0, 1),
-            Role::Node | Role::Junction | Role::Leaf if moves => (0, 1),
-            Role::Node | Role::Junction | Role::Leaf => (1, 1),
-        };
-        if posts < least || posts > most {
-            let sentence = format!("robot {robot}, a {}, holds {posts} posts", role.name());
-            return Err(Dispute::of(Property::Posts, &[robot], sentence));
-        }
-        if *role == Role::Recruit && !snapshot.path.contains(&robot) {
-            let sentence = format!("robot {robot} is a recruit, and not on the path");
-            return Err(Dispute::of(Property::Teams, &[robot], sentence));
-        }
-    }
-    Ok(())
-}
-
-/// Part of [`Property::Posts`]: the task of a post is the one that its holder answers for, a leaf
-/// has one, and a post is a junction if more than one branch parts there.
-fn posts_are_those(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
-    let answers_for =
-        |robot: usize| snapshot.serviced.iter().find(|(_, it)| *it == robot).map(|(task, _)| *task);
-    let holds =
-        |robot: usize| post_of(robot, snapshot).is_some() || ledger.primary_team.contains(&robot);
-    for post in &snapshot.posts {
-        let (robot, task) = (post.holder, answers_for(post.holder));
-        if post.task != task {
-            let sentence = format!(
-                "the post of robot {robot} is for task {:?}, and the robot answers for {task:?}",
-                post.task
-            );
-            return Err(Dispute::of(Property::Posts, &[robot], sentence));
-        }
-        let branches = snapshot.tree.iter().filter(|&&(child, it)| it == robot && holds(child));
-        let branches = branches.count();
-        let role = snapshot.roles[robot];
-        let is_junction = branches > 1;
-        let fits = match role {
-            Role::Junction => is_junction,
-            Role::Node => !is_junction,
-            _ => true,
-        };
-        if post.junction != is_junction || !fits {
-            let sentence = format!(
-                "{branches} branches part at robot {robot}, a {}, whose post is {}a junction",
-                role.name(),
-                if post.junction { "" } else { "not " }
-            );
-            return Err(Dispute::of(Property::Posts, &[robot], sentence));
-        }
-    }
-    match snapshot
-        .roles
-        .iter()
-        .enumerate()
-        .find(|&(robot, role)| *role == Role::Leaf && answers_for(robot).is_none())
-    {
-        None => Ok(()),
-        Some((robot, _)) => {
-            let sentence = format!("robot {robot} is a leaf, and answers for no task");
-            Err(Dispute::of(Property::Posts, &[robot], sentence))
         }
     }
 }

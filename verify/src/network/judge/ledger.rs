@@ -4,12 +4,12 @@
 //! disputed; whether it is true of the world is for [`claims`](super::claims) to say.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use pleach_automaton::network::record::MissionEvent;
 use pleach_discrete::network::Role;
 
 use super::Dispute;
+use super::walk::Walk;
 use crate::network::property::Property;
 use crate::network::team;
 
@@ -32,21 +32,9 @@ pub struct Ledger {
     pub calls: bool,
     /// The way of a secondary team along Σ.
     pub walk: Option<Walk>,
-}
-
-/// A secondary team at work: the path Σ, its break points and subgroups.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Walk {
-    /// The robots of Σ when it was announced, by which events name them.
-    pub announced: Vec<usize>,
-    /// The robot in each place of Σ now: robots that exchange duties exchange places.
-    pub path: Vec<usize>,
-    /// The places of the break points 𝓑, ascending.
-    pub break_points: Vec<usize>,
-    /// How many subgroups have arrived.
-    pub arrived: usize,
-    /// Whether the next subgroup is on its way.
-    pub is_under_way: bool,
+    /// Subgroups whose arrival follows from later events and is still to be told, with their robots
+    /// as events name them.
+    pub untold: Vec<(usize, Vec<usize>)>,
 }
 
 /// What the mission is at.
@@ -64,31 +52,6 @@ pub enum Stage {
     Shifting,
 }
 
-impl Walk {
-    /// Subgroup S_β = [b_β, b_{β+1}) as places of Σ, eq. (26) and Sec. V-B2.
-    pub fn subgroup(&self, number: usize) -> Option<Range<usize>> {
-        Some(*self.break_points.get(number)?..*self.break_points.get(number + 1)?)
-    }
-
-    /// The members of the subgroup that moves or is the next to move; nobody after the last.
-    pub fn next_team(&self) -> &[usize] {
-        self.subgroup(self.arrived).map_or(&[], |places| &self.path[places])
-    }
-
-    /// The robots that wait on Σ or move along it: from the subgroup whose turn it is to the last
-    /// break point.
-    pub fn remaining(&self) -> &[usize] {
-        match (self.break_points.get(self.arrived), self.break_points.last()) {
-            (Some(&first), Some(&last)) => &self.path[first..=last],
-            _ => &[],
-        }
-    }
-
-    fn has_arrived(&self) -> bool {
-        self.arrived + 1 == self.break_points.len()
-    }
-}
-
 impl Ledger {
     /// The ledger of a mission that begins: every robot is redundant.
     pub fn new(robots: usize) -> Self {
@@ -101,6 +64,7 @@ impl Ledger {
             primary_team: Vec::new(),
             calls: false,
             walk: None,
+            untold: Vec::new(),
         }
     }
 
@@ -187,8 +151,15 @@ impl Ledger {
         Ok(())
     }
 
+    /// The robot that calls finds that nobody in its tree can come: others may lead.
     fn repeat_election(&mut self, task: usize) -> Result<(), Dispute> {
         self.expect_pursued(task, "the election is repeated for")?;
+        if self.stage() != Stage::Calling {
+            let sentence = format!(
+                "the election for task {task} is repeated, and nobody has called for a recruit"
+            );
+            return dispute(&[], sentence);
+        }
         (self.leader, self.awaits_release, self.calls) = (None, false, false);
         self.primary_team.clear();
         Ok(())
@@ -216,11 +187,16 @@ impl Ledger {
         path: &[usize],
         break_points: &[usize],
     ) -> Result<(), Dispute> {
-        if self.stage() != Stage::Calling {
-            return dispute(
-                &[robot],
-                format!("robot {robot} is recruited, and none is called for"),
+        if let Some((subgroup, robots)) = self.untold.first() {
+            let sentence = format!(
+                "robot {robot} is recruited, and the arrival of subgroup {subgroup}, {robots:?}, \
+                 was never told"
             );
+            return Err(Dispute::of(Property::Subgroups, robots, sentence));
+        }
+        if self.stage() != Stage::Calling {
+            let sentence = format!("robot {robot} is recruited, and none is called for");
+            return dispute(&[robot], sentence);
         }
         if path.first() != Some(&robot) || path.last() != self.primary_team.first() {
             let sentence = format!(
@@ -254,6 +230,9 @@ impl Ledger {
 
     /// Algorithm 3: the subgroups move one after the other.
     fn start(&mut self, subgroup: usize, robots: &[usize]) -> Result<(), Dispute> {
+        if self.walk.as_ref().is_some_and(|walk| walk.arrived + 1 == subgroup) {
+            self.imply_arrival();
+        }
         let walk = self.expect_subgroup(subgroup, robots, "starts", false)?;
         walk.is_under_way = true;
         Ok(())
@@ -261,15 +240,41 @@ impl Ledger {
 
     /// Algorithm 4: each member of the subgroup takes the duties of the robot ahead.
     fn arrive(&mut self, subgroup: usize, robots: &[usize]) -> Result<(), Dispute> {
-        let walk = self.expect_subgroup(subgroup, robots, "arrives", true)?;
-        let places = walk.subgroup(subgroup).unwrap_or_default();
+        if let Some(at) = self.untold.iter().position(|it| it.0 == subgroup && it.1 == robots) {
+            self.untold.remove(at);
+            return Ok(());
+        }
+        self.expect_subgroup(subgroup, robots, "arrives", true)?;
+        self.take_places();
+        Ok(())
+    }
+
+    fn take_places(&mut self) {
+        let Some(walk) = &mut self.walk else { return };
+        let places = walk.subgroup(walk.arrived).unwrap_or_default();
         let takeovers: BTreeMap<usize, usize> =
             places.map(|place| (walk.path[place + 1], walk.path[place])).collect();
         (walk.is_under_way, walk.arrived) = (false, walk.arrived + 1);
         for holder in self.serviced.values_mut() {
             *holder = takeovers.get(holder).copied().unwrap_or(*holder);
         }
-        Ok(())
+    }
+
+    /// A robot may act on an arrival before the robot that tells of it knows: the subgroup under way
+    /// has arrived, and that is still to be told.
+    fn imply_arrival(&mut self) {
+        if let Some(walk) = self.walk.as_ref().filter(|walk| walk.is_under_way) {
+            let robots = walk.subgroup(walk.arrived).map(|places| walk.announced[places].to_vec());
+            self.untold.push((walk.arrived, robots.unwrap_or_default()));
+            self.take_places();
+        }
+    }
+
+    /// The ledger as it will be when the subgroup under way has arrived.
+    pub fn after_arrival(&self) -> Self {
+        let mut after = self.clone();
+        after.take_places();
+        after
     }
 
     fn expect_subgroup(
@@ -296,6 +301,7 @@ impl Ledger {
 
     /// L_b = 0: the last robot that Σ relieves joins the primary team behind p₁.
     fn join(&mut self, robot: usize) -> Result<(), Dispute> {
+        self.imply_arrival();
         let walk = self.walk.take().filter(Walk::has_arrived);
         let relieved = walk.and_then(|walk| Some(walk.path[*walk.break_points.last()?]));
         if self.awaits_release || relieved != Some(robot) {
@@ -310,6 +316,7 @@ impl Ledger {
 
     /// L_b = 1: the leader is released when the last subgroup has arrived at its place.
     fn release(&mut self, robot: usize) -> Result<(), Dispute> {
+        self.imply_arrival();
         let is_relieved = self.walk.as_ref().is_none_or(Walk::has_arrived);
         if !self.awaits_release || self.leader != Some(robot) || !is_relieved {
             return dispute(&[robot], format!("robot {robot} is released, and nothing binds it"));

@@ -17,6 +17,8 @@ mod conclusions;
 mod lately;
 mod ledger;
 mod places;
+mod posts;
+mod walk;
 
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
@@ -28,8 +30,9 @@ use super::monitor::Monitor;
 use super::property::Property;
 use super::violation::{Instant, Violation};
 use conclusions::Conclusions;
-pub use ledger::{Ledger, Stage, Walk};
+pub use ledger::{Ledger, Stage};
 use places::Places;
+pub use walk::Walk;
 
 /// What is wrong with an entry of the record; the instant is added where it is known.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,13 +64,18 @@ impl Dispute {
 /// An instant of the record with all that the judge knows of it.
 struct Scene<'a> {
     snapshot: &'a Snapshot,
+    /// What is told of the period that ends with the snapshot.
+    events: &'a [MissionEvent],
     previous: Option<&'a Snapshot>,
     limits: &'a Limits,
     places: &'a Places,
 }
 
 /// Judges a mission, period by period, and stops at the first violation.
-#[derive(Debug)]
+///
+/// Events of one control period are told by robots that do not wait for each other: they count as
+/// happened in an order in which each can follow those before it.
+#[derive(Clone, Debug)]
 pub struct Judge<'a> {
     monitor: Monitor<'a>,
     period: f64,
@@ -115,8 +123,8 @@ impl<'a> Judge<'a> {
             let limits = self.monitor.limits();
             claims::names_exist(event, limits).map_err(|dispute| dispute.at(now))?;
             self.monitor.observe_event(event)?;
-            self.enter(event, snapshot).map_err(|dispute| dispute.at(now))?;
         }
+        self.enter_all(events, snapshot).map_err(|dispute| dispute.at(now))?;
         self.conclude_period(snapshot, events).map_err(|dispute| dispute.at(now))?;
         self.previous = Some(snapshot.clone());
         Ok(())
@@ -145,15 +153,59 @@ impl<'a> Judge<'a> {
         }
     }
 
-    fn enter(&mut self, event: &MissionEvent, snapshot: &Snapshot) -> Result<(), Dispute> {
-        let scene = Scene {
+    /// Enters the events of a period, each as soon as it can follow those before it.
+    fn enter_all(&mut self, events: &[MissionEvent], snapshot: &Snapshot) -> Result<(), Dispute> {
+        let mut pending: Vec<&MissionEvent> = events.iter().collect();
+        while !pending.is_empty() {
+            let mut first = None;
+            let entered =
+                pending.iter().position(|event| match self.follows(event, events, snapshot) {
+                    Ok(_) => true,
+                    Err(dispute) => {
+                        first.get_or_insert(dispute);
+                        false
+                    }
+                });
+            match (entered, first) {
+                (Some(at), _) => self.enter(pending.remove(at), events, snapshot)?,
+                (None, Some(dispute)) => return Err(dispute),
+                (None, None) => break,
+            }
+        }
+        Ok(())
+    }
+
+    fn scene<'s>(&'s self, snapshot: &'s Snapshot, events: &'s [MissionEvent]) -> Scene<'s> {
+        Scene {
             snapshot,
+            events,
             previous: self.previous.as_ref(),
             limits: self.monitor.limits(),
             places: &self.places,
-        };
+        }
+    }
+
+    /// The ledger after an event that is true and can follow those before it.
+    fn follows(
+        &self,
+        event: &MissionEvent,
+        events: &[MissionEvent],
+        snapshot: &Snapshot,
+    ) -> Result<Ledger, Dispute> {
+        let scene = self.scene(snapshot, events);
         claims::is_true(event, &self.ledger, &scene)?;
-        self.ledger.enter(event)?;
+        let mut ledger = self.ledger.clone();
+        ledger.enter(event)?;
+        Ok(ledger)
+    }
+
+    fn enter(
+        &mut self,
+        event: &MissionEvent,
+        events: &[MissionEvent],
+        snapshot: &Snapshot,
+    ) -> Result<(), Dispute> {
+        self.ledger = self.follows(event, events, snapshot)?;
         self.places.enter(event, snapshot);
         self.conclusions.enter(event, &self.ledger, snapshot.step)
     }
@@ -164,15 +216,17 @@ impl<'a> Judge<'a> {
         events: &[MissionEvent],
     ) -> Result<(), Dispute> {
         claims::teams_are_those(events, &self.ledger, snapshot)?;
-        self.conclusions.compare(&self.ledger, snapshot)?;
         let scene = Scene {
             snapshot,
+            events,
             previous: self.previous.as_ref(),
             limits: self.monitor.limits(),
             places: &self.places,
         };
+        self.conclusions.compare(&self.ledger, &scene)?;
         self.places.hold(&scene)?;
-        self.conclusions.moves_have_a_cause(&scene)?;
+        self.conclusions.posts_stay(&scene)?;
+        self.conclusions.moves_have_a_cause(&self.ledger, &scene)?;
         self.places.update(&self.ledger, snapshot);
         Ok(())
     }

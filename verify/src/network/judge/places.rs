@@ -15,8 +15,8 @@ use crate::network::property::Property;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     of_robots: Vec<Option<Point>>,
-    /// The places of Σ when it was announced.
-    path: Vec<Point>,
+    /// The places of Σ when it was announced, and whether each is that of a fixed post.
+    path: Vec<(Point, bool)>,
 }
 
 impl Places {
@@ -29,8 +29,9 @@ impl Places {
         self.of_robots[robot]
     }
 
-    /// A place of Σ; where its robot was if it had no post.
-    pub fn on_path(&self, place: usize) -> Option<Point> {
+    /// A place of Σ, and whether it is that of a fixed post; otherwise it is where its robot was, or
+    /// came to rest.
+    pub fn on_path(&self, place: usize) -> Option<(Point, bool)> {
         self.path.get(place).copied()
     }
 
@@ -41,8 +42,10 @@ impl Places {
                 self.of_robots.swap(*mover, *parked);
             }
             MissionEvent::RecruitElected { path, .. } => {
-                let place =
-                    |&robot: &usize| self.of_robots[robot].unwrap_or(snapshot.positions[robot]);
+                let place = |&robot: &usize| {
+                    let is_fixed = snapshot.posts.iter().any(|post| post.holder == robot);
+                    (self.of_robots[robot].unwrap_or(snapshot.positions[robot]), is_fixed)
+                };
                 self.path = path.iter().map(place).collect();
             }
             _ => {}
