@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use pleach_guards::{Comparison, Expression, Predicate, Relation, Valuation};
+use pleach_guards::{Comparison, Expression, Predicate, Relation, Valuation, always};
 
 /// A state with quantities and propositions that have names and numbers.
 pub trait Observed: Valuation {
@@ -21,9 +21,96 @@ pub trait Observed: Valuation {
     fn proposition(&self, number: usize) -> bool;
 }
 
+/// Implements [`Observed`] and [`Valuation`] for a state: each quantity and each proposition with
+/// its name, its documentation, and the expression that measures it. The glossary is a constant
+/// with the name and the documentation of each.
+///
+/// ```
+/// use pleach_automaton::{Observed, observed};
+/// use pleach_guards::Valuation;
+///
+/// struct Lamp { hours: f64, is_lit: bool }
+/// observed! {
+///     impl Observed for Lamp as lamp;
+///     /// What guards may speak of.
+///     pub const GLOSSARY;
+///     quantities {
+///         /// Hours since the lamp was made.
+///         age: lamp.hours,
+///     }
+///     propositions {
+///         /// The lamp is lit.
+///         lit: lamp.is_lit,
+///     }
+/// }
+/// let lamp = Lamp { hours: 12.0, is_lit: true };
+/// assert_eq!((lamp.quantity(0), lamp.truth("lit")), (12.0, Some(true)));
+/// assert_eq!(GLOSSARY[0], ("age", " Hours since the lamp was made."));
+/// ```
+#[macro_export]
+macro_rules! observed {
+    (
+        impl Observed for $state:ident as $this:ident;
+        $(#[$note:meta])* $visibility:vis const $glossary:ident;
+        quantities { $($(#[doc = $measure:literal])+ $quantity:ident: $number:expr,)* }
+        propositions { $($(#[doc = $text:literal])+ $name:ident: $holds:expr,)* }
+    ) => {
+        $(#[$note])*
+        $visibility const $glossary: &[(&str, &str)] = &[
+            $((stringify!($quantity), concat!($($measure),+)),)*
+            $((stringify!($name), concat!($($text),+)),)*
+        ];
+
+        const _: () = {
+            #[allow(non_camel_case_types, dead_code)]
+            enum Quantity { $($quantity,)* }
+
+            #[allow(non_camel_case_types, dead_code)]
+            enum Proposition { $($name,)* }
+
+            impl $crate::Observed for $state {
+                const VARIABLES: &'static [&'static str] = &[$(stringify!($quantity)),*];
+                const PROPOSITIONS: &'static [&'static str] = &[$(stringify!($name)),*];
+
+                fn quantity(&self, number: usize) -> f64 {
+                    let $this = self;
+                    $(if number == Quantity::$quantity as usize {
+                        return $number;
+                    })*
+                    f64::NAN
+                }
+
+                fn proposition(&self, number: usize) -> bool {
+                    let $this = self;
+                    $(if number == Proposition::$name as usize {
+                        return $holds;
+                    })*
+                    false
+                }
+            }
+
+            impl $crate::guards::Valuation for $state {
+                fn value(&self, variable: &str) -> Option<f64> {
+                    let names = <Self as $crate::Observed>::VARIABLES;
+                    let number = names.iter().position(|name| *name == variable)?;
+                    Some($crate::Observed::quantity(self, number))
+                }
+
+                fn truth(&self, proposition: &str) -> Option<bool> {
+                    let names = <Self as $crate::Observed>::PROPOSITIONS;
+                    let number = names.iter().position(|name| *name == proposition)?;
+                    Some($crate::Observed::proposition(self, number))
+                }
+            }
+        };
+    };
+}
+
 /// A guard over quantities and propositions by their numbers.
 pub(crate) struct Watch<S> {
     test: Test,
+    /// Whether there is nothing to test.
+    always: bool,
     quantity: fn(&S, usize) -> f64,
     proposition: fn(&S, usize) -> bool,
 }
@@ -48,6 +135,7 @@ impl<S: Observed> Watch<S> {
     /// is not known.
     pub(crate) fn of(predicate: &Predicate) -> Option<Self> {
         Some(Watch {
+            always: *predicate == always(),
             test: Test::of::<S>(predicate)?,
             quantity: S::quantity,
             proposition: S::proposition,
@@ -59,9 +147,13 @@ impl<S> Watch<S> {
     /// Whether the guard holds; none where a quantity is not a number, so that it has no verdict.
     #[inline]
     pub(crate) fn holds(&self, state: &S) -> Option<bool> {
+        if self.always {
+            return Some(true);
+        }
         self.judge(&self.test, state)
     }
 
+    #[inline(never)]
     fn judge(&self, test: &Test, state: &S) -> Option<bool> {
         Some(match test {
             Test::Proposition(number) => (self.proposition)(state, *number),

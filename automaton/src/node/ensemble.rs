@@ -184,7 +184,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
         self.nodes.iter_mut().for_each(|node| node.flow(duration));
         self.medium.flow(duration);
         self.has_moved = true;
-        Ok(())
+        self.nodes.iter().try_for_each(Node::check_invariant)
     }
 }
 

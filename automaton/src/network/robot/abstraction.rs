@@ -140,7 +140,8 @@ impl Robot {
             rate: _,
             site: _,
             // Between two stimuli a robot is at rest and has nothing left to do.
-            stage: _,
+            control: _,
+            acts: _,
             is_new: _,
             label: _,
             facts: _,
@@ -173,6 +174,7 @@ impl Robot {
             destination: _,
             waypoint: _,
             proposal: _,
+            problem: _,
             heard_moves: _,
             must_judge_moves: _,
             arrival: _,
