@@ -23,6 +23,7 @@ mod random_missions;
 mod records;
 mod scenario_faults;
 mod story;
+mod stressed;
 mod studies;
 mod summary;
 mod trace;

@@ -60,7 +60,7 @@ impl Places {
                 *place = Some(post.reference);
             } else if walks || ledger.primary_team.contains(&robot) {
                 *place = None;
-            } else if place.is_none() {
+            } else if place.is_none() && snapshot.roles[robot] == Role::Redundant {
                 *place = Some(snapshot.positions[robot]);
             }
         }
