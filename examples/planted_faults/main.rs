@@ -18,7 +18,7 @@ use std::{env, fmt, fs, io};
 use catalogue::{CatalogueError, Fault, faults};
 
 /// What is copied from the root of the workspace: all that the packages are built from.
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 16] = [
     "Cargo.toml",
     "Cargo.lock",
     "rustfmt.toml",
@@ -32,6 +32,9 @@ const SOURCES: [&str; 13] = [
     "tests",
     "examples",
     "benches",
+    "scenarios",
+    "docs",
+    "README.md",
 ];
 
 /// Seconds after which a command is ended: a fault may give the protocol endlessly many states.

@@ -23,16 +23,21 @@ pub const REASONS: &[(&str, &str)] = &[
         "tree: the edge of a redundant robot is dropped",
         "a redundant robot on which no other hangs may be without a parent",
     ),
-    (
-        "posts: one is a junction",
-        "where branches part is compared only when no event was so recent that news of it may be \
-         under way",
-    ),
+    ("posts: one is a junction", BRANCHES),
+    ("posts: a junction is none", BRANCHES),
     ("subgroup started: it is told five periods later", "observers may hear of the start late"),
+    (
+        "subgroup arrived: it is told five periods later",
+        "robots may act on an arrival before the one that tells of it knows",
+    ),
     ("reattached: it is dropped", SHOWN),
     ("reattached: it is told twice", SHOWN),
+    ("reattached: it is told five periods later", SHOWN),
+    ("false: p₁ attaches to the node that it hangs on", SHOWN),
 ];
 
+const BRANCHES: &str = "where branches part is compared only while no subgroup is under way and no event \
+                        was so recent that news of it may be";
 const ITERATE: &str =
     "λ is what a robot's iteration has come to; no property speaks of it but its sign";
 const SHOWN: &str = "the tree shows which node a robot hangs on; the event adds nothing to it";

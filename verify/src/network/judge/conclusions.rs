@@ -36,6 +36,8 @@ pub struct Conclusions {
     early_movers: Vec<usize>,
     /// Since when the phase has been ahead of the events.
     ahead: Option<usize>,
+    /// Since when an arrival has been untold.
+    untold: Option<usize>,
     /// Robots that have changed their role, each with the step at which it did.
     changed: Vec<(usize, usize)>,
     /// Robots that have exchanged duties, each with the step at which that was told.
@@ -59,6 +61,7 @@ impl Conclusions {
             early: Vec::new(),
             early_movers: Vec::new(),
             ahead: None,
+            untold: None,
             changed: Vec::new(),
             exchanging: Vec::new(),
             ended: None,
@@ -119,6 +122,20 @@ impl Conclusions {
         self.serviced.update(serviced, step, patience);
     }
 
+    /// Part of [`Property::Subgroups`]: an arrival that follows from later events is told before news
+    /// of it can be everywhere.
+    fn arrivals_are_told(&mut self, ledger: &Ledger, step: usize) -> Result<(), Dispute> {
+        let Some((subgroup, robots)) = ledger.untold.first() else {
+            self.untold = None;
+            return Ok(());
+        };
+        if step - *self.untold.get_or_insert(step) <= self.patience {
+            return Ok(());
+        }
+        let sentence = format!("the arrival of subgroup {subgroup}, {robots:?}, is not told");
+        Err(Dispute::of(Property::Subgroups, robots, sentence))
+    }
+
     /// Whether the mission should have ended: the robots have known that it has for long.
     pub fn overdue(&self, step: usize) -> bool {
         self.ended.is_some_and(|ended| ended + self.patience < step)
@@ -136,9 +153,11 @@ impl Conclusions {
         let patience = self.patience;
         self.changed.retain(|(_, step)| step + patience >= snapshot.step);
         self.exchanging.retain(|(_, step)| step + patience >= snapshot.step);
+        self.arrivals_are_told(ledger, snapshot.step)?;
         roles_are_those(ledger, snapshot)?;
         multipliers_are_prices(scene)?;
         posts::holders_hold(snapshot)?;
+        posts::tasks_agree(snapshot)?;
         // Robots that have given up hold no team and no place of Σ any more.
         if snapshot.phase == Phase::Ended {
             self.ended.get_or_insert(snapshot.step);

@@ -58,6 +58,28 @@ fn post_of(robot: usize, snapshot: &Snapshot) -> Option<&PostView> {
     snapshot.posts.iter().find(|post| post.holder == robot)
 }
 
+/// Part of [`Property::Posts`]: a post is for the task that its holder answers for. While two robots
+/// exchange duties both hold a post for it, and observers name one of them.
+pub fn tasks_agree(snapshot: &Snapshot) -> Result<(), Dispute> {
+    for post in &snapshot.posts {
+        let robot = post.holder;
+        let held = snapshot.serviced.iter().find(|(_, it)| *it == robot).map(|(task, _)| *task);
+        let is_known = |task: usize| snapshot.serviced.iter().any(|&(it, _)| it == task);
+        let agrees = match (held, post.task) {
+            (None, Some(task)) => is_known(task),
+            (held, task) => held == task,
+        };
+        if !agrees {
+            let sentence = format!(
+                "the post of robot {robot} is for task {:?}, and the robot answers for {held:?}",
+                post.task
+            );
+            return Err(Dispute::of(Property::Posts, &[robot], sentence));
+        }
+    }
+    Ok(())
+}
+
 /// Part of [`Property::Posts`]: a node, junction or leaf that neither moves with the primary team nor
 /// walks holds one post, and redundant robots hold none.
 pub fn are_held(in_team: impl Fn(usize) -> bool, snapshot: &Snapshot) -> Result<(), Dispute> {
