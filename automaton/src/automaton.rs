@@ -344,7 +344,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     ) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
         debug_assert!(self.two_at_once(state).is_none(), "{:?}", self.two_at_once(state));
         let leaving = self.node(location).and_then(|node| self.leaving.get(node.index()));
-        for &edge in leaving.into_iter().flatten() {
+        for &edge in leaving.map_or(&[][..], Vec::as_slice) {
             let transition = &self.graph[edge];
             if eligible(transition) && transition.allows(location, state)? {
                 let target = self.rows[edge.index()].target;

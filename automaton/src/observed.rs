@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use pleach_guards::{Comparison, Expression, Predicate, Relation, Valuation, always};
+use pleach_guards::{Comparison, Expression, Predicate, Relation, Valuation};
 
 /// A state with quantities and propositions that have names and numbers.
 pub trait Observed: Valuation {
@@ -109,8 +109,6 @@ macro_rules! observed {
 /// A guard over quantities and propositions by their numbers.
 pub(crate) struct Watch<S> {
     test: Test,
-    /// Whether there is nothing to test.
-    always: bool,
     quantity: fn(&S, usize) -> f64,
     proposition: fn(&S, usize) -> bool,
 }
@@ -135,7 +133,6 @@ impl<S: Observed> Watch<S> {
     /// is not known.
     pub(crate) fn of(predicate: &Predicate) -> Option<Self> {
         Some(Watch {
-            always: *predicate == always(),
             test: Test::of::<S>(predicate)?,
             quantity: S::quantity,
             proposition: S::proposition,
@@ -147,10 +144,14 @@ impl<S> Watch<S> {
     /// Whether the guard holds; none where a quantity is not a number, so that it has no verdict.
     #[inline]
     pub(crate) fn holds(&self, state: &S) -> Option<bool> {
-        if self.always {
-            return Some(true);
+        match &self.test {
+            Test::All(parts) if parts.is_empty() => Some(true),
+            Test::Proposition(number) => Some((self.proposition)(state, *number)),
+            Test::Comparison(left, relation, right) => {
+                self.compare(*left, *relation, *right, state)
+            }
+            test => self.judge(test, state),
         }
-        self.judge(&self.test, state)
     }
 
     #[inline(never)]
@@ -158,16 +159,7 @@ impl<S> Watch<S> {
         Some(match test {
             Test::Proposition(number) => (self.proposition)(state, *number),
             Test::Comparison(left, relation, right) => {
-                let (left, right) = (self.value(*left, state), self.value(*right, state));
-                if left.is_nan() || right.is_nan() {
-                    return None;
-                }
-                match relation {
-                    Relation::AtMost => left <= right,
-                    Relation::LessThan => left < right,
-                    Relation::AtLeast => left >= right,
-                    Relation::MoreThan => left > right,
-                }
+                self.compare(*left, *relation, *right, state)?
             }
             Test::Not(inner) => !self.judge(inner, state)?,
             Test::All(parts) => {
@@ -189,6 +181,25 @@ impl<S> Watch<S> {
         })
     }
 
+    #[inline]
+    fn compare(
+        &self,
+        left: Operand,
+        relation: Relation,
+        right: Operand,
+        state: &S,
+    ) -> Option<bool> {
+        let (left, right) = (self.value(left, state), self.value(right, state));
+        let order = left.partial_cmp(&right)?;
+        Some(match relation {
+            Relation::AtMost => order.is_le(),
+            Relation::LessThan => order.is_lt(),
+            Relation::AtLeast => order.is_ge(),
+            Relation::MoreThan => order.is_gt(),
+        })
+    }
+
+    #[inline]
     fn value(&self, operand: Operand, state: &S) -> f64 {
         match operand {
             Operand::Constant(value) => value,

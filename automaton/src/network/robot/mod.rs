@@ -29,7 +29,7 @@ mod target;
 mod team;
 mod yielding;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use pleach_continuous::geometry::Destination;
@@ -158,7 +158,8 @@ pub struct Robot {
     heard_moves: Vec<(NodeId, Segment)>,
     must_judge_moves: bool,
     arrival: Point,
-    resting_place: Point,
+    /// Where it has been, from the last place on, each off those before.
+    resting_places: VecDeque<Point>,
     still_periods: u32,
 
     // What it tells observers; no robot reads it.
@@ -242,7 +243,7 @@ impl Robot {
             heard_moves: Vec::new(),
             must_judge_moves: false,
             arrival: position,
-            resting_place: position,
+            resting_places: VecDeque::from([position]),
             still_periods: 0,
             log: Vec::new(),
             site,

@@ -43,6 +43,8 @@ const NEARBY: f64 = 0.1;
 const OBSTINACY: u32 = 3;
 /// A robot that stays within this share of ρ or σ, the smaller one, stands still.
 const STILL: f64 = 0.3;
+/// A robot that comes back to one of this many places at which it has been last stands still.
+const RESTING_PLACES: usize = 8;
 /// A proposed move shorter than this share of σ is not made.
 const LEAST_MOVE: f64 = 1e-6;
 /// Relative slack when lengths are compared with limits: they are sums of rounded ones.
@@ -382,10 +384,11 @@ impl Robot {
     pub(super) fn set_off(&mut self) {
         let segment = self.own_move();
         let step = self.site.settings.step_radius;
-        // Going to and fro is standing still as well.
+        // Going to and fro is standing still as well, between two places or a few.
         let leash = STILL * self.clearance().min(step);
-        if (segment.to - self.resting_place).norm() > leash {
-            self.resting_place = segment.to;
+        if self.resting_places.iter().all(|place| (segment.to - place).norm() > leash) {
+            self.resting_places.truncate(RESTING_PLACES - 1);
+            self.resting_places.push_front(segment.to);
             self.still_periods = 0;
         } else {
             self.still_periods = self.still_periods.saturating_add(1);
