@@ -67,6 +67,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) known: Option<Vec<&'static str>>,
     /// Names that stand for numbers, with these.
     pub(crate) parameters: Vec<(String, f64)>,
+    /// The coordinates of which no other component may say how they move.
+    pub(crate) own: Vec<&'static str>,
     pub(crate) locations: Vec<L>,
     pub(crate) events: Vec<E>,
     /// The nodes stand in the order of the locations.

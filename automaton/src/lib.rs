@@ -37,6 +37,7 @@ pub mod network;
 pub mod node;
 pub mod observed;
 pub mod reset;
+pub mod sliding;
 mod sweep;
 pub mod time;
 pub mod trace;
@@ -61,7 +62,8 @@ pub use located::{Current, DataOf, Holds, Place, Transfer};
 pub use moment::Moment;
 pub use named::{Name, Record, RepeatedName};
 pub use observed::Observed;
-pub use reset::{Assignment, Reset};
+pub use reset::{Assignment, NewValue, Reset};
+pub use sliding::Filippov;
 pub use sweep::sweep;
 pub use time::HybridTime;
 

@@ -17,5 +17,8 @@ mod models;
 #[cfg(feature = "network")]
 mod network_checks;
 mod pictures;
+mod records;
 mod sampled_rooms;
 mod semantics;
+mod sets;
+mod sliding;

@@ -40,6 +40,16 @@ impl Inquiry<'_> {
                 let what = format!("the new value of `{name}`");
                 self.report_formula(&place, &taken, &what, value);
             }
+            for (name, [lower, upper]) in &transition.intervals {
+                let fault = taken.clone() & lower.more_than(upper);
+                if let Some(witness) = self.witness(Kind::Undefined, &place, &fault) {
+                    let message = format!(
+                        "`{name}` has no new value where `[{lower}, {upper}]` is empty: change the \
+                         guard or the ends of the interval"
+                    );
+                    self.warn_with(Kind::Undefined, place.clone(), message, witness);
+                }
+            }
         }
     }
 

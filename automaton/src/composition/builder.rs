@@ -105,6 +105,17 @@ pub enum CompositionError {
         /// The location with the flow or the transition that does.
         location: &'static str,
     },
+    /// A component slides along a surface that depends on what it only reads.
+    #[error(
+        "component `{component}` slides along a surface that depends on `{coordinate}`, but reads it \
+         from another component: of its rate nothing is known there"
+    )]
+    SurfaceReads {
+        /// The component.
+        component: String,
+        /// The coordinate.
+        coordinate: &'static str,
+    },
     /// There is no component at all.
     #[error("a composition needs at least one component")]
     Empty,
@@ -401,6 +412,12 @@ impl Part {
 impl Component {
     /// Nothing that is given as data changes an input. What functions write to inputs is dropped.
     fn check_inputs(&self) -> Result<(), CompositionError> {
+        let names = self.blueprint.coordinates.iter().zip(&self.owned);
+        let mut inputs = names.filter(|(_, owned)| !**owned).map(|(name, _)| *name);
+        if let Some(coordinate) = inputs.find(|name| self.blueprint.own.contains(name)) {
+            let component = self.name.clone();
+            return Err(CompositionError::SurfaceReads { component, coordinate });
+        }
         for place in &self.blueprint.places {
             let moved: Vec<usize> = match &place.motion {
                 PlaceMotion::Rates(rates) => rates.iter().map(|rate| rate.coordinate).collect(),

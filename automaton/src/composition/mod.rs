@@ -81,6 +81,9 @@ mod tension;
 
 use std::sync::Arc;
 
+/// How flows are integrated; a part of the [`Settings`].
+pub use pleach_continuous::flow::Method;
+
 pub use builder::{CompositionBuilder, CompositionError};
 pub use exploration::{Exploration, ExplorationError, Reached};
 pub use replay::ReplayError;

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::mem;
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::controller::Controller;
@@ -12,7 +13,7 @@ use super::step::{Inside, Stages, Step};
 use super::{Tolerances, VectorField};
 
 /// How an [`Integrator`] makes its steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Method {
     /// Explicit where the flow is not stiff, and implicit where it is; both are noticed.
     #[default]
