@@ -3,6 +3,7 @@
 use super::change::{Change, changes};
 use nalgebra::vector;
 use pleach::automaton::network::record::{Route, Snapshot};
+use pleach::discrete::Location as _;
 use pleach::discrete::network::{Phase, Role};
 
 /// A robot with this role that may not move.

@@ -1,13 +1,13 @@
 //! Whether what observers conclude is what the events and the world give.
 
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
-use pleach_automaton::network::scenario::RoutingMethod;
+use pleach_discrete::Location as _;
 use pleach_discrete::network::{Phase, Role};
 
 use super::lately::Lately;
 use super::ledger::{Ledger, Stage};
 use super::walk::Walk;
-use super::{Dispute, Scene, claims, posts};
+use super::{Dispute, Scene, claims, posts, states};
 use crate::network::property::Property;
 
 /// A robot this share of ρ from the place of its post has come to rest.
@@ -154,8 +154,8 @@ impl Conclusions {
         self.changed.retain(|(_, step)| step + patience >= snapshot.step);
         self.exchanging.retain(|(_, step)| step + patience >= snapshot.step);
         self.arrivals_are_told(ledger, snapshot.step)?;
-        roles_are_those(ledger, snapshot)?;
-        multipliers_are_prices(scene)?;
+        states::roles_are_those(ledger, snapshot)?;
+        states::multipliers_are_prices(scene)?;
         posts::holders_hold(snapshot)?;
         posts::tasks_agree(snapshot)?;
         // Robots that have given up hold no team and no place of Σ any more.
@@ -383,36 +383,5 @@ const fn foreshadows(stage: Stage, phase: Phase) -> bool {
         Stage::Electing => matches!(phase, Phase::Advance),
         Stage::Calling => matches!(phase, Phase::Shift),
         _ => false,
-    }
-}
-
-/// Every change of a role is an event.
-fn roles_are_those(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
-    let mut pairs = ledger.roles.iter().zip(&snapshot.roles).enumerate();
-    match pairs.find(|(_, (known, role))| known != role) {
-        None => Ok(()),
-        Some((robot, (known, role))) => {
-            let sentence = format!(
-                "robot {robot} is reported as {}, and the events make it {}",
-                role.name(),
-                known.name()
-            );
-            Err(Dispute::of(Property::RoleTransition, &[robot], sentence))
-        }
-    }
-}
-
-/// [`Property::Multipliers`]: of the dual methods, which project them.
-fn multipliers_are_prices(scene: &Scene) -> Result<(), Dispute> {
-    let multipliers = &scene.snapshot.multipliers;
-    let is_projected = scene.limits.settings().routing_method != RoutingMethod::Adal;
-    match multipliers.iter().position(|&multiplier| is_projected && multiplier < 0.0) {
-        None => Ok(()),
-        Some(robot) => {
-            let multiplier = multipliers[robot];
-            let sentence = format!("the multiplier of robot {robot} is {multiplier}");
-            let dispute = Dispute::of(Property::Multipliers, &[robot], sentence);
-            Err(dispute.measuring(multiplier, 0.0))
-        }
     }
 }

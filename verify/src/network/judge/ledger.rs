@@ -13,7 +13,7 @@ use super::walk::Walk;
 use crate::network::property::Property;
 use crate::network::team;
 
-/// Who does what after the events so far.
+/// Roles, teams and tasks after the events so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ledger {
     /// The role of every robot.

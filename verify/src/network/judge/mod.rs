@@ -18,6 +18,7 @@ mod lately;
 mod ledger;
 mod places;
 mod posts;
+mod states;
 mod walk;
 
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
