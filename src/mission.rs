@@ -45,6 +45,7 @@ pub trait Watcher {
 
 /// Why a mission could not be run to an end.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum MissionError {
     /// The network cannot be set up, or a guard cannot be evaluated.
     #[error(transparent)]

@@ -163,6 +163,7 @@ fn parse(number: usize, text: io::Result<String>) -> Result<Line, TraceError> {
 /// Why a text is not a trace. Lines are counted from 1.
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // the fields are what the sentences show
+#[non_exhaustive]
 pub enum TraceError {
     /// There is no line at all.
     #[error("the trace is empty: its first line must be the header")]

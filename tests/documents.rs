@@ -110,8 +110,8 @@ A mover that cannot pass a parked robot exchanges duties with it: it offers its 
 
 const MISSION: &str = "\
 The phase says where the mission stands for this robot. Transitions of priority 0 follow the newest
-word that the robot has heard; those of priority 1 are what it finds out itself, and their resets
-issue the next word. Robots are in different phases while a word spreads.
+notice that the robot has heard; those of priority 1 are what it finds out itself, and their resets
+issue the next notice. Robots are in different phases while a notice spreads.
 ";
 
 const CONTROL: &str = "\

@@ -161,6 +161,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             graph,
             modes,
             leaving,
+            tally: None,
             exclusive,
         })
     }

@@ -250,7 +250,7 @@ macro_rules! coordinates {
 
             fn from_values(values: &[f64]) -> Self {
                 let mut values = values.iter().copied();
-                // Whoever hands over fewer values than there are names gets what is not a number.
+                // Where fewer values are given than there are names, the rest are what is not a number.
                 $state { $($field: values.next().unwrap_or(f64::NAN)),+ }
             }
 

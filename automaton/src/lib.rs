@@ -71,6 +71,10 @@ pub use trace::{Participants, Trace, TraceEntry};
 pub use trajectory::{Doubt, Trajectory, Why};
 pub use zeno::Zeno;
 
+/// What signatures name: matrices of linear flows and vectors as states, the
+/// [graph](Automaton::graph) of an automaton.
+pub use {nalgebra, petgraph};
+
 // For the macros.
 #[doc(hidden)]
 pub use {pleach_discrete as discrete, pleach_guards as guards};

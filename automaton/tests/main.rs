@@ -13,6 +13,7 @@ mod error_messages;
 mod faulty_models;
 mod guarantees;
 mod many_components;
+mod messages;
 mod models;
 #[cfg(feature = "network")]
 mod network_checks;

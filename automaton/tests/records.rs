@@ -46,7 +46,7 @@ fn the_method_of_integration_is_a_setting() {
         assert_eq!(trajectory.ending().reason, Reason::Horizon);
         let end = trajectory.value("y", 0.5).unwrap();
         assert!((end - 0.5f64.cos()).abs() < 1e-6, "{method:?}: {end}");
-        trajectory.phases().map(|phase| phase.samples.len()).sum::<usize>()
+        trajectory.intervals().map(|phase| phase.samples.len()).sum::<usize>()
     };
     let [automatic, explicit, implicit] =
         [Method::Automatic, Method::Explicit, Method::Implicit].map(steps);

@@ -79,7 +79,7 @@ fn spinner() -> ProgressBar {
     }
 }
 
-/// Where the mission stands: step, phase, task, who leads.
+/// Where the mission stands: step, phase, task, leader.
 fn standing(snapshot: &Snapshot, tasks: usize) -> String {
     let phase = snapshot.phase.name();
     let task = match snapshot.task {

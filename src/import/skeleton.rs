@@ -53,6 +53,7 @@ impl Choices {
 
 /// Why no scenario comes of a floor plan.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum SkeletonError {
     /// No mission can start on it.
     #[error("no scenario comes of this map: {0}")]
@@ -91,7 +92,7 @@ pub fn skeleton(
     let mut notes = narrow_passages(&scenario, &settings);
 
     let site = Site::new(&scenario)?;
-    let places = Places::of(&site);
+    let places = Lattice::of(&site);
     let access_points = first_of([&choices.access_points, &plan.places.access_points]);
     scenario.access_point = match access_points.is_empty() {
         false => access_points,
@@ -181,11 +182,11 @@ fn narrow_passages(scenario: &Scenario, settings: &Settings) -> Vec<String> {
 }
 
 /// Places on a lattice in the free space, with their distance from walls.
-struct Places {
+struct Lattice {
     places: Vec<Point>,
 }
 
-impl Places {
+impl Lattice {
     fn of(site: &Site) -> Self {
         let corners = site.workspace.boundary();
         let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));

@@ -1,6 +1,6 @@
 //! The page of a trajectory: a run of any automaton or composition.
 
-use pleach_automaton::trajectory::{JumpRecord, Participant, Phase};
+use pleach_automaton::trajectory::{FlowInterval, JumpRecord, Participant};
 use pleach_automaton::{Automaton, Reason, Trajectory, diagram};
 use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;
@@ -139,7 +139,7 @@ impl<'a> TrajectoryPage<'a> {
                 "locations": component.locations,
                 "drawing": drawing(component),
             })).collect::<Vec<_>>(),
-            "phases": run.phases().map(|phase| phase_data(&phase)).collect::<Vec<_>>(),
+            "phases": run.intervals().map(|phase| phase_data(&phase)).collect::<Vec<_>>(),
             "events": run.jumps().iter().map(|jump| self.jump_data(jump)).collect::<Vec<_>>(),
             "end": rounded(run.ending().at.t),
             "drawings": self.drawings.iter().map(|drawing| &drawing.svg).collect::<Vec<_>>(),
@@ -162,7 +162,7 @@ impl<'a> TrajectoryPage<'a> {
     }
 }
 
-fn phase_data(phase: &Phase) -> Value {
+fn phase_data(phase: &FlowInterval) -> Value {
     let all = |numbers: &[f64]| numbers.iter().map(|&number| rounded(number)).collect::<Vec<_>>();
     json!({
         "locations": phase.locations,

@@ -2,6 +2,4 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod exploration;
-mod protocol;
 mod temporal;

@@ -6,7 +6,7 @@ use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::{Expression, not};
 use pleach_guards::{Guard, Interval, Predicate, Substitution, Valuation, always, variable};
 
-use super::report::Place;
+use super::report::FindingPlace;
 use crate::automaton::Automaton;
 use crate::decision::{Region, State};
 use crate::flow::Flow;
@@ -167,19 +167,19 @@ impl Model {
         in_predicates.chain(in_formulas).map(str::to_owned).collect()
     }
 
-    pub(crate) fn mode_at(&self, location: usize) -> Place {
-        Place {
+    pub(crate) fn mode_at(&self, location: usize) -> FindingPlace {
+        FindingPlace {
             component: self.component.clone(),
             location: Some(self.modes[location].name),
-            ..Place::default()
+            ..FindingPlace::default()
         }
     }
 
-    pub(crate) fn place_of(&self, transitions: &[usize]) -> Place {
+    pub(crate) fn place_of(&self, transitions: &[usize]) -> FindingPlace {
         let location = transitions.first().map(|&first| self.transitions[first].source);
         let events = transitions.iter().map(|&one| self.event(one).to_owned()).collect();
         let location = location.map(|location| self.modes[location].name);
-        Place { component: self.component.clone(), location, events, variable: None }
+        FindingPlace { component: self.component.clone(), location, events, variable: None }
     }
 
     pub(crate) fn event(&self, transition: usize) -> &str {

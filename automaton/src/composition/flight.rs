@@ -15,7 +15,7 @@ use crate::executor::Limit;
 use crate::moment::Moment;
 use crate::trajectory::Why;
 
-/// An invariant that ends so many spacings of the numbers around the present time after the start
+/// An invariant that ends at most this many spacings of the numbers around the present time after the start
 /// of a flow ends at its start.
 const SPACINGS: f64 = 4.0;
 

@@ -28,7 +28,7 @@ use crate::zeno::ZenoDetector;
 pub struct Taken {
     /// The event or the label.
     pub label: String,
-    /// Who goes where, by ascending component.
+    /// The moves, by ascending component.
     pub moves: Vec<Move>,
     /// The variables that are assigned to, by their number, and what they become.
     pub changes: Vec<(usize, f64)>,

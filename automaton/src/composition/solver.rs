@@ -10,7 +10,7 @@ use crate::trajectory::Why;
 
 /// Steps of fewer spacings of the numbers around the present time are crawling.
 const CRAWLING: f64 = 1024.0 * f64::EPSILON;
-/// A flow that crawls for so many steps in a row has met a singularity.
+/// A flow that crawls for this many steps in a row has met a singularity.
 const MOST_CRAWLING: u32 = 100;
 /// The largest error, relative to its size, with which the polynomial of a function stands for it.
 const FITTING: f64 = 1e-12;

@@ -27,6 +27,8 @@ pub use link::Link;
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
-pub use robot::{Robot, control_automaton, dealing_automaton, duty_automaton, mission_automaton};
+pub use robot::{
+    Robot, RobotView, control_automaton, dealing_automaton, duty_automaton, mission_automaton,
+};
 pub use site::{Site, SiteError};
 pub use user::{User, request_automaton};

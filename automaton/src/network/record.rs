@@ -108,7 +108,7 @@ pub enum MissionEvent {
     RouteInfeasible { robot: usize },
     /// A mover and the robot in its way exchange duties.
     DutiesExchanged { mover: usize, parked: usize },
-    /// p₁ hangs itself on another node of the tree (Remark 5.6).
+    /// p₁ attaches to another node of the tree (Remark 5.6).
     Reattached { robot: usize, parent: usize },
     /// The leader's tree has no recruit left; the election is repeated among the others.
     ElectionRepeated { task: usize },

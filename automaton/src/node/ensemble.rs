@@ -35,7 +35,7 @@ pub struct Ensemble<N: Node, M> {
     outputs: Outputs<N::Message, N::Report>,
     bodies: Vec<N::Body>,
     has_moved: bool,
-    /// Who takes part in the current jump.
+    /// The nodes that take part in the current jump.
     takes_part: Vec<bool>,
 }
 

@@ -105,7 +105,7 @@ fn stiff() {
     let ours = fastest(5, || oscillator.run(4000.0));
     let other = fastest(5, || stiff_van_der_pol(4000.0, 1e-9, 1e-9));
     let trajectory = oscillator.run(4000.0).expect("it can be run");
-    let pieces = trajectory.phases().map(|one| one.samples.len());
+    let pieces = trajectory.intervals().map(|one| one.samples.len());
     println!(
         "  van der Pol, μ = 1000, at 1e-9: {ours:.1?}, {} samples; diffsol bdf {other:.1?} ({:.2})",
         pieces.sum::<usize>(),

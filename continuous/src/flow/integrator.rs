@@ -96,7 +96,7 @@ const SMALLEST_STEP: f64 = 4.0 * f64::EPSILON;
 const STRETCH: f64 = 0.01;
 /// |h λ| near the boundary of the region in which the explicit method is stable, which is at 6.1.
 const STABLE: f64 = 5.0;
-/// So many steps near the boundary make a flow stiff, and so many others in a row clear it of the
+/// This many steps near the boundary make a flow stiff, and this many others in a row clear it of the
 /// suspicion: Hairer and Wanner's numbers.
 const STIFF_STEPS: u32 = 15;
 const CALM_STEPS: u32 = 6;

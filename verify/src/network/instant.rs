@@ -8,14 +8,14 @@ use pleach_continuous::Point;
 
 use super::extremes::Extreme;
 use super::limits::{Limits, SLACK};
-use super::link::{self, Places};
+use super::link::{self, NodePositions};
 use super::property::Property;
 use super::violation::{Instant, Violation};
 use super::{team, tree};
 
 /// The nodes' places in a snapshot.
-fn places<'a>(snapshot: &'a Snapshot, limits: &'a Limits) -> Places<'a> {
-    Places { robots: &snapshot.positions, access_points: limits.access_points() }
+fn places<'a>(snapshot: &'a Snapshot, limits: &'a Limits) -> NodePositions<'a> {
+    NodePositions { robots: &snapshot.positions, access_points: limits.access_points() }
 }
 
 /// [`Property::Record`]: everything else may rely on numbers being finite and identities

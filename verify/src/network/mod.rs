@@ -75,7 +75,6 @@
 
 pub mod duty;
 pub mod election;
-pub mod exploration;
 pub mod instant;
 pub mod judge;
 pub mod link;

@@ -21,7 +21,7 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
         Composition::builder().add("automaton", self).build()?.run(horizon)
     }
 
-    /// Runs the automaton by itself with settings of one's own.
+    /// Runs the automaton by itself with the given settings.
     ///
     /// # Errors
     ///
@@ -54,7 +54,7 @@ impl Composition {
         self.run_with(Settings::default(), horizon)
     }
 
-    /// Runs the composition with settings of one's own.
+    /// Runs the composition with the given settings.
     ///
     /// # Errors
     ///

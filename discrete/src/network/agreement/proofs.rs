@@ -1,11 +1,11 @@
-//! Whoever has heard every vote knows the same break points, in whatever order it heard them.
+//! Every robot that has heard all votes knows the same break points, in whatever order it heard them.
 
 use super::*;
 
 /// Places of the path.
 const PLACES: usize = 4;
 
-/// What somebody knows who has heard any of the votes, and of any of the arrivals.
+/// What a robot knows that has heard any of the votes, and of any of the arrivals.
 ///
 /// Here and below drawn arrays are walked by reference: what an iterator by value returns says by a
 /// niche of the drawn byte whether it goes on, and a model checker then unrolls what follows.
