@@ -4,6 +4,8 @@
 
 mod common;
 mod floor_plans;
+mod fuzz;
+mod fuzzing;
 mod generated;
 mod missions;
 mod oracle;
