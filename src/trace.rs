@@ -14,7 +14,9 @@
 //! `active` (the robots that may move), `residual` and `multiplier` of every robot, `route`
 //! `[[from, to, T, R], …]` where T > 0, `tree` `[[child, parent], …]`, `task` (or null), and
 //! what an observer needs to draw the picture: `phase`, `active_team`, `primary_team`, `path`,
-//! `serviced` `[[task, robot], …]` and `post`.
+//! `serviced` `[[task, robot], …]` and `post`; then of every robot its `location` in the duty
+//! automaton and its place in the automaton of the `exchange` of duties, its `known_phase` of the
+//! mission, its `target` (or null), and how many messages it has `sent` and `heard` in the period.
 
 mod line;
 

@@ -13,6 +13,7 @@ mod oracle;
 mod book;
 mod browser;
 mod command_line;
+mod coverage;
 mod determinism;
 mod documents;
 mod found_missions;

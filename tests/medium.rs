@@ -81,6 +81,7 @@ fn without_the_last_robot(period: &Period) -> Period {
     snapshot.positions.pop();
     snapshot.roles.pop();
     snapshot.residuals.pop();
+    snapshot.robots.pop();
     snapshot.multipliers.pop();
     snapshot.tree.retain(|&(child, _)| child != hermit);
     snapshot.routes.retain(|route| route.from != hermit);
@@ -134,6 +135,7 @@ fn a_robot_out_of_range_hears_of_nothing() {
     for Period { snapshot, .. } in periods {
         assert_eq!(snapshot.positions[13], Point::from(FAR_CORNER));
         assert!(!snapshot.active.contains(&13));
+        assert_eq!(snapshot.robots[13].heard, 0);
         assert!(snapshot.routes.iter().all(|route| route.from != 13 && route.to != 13));
     }
 }

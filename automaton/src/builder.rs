@@ -305,7 +305,7 @@ impl<L: Location, E: Event, S: Observed> Builder<L, E, S> {
     }
 
     /// At each sample `laws` choose a value, as far as they speak of a location. Drawings and
-    /// tables show them; whoever samples asks them.
+    /// tables show them; the component evaluates them at its samples.
     pub fn commanding<T>(mut self, laws: &Laws<L, S, T>) -> Self {
         let commands = laws.commands();
         self.commands.extend(commands.map(|(location, command)| (location, command.clone())));

@@ -140,7 +140,7 @@ pub trait Observer<S: System + ?Sized> {
     /// An observer that does not look at jumps sets [`SEES_JUMPS`](Self::SEES_JUMPS) to false.
     fn jumped(&mut self, _entry: TraceEntry<S::Jump>) {}
 
-    /// Whether it is told of [jumps](Self::jumped). Where nobody looks, nothing is put together.
+    /// Whether it is told of [jumps](Self::jumped). Where it is not, no entries are made.
     const SEES_JUMPS: bool = true;
 
     /// `duration` seconds are about to pass from `now` on; the system is in the state x⁺ of the

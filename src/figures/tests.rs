@@ -111,6 +111,7 @@ fn moment(step: usize, share: f64) -> Snapshot {
             task: None,
             junction: false,
         }],
+        robots: Vec::new(),
     }
 }
 

@@ -68,7 +68,7 @@
 pub(crate) mod blueprint;
 mod builder;
 mod chance;
-mod channel;
+pub mod channel;
 mod exploration;
 mod field;
 mod flight;

@@ -54,7 +54,7 @@ impl KernelTimes {
         match stage {
             Stage::Moving | Stage::Beacons => &mut self.coordination,
             Stage::Planning => &mut self.motion,
-            Stage::Proposals | Stage::Objections => &mut self.acceptance,
+            Stage::Negotiation => &mut self.acceptance,
             _ => &mut self.routing,
         }
     }
@@ -183,6 +183,7 @@ impl<M: Medium<Message, Point>> System for Network<M> {
     fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), NetworkError> {
         if std::mem::take(&mut self.has_flowed) {
             self.events.clear();
+            self.nodes.forget_traffic();
         }
         let first = self.nodes.view(0).and_then(MemberView::robot);
         let stage = first.map_or(Stage::Moving, RobotView::stage);

@@ -6,8 +6,10 @@ use pleach_discrete::network::{NodeId, Phase, PostKind};
 
 use super::beacon::Notice;
 use super::composition::Network;
-use super::record::{MissionEvent, PostView, Route, Snapshot};
+use super::record::{MissionEvent, PostView, RobotSnapshot, Route, Snapshot};
 use super::robot::RobotView;
+use crate::located::Place as _;
+use crate::node::Traffic;
 
 impl<M> Network<M> {
     /// The observers' view of this instant, just before the robots move.
@@ -31,6 +33,19 @@ impl<M> Network<M> {
             task: overview.task(),
             serviced: overview.serviced(),
             posts: overview.posts(),
+            robots: robots().map(|robot| self.robot_snapshot(robot)).collect(),
+        }
+    }
+
+    fn robot_snapshot(&self, robot: RobotView<'_>) -> RobotSnapshot {
+        let Traffic { sent, heard } = self.nodes.traffic(robot.id());
+        RobotSnapshot {
+            activity: robot.duty().location(),
+            dealing: robot.dealing(),
+            phase: robot.phase(),
+            target: robot.goal(),
+            sent,
+            heard,
         }
     }
 

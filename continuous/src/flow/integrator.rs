@@ -105,7 +105,7 @@ const CALM_STEPS: u32 = 6;
 const SUSPECT: f64 = 2.0;
 /// Implicit steps with |h λ| below this are as long as explicit ones would be.
 const HARMLESS: f64 = 1.0;
-/// After so many of them in a row, steps are explicit again.
+/// The number of these in a row after which steps are explicit again.
 const HARMLESS_STEPS: u32 = 25;
 
 impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {

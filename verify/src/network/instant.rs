@@ -204,6 +204,7 @@ pub fn residual(snapshot: &Snapshot, limits: &Limits) -> Result<Option<Extreme>,
     let Some((robot, &value)) = smallest else { return Ok(None) };
     let (instant, bound) = (Instant::of(snapshot), limits.least_residual());
     if value < bound - SLACK {
+        let bound = bound + 0.0; // no negative zero in what people read
         let sentence = format!("the residual of robot {robot} is {value:.6}, less than {bound:.6}");
         return Err(instant.violation(Property::Residual, &[robot], (value, bound), sentence));
     }

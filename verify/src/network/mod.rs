@@ -59,6 +59,7 @@
 //!     task: None,
 //!     serviced: Vec::new(),
 //!     posts: Vec::new(),
+//!     robots: Vec::new(),
 //! };
 //! let any_role_change = |_, _| true;
 //! let mut monitor = Monitor::new(&scenario, any_role_change);

@@ -81,6 +81,7 @@ pub(super) fn snapshot(step: usize) -> Snapshot {
             PostView { reference: point![0.3, 0.01], holder: 0, task: Some(0), junction: true },
             PostView { reference: point![0.2, 0.2], holder: 3, task: None, junction: false },
         ],
+        robots: Vec::new(),
     };
     route(&mut snapshot, &[(0, 4, 0.3), (1, 0, 0.15), (2, 4, 0.1), (3, 4, 0.1)]);
     snapshot

@@ -29,7 +29,7 @@ pub(super) const LAST_RESORT: u32 = 10;
 const CONCESSION: f64 = 4.0;
 
 impl Robot {
-    /// Once a period: a mover that does not get on looks for a partner among the robots in its way.
+    /// Once a period: a mover that makes no progress looks for a partner among the robots in its way.
     pub(super) fn consider_exchange(&mut self) {
         self.partner = None;
         if self.is_engaged() || self.still_periods < PATIENCE || !self.may_hand_over() {

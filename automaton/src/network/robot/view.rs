@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{NodeId, Phase, Role, Stage, Subgroup};
+use pleach_discrete::network::{Dealing, NodeId, Phase, Role, Stage, Subgroup};
 
 use super::super::beacon::{Beacon, Notice};
 use super::super::duty::Duty;
@@ -11,6 +11,7 @@ use super::super::mission::Mission;
 use super::links::TreeLink;
 use super::routing::RouteLink;
 use super::{Facts, Robot};
+use crate::located::Place as _;
 use crate::node::Observed;
 
 /// A read-only view of a robot, for observers; no node can ask for one.
@@ -44,6 +45,11 @@ impl<'a> RobotView<'a> {
     /// Its location in the automaton of duties, with the data.
     pub fn duty(self) -> &'a Duty {
         &self.0.duty
+    }
+
+    /// Its location in the automaton of the exchange of duties.
+    pub fn dealing(self) -> Dealing {
+        self.0.deal.location()
     }
 
     /// Its location in the automaton of the mission, with the data.
