@@ -255,7 +255,7 @@ pub const FALSE: &[Change] = changes! {
             tell(record, site, Event::DutiesExchanged { mover, parked });
         }
     };
-    "false: p₁ attaches to the node that it hangs on" => |record, site| {
+    "false: p₁ attaches to the node that it is attached to" => |record, site| {
         let now = record.at(site);
         let first = now.primary_team.first().copied();
         if let Some(&(robot, parent)) = now.tree.iter().find(|(child, _)| Some(*child) == first) {

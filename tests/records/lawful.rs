@@ -21,7 +21,7 @@ pub const REASONS: &[(&str, &str)] = &[
     ),
     (
         "tree: the edge of a redundant robot is dropped",
-        "a redundant robot on which no other hangs may be without a parent",
+        "a redundant robot to which no other is attached may be without a parent",
     ),
     ("posts: one is a junction", BRANCHES),
     ("posts: a junction is none", BRANCHES),
@@ -33,14 +33,15 @@ pub const REASONS: &[(&str, &str)] = &[
     ("reattached: it is dropped", SHOWN),
     ("reattached: it is told twice", SHOWN),
     ("reattached: it is told five periods later", SHOWN),
-    ("false: p₁ attaches to the node that it hangs on", SHOWN),
+    ("false: p₁ attaches to the node that it is attached to", SHOWN),
 ];
 
 const BRANCHES: &str = "where branches part is compared only while no subgroup is under way and no event \
                         was so recent that news of it may be";
 const ITERATE: &str =
     "λ is what a robot's iteration has come to; no property speaks of it but its sign";
-const SHOWN: &str = "the tree shows which node a robot hangs on; the event adds nothing to it";
+const SHOWN: &str =
+    "the tree shows which node a robot is attached to; the event adds nothing to it";
 
 /// Why a change may pass, if it may.
 pub fn reason(name: &str) -> Option<&'static str> {

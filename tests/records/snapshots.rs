@@ -268,7 +268,7 @@ pub const ALL: &[Change] = changes! {
             *edge = (edge.1, edge.0);
         }
     };
-    "tree: a robot hangs on itself through its child" => |record, site| {
+    "tree: a robot is attached to itself through its child" => |record, site| {
         let now = record.at(site);
         let robots = now.roles.len();
         if let Some(&(child, parent)) = now.tree.iter().find(|(_, parent)| *parent < robots) {
@@ -276,7 +276,7 @@ pub const ALL: &[Change] = changes! {
             now.tree.push((parent, child));
         }
     };
-    "tree: a robot hangs on one out of range" => |record, site| {
+    "tree: a robot is attached to one out of range" => |record, site| {
         let now = record.at(site);
         let places = now.positions.clone();
         let far = |&(child, _): &(usize, usize)| {

@@ -20,7 +20,7 @@ pub const ALL: [Spoil; 27] = [
     (
         "no task is ever held",
         |record| record.from(0).for_each(|now| now.serviced.clear()),
-        &[Property::Duties],
+        &[Property::Duties, Property::Posts],
     ),
     (
         "no robot records the tasks that it services",

@@ -209,7 +209,7 @@ fn touch(mover: usize, parked: usize, scene: &Scene) -> Result<(), Dispute> {
     })
 }
 
-/// Remark 5.6: a robot of the primary team hangs on this node.
+/// Remark 5.6: a robot of the primary team is attached to this node.
 fn is_attached(robot: usize, parent: usize, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
     let is_edge = |parent: usize| scene.snapshot.tree.contains(&(robot, parent));
     // It may have attached to several nodes in one period, one after the other.

@@ -246,9 +246,11 @@ impl<'a> Judge<'a> {
                 Some(format!("the outcome is “serviced”, and {serviced} of {tasks} tasks are"))
             }
             Outcome::InvariantViolated => Some(format!("the run says: {}", end.reason)),
-            Outcome::StepLimit if now.step < self.max_steps => Some(format!(
+            // The record ends with the sample at which the last period began.
+            Outcome::StepLimit if now.step + 1 < self.max_steps => Some(format!(
                 "the outcome is “step_limit” after {} of {} control periods",
-                now.step, self.max_steps
+                now.step + 1,
+                self.max_steps
             )),
             _ if self.conclusions.overdue(now.step) => {
                 Some("the robots had given up, and the mission went on".to_owned())

@@ -17,11 +17,13 @@ pub struct Places {
     of_robots: Vec<Option<Point>>,
     /// The places of Σ when it was announced, and whether each is that of a fixed post.
     path: Vec<(Point, bool)>,
+    /// The robots of Σ, each at its place until it goes on to the next.
+    walkers: Vec<usize>,
 }
 
 impl Places {
     pub fn new(robots: usize) -> Self {
-        Places { of_robots: vec![None; robots], path: Vec::new() }
+        Places { of_robots: vec![None; robots], path: Vec::new(), walkers: Vec::new() }
     }
 
     /// The place of a robot's post.
@@ -35,11 +37,26 @@ impl Places {
         self.path.get(place).copied()
     }
 
-    /// Robots that exchange duties exchange places; a path is announced from place to place.
+    /// Robots that exchange duties exchange places; a path is announced from place to place, and a
+    /// subgroup that arrives takes the places ahead.
     pub fn enter(&mut self, event: &MissionEvent, snapshot: &Snapshot) {
         match event {
             MissionEvent::DutiesExchanged { mover, parked } => {
                 self.of_robots.swap(*mover, *parked);
+                for walker in &mut self.walkers {
+                    *walker = match *walker {
+                        one if one == *mover => *parked,
+                        one if one == *parked => *mover,
+                        other => other,
+                    };
+                }
+            }
+            MissionEvent::SubgroupArrived { robots, .. } => {
+                for (&walker, &(ahead, _)) in self.walkers.iter().zip(self.path.iter().skip(1)) {
+                    if robots.contains(&walker) {
+                        self.of_robots[walker] = Some(ahead);
+                    }
+                }
             }
             MissionEvent::RecruitElected { path, .. } => {
                 let place = |&robot: &usize| {
@@ -47,6 +64,7 @@ impl Places {
                     (self.of_robots[robot].unwrap_or(snapshot.positions[robot]), is_fixed)
                 };
                 self.path = path.iter().map(place).collect();
+                self.walkers.clone_from(path);
             }
             _ => {}
         }
