@@ -103,15 +103,19 @@ fn robots_that_have_heard_every_vote_form_the_same_subgroups() {
 #[kani::unwind(17)]
 fn the_subgroups_of_any_votes_partition_the_path() {
     let drawn = any_break_points();
+    let (mut groups, mut length) = (0, 0);
     // Case by case, so that in each the lengths of all slices are constants.
     for set in 0..SETS {
         if set == drawn {
-            subgroups_partition_the_path(set);
+            (groups, length) = subgroups_partition_the_path(set);
         }
     }
+    kani::cover!(groups == 3);
+    kani::cover!(groups == 1 && length == 3);
 }
 
-fn subgroups_partition_the_path(set: usize) {
+/// Says how many subgroups there are, and how many robots the first has.
+fn subgroups_partition_the_path(set: usize) -> (usize, usize) {
     let (places, count) = places_of(set);
     let places = &places[..count];
     // A path of its own, not the constant: Kani reads a constant byte by byte.
@@ -126,10 +130,9 @@ fn subgroups_partition_the_path(set: usize) {
         formed[groups] = &path[subgroup.places()];
         groups += 1;
     }
-    kani::cover!(groups == 3);
-    kani::cover!(groups == 1 && formed[0].len() == 3);
     assert!(break_points_divide(&path, &robots[..count]));
     assert!(subgroups_partition(&path, &robots[..count], &formed[..groups]));
+    (groups, formed[0].len())
 }
 
 /// A path as above, and a primary team that begins with the last robot of Σ: any one of the
@@ -138,16 +141,20 @@ fn subgroups_partition_the_path(set: usize) {
 #[kani::unwind(17)]
 fn the_subgroups_of_any_votes_are_teams() {
     let (drawn, active) = (any_break_points(), below(PLACES - 1));
+    let mut robots = 0;
     for set in 0..SETS {
         for subgroup in 0..PLACES - 1 {
             if set == drawn && subgroup == active {
-                a_subgroup_is_a_team(set, subgroup);
+                robots = a_subgroup_is_a_team(set, subgroup);
             }
         }
     }
+    kani::cover!(active == 2 && robots == 1);
+    kani::cover!(active == 0 && robots == 3);
 }
 
-fn a_subgroup_is_a_team(set: usize, active: usize) {
+/// Says how many robots the subgroup has.
+fn a_subgroup_is_a_team(set: usize, active: usize) -> usize {
     let (places, count) = places_of(set);
     let path = PATH;
     let primary_team = [path[PLACES - 1], 2, 7];
@@ -157,11 +164,10 @@ fn a_subgroup_is_a_team(set: usize, active: usize) {
             team = &path[subgroup.places()];
         }
     }
-    kani::cover!(active == 2 && team.len() == 1);
-    kani::cover!(active == 0 && team.len() == 3);
     assert!(is_one_team(team, &primary_team, &path));
     for robot in team {
         assert!(!primary_team.contains(robot));
     }
     assert!(teams_are_disjoint(&path, &primary_team) && has_no_repetition(&path));
+    team.len()
 }
