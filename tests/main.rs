@@ -4,6 +4,8 @@
 
 mod common;
 mod floor_plans;
+mod fuzz;
+mod fuzzing;
 mod generated;
 mod missions;
 mod oracle;
@@ -22,8 +24,10 @@ mod outcomes;
 mod proofs;
 mod public_api;
 mod random_missions;
+mod records;
 mod scenario_faults;
 mod story;
+mod stressed;
 mod studies;
 mod summary;
 mod trace;
