@@ -9,4 +9,5 @@
 
 pub mod exploration;
 pub mod network;
+pub mod reach;
 pub mod temporal;

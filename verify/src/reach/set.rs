@@ -1,0 +1,115 @@
+//! Sets of states from which flows begin.
+
+use pleach_guards::Interval;
+
+use super::polytope::{Bound, Polytope};
+use super::vector::dot;
+use super::zonotope::Zonotope;
+
+/// A convex set: what lies in all of its descriptions. One of them at least is there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateSet {
+    hull: Vec<Interval>,
+    zonotope: Option<Zonotope>,
+    polytope: Option<Polytope>,
+}
+
+impl StateSet {
+    /// A box.
+    pub fn from_box(sides: Vec<Interval>) -> Self {
+        StateSet { hull: sides, zonotope: None, polytope: None }
+    }
+
+    /// A zonotope.
+    pub fn from_zonotope(zonotope: Zonotope) -> Self {
+        StateSet { hull: zonotope.hull(), zonotope: Some(zonotope), polytope: None }
+    }
+
+    /// A polytope; `None` if it has no points.
+    pub fn from_polytope(polytope: Polytope) -> Option<Self> {
+        let hull = polytope.hull()?;
+        let is_box = polytope.template().directions().len() == 2 * hull.len();
+        let polytope = (!is_box).then_some(polytope);
+        Some(StateSet { hull, zonotope: None, polytope })
+    }
+
+    /// What lies in this set and in a zonotope.
+    #[must_use]
+    pub fn within(mut self, zonotope: Zonotope) -> Self {
+        for (side, other) in self.hull.iter_mut().zip(zonotope.hull()) {
+            *side = side.intersection(other).unwrap_or(*side);
+        }
+        self.zonotope = Some(zonotope);
+        self
+    }
+
+    /// What lies in this set and in a polytope; `None` if there is nothing.
+    #[must_use]
+    pub fn cut_to(mut self, polytope: Polytope) -> Option<Self> {
+        for (side, other) in self.hull.iter_mut().zip(polytope.hull()?) {
+            *side = side.intersection(other)?;
+        }
+        let is_box = polytope.template().directions().len() == 2 * self.hull.len();
+        if !is_box {
+            self.polytope = Some(polytope);
+        }
+        Some(self)
+    }
+
+    /// Whether it is all that its bounds in a template that knows its directions allow.
+    pub(super) fn is_its_template(&self) -> bool {
+        self.zonotope.is_none()
+    }
+
+    /// A point of it; `draw` gives numbers from −1 to 1.
+    ///
+    /// Of a set that is cut by half-spaces it is the first of some draws that is inside, or else the
+    /// last of them.
+    pub fn point(&self, draw: &mut impl FnMut() -> f64) -> Vec<f64> {
+        /// How often a point is drawn.
+        const DRAWS: usize = 64;
+        let zonotope = self.to_zonotope();
+        let mut drawn = || {
+            let mut point = zonotope.center().to_vec();
+            for generator in zonotope.generators() {
+                let share = draw();
+                point.iter_mut().zip(generator).for_each(|(entry, g)| *entry += share * g);
+            }
+            let clamped = |(entry, side): (f64, &Interval)| entry.clamp(side.lower(), side.upper());
+            point.into_iter().zip(&self.hull).map(clamped).collect::<Vec<f64>>()
+        };
+        let is_inside = |point: &[f64]| {
+            self.polytope.iter().all(|polytope| polytope.contains_point(point))
+        };
+        let mut point = drawn();
+        for _ in 0..DRAWS {
+            if is_inside(&point) {
+                break;
+            }
+            point = drawn();
+        }
+        point
+    }
+
+    /// A box around it.
+    pub fn hull(&self) -> &[Interval] {
+        &self.hull
+    }
+
+    /// A zonotope around it.
+    pub fn to_zonotope(&self) -> Zonotope {
+        self.zonotope.clone().unwrap_or_else(|| Zonotope::from_box(&self.hull))
+    }
+
+    /// At least the largest ℓ · x for points x and directions ℓ in `direction`; −∞ if it is seen that
+    /// there are no points.
+    pub fn support(&self, direction: &[Interval]) -> f64 {
+        let boxed = dot(direction, &self.hull).upper();
+        let by_zonotope = self.zonotope.iter().map(|zonotope| zonotope.support(direction));
+        let by_polytope = self.polytope.iter().map(|polytope| match polytope.support(direction) {
+            Bound::AtMost(bound) => bound,
+            Bound::Empty => f64::NEG_INFINITY,
+        });
+        by_zonotope.chain(by_polytope).fold(boxed, f64::min)
+    }
+}
