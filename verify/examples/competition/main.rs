@@ -41,7 +41,9 @@ fn main() -> TestResult<()> {
         ("SRA01", rendezvous::mission(Some((120.0,120.0)), Settings { horizon: 300.0, step: 0.1, ..Settings::default() })?),
         ("SRA02", rendezvous::mission(Some((120.0,125.0)), Settings { horizon: 300.0, step: 0.1, ..Settings::default() })?),
     ];
-    for (name, instance) in list {
+    for (name, mut instance) in list {
+        let v = |n: &str| std::env::var(n).ok().and_then(|t| t.parse::<f64>().ok());
+        { let st = &mut instance.settings; if let Some(x)=v("STEP") {st.step=x;} if let Some(x)=v("CL") {st.clusters=x as usize;} if let Some(x)=v("GEN") {st.generators=x as usize;} if let Some(x)=v("TOL") {st.tolerance=x;} if let Some(x)=v("ORD") {st.order=x as usize;} if let Some(x)=v("DEG") {st.degree=x as usize;} }
         if only.as_ref().is_some_and(|o| !name.starts_with(o.as_str())) { continue; }
         let begin = Instant::now();
         let model = reach::Model::with_uncertain(&instance.automaton, &instance.uncertain)?;

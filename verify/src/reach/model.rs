@@ -121,6 +121,12 @@ pub enum ModelError {
     /// There is nothing to begin with.
     #[error("the automaton has no initial state: say it with `initially`")]
     Initial,
+    /// There is no such location.
+    #[error("there is no location `{location}`")]
+    Location {
+        /// The name.
+        location: String,
+    },
     /// A formula reads what is no variable.
     #[error("location `{location}` reads `{variable}`, which is no variable of the model")]
     Variable {
@@ -176,6 +182,20 @@ impl Model {
         let locations = locations.collect::<Result<Vec<_>, _>>()?;
         let initial = automaton.locations().iter().position(|it| *it == automaton.initial());
         Ok(Model { locations, initial: initial.into_iter().collect(), variables })
+    }
+
+    /// The same model with runs that begin in other locations.
+    ///
+    /// # Errors
+    ///
+    /// [`ModelError::Location`] if there is no location of such a name.
+    pub fn beginning_in(mut self, locations: &[String]) -> Result<Self, ModelError> {
+        let place = |name: &String| {
+            let found = self.locations.iter().position(|place| place.name == *name);
+            found.ok_or_else(|| ModelError::Location { location: name.clone() })
+        };
+        self.initial = locations.iter().map(place).collect::<Result<_, _>>()?;
+        Ok(self)
     }
 
     /// The names of the variables.

@@ -98,6 +98,12 @@ impl Polytope {
         Polytope { template, bounds }
     }
 
+    /// A box, bounded in all directions of a template.
+    pub fn around(template: Template, sides: &[Interval]) -> Self {
+        let bounds = template.directions.iter().map(|direction| over_box(direction, sides)).collect();
+        Polytope { template: Arc::new(template), bounds }
+    }
+
     /// The directions.
     pub fn template(&self) -> &Arc<Template> {
         &self.template
