@@ -69,16 +69,15 @@ pub(super) fn read(text: &str) -> Result<Vec<Component>, SpaceExError> {
             Event::Start(element) => document.open(&element, line).map_err(wrong)?,
             Event::Empty(element) => {
                 document.open(&element, line).map_err(wrong)?;
-                let name = element.name().as_ref().to_vec();
+                let name = element.name().as_ref().to_owned();
                 document.close(&name);
             }
             Event::End(element) => document.close(element.name().as_ref()),
             Event::Text(text) => {
-                document.content.push_str(&text.decode().map_err(|error| wrong(error.to_string()))?);
+                document.content.push_str(&text);
             }
             Event::GeneralRef(reference) => {
-                let name = reference.decode().map_err(|error| wrong(error.to_string()))?;
-                document.content.push_str(match &*name {
+                document.content.push_str(match &*reference {
                     "lt" => "<",
                     "gt" => ">",
                     "amp" => "&",
@@ -106,14 +105,14 @@ impl Document {
         self.content.clear();
         let attribute = |name: &str| -> Result<Option<String>, String> {
             let found = element.try_get_attribute(name).map_err(|error| error.to_string())?;
-            let value = found.map(|it| String::from_utf8_lossy(&it.value).into_owned());
-            Ok(value.map(|value| plain(&value)))
+            let value = found.map(|it| it.value.into_owned());
+            Ok(value.map(|value: String| plain(&value)))
         };
         let needed = |name: &str| -> Result<String, String> {
             attribute(name)?.ok_or_else(|| format!("the element lacks the attribute `{name}`"))
         };
         let name = element.name();
-        if name.as_ref() == b"component" {
+        if name.as_ref() == "component" {
             let id = needed("id")?;
             if self.components.iter().any(|other| other.id == id) {
                 return Err(format!("there are two components `{id}`: rename one"));
@@ -123,7 +122,7 @@ impl Document {
         }
         let Some(component) = self.components.last_mut() else { return Ok(()) };
         match name.as_ref() {
-            b"param" => {
+            "param" => {
                 let name = needed("name")?;
                 if component.parameters.iter().any(|other| other.name == name) {
                     return Err(format!(
@@ -148,12 +147,12 @@ impl Document {
                     line,
                 });
             }
-            b"location" => {
+            "location" => {
                 let id = needed("id")?;
                 let name = attribute("name")?.unwrap_or_else(|| format!("location {id}"));
                 component.locations.push(Place { id, name, line, ..Place::default() });
             }
-            b"transition" => {
+            "transition" => {
                 let asap = attribute("asap")?.is_some_and(|it| it == "true");
                 component.transitions.push(Transition {
                     source: needed("source")?,
@@ -163,36 +162,36 @@ impl Document {
                     ..Transition::default()
                 });
             }
-            b"bind" => component.binds.push(Bind {
+            "bind" => component.binds.push(Bind {
                 component: needed("component")?,
                 name: needed("as")?,
                 line,
                 maps: Vec::new(),
             }),
-            b"map" => self.key = Some(needed("key")?),
+            "map" => self.key = Some(needed("key")?),
             _ => {}
         }
         Ok(())
     }
 
-    fn close(&mut self, name: &[u8]) {
+    fn close(&mut self, name: &str) {
         let content = std::mem::take(&mut self.content);
         let Some(component) = self.components.last_mut() else { return };
         let transition = component.transitions.last_mut();
         match name {
-            b"invariant" | b"flow" => {
+            "invariant" | "flow" => {
                 let Some(place) = component.locations.last_mut() else { return };
-                *(if name == b"flow" { &mut place.flow } else { &mut place.invariant }) = content;
+                *(if name == "flow" { &mut place.flow } else { &mut place.invariant }) = content;
             }
-            b"label" | b"guard" | b"assignment" => {
+            "label" | "guard" | "assignment" => {
                 let Some(transition) = transition else { return };
                 *(match name {
-                    b"label" => &mut transition.label,
-                    b"guard" => &mut transition.guard,
+                    "label" => &mut transition.label,
+                    "guard" => &mut transition.guard,
                     _ => &mut transition.assignment,
                 }) = content;
             }
-            b"map" => {
+            "map" => {
                 let (Some(key), Some(bind)) = (self.key.take(), component.binds.last_mut()) else {
                     return;
                 };
