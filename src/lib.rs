@@ -184,6 +184,11 @@ pub use pleach_verify as verify;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+/// The example of the page on reachability compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/reachability.md")]
+struct Reachability;
+
 /// The examples of the how-tos compile and run.
 #[cfg(doctest)]
 mod how_to {

@@ -21,6 +21,7 @@ mod outcomes;
 mod proofs;
 mod random_missions;
 mod scenario_faults;
+mod spaceex;
 mod story;
 mod studies;
 mod summary;

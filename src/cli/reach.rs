@@ -52,9 +52,8 @@ pub struct ReachArguments {
 /// Reads a model, encloses its runs, and says what it found.
 pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
     let read = |path: &Path| {
-        std::fs::read_to_string(path).map_err(|error| {
-            Failure::Usage(format!("{}: cannot be read: {error}", path.display()))
-        })
+        std::fs::read_to_string(path)
+            .map_err(|error| Failure::Usage(format!("{}: cannot be read: {error}", path.display())))
     };
     let (model, configuration) = (read(&arguments.model)?, read(&arguments.cfg)?);
     let problem = spaceex::read(&model, &configuration);

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use crate::automaton::diagram::{FlowpipePicture, Patch};
 use crate::guards::Interval;
 use crate::verify::reach::{
-    Counterexample, Effort, Model, Polytope, Proof, ReachError, falsify, prove,
+    Counterexample, Effort, Model, Polytope, Proof, ReachError, falsify, followed, prove,
 };
 
 use super::Problem;
@@ -67,7 +67,8 @@ impl Problem {
             for automaton in self.automata.iter().filter(|it| begins(it.initial().as_str())) {
                 let starts = std::slice::from_ref(&initial.states);
                 let horizon = self.settings.horizon;
-                let found = falsify(automaton, &self.uncertain, starts, &self.forbidden, horizon, effort);
+                let found =
+                    falsify(automaton, &self.uncertain, starts, &self.forbidden, horizon, effort);
                 let Some(found) = found else { continue };
                 if nearest.as_ref().is_none_or(|known| found.margin > known.margin) {
                     nearest = Some(Box::new(found));
@@ -85,10 +86,18 @@ impl Problem {
             let begins = |name: &str| initial.locations.iter().any(|location| location == name);
             for automaton in self.automata.iter().filter(|it| begins(it.initial().as_str())) {
                 for seed in 0..count as u64 {
-                    let effort = Effort { random: 1, rounds: 0, variations: 0, seed, ..Effort::default() };
+                    let effort =
+                        Effort { random: 1, rounds: 0, variations: 0, seed, ..Effort::default() };
                     let starts = std::slice::from_ref(&initial.states);
                     let horizon = self.settings.horizon;
-                    runs.extend(falsify(automaton, &self.uncertain, starts, &forbidden, horizon, &effort));
+                    runs.extend(falsify(
+                        automaton,
+                        &self.uncertain,
+                        starts,
+                        &forbidden,
+                        horizon,
+                        &effort,
+                    ));
                 }
             }
         }
@@ -122,7 +131,10 @@ impl Solution {
         let quantity = |name: &str| match variables.iter().position(|variable| variable == name) {
             Some(place) => Ok(Some(place)),
             None if name == "t" || name == "time" => Ok(None),
-            None => Err(format!("there is no variable `{name}`: there are {}, and time", variables.join(", "))),
+            None => Err(format!(
+                "there is no variable `{name}`: there are {}, and time",
+                variables.join(", ")
+            )),
         };
         let [across, up] = [quantity(names[0])?, quantity(names[1])?];
         let ends = |set: &Polytope, time: Interval, quantity: Option<usize>| -> Option<[f64; 2]> {
@@ -141,22 +153,27 @@ impl Solution {
             })
         });
         let curve = |run: &Counterexample| -> Vec<Vec<[f64; 2]>> {
-            let phases = run.trajectory.phases();
-            let point = |sample: &crate::automaton::trajectory::Sample, quantity: Option<usize>| {
-                quantity.map_or(Some(sample.t), |place| sample.values.get(place).copied())
+            let point = |(t, values): &(f64, Vec<f64>)| {
+                let value = |quantity: Option<usize>| {
+                    quantity.map_or(Some(*t), |place| values.get(place).copied())
+                };
+                Some([value(across)?, value(up)?])
             };
-            phases
-                .map(|phase| {
-                    let points = phase.samples.iter();
-                    points.filter_map(|sample| Some([point(sample, across)?, point(sample, up)?])).collect()
-                })
-                .collect()
+            let phases = followed(&run.trajectory).into_iter();
+            phases.map(|(_, states)| states.iter().filter_map(point).collect()).collect()
         };
-        let segments: usize =
-            self.proofs.iter().flat_map(|proof| &proof.enclosure.visits).map(|visit| visit.segments.len()).sum();
+        let segments: usize = self
+            .proofs
+            .iter()
+            .flat_map(|proof| &proof.enclosure.visits)
+            .map(|visit| visit.segments.len())
+            .sum();
         Ok(FlowpipePicture {
             title: title.to_owned(),
-            subtitle: format!("all states that are reached, in {segments} sets; {} runs", runs.len()),
+            subtitle: format!(
+                "all states that are reached, in {segments} sets; {} runs",
+                runs.len()
+            ),
             names: names.map(str::to_owned),
             locations: self.model.locations().iter().map(|place| place.name.clone()).collect(),
             patches: patches.collect(),

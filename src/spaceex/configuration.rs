@@ -34,7 +34,8 @@ impl Options {
             };
             let value = value.trim().trim_matches('"').trim();
             let number = || -> Result<f64, SpaceExError> {
-                let number: f64 = value.parse().map_err(|_| wrong(format!("`{value}` is no number")))?;
+                let number: f64 =
+                    value.parse().map_err(|_| wrong(format!("`{value}` is no number")))?;
                 if number.is_nan() { Err(wrong("NaN is no number".into())) } else { Ok(number) }
             };
             match key.trim() {
@@ -58,13 +59,25 @@ impl Options {
                     options.shown = value.split(',').map(|name| name.trim().to_owned()).collect();
                 }
                 // Of other tools' methods and outputs.
-                "scenario" | "output-format" | "output-file" | "rel-err" | "abs-err" | "verbosity"
-                | "set-aggregation" | "flowpipe-tolerance" | "clustering" | "output-error"
-                | "local-time-horizon" | "map-zero-duration-jump-sets" | "simu-init-sampling-points" => {}
-                other => return Err(wrong(format!(
-                    "`{other}` is no key known here: known are system, initially, forbidden, \
+                "scenario"
+                | "output-format"
+                | "output-file"
+                | "rel-err"
+                | "abs-err"
+                | "verbosity"
+                | "set-aggregation"
+                | "flowpipe-tolerance"
+                | "clustering"
+                | "output-error"
+                | "local-time-horizon"
+                | "map-zero-duration-jump-sets"
+                | "simu-init-sampling-points" => {}
+                other => {
+                    return Err(wrong(format!(
+                        "`{other}` is no key known here: known are system, initially, forbidden, \
                      time-horizon, sampling-time, iter-max, directions and output-variables"
-                ))),
+                    )));
+                }
             }
         }
         Ok(options)

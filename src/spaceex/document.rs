@@ -126,17 +126,22 @@ impl Document {
                 let name = needed("name")?;
                 if component.parameters.iter().any(|other| other.name == name) {
                     return Err(format!(
-                        "component `{}` has two parameters `{name}`: rename one", component.id
+                        "component `{}` has two parameters `{name}`: rename one",
+                        component.id
                     ));
                 }
                 for (dimension, value) in [("d1", attribute("d1")?), ("d2", attribute("d2")?)] {
                     if value.is_some_and(|value| value != "1") {
-                        return Err(format!("`{name}` is no number ({dimension} is not 1): use one parameter for each entry"));
+                        return Err(format!(
+                            "`{name}` is no number ({dimension} is not 1): use one parameter for each entry"
+                        ));
                     }
                 }
                 let kind = attribute("type")?.unwrap_or_else(|| "real".into());
                 if !["real", "label", "int"].contains(&kind.as_str()) {
-                    return Err(format!("`{name}` is of type `{kind}`: known are real, int and label"));
+                    return Err(format!(
+                        "`{name}` is of type `{kind}`: known are real, int and label"
+                    ));
                 }
                 component.parameters.push(Parameter {
                     is_label: kind == "label",

@@ -16,9 +16,16 @@ pub(super) enum Relation {
 /// A part of a conjunction.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Clause {
-    Compare { left: Side, relation: Relation, right: Side },
+    Compare {
+        left: Side,
+        relation: Relation,
+        right: Side,
+    },
     /// `loc(component) == location`
-    Location { component: String, location: String },
+    Location {
+        component: String,
+        location: String,
+    },
     Always,
     Never,
 }
@@ -68,7 +75,10 @@ pub(super) fn alternatives(text: &str) -> Result<Vec<Vec<Clause>>, String> {
 pub(super) fn conjunction(text: &str) -> Result<Vec<Clause>, String> {
     match &alternatives(text)?[..] {
         [only] => Ok(only.clone()),
-        _ => Err(format!("`{}` has alternatives: make a location or a transition of each", text.trim())),
+        _ => Err(format!(
+            "`{}` has alternatives: make a location or a transition of each",
+            text.trim()
+        )),
     }
 }
 

@@ -70,13 +70,15 @@ impl<'a> Network<'a> {
             // What is not bound, as what is local, is the instance's own.
             let bound = bound.or_insert_with(|| Bound::Name(format!("{prefix}{}", parameter.name)));
             if let Bound::Name(global) = bound {
-                let known = Known {
-                    is_label: parameter.is_label,
-                    is_constant: parameter.is_constant,
-                };
-                let known_before = self.known.entry(global.clone()).or_insert_with(|| known.clone());
+                let known =
+                    Known { is_label: parameter.is_label, is_constant: parameter.is_constant };
+                let known_before =
+                    self.known.entry(global.clone()).or_insert_with(|| known.clone());
                 if known_before.is_label != known.is_label {
-                    return wrong(parameter.line, format!("`{global}` is a label in one component and a number in another"));
+                    return wrong(
+                        parameter.line,
+                        format!("`{global}` is a label in one component and a number in another"),
+                    );
                 }
                 known_before.is_constant &= known.is_constant;
             }
@@ -87,7 +89,10 @@ impl<'a> Network<'a> {
             return Ok(());
         }
         if !component.locations.is_empty() {
-            return wrong(component.line, format!("component `{}` has both locations and binds", component.id));
+            return wrong(
+                component.line,
+                format!("component `{}` has both locations and binds", component.id),
+            );
         }
         for bind in &component.binds {
             let Some(inner) = components.iter().find(|other| other.id == bind.component) else {
@@ -96,16 +101,24 @@ impl<'a> Network<'a> {
             let mut inner_names = BTreeMap::new();
             for (key, value) in &bind.maps {
                 if !inner.parameters.iter().any(|parameter| parameter.name == *key) {
-                    return wrong(bind.line, format!("component `{}` has no parameter `{key}`", inner.id));
+                    return wrong(
+                        bind.line,
+                        format!("component `{}` has no parameter `{key}`", inner.id),
+                    );
                 }
                 let value = match (value.parse::<Expression>(), names.get(value)) {
                     (_, Some(bound)) => bound.clone(),
                     (Ok(formula), None) => match formula.evaluate(&()) {
                         Ok(number) => Bound::Number(number),
-                        Err(_) => return wrong(bind.line, format!(
-                            "`{key}` is bound to `{value}`, which is neither a number nor a parameter of `{}`",
-                            component.id
-                        )),
+                        Err(_) => {
+                            return wrong(
+                                bind.line,
+                                format!(
+                                    "`{key}` is bound to `{value}`, which is neither a number nor a parameter of `{}`",
+                                    component.id
+                                ),
+                            );
+                        }
                     },
                     (Err(error), None) => return wrong(bind.line, format!("`{value}`: {error}")),
                 };
@@ -145,17 +158,24 @@ impl Instance<'_> {
         let side = |side: Side| -> Result<Side, SpaceExError> {
             match side {
                 Side::Formula(formula) => {
-                    let stranger = formula.variables().into_iter().find(|name| !self.names.contains_key(*name));
+                    let stranger = formula
+                        .variables()
+                        .into_iter()
+                        .find(|name| !self.names.contains_key(*name));
                     if let Some(stranger) = stranger {
                         return Err(wrong(format!(
-                            "`{stranger}` is no parameter of component `{}`", self.component.id
+                            "`{stranger}` is no parameter of component `{}`",
+                            self.component.id
                         )));
                     }
                     Ok(Side::Formula(formula.substitute(&substitution)))
                 }
                 Side::Primed(name) => match self.global(&name) {
                     Some(global) => Ok(Side::Primed(global.to_owned())),
-                    None => Err(wrong(format!("`{name}'`: `{name}` is no variable of component `{}`", self.component.id))),
+                    None => Err(wrong(format!(
+                        "`{name}'`: `{name}` is no variable of component `{}`",
+                        self.component.id
+                    ))),
                 },
             }
         };
@@ -166,7 +186,9 @@ impl Instance<'_> {
                 Clause::Compare { left, relation, right } => {
                     Ok(Clause::Compare { left: side(left)?, relation, right: side(right)? })
                 }
-                Clause::Location { .. } => Err(wrong("`loc` can stand in the configuration only".into())),
+                Clause::Location { .. } => {
+                    Err(wrong("`loc` can stand in the configuration only".into()))
+                }
                 other => Ok(other),
             })
             .collect()
@@ -186,21 +208,30 @@ impl Instance<'_> {
                     right: Side::Formula(rate),
                 } => {
                     if rates.iter().any(|(known, _)| *known == name) {
-                        return Err(wrong(format!("the flow of `{}` says twice what `{name}'` is", place.name)));
+                        return Err(wrong(format!(
+                            "the flow of `{}` says twice what `{name}'` is",
+                            place.name
+                        )));
                     }
                     rates.push((name, rate));
                 }
-                _ => return Err(wrong(format!(
-                    "the flow of `{}` is to say x' == … for each variable; inclusions of rates are not \
-                     supported: add an input within bounds", place.name
-                ))),
+                _ => {
+                    return Err(wrong(format!(
+                        "the flow of `{}` is to say x' == … for each variable; inclusions of rates are not \
+                     supported: add an input within bounds",
+                        place.name
+                    )));
+                }
             }
         }
         Ok(Some(rates))
     }
 
     /// What a transition assigns: a formula, or bounds on what the value may be.
-    pub fn assignments(&self, transition: &Transition) -> Result<Vec<(String, Assigned)>, SpaceExError> {
+    pub fn assignments(
+        &self,
+        transition: &Transition,
+    ) -> Result<Vec<(String, Assigned)>, SpaceExError> {
         let wrong = |problem: String| SpaceExError::Model { line: transition.line, problem };
         let mut assigned: Vec<(String, Assigned)> = Vec::new();
         for clause in self.clauses(&transition.assignment, transition.line)? {
@@ -210,8 +241,12 @@ impl Instance<'_> {
                 _ => return Err(wrong("an assignment is written as x := … or x' == …".into())),
             };
             let (name, relation, value) = match (&left, &right) {
-                (Side::Primed(name), Side::Formula(value)) => (name.clone(), relation, value.clone()),
-                (Side::Formula(value), Side::Primed(name)) => (name.clone(), turned(relation), value.clone()),
+                (Side::Primed(name), Side::Formula(value)) => {
+                    (name.clone(), relation, value.clone())
+                }
+                (Side::Formula(value), Side::Primed(name)) => {
+                    (name.clone(), turned(relation), value.clone())
+                }
                 (Side::Formula(Expression::Variable(name)), Side::Formula(value))
                     if matches!(relation, Relation::Assigned | Relation::Equal) =>
                 {
@@ -234,20 +269,29 @@ impl Instance<'_> {
                         )));
                     };
                     let place = place.unwrap_or_else(|| {
-                        assigned.push((name.clone(), Assigned::Within(f64::NEG_INFINITY, f64::INFINITY)));
+                        assigned.push((
+                            name.clone(),
+                            Assigned::Within(f64::NEG_INFINITY, f64::INFINITY),
+                        ));
                         assigned.len() - 1
                     });
                     match (&mut assigned[place].1, bound) {
-                        (Assigned::Within(lower, _), Relation::AtLeast | Relation::MoreThan) => *lower = lower.max(value),
+                        (Assigned::Within(lower, _), Relation::AtLeast | Relation::MoreThan) => {
+                            *lower = lower.max(value)
+                        }
                         (Assigned::Within(_, upper), _) => *upper = upper.min(value),
-                        (Assigned::Value(_), _) => return Err(wrong(format!("`{name}` is assigned twice"))),
+                        (Assigned::Value(_), _) => {
+                            return Err(wrong(format!("`{name}` is assigned twice")));
+                        }
                     }
                 }
             }
         }
         let is_unbounded = |one: &Assigned| matches!(one, Assigned::Within(lower, upper) if !(lower <= upper && lower.is_finite() && upper.is_finite()));
         match assigned.iter().find(|(_, one)| is_unbounded(one)) {
-            Some((name, _)) => Err(wrong(format!("what `{name}'` may be is not bounded from both sides"))),
+            Some((name, _)) => {
+                Err(wrong(format!("what `{name}'` may be is not bounded from both sides")))
+            }
             None => Ok(assigned),
         }
     }

@@ -1,17 +1,19 @@
 //! The product of the instances of a network, and the question over it.
 
+mod question;
+
 use std::collections::BTreeMap;
 
 use crate::automaton::{Automaton, Builder, Coordinate, Name, Rate, Record, from};
 use crate::guards::{Expression, Interval, Predicate, variable};
-use crate::verify::reach::{Directions, Forbidden, Region, Settings, StateSet, Template, Uncertain};
-use crate::verify::reach::Polytope;
+use crate::verify::reach::Uncertain;
 
 use super::configuration::Options;
 use super::document::{Component, Transition};
 use super::formula::{Clause, Relation, Side};
 use super::network::{Assigned, Bound, Instance, Network};
 use super::{Initial, Problem, SpaceExError};
+use question::settings;
 
 /// How many locations a product may have.
 const LOCATIONS: usize = 4096;
@@ -165,7 +167,12 @@ impl<'a> Product<'a> {
         let automata = automata.collect::<Result<Vec<_>>>()?;
         let varying = |values: &[(String, Interval)], varies| -> Vec<Uncertain> {
             let wide = values.iter().filter(|(_, values)| varies || values.width() > 0.0);
-            wide.map(|(name, values)| Uncertain { parameter: name.clone(), values: *values, varies }).collect()
+            wide.map(|(name, values)| Uncertain {
+                parameter: name.clone(),
+                values: *values,
+                varies,
+            })
+            .collect()
         };
         let mut uncertain = varying(&self.constants, false);
         uncertain.extend(varying(&self.inputs, true));
@@ -203,7 +210,8 @@ impl<'a> Product<'a> {
         let middles = initial.first().map(|one| one.states.hull().iter().map(Interval::midpoint));
         let middles: Vec<f64> = middles.into_iter().flatten().collect();
         let state = Record::new(self.variables.iter().zip(middles));
-        let state = state.map_err(|error| SpaceExError::Model { line: self.line, problem: error.to_string() })?;
+        let state = state
+            .map_err(|error| SpaceExError::Model { line: self.line, problem: error.to_string() })?;
         let coordinates: BTreeMap<String, Coordinate<Record>> =
             self.variables.iter().cloned().zip(state.coordinates()).collect();
         let mut builder = Automaton::<Name, Name, Record>::starting_in(first).initially(state);
@@ -216,7 +224,9 @@ impl<'a> Product<'a> {
         for (tuple, name) in self.tuples.iter().zip(&self.names) {
             builder = self.add_transitions(builder, tuple, *name, &coordinates)?;
         }
-        builder.build().map_err(|error| SpaceExError::Model { line: self.line, problem: error.to_string() })
+        builder
+            .build()
+            .map_err(|error| SpaceExError::Model { line: self.line, problem: error.to_string() })
     }
 
     fn add_location(
@@ -238,7 +248,8 @@ impl<'a> Product<'a> {
                         if let Some(known) = rates.insert(variable.clone(), rate.clone())
                             && known != rate
                         {
-                            let problem = format!("two components give different rates of `{variable}`");
+                            let problem =
+                                format!("two components give different rates of `{variable}`");
                             return Err(SpaceExError::Model { line, problem });
                         }
                     }
@@ -282,7 +293,8 @@ impl<'a> Product<'a> {
         let is_input = |side: &Side| {
             side.name().is_some_and(|name| self.inputs.iter().any(|(input, _)| input == name))
         };
-        let is_number = |side: &Side| matches!(side, Side::Formula(formula) if formula.evaluate(&()).is_ok());
+        let is_number =
+            |side: &Side| matches!(side, Side::Formula(formula) if formula.evaluate(&()).is_ok());
         is_input(left) && is_number(right) || is_input(right) && is_number(left)
     }
 
@@ -313,11 +325,20 @@ impl<'a> Product<'a> {
                         .collect();
                     together = together
                         .iter()
-                        .flat_map(|group| joining.iter().map(move |one| [&group[..], &[(partner, *one)]].concat()))
+                        .flat_map(|group| {
+                            joining.iter().map(move |one| [&group[..], &[(partner, *one)]].concat())
+                        })
                         .collect();
                 }
                 for group in together {
-                    builder = self.add_joint(builder, tuple, source, &group, label.as_deref(), coordinates)?;
+                    builder = self.add_joint(
+                        builder,
+                        tuple,
+                        source,
+                        &group,
+                        label.as_deref(),
+                        coordinates,
+                    )?;
                 }
             }
         }
@@ -354,18 +375,28 @@ impl<'a> Product<'a> {
             let wrong = |problem: String| SpaceExError::Model { line: transition.line, problem };
             let places = &instance.component.locations;
             let place = places.iter().position(|place| place.id == transition.target);
-            target[*at] = place.ok_or_else(|| wrong(format!("there is no location with id {}", transition.target)))?;
+            target[*at] = place.ok_or_else(|| {
+                wrong(format!("there is no location with id {}", transition.target))
+            })?;
             is_urgent |= transition.is_urgent;
             for clause in instance.clauses(&transition.guard, transition.line)? {
                 guard.extend(predicate(&clause, transition.line)?);
             }
-            let number = instance.component.transitions.iter().position(|one| std::ptr::eq(one, *transition));
+            let number = instance
+                .component
+                .transitions
+                .iter()
+                .position(|one| std::ptr::eq(one, *transition));
             for (name, assigned) in instance.assignments(transition)? {
                 let value = match assigned {
                     Assigned::Value(value) => value,
-                    Assigned::Within(..) => variable(&drawn_name(instance, number.unwrap_or(0), &name)),
+                    Assigned::Within(..) => {
+                        variable(&drawn_name(instance, number.unwrap_or(0), &name))
+                    }
                 };
-                let coordinate = coordinates.get(&name).ok_or_else(|| wrong(format!("`{name}` cannot be assigned")))?;
+                let coordinate = coordinates
+                    .get(&name)
+                    .ok_or_else(|| wrong(format!("`{name}` cannot be assigned")))?;
                 assignments.push(coordinate.becomes(value));
             }
         }
@@ -376,106 +407,6 @@ impl<'a> Product<'a> {
         let guard = Predicate::all(guard);
         let edge = if is_urgent { arrow.must(guard) } else { arrow.may(guard) };
         Ok(builder.transition(edge.then(assignments)))
-    }
-
-    /// The names of the product's locations that clauses allow.
-    fn allowed(&self, clauses: &[Clause], line: usize) -> Result<Vec<usize>> {
-        let mut allowed: Vec<usize> = (0..self.tuples.len()).collect();
-        for clause in clauses {
-            let Clause::Location { component, location } = clause else { continue };
-            let wrong = |problem: String| SpaceExError::Configuration { line, problem };
-            // In a system that is one base component, its own name stands for it.
-            let matching = |instance: &Instance<'_>| {
-                instance.name == *component
-                    || instance.name.is_empty() && instance.component.id == *component
-                    || self.network.instances.len() == 1 && component.is_empty()
-            };
-            let at = self.network.instances.iter().position(|instance| matching(instance));
-            let at = at.ok_or_else(|| {
-                let known: Vec<&str> = self.network.instances.iter().map(|one| {
-                    if one.name.is_empty() { one.component.id.as_str() } else { one.name.as_str() }
-                }).collect();
-                wrong(format!("`loc({component})`: there is no such component; there are {}", known.join(", ")))
-            })?;
-            let component = self.network.instances[at].component;
-            let places: Vec<usize> = (0..component.locations.len())
-                .filter(|place| component.locations[*place].name == *location || location_name(component, *place) == *location)
-                .collect();
-            if places.is_empty() {
-                let known: Vec<&str> = component.locations.iter().map(|place| place.name.as_str()).collect();
-                return Err(wrong(format!("there is no location `{location}`: there are {}", known.join(", "))));
-            }
-            allowed.retain(|tuple| places.contains(&self.tuples[*tuple][at]));
-        }
-        Ok(allowed)
-    }
-
-    fn names_of(&self, tuples: &[usize]) -> Vec<String> {
-        tuples.iter().map(|tuple| self.names[*tuple].as_str().to_owned()).collect()
-    }
-
-    /// Where runs begin, one for each alternative.
-    fn initial(&self, options: &Options) -> Result<Vec<Initial>> {
-        let (line, alternatives) = &options.initially;
-        let wrong = |problem: String| SpaceExError::Configuration { line: *line, problem };
-        let resting: Vec<&(String, Interval)> =
-            self.constants.iter().filter(|(_, values)| values.width() > 0.0).collect();
-        let names: Vec<String> =
-            self.variables.iter().chain(resting.iter().map(|(name, _)| name)).cloned().collect();
-        let mut initial = Vec::new();
-        for clauses in alternatives {
-            let locations = self.names_of(&self.allowed(clauses, *line)?);
-            let mut sides = Vec::new();
-            for name in &names {
-                let side = fixed(std::slice::from_ref(clauses), name).filter(|side| side.width().is_finite());
-                sides.push(side.ok_or_else(|| wrong(format!(
-                    "`initially` does not bound `{name}` from both sides"
-                )))?);
-            }
-            // Comparisons of several variables cut the box.
-            let mut cuts = Vec::new();
-            for clause in clauses {
-                cuts.extend(predicate(clause, *line)?.filter(|one| one.variables().len() > 1));
-            }
-            let values = self.constants.iter().filter(|(_, values)| values.width() == 0.0);
-            let values = values.map(|(name, values)| (name, crate::guards::constant(values.midpoint())));
-            let values = crate::guards::Substitution::new(values);
-            let cut = Predicate::all(cuts).substitute(&values);
-            let region = Region::of(&cut, &names).map_err(|error| wrong(error.to_string()))?;
-            for conjunction in &region.alternatives {
-                let mut template = Template::boxes(names.len());
-                conjunction.half_spaces.iter().for_each(|half_space| half_space.add_to(&mut template));
-                let polytope = Polytope::around(template, &sides);
-                let states = conjunction.cut(&polytope, &names).and_then(StateSet::from_polytope);
-                let Some(states) = states else { continue };
-                initial.push(Initial { locations: locations.clone(), states });
-            }
-        }
-        if initial.is_empty() {
-            return Err(wrong("`initially` allows no state".into()));
-        }
-        Ok(initial)
-    }
-
-    fn forbidden(&self, options: &Options) -> Result<Vec<Forbidden>> {
-        let (line, alternatives) = &options.forbidden;
-        let mut forbidden = Vec::new();
-        for clauses in alternatives {
-            let mut states = Vec::new();
-            for clause in clauses {
-                states.extend(predicate(clause, *line)?);
-            }
-            let states = Predicate::all(states);
-            let is_local = clauses.iter().any(|clause| matches!(clause, Clause::Location { .. }));
-            if is_local {
-                for location in self.names_of(&self.allowed(clauses, *line)?) {
-                    forbidden.push(Forbidden::within(&location, states.clone()));
-                }
-            } else {
-                forbidden.push(Forbidden::anywhere(states));
-            }
-        }
-        Ok(forbidden)
     }
 }
 
@@ -494,7 +425,8 @@ fn location_name(component: &Component, place: usize) -> String {
 
 /// The name of what an assignment leaves open.
 fn drawn_name(instance: &Instance<'_>, transition: usize, variable: &str) -> String {
-    let prefix = if instance.name.is_empty() { String::new() } else { format!("{}_", instance.name) };
+    let prefix =
+        if instance.name.is_empty() { String::new() } else { format!("{}_", instance.name) };
     format!("{prefix}{variable}_after_{}", transition + 1)
 }
 
@@ -524,17 +456,26 @@ fn fixed(alternatives: &[Vec<Clause>], name: &str) -> Option<Interval> {
     let within = |clauses: &Vec<Clause>| -> Option<Interval> {
         let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
         for clause in clauses {
-            let Clause::Compare { left: Side::Formula(left), relation, right: Side::Formula(right) } = clause else {
+            let Clause::Compare {
+                left: Side::Formula(left),
+                relation,
+                right: Side::Formula(right),
+            } = clause
+            else {
                 continue;
             };
-            let is_name = |side: &Expression| matches!(side, Expression::Variable(own) if **own == *name);
+            let is_name =
+                |side: &Expression| matches!(side, Expression::Variable(own) if **own == *name);
             let (value, relation) = match (left.evaluate(&()), right.evaluate(&())) {
                 (_, Ok(value)) if is_name(left) => (value, *relation),
-                (Ok(value), _) if is_name(right) => (value, match relation {
-                    Relation::AtMost | Relation::LessThan => Relation::AtLeast,
-                    Relation::AtLeast | Relation::MoreThan => Relation::AtMost,
-                    equal => *equal,
-                }),
+                (Ok(value), _) if is_name(right) => (
+                    value,
+                    match relation {
+                        Relation::AtMost | Relation::LessThan => Relation::AtLeast,
+                        Relation::AtLeast | Relation::MoreThan => Relation::AtMost,
+                        equal => *equal,
+                    },
+                ),
                 _ => continue,
             };
             match relation {
@@ -554,28 +495,4 @@ fn fixed(alternatives: &[Vec<Clause>], name: &str) -> Option<Interval> {
         hull = Some(hull.map_or(within, |known| known.hull(within)));
     }
     hull
-}
-
-/// Settings as the configuration says them.
-fn settings(options: &Options) -> Result<Settings> {
-    let defaults = Settings::default();
-    let directions = match &options.directions {
-        None => Directions::Boxes,
-        Some((_, name)) if name == "box" => Directions::Boxes,
-        // Octagons stand in for uniform directions.
-        Some((_, name)) if name == "oct" || name.starts_with("uni") => Directions::Octagons,
-        Some((line, name)) => {
-            return Err(SpaceExError::Configuration {
-                line: *line,
-                problem: format!("directions `{name}` are not known: box, oct or uni with a number"),
-            });
-        }
-    };
-    Ok(Settings {
-        horizon: options.horizon.unwrap_or(defaults.horizon),
-        step: options.step.unwrap_or(defaults.step),
-        jump_limit: options.jumps.unwrap_or(defaults.jump_limit),
-        directions,
-        ..defaults
-    })
 }

@@ -58,12 +58,20 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
             )
         };
         lines.extend(self.automaton.names().iter().map(|name| number(name, "any", true)));
-        let varies = |name: &str| self.uncertain.iter().any(|one| one.varies && one.parameter == name);
+        let varies =
+            |name: &str| self.uncertain.iter().any(|one| one.varies && one.parameter == name);
         for (name, _) in self.automaton.parameters() {
-            lines.push(if varies(name) { number(name, "any", false) } else { number(name, "const", false) });
+            lines.push(if varies(name) {
+                number(name, "any", false)
+            } else {
+                number(name, "const", false)
+            });
         }
         for event in self.automaton.events() {
-            lines.push(format!(r#"    <param name="{}" type="label" local="false" />"#, escaped(event.name())));
+            lines.push(format!(
+                r#"    <param name="{}" type="label" local="false" />"#,
+                escaped(event.name())
+            ));
         }
         for (id, location) in (1..).zip(self.automaton.locations()) {
             lines.extend(self.location(id, *location)?);
@@ -76,11 +84,20 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
             let assignments = transition.reset.assignments().ok_or_else(|| {
                 format!("the reset of event `{}` is a function", transition.event.name())
             })?;
-            let assignments = assignments.iter().map(|one| Ok(format!("{} := {}", one.coordinate(), plain(one.value())?)));
+            let assignments = assignments
+                .iter()
+                .map(|one| Ok(format!("{} := {}", one.coordinate(), plain(one.value())?)));
             let assignments = assignments.collect::<Result<Vec<_>, String>>()?.join(" & ");
-            lines.push(format!(r#"    <transition source="{}" target="{}"{urgent}>"#, source.index() + 1, target.index() + 1));
+            lines.push(format!(
+                r#"    <transition source="{}" target="{}"{urgent}>"#,
+                source.index() + 1,
+                target.index() + 1
+            ));
             lines.push(format!("      <label>{}</label>", escaped(transition.event.name())));
-            lines.push(format!("      <guard>{}</guard>", escaped(&conjunction(transition.guard.predicate())?)));
+            lines.push(format!(
+                "      <guard>{}</guard>",
+                escaped(&conjunction(transition.guard.predicate())?)
+            ));
             lines.push(format!("      <assignment>{}</assignment>", escaped(&assignments)));
             lines.push("    </transition>".to_owned());
         }
@@ -96,12 +113,20 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
         }
         let inputs = self.uncertain.iter().filter(|one| one.varies);
         kept.extend(inputs.map(|one| {
-            format!("{} <= {} & {} <= {}", one.values.lower(), one.parameter, one.parameter, one.values.upper())
+            format!(
+                "{} <= {} & {} <= {}",
+                one.values.lower(),
+                one.parameter,
+                one.parameter,
+                one.values.upper()
+            )
         }));
         kept.retain(|part| part != "true");
         let flow = mode.and_then(|mode| mode.flow.as_ref());
         let rates = match flow {
-            Some(flow) => flow.rates().ok_or_else(|| format!("the flow of location `{}` is a function", location.name()))?,
+            Some(flow) => flow.rates().ok_or_else(|| {
+                format!("the flow of location `{}` is a function", location.name())
+            })?,
             None => &[],
         };
         let rate = |name: &&'static str| {
@@ -118,15 +143,28 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
         ])
     }
 
-    fn configuration(&self, initial: &[Initial], forbidden: &[Forbidden], settings: &Settings) -> Result<String, String> {
-        let resting = self.uncertain.iter().filter(|one| !one.varies).map(|one| one.parameter.as_str());
+    fn configuration(
+        &self,
+        initial: &[Initial],
+        forbidden: &[Forbidden],
+        settings: &Settings,
+    ) -> Result<String, String> {
+        let resting =
+            self.uncertain.iter().filter(|one| !one.varies).map(|one| one.parameter.as_str());
         let names: Vec<&str> = self.automaton.names().iter().copied().chain(resting).collect();
         let is_uncertain = |name: &str| self.uncertain.iter().any(|one| one.parameter == name);
-        let certain: Vec<String> = self.automaton.parameters().filter(|(name, _)| !is_uncertain(name)).map(|(name, value)| format!("{name} == {value}")).collect();
+        let certain: Vec<String> = self
+            .automaton
+            .parameters()
+            .filter(|(name, _)| !is_uncertain(name))
+            .map(|(name, value)| format!("{name} == {value}"))
+            .collect();
         let mut begins = Vec::new();
         for one in initial {
             let sides = names.iter().zip(one.states.hull());
-            let sides = sides.map(|(name, side)| format!("{} <= {name} & {name} <= {}", side.lower(), side.upper()));
+            let sides = sides.map(|(name, side)| {
+                format!("{} <= {name} & {name} <= {}", side.lower(), side.upper())
+            });
             let states: Vec<String> = sides.chain(certain.iter().cloned()).collect();
             let is_everywhere = one.locations.len() == self.automaton.locations().len();
             if is_everywhere {

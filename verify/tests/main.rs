@@ -4,4 +4,5 @@
 
 mod exploration;
 mod protocol;
+mod reach;
 mod temporal;

@@ -48,7 +48,13 @@ pub fn shift(spread: (f64, f64), mut settings: Settings) -> TestResult<Instance>
     };
     let closing = |side: f64| (sine * vx + (side * cosine) * vy).more_than(0.0);
     let automaton = Automaton::<Name, Name, Record>::starting_in(free)
-        .initially(Record::new([("vx", 0.0), ("vy", 0.0), ("px", -0.0167), ("py", 0.003), ("I", 0.0)])?)
+        .initially(Record::new([
+            ("vx", 0.0),
+            ("vy", 0.0),
+            ("px", -0.0167),
+            ("py", 0.003),
+            ("I", 0.0),
+        ])?)
         .flow(
             free,
             [
@@ -104,5 +110,6 @@ pub fn shift(spread: (f64, f64), mut settings: Settings) -> TestResult<Instance>
         uncertain: Vec::new(),
         forbidden: vec![Forbidden::anywhere(impulse.at_least(20.0))],
         settings,
+        measured: None,
     })
 }

@@ -1,15 +1,26 @@
-//! The friendly competition's list (ARCH-COMP, categories AFF and NLN).
+//! The friendly competition's list (ARCH-COMP, categories AFF and NLN): which instances are proven
+//! here, and how long it takes.
+//!
+//! ```sh
+//! cargo run --release -p pleach-verify --example competition                          # prints the table
+//! cargo run --release -p pleach-verify --example competition -- docs/reachability.md  # writes it there
+//! ```
+//!
+//! Times are of one thread. A name instead of a file runs the instances whose names begin with it.
 
 mod gearbox;
 mod nonlinear;
 mod platoon;
 mod rendezvous;
 
+use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
 use pleach_automaton::{Automaton, Name, Record};
-use pleach_verify::reach::{self, Forbidden, Settings, StateSet, Uncertain};
+use pleach_verify::reach::{
+    Directions, Forbidden, Model, Proof, Settings, StateSet, Uncertain, prove,
+};
 
 type TestResult<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -20,43 +31,136 @@ pub struct Instance {
     uncertain: Vec<Uncertain>,
     forbidden: Vec<Forbidden>,
     settings: Settings,
+    measured: Option<Measure>,
 }
 
-fn main() -> TestResult<()> {
-    let only = std::env::args().nth(1);
-    let list: Vec<(&str, Instance)> = vec![
-        ("GRBX01", gearbox::shift((0.0001,0.0001), Settings { horizon: 0.2, step: 0.0005, ..Settings::default() })?),
-        ("LALO20-001", nonlinear::laub_loomis(0.01, 4.5, Settings { horizon: 20.0, step: 0.5, ..Settings::default() })?),
-        ("LALO20-005", nonlinear::laub_loomis(0.05, 4.5, Settings { horizon: 20.0, step: 0.5, ..Settings::default() })?),
-        ("LALO20-01", nonlinear::laub_loomis(0.1, 5.0, Settings { horizon: 20.0, step: 0.5, ..Settings::default() })?),
-        ("LOVO", nonlinear::lotka_volterra(Settings { horizon: 3.64, step: 0.5, ..Settings::default() })?),
-        ("ROBE1", nonlinear::robertson(1e2,1e3,Settings { horizon: 40.0, step: 0.5, ..Settings::default() })?),
-        ("QUAD01", nonlinear::quadrotor(0.1,Settings { horizon: 5.0, step: 0.1, ..Settings::default() })?),
-        ("CVDP22", nonlinear::van_der_pol([(1.25,1.55);2],(60.0,80.0),3.7,Settings { horizon: 7.0, step: 0.1, ..Settings::default() })?),
-        ("CVDP23", nonlinear::van_der_pol([(1.25,1.55);2],(1.0,3.0),2.75,Settings { horizon: 7.0, step: 0.1, ..Settings::default() })?),
+/// What the list asks to be measured of the states during the last step.
+#[derive(Clone, Copy)]
+pub enum Measure {
+    /// The width of a variable.
+    Width(&'static str),
+    /// The product of the widths of two.
+    Area(&'static str, &'static str),
+    /// The width of the sum of all.
+    Sum,
+}
 
-        ("PLAD01-BND42", platoon::deterministic(42.0, Settings { horizon: 20.0, step: 0.02, ..Settings::default() })?),
-        ("PLAD01-BND30", platoon::deterministic(30.0, Settings { horizon: 20.0, step: 0.02, ..Settings::default() })?),
-        ("SRNA01", rendezvous::mission(None, Settings { horizon: 300.0, step: 0.1, ..Settings::default() })?),
-        ("SRA01", rendezvous::mission(Some((120.0,120.0)), Settings { horizon: 300.0, step: 0.1, ..Settings::default() })?),
-        ("SRA02", rendezvous::mission(Some((120.0,125.0)), Settings { horizon: 300.0, step: 0.1, ..Settings::default() })?),
-    ];
-    for (name, mut instance) in list {
-        let v = |n: &str| std::env::var(n).ok().and_then(|t| t.parse::<f64>().ok());
-        { let st = &mut instance.settings; if let Some(x)=v("STEP") {st.step=x;} if let Some(x)=v("CL") {st.clusters=x as usize;} if let Some(x)=v("GEN") {st.generators=x as usize;} if let Some(x)=v("TOL") {st.tolerance=x;} if let Some(x)=v("ORD") {st.order=x as usize;} if let Some(x)=v("DEG") {st.degree=x as usize;} }
-        if only.as_ref().is_some_and(|o| !name.starts_with(o.as_str())) { continue; }
+/// The lines between which the table stands in a document.
+const MARKS: [&str; 2] = ["<!-- begin of the table -->", "<!-- end of the table -->"];
+
+fn main() -> TestResult<()> {
+    let argument = std::env::args().nth(1);
+    let document = argument.as_ref().filter(|argument| argument.ends_with(".md"));
+    let prefix = argument.as_ref().filter(|_| document.is_none());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let mut table = String::from(
+        "| instance | answer | time | sets | stays away by | at the end |\n| --- | --- | --- | --- | --- | --- |\n",
+    );
+    for (name, instance) in instances()? {
+        if prefix.is_some_and(|prefix| !name.starts_with(prefix.as_str())) {
+            continue;
+        }
         let begin = Instant::now();
-        let model = reach::Model::with_uncertain(&instance.automaton, &instance.uncertain)?;
-        let p = reach::prove(&model, std::slice::from_ref(&instance.start), &instance.forbidden, &instance.settings, &mut |_| ControlFlow::Continue(()))?;
-        let e = &p.enclosure;
-        let bad = p.doubts.len(); let first = p.doubts.first().map(|d| (d.forbidden, d.time, d.states.iter().map(|i| i.to_string()).collect::<Vec<_>>()));
-        println!("clear {:?}", p.clearances);
-        println!("{name}: {:?} bad {bad}  visits {} segments {} time {:?}", e.ending, e.visits.len(), e.visits.iter().map(|v| v.segments.len()).sum::<usize>(), begin.elapsed());
-        println!("{first:?}");
-        for v in &e.visits {
-            println!("  {} {} {:?}", model.locations()[v.location].name, v.elapsed, v.segments.len());
-            if v.segments.len() > 1 { let s = &v.segments[v.segments.len()-1]; println!("   {:?}", s.set.hull().unwrap().iter().map(|i| i.to_string()).collect::<Vec<_>>()); }
+        let (model, proof) = pool.install(|| solved(&instance).map_err(|error| error.to_string()))?;
+        let seconds = begin.elapsed().as_secs_f64();
+        let line = line(name, &instance, &model, &proof, seconds);
+        eprint!("{line}");
+        table.push_str(&line);
+    }
+    match document {
+        None => print!("{table}"),
+        Some(path) => {
+            let text = std::fs::read_to_string(path)?;
+            let (before, rest) = text.split_once(MARKS[0]).ok_or("the document has no table")?;
+            let (_, after) = rest.split_once(MARKS[1]).ok_or("the table has no end")?;
+            std::fs::write(path, format!("{before}{}\n{table}{}{after}", MARKS[0], MARKS[1]))?;
         }
     }
     Ok(())
+}
+
+fn solved(instance: &Instance) -> TestResult<(Model, Proof)> {
+    let model = Model::with_uncertain(&instance.automaton, &instance.uncertain)?;
+    let starts = std::slice::from_ref(&instance.start);
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let proof = prove(&model, starts, &instance.forbidden, &instance.settings, go_on)?;
+    Ok((model, proof))
+}
+
+/// A line of the table.
+fn line(name: &str, instance: &Instance, model: &Model, proof: &Proof, seconds: f64) -> String {
+    let answer = match (proof.holds(), instance.forbidden.is_empty()) {
+        (true, true) => "enclosed",
+        (true, false) => "holds",
+        (false, _) => "undecided",
+    };
+    let sets: usize = proof.enclosure.visits.iter().map(|visit| visit.segments.len()).sum();
+    let nearest = proof.clearances.iter().copied().fold(f64::INFINITY, f64::min);
+    let away = if nearest.is_finite() { format!("{nearest:.3}") } else { String::new() };
+    let mut line = String::new();
+    let measured = measured(instance, model, proof).unwrap_or_default();
+    // Writing to a string does not fail.
+    let _ = writeln!(line, "| {name} | {answer} | {seconds:.2} s | {sets} | {away} | {measured} |");
+    line
+}
+
+/// What the list asks to be measured.
+fn measured(instance: &Instance, model: &Model, proof: &Proof) -> Option<String> {
+    let last = &proof.enclosure.visits.last()?.segments.last()?.set;
+    let sides = last.hull()?;
+    let width = |name: &str| {
+        let place = model.variables().iter().position(|variable| variable == name)?;
+        Some(sides[place].width())
+    };
+    Some(match instance.measured? {
+        Measure::Width(name) => format!("width of {name} {:.4}", width(name)?),
+        Measure::Area(one, other) => format!("area {:.2e}", width(one)? * width(other)?),
+        Measure::Sum => {
+            let bound = |sign: f64| {
+                let direction = vec![sign; model.variables().len()];
+                last.template().position(&direction).map(|place| last.bounds()[place])
+            };
+            format!("width of the sum {:.1e}", bound(1.0)? + bound(-1.0)?)
+        }
+    })
+}
+
+/// Every instance with the settings that are right for it.
+fn instances() -> TestResult<Vec<(&'static str, Instance)>> {
+    let affine = |horizon, step| Settings { horizon, step, ..Settings::default() };
+    let smooth = |horizon, tolerance, order, degree, generators| Settings {
+        horizon,
+        tolerance,
+        order,
+        degree,
+        generators,
+        step: 0.5,
+        ..Settings::default()
+    };
+    let gears = |step| Settings { clusters: 4, ..affine(0.2, step) };
+    let aborted = |clusters| Settings { clusters, ..affine(300.0, 0.04) };
+    let stiff = |order| Settings {
+        directions: Directions::Listed(vec![vec![1.0; 3]]),
+        ..smooth(40.0, 1e-9, order, 1, 4)
+    };
+    let alike = [(1.25, 1.55); 2];
+    Ok(vec![
+        ("PLAD01-BND42", platoon::deterministic(42.0, affine(20.0, 0.02))?),
+        ("PLAD01-BND30", platoon::deterministic(30.0, affine(20.0, 0.02))?),
+        ("GRBX01", gearbox::shift((0.0001, 0.0001), gears(0.0005))?),
+        ("GRBX02", gearbox::shift((0.00005, 0.00015), gears(0.0005))?),
+        ("SRNA01", rendezvous::mission(None, affine(300.0, 0.04))?),
+        ("SRA01", rendezvous::mission(Some((120.0, 120.0)), aborted(1))?),
+        ("SRA02", rendezvous::mission(Some((120.0, 125.0)), aborted(4))?),
+        ("VDP", nonlinear::oscillator(smooth(7.0, 1e-7, 8, 3, 10))?),
+        ("CVDP23", nonlinear::van_der_pol(alike, (1.0, 3.0), 2.75, smooth(7.0, 1e-5, 8, 3, 4))?),
+        ("LALO20, W = 0.01", nonlinear::laub_loomis(0.01, 4.5, smooth(20.0, 1e-7, 6, 2, 4))?),
+        ("LALO20, W = 0.05", nonlinear::laub_loomis(0.05, 4.5, smooth(20.0, 1e-5, 6, 2, 4))?),
+        ("LALO20, W = 0.1", nonlinear::laub_loomis(0.1, 5.0, smooth(20.0, 1e-5, 6, 2, 4))?),
+        ("LOVO", nonlinear::lotka_volterra(smooth(3.64, 1e-9, 8, 2, 20))?),
+        ("ROBE, case 1", nonlinear::robertson(1e2, 1e3, stiff(8))?),
+        ("QUAD, ± 0.1", nonlinear::quadrotor(0.1, smooth(5.0, 1e-7, 6, 2, 4))?),
+        ("QUAD, ± 0.4", nonlinear::quadrotor(0.4, smooth(5.0, 1e-7, 6, 2, 4))?),
+        ("QUAD, ± 0.8", nonlinear::quadrotor(0.8, smooth(5.0, 1e-6, 6, 3, 4))?),
+    ])
 }

@@ -1,5 +1,5 @@
-//! Flows that are not affine: coupled van der Pol oscillators (CVDP), an enzyme of a cell (LALO20),
-//! predators and prey (LOVO25), a stiff reaction (ROBE25), a quadrotor (QUAD).
+//! Flows that are not affine: van der Pol's oscillator, alone (VDP) and coupled (CVDP), an enzyme of a
+//! cell (LALO20), predators and prey (LOVO), a stiff reaction (ROBE), a quadrotor (QUAD).
 //!
 //! Models and numbers as in the ARCH-COMP reports (NLN): L. Geretti et al., *ARCH-COMP category
 //! report: continuous and hybrid systems with nonlinear dynamics*, 2020 to 2025.
@@ -8,7 +8,7 @@ use pleach_automaton::{Automaton, Coordinate, Name, Rate, Record};
 use pleach_guards::{Interval, constant, variable};
 use pleach_verify::reach::{Forbidden, Settings, StateSet};
 
-use crate::{Instance, TestResult};
+use crate::{Instance, Measure, TestResult};
 
 /// One location with the rates that `rates` makes of the coordinates, from a box.
 fn single(
@@ -32,7 +32,18 @@ fn single(
         uncertain: Vec::new(),
         forbidden,
         settings,
+        measured: None,
     })
+}
+
+/// One van der Pol oscillator, as up to 2020: y stays below 2.75.
+pub fn oscillator(settings: Settings) -> TestResult<Instance> {
+    let rates = |c: &[Coordinate<Record>]| {
+        let [x, y] = c else { return Vec::new() };
+        vec![x.rate(y), y.rate((1.0 - x.power(2.0)) * y - x)]
+    };
+    let fast = Forbidden::anywhere(variable("y").at_least(2.75));
+    single(&[("x", 1.25, 1.55), ("y", 2.35, 2.45)], rates, vec![fast], settings)
 }
 
 /// Two van der Pol oscillators, coupled by a spring of uncertain stiffness (CVDP22: μ = 1,
@@ -70,8 +81,11 @@ pub fn van_der_pol(
 pub fn laub_loomis(width: f64, limit: f64, settings: Settings) -> TestResult<Instance> {
     let centers = [1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45];
     let names = ["x1", "x2", "x3", "x4", "x5", "x6", "x7"];
-    let sides: Vec<_> =
-        names.into_iter().zip(centers).map(|(name, center)| (name, center - width, center + width)).collect();
+    let sides: Vec<_> = names
+        .into_iter()
+        .zip(centers)
+        .map(|(name, center)| (name, center - width, center + width))
+        .collect();
     let rates = |c: &[Coordinate<Record>]| {
         let [x1, x2, x3, x4, x5, x6, x7] = c else { return Vec::new() };
         vec![
@@ -85,7 +99,9 @@ pub fn laub_loomis(width: f64, limit: f64, settings: Settings) -> TestResult<Ins
         ]
     };
     let high = Forbidden::anywhere(variable("x4").at_least(limit));
-    single(&sides, rates, vec![high], settings)
+    let mut instance = single(&sides, rates, vec![high], settings)?;
+    instance.measured = Some(Measure::Width("x4"));
+    Ok(instance)
 }
 
 /// Predators and prey, without the guard of LOVO25: the states at its end.
@@ -95,7 +111,9 @@ pub fn lotka_volterra(settings: Settings) -> TestResult<Instance> {
         let [x, y] = c else { return Vec::new() };
         vec![x.rate(3.0 * x - 3.0 * (x * y)), y.rate(x * y - y)]
     };
-    single(&sides, rates, Vec::new(), settings)
+    let mut instance = single(&sides, rates, Vec::new(), settings)?;
+    instance.measured = Some(Measure::Area("x", "y"));
+    Ok(instance)
 }
 
 /// Three substances that react at very different speeds; their sum is 1 at all times.
@@ -109,27 +127,40 @@ pub fn robertson(beta: f64, gamma: f64, settings: Settings) -> TestResult<Instan
             z.rate(gamma * y.power(2.0)),
         ]
     };
-    single(&sides, rates, Vec::new(), settings)
+    let mut instance = single(&sides, rates, Vec::new(), settings)?;
+    instance.measured = Some(Measure::Sum);
+    Ok(instance)
 }
 
 /// A quadrotor that climbs to a height of 1 m, from any state with position and velocity within
 /// `width`: it stays below 1.4 m, is above 0.9 m after 1 s, and between 0.98 m and 1.02 m at 5 s.
 pub fn quadrotor(width: f64, settings: Settings) -> TestResult<Instance> {
-    let names = ["x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10", "x11", "x12"];
+    let names = ["x1", "x2", "x3", "x4", "x5", "x6", "x7", "x8", "x9", "x10", "x11", "x12", "t"];
     let spread = |number: usize| if number < 6 { width } else { 0.0 };
-    let sides: Vec<_> =
-        names.into_iter().enumerate().map(|(number, name)| (name, -spread(number), spread(number))).collect();
+    let sides: Vec<_> = names
+        .into_iter()
+        .enumerate()
+        .map(|(number, name)| (name, -spread(number), spread(number)))
+        .collect();
     let (gravity, radius, length, rotor, center) = (9.81, 0.1, 0.5, 0.1, 1.0);
     let mass = center + 4.0 * rotor;
     let jx = 2.0 * center * radius * radius / 5.0 + 2.0 * length * length * rotor;
     let jz = 2.0 * center * radius * radius / 5.0 + 4.0 * length * length * rotor;
     let rates = move |c: &[Coordinate<Record>]| {
-        let [x1, x2, x3, x4, x5, x6, x7, x8, x9, x10, x11, x12] = c else { return Vec::new() };
+        let [x1, x2, x3, x4, x5, x6, x7, x8, x9, x10, x11, x12, t] = c else { return Vec::new() };
         let thrust = mass * gravity - 10.0 * (x3 - 1.0) + 3.0 * x6;
         let [s7, c7, s8, c8, s9, c9] = [x7.sin(), x7.cos(), x8.sin(), x8.cos(), x9.sin(), x9.cos()];
         vec![
-            x1.rate(&c8 * &c9 * x4 + (&s7 * &s8 * &c9 - &c7 * &s9) * x5 + (&c7 * &s8 * &c9 + &s7 * &s9) * x6),
-            x2.rate(&c8 * &s9 * x4 + (&s7 * &s8 * &s9 + &c7 * &c9) * x5 + (&c7 * &s8 * &s9 - &s7 * &c9) * x6),
+            x1.rate(
+                &c8 * &c9 * x4
+                    + (&s7 * &s8 * &c9 - &c7 * &s9) * x5
+                    + (&c7 * &s8 * &c9 + &s7 * &s9) * x6,
+            ),
+            x2.rate(
+                &c8 * &s9 * x4
+                    + (&s7 * &s8 * &s9 + &c7 * &c9) * x5
+                    + (&c7 * &s8 * &s9 - &s7 * &c9) * x6,
+            ),
             x3.rate(&s8 * x4 - &s7 * &c8 * x5 - &c7 * &c8 * x6),
             x4.rate(x12 * x5 - x11 * x6 - gravity * &s8),
             x5.rate(x10 * x6 - x12 * x4 + gravity * &c8 * &s7),
@@ -140,8 +171,14 @@ pub fn quadrotor(width: f64, settings: Settings) -> TestResult<Instance> {
             x10.rate(((jx - jz) / jx) * (x11 * x12) + (-x7 - x10) / constant(jx)),
             x11.rate(((jz - jx) / jx) * (x10 * x12) + (-x8 - x11) / constant(jx)),
             x12.rate(0.0),
+            t.rate(1.0),
         ]
     };
-    let high = Forbidden::anywhere(variable("x3").at_least(1.4));
-    single(&sides, rates, vec![high], settings)
+    let [height, time] = ["x3", "t"].map(variable);
+    let forbidden = [
+        height.at_least(1.4),
+        time.at_least(1.0) & height.at_most(0.9),
+        time.at_least(5.0) & (height.at_most(0.98) | height.at_least(1.02)),
+    ];
+    single(&sides, rates, forbidden.map(Forbidden::anywhere).to_vec(), settings)
 }

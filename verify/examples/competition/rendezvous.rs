@@ -55,6 +55,7 @@ pub fn mission(abort: Option<(f64, f64)>, settings: Settings) -> TestResult<Inst
         uncertain: Vec::new(),
         forbidden: specification(abort.is_some()),
         settings,
+        measured: None,
     })
 }
 
@@ -85,12 +86,9 @@ fn specification(aborts: bool) -> Vec<Forbidden> {
     let corner = std::f64::consts::PI / 8.0;
     let (cx, cy) = (speed * corner.cos(), speed * corner.sin());
     let fast = !octagon(&vx, &vy, cx, cx + cy);
-    let out_of_sight =
-        x.less_than(-100.0) | y.less_than(slope * &x) | (-&y).less_than(slope * &x);
-    let mut forbidden = vec![
-        Forbidden::within("attempt", out_of_sight),
-        Forbidden::within("attempt", fast),
-    ];
+    let out_of_sight = x.less_than(-100.0) | y.less_than(slope * &x) | (-&y).less_than(slope * &x);
+    let mut forbidden =
+        vec![Forbidden::within("attempt", out_of_sight), Forbidden::within("attempt", fast)];
     if aborts {
         let target = x.at_least(-0.2) & x.at_most(0.2) & y.at_least(-0.2) & y.at_most(0.2);
         forbidden.push(Forbidden::within("aborting", target));

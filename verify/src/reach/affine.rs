@@ -74,7 +74,9 @@ impl AffineFlow {
         let generators: Vec<Vec<Interval>> =
             self.inputs.generators().iter().map(|generator| mean(generator)).collect();
         let mut added = Zonotope::from_intervals(&center, &generators);
-        for (axis, slack) in self.inputs.slack().iter().enumerate().filter(|(_, slack)| **slack > 0.0) {
+        for (axis, slack) in
+            self.inputs.slack().iter().enumerate().filter(|(_, slack)| **slack > 0.0)
+        {
             let mut unit = vec![0.0; self.inputs.dimension()];
             unit[axis] = *slack;
             added.push(&mean(&unit));
@@ -120,7 +122,8 @@ impl<'a> Steps<'a> {
 
     /// Begins to carry a direction.
     pub fn track(&self, direction: &[f64]) -> Track {
-        let direction: Vec<Interval> = direction.iter().map(|entry| Interval::point(*entry)).collect();
+        let direction: Vec<Interval> =
+            direction.iter().map(|entry| Interval::point(*entry)).collect();
         Track {
             taken: 0,
             by_digit: Vec::new(),

@@ -1,18 +1,21 @@
 //! All runs at once: flows from sets, jumps where guards may hold, until nothing new is reached.
 
+mod landing;
+mod prepared;
+
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use pleach_guards::Interval;
 
-use super::flow::{Exit, FlowPipe, Stretch};
-use super::model::{Assignments, Dynamics, Jump, Model, Place};
-use super::polytope::{Bound, Polytope, Template};
-use super::region::{Conjunction, HalfSpace, Named, Region};
+use super::flow::{FlowPipe, Stretch};
+use super::model::{Dynamics, Jump, Model};
+use super::polytope::Polytope;
+use super::region::{Conjunction, Region};
 use super::set::StateSet;
-use super::settings::{Directions, InvalidSetting, Settings};
-use super::vector::{IntervalMatrix, dot};
+use super::settings::{InvalidSetting, Settings};
+use landing::Crossing;
+use prepared::Prepared;
 
 /// An enclosure of all states that runs come to.
 #[derive(Clone, Debug)]
@@ -76,15 +79,6 @@ struct Entry {
     start: StateSet,
 }
 
-/// What a location needs for sets.
-struct Prepared {
-    template: Arc<Template>,
-    /// What flows stay in, by the invariant: of several alternatives, nothing.
-    staying: Vec<HalfSpace>,
-    /// What they stay in until a jump has to be taken: the number of the jump, and the half-space.
-    waiting: Vec<(usize, HalfSpace)>,
-}
-
 /// Encloses all runs of `model` that begin in one of `starts`, in any of its initial locations.
 ///
 /// `watch` sees each segment as it is found, with the visit that it belongs to (whose own list it is
@@ -101,11 +95,14 @@ pub fn explore(
     watch: &mut dyn FnMut(&Visit, &Segment) -> ControlFlow<()>,
 ) -> Result<Enclosure, InvalidSetting> {
     settings.check(model.variables().len())?;
-    let prepared = (0..model.locations().len()).map(|place| Prepared::new(model, place, settings, extra));
+    let prepared =
+        (0..model.locations().len()).map(|place| Prepared::new(model, place, settings, extra));
     let prepared = prepared.collect::<Vec<_>>();
     let mut search = Search { model, settings, prepared, visits: Vec::new(), segments: 0, watch };
     let mut open: VecDeque<Entry> = VecDeque::new();
-    for (&location, start) in model.initial().iter().flat_map(|at| starts.iter().map(move |s| (at, s))) {
+    for (&location, start) in
+        model.initial().iter().flat_map(|at| starts.iter().map(move |s| (at, s)))
+    {
         let elapsed = Interval::point(0.0);
         if let Some(start) = search.inside_invariant(location, start.clone()) {
             open.push_back(Entry { location, from: None, depth: 0, elapsed, start });
@@ -147,12 +144,6 @@ struct Search<'a> {
 enum Outcome {
     Ended { next: Vec<Entry>, at_horizon: bool },
     Broken(Completion),
-}
-
-/// The parts of a flow in which a jump's guard may hold, not yet put together.
-#[derive(Default)]
-struct Crossing {
-    parts: Vec<(Interval, Polytope)>,
 }
 
 impl Search<'_> {
@@ -200,9 +191,17 @@ impl Search<'_> {
         let place = &self.model.locations()[entry.location];
         let Entry { location, from, depth, elapsed, start } = entry;
         let number = self.visits.len();
-        let mut crossings: Vec<Crossing> = place.jumps.iter().map(|_| Crossing::default()).collect();
+        let mut crossings: Vec<Crossing> =
+            place.jumps.iter().map(|_| Crossing::default()).collect();
         let entering = self.bounds(location, &start);
-        self.visits.push(Visit { location, from, depth, elapsed, start: start.clone(), segments: Vec::new() });
+        self.visits.push(Visit {
+            location,
+            from,
+            depth,
+            elapsed,
+            start: start.clone(),
+            segments: Vec::new(),
+        });
         let mut next = Vec::new();
 
         // What enters where a jump has to be taken takes it at once.
@@ -225,12 +224,22 @@ impl Search<'_> {
         let remaining = self.settings.horizon - elapsed.lower();
         let template = self.prepared[location].template.clone();
         let exit = self.timed_exit(location, &flowing);
-        let mut pipe = FlowPipe::new(&place.flow, self.model.variables(), &flowing, &template, self.settings, remaining, exit);
+        let mut pipe = FlowPipe::new(
+            &place.flow,
+            self.model.variables(),
+            &flowing,
+            &template,
+            self.settings,
+            remaining,
+            exit,
+        );
         let mut at_horizon = false;
         let is_at_rest = self.settings.horizon.is_infinite() && flowing.is_its_template();
         let origin = self.bounds(location, &flowing);
         'flow: loop {
-            let Some(stretches) = pipe.advance() else { return Outcome::Broken(Completion::Diverged) };
+            let Some(stretches) = pipe.advance() else {
+                return Outcome::Broken(Completion::Diverged);
+            };
             if stretches.is_empty() {
                 at_horizon = pipe.is_at(remaining);
                 break;
@@ -295,221 +304,5 @@ impl Search<'_> {
             return Some(cut);
         }
         self.union_of_cuts(invariant, &cut)
-    }
-
-    /// Adds what a jump may be taken from.
-    fn cross(&self, jump: &Jump, time: Interval, set: &Polytope, crossing: &mut Crossing) {
-        for alternative in &jump.guard.alternatives {
-            if let Some(cut) = alternative.cut(set, self.model.variables()) {
-                crossing.parts.push((time, cut));
-            }
-        }
-    }
-
-    /// The entries that jumps lead to.
-    fn landings(&self, location: usize, number: usize, depth: usize, crossings: &[Crossing]) -> Vec<Entry> {
-        let place = &self.model.locations()[location];
-        let mut entries = Vec::new();
-        for (at, (jump, crossing)) in place.jumps.iter().zip(crossings).enumerate() {
-            if crossing.parts.is_empty() {
-                continue;
-            }
-            let size = crossing.parts.len().div_ceil(self.settings.clusters);
-            for parts in crossing.parts.chunks(size) {
-                let elapsed = parts.iter().map(|(time, _)| *time).reduce(Interval::hull);
-                let elapsed = elapsed.unwrap_or(Interval::WHOLE);
-                if elapsed.lower() > self.settings.horizon {
-                    continue;
-                }
-                let landed = parts.iter().filter_map(|(_, part)| self.landed(jump, part));
-                let landed = landed.reduce(|mut one, other| {
-                    one.join(&other);
-                    one
-                });
-                let start = landed.and_then(StateSet::from_polytope);
-                if let Some(start) = start {
-                    let from = Some((number, at));
-                    entries.push(Entry { location: jump.target, from, depth: depth + 1, elapsed, start });
-                }
-            }
-        }
-        entries
-    }
-
-    /// What a reset makes of a set, bounded in the directions of the target and cut to its invariant.
-    fn landed(&self, jump: &Jump, part: &Polytope) -> Option<Polytope> {
-        let template = self.prepared[jump.target].template.clone();
-        let bounds: Vec<f64> = match &jump.reset {
-            Assignments::Affine(matrix, offset) => {
-                let transposed = matrix.transposed();
-                let bound = |direction: &Vec<f64>| {
-                    let direction: Vec<Interval> = direction.iter().map(|d| Interval::point(*d)).collect();
-                    match part.support(&transposed.apply(&direction)) {
-                        Bound::AtMost(bound) => {
-                            Some((Interval::point(bound) + dot(&direction, offset)).upper())
-                        }
-                        Bound::Empty => None,
-                    }
-                };
-                template.directions().iter().map(bound).collect::<Option<_>>()?
-            }
-            Assignments::Formulas(values) => {
-                let sides = part.hull()?;
-                let named = Named { names: self.model.variables(), sides: &sides };
-                let value = |formula: &pleach_guards::Expression| formula.range(&named).unwrap_or(Interval::WHOLE);
-                let values: Vec<Interval> = values.iter().map(value).collect();
-                template.directions().iter().map(|d| super::polytope::over_box(d, &values)).collect()
-            }
-        };
-        let landed = Polytope::new(template, bounds);
-        self.union_of_cuts(&self.model.locations()[jump.target].invariant, &landed)
-    }
-
-    /// When a clock ends the flow: for half-spaces d · x ≤ b that the flow stays in, with d · x rising
-    /// at a constant rate.
-    fn timed_exit(&self, location: usize, start: &StateSet) -> Option<Exit> {
-        let Dynamics::Affine(flow) = &self.model.locations()[location].flow else { return None };
-        let prepared = &self.prepared[location];
-        let waiting = prepared.waiting.iter().map(|(_, half_space)| half_space);
-        let exits = prepared.staying.iter().chain(waiting).filter_map(|half_space| {
-            reached(flow.matrix(), flow.inputs(), &half_space.direction, half_space.bound_over(start.hull()), start)
-        });
-        exits.reduce(|one, other| if other.until.upper() < one.until.upper() { other } else { one })
-    }
-
-    /// Whether a jump can be taken only at this instant.
-    fn waits_for(&self, location: usize, jump: &Jump, exit: Exit, start: &StateSet) -> bool {
-        let Dynamics::Affine(flow) = &self.model.locations()[location].flow else { return false };
-        let begins = |conjunction: &Conjunction| {
-            conjunction.half_spaces.iter().any(|half_space| {
-                let direction: Vec<f64> = half_space.direction.iter().map(|entry| -entry).collect();
-                let bound = half_space.opposite().bound_over(start.hull());
-                let opens = reached(flow.matrix(), flow.inputs(), &direction, bound, start);
-                opens.is_some_and(|opens| opens.until.lower() >= exit.until.lower())
-            })
-        };
-        !jump.guard.alternatives.is_empty() && jump.guard.alternatives.iter().all(begins)
-    }
-
-    /// The entries that jumps at an instant lead to: the sets are carried there as zonotopes.
-    fn timed_landings(
-        &self,
-        location: usize,
-        number: usize,
-        depth: usize,
-        flow: &super::affine::AffineFlow,
-        start: &StateSet,
-        exit: Exit,
-    ) -> Vec<Entry> {
-        let place = &self.model.locations()[location];
-        let elapsed = self.visits[number].elapsed + exit.until;
-        let mut entries = Vec::new();
-        if elapsed.lower() > self.settings.horizon {
-            return entries;
-        }
-        let generators = self.settings.generators * self.model.variables().len();
-        let mut arrived: Option<StateSet> = None;
-        for (at, jump) in place.jumps.iter().enumerate() {
-            if !self.waits_for(location, jump, exit, start) {
-                continue;
-            }
-            let arrived = arrived.get_or_insert_with(|| {
-                StateSet::from_zonotope(flow.after(&start.to_zonotope(), exit.until, generators))
-            });
-            let bounds = self.bounds(location, arrived);
-            let staying = self.staying(location, &bounds);
-            let cut = staying.and_then(|staying| self.union_of_cuts(&jump.guard, &staying));
-            let Some(cut) = cut else { continue };
-            let Some(landed) = self.landed(jump, &cut) else { continue };
-            let landed = match (&jump.reset, StateSet::from_polytope(landed)) {
-                (Assignments::Affine(matrix, offset), Some(set)) => {
-                    let zonotope = arrived.to_zonotope().mapped(matrix, &middles(offset));
-                    let mut zonotope = zonotope.reduced(generators);
-                    zonotope.widen(&offset.iter().map(|side| super::vector::radius(*side)).collect::<Vec<_>>());
-                    Some(set.within(zonotope))
-                }
-                (_, set) => set,
-            };
-            if let Some(start) = landed {
-                entries.push(Entry { location: jump.target, from: Some((number, at)), depth: depth + 1, elapsed, start });
-            }
-        }
-        entries
-    }
-}
-
-fn middles(box_sides: &[Interval]) -> Vec<Interval> {
-    box_sides.iter().map(|side| Interval::point(side.midpoint())).collect()
-}
-
-/// When d · x, which rises at a constant rate, comes to `bound`.
-fn reached(
-    matrix: &IntervalMatrix,
-    inputs: &super::zonotope::Zonotope,
-    direction: &[f64],
-    bound: f64,
-    start: &StateSet,
-) -> Option<Exit> {
-    // No variable of d · x enters its rate.
-    let is_constant = direction.iter().enumerate().filter(|(_, entry)| **entry != 0.0).all(|(row, _)| {
-        matrix.row(row).iter().all(|entry| *entry == Interval::point(0.0))
-    });
-    if !is_constant {
-        return None;
-    }
-    let direction: Vec<Interval> = direction.iter().map(|entry| Interval::point(*entry)).collect();
-    let rate = dot(&direction, &inputs.hull());
-    let least = -start.support(&direction.iter().map(|entry| -*entry).collect::<Vec<_>>());
-    let begin = Interval::new(least, start.support(&direction)).ok()?;
-    let left = Interval::point(bound) - begin;
-    (rate.lower() > 0.0).then(|| {
-        let until = left / rate;
-        let until = Interval::new(until.lower().max(0.0), until.upper().max(0.0)).unwrap_or(Interval::WHOLE);
-        Exit { until }
-    })
-}
-
-impl Prepared {
-    fn new(model: &Model, number: usize, settings: &Settings, extra: &[Vec<f64>]) -> Self {
-        let place = &model.locations()[number];
-        let dimension = model.variables().len();
-        let mut template = match &settings.directions {
-            Directions::Boxes => Template::boxes(dimension),
-            Directions::Octagons => Template::octagons(dimension),
-            Directions::Listed(listed) => {
-                let mut template = Template::boxes(dimension);
-                listed.iter().for_each(|direction| template.add_both(direction));
-                template
-            }
-        };
-        let add = |template: &mut Template, region: &Region| {
-            for conjunction in &region.alternatives {
-                conjunction.half_spaces.iter().for_each(|half_space| half_space.add_to(template));
-            }
-        };
-        add(&mut template, &place.invariant);
-        for jump in &place.jumps {
-            add(&mut template, &jump.guard);
-            add(&mut template, &model.locations()[jump.target].invariant);
-        }
-        extra.iter().for_each(|direction| template.add_both(direction));
-        let staying = match &place.invariant.alternatives[..] {
-            [only] => only.half_spaces.clone(),
-            _ => Vec::new(),
-        };
-        Prepared { template: Arc::new(template), staying, waiting: Prepared::waiting(place) }
-    }
-
-    /// A jump that has to be taken where one affine comparison holds keeps flows out of there.
-    fn waiting(place: &Place) -> Vec<(usize, HalfSpace)> {
-        let forced = place.jumps.iter().enumerate().filter(|(_, jump)| jump.is_forced);
-        let alone = forced.filter_map(|(number, jump)| match &jump.guard.alternatives[..] {
-            [Conjunction { half_spaces, others }] if others.is_empty() => match &half_spaces[..] {
-                [only] => Some((number, only.opposite())),
-                _ => None,
-            },
-            _ => None,
-        });
-        alone.collect()
     }
 }

@@ -173,17 +173,29 @@ impl<L: Location, E: Event, S: Coordinates> Search<'_, L, E, S> {
         let example = self.automaton.initial_state()?;
         let (coordinates, constants) = start.split_at_checked(example.names().len())?;
         let resting = self.uncertain.iter().filter(|one| !one.varies);
-        parameters.extend(resting.zip(constants).map(|(one, value)| (one.parameter.clone(), *value)));
+        parameters
+            .extend(resting.zip(constants).map(|(one, value)| (one.parameter.clone(), *value)));
         let mut automaton = self.automaton.clone();
         for (parameter, value) in &parameters {
             automaton = automaton.with(parameter, *value).ok()?;
         }
         let state = example.like(coordinates);
-        let composition = Composition::builder().add_in("automaton", &automaton, state).build().ok()?;
+        let composition =
+            Composition::builder().add_in("automaton", &automaton, state).build().ok()?;
         let settings = pleach_automaton::Settings { policy: choices.policy, ..Default::default() };
         let trajectory = composition.run_with(settings, self.horizon).ok()?;
-        let (forbidden, at, state, margin, is_violation) = self.nearest(&trajectory, &parameters)?;
-        Some(Counterexample { start, parameters, forbidden, at, state, margin, is_violation, trajectory })
+        let (forbidden, at, state, margin, is_violation) =
+            self.nearest(&trajectory, &parameters)?;
+        Some(Counterexample {
+            start,
+            parameters,
+            forbidden,
+            at,
+            state,
+            margin,
+            is_violation,
+            trajectory,
+        })
     }
 
     /// Where a run comes nearest to forbidden states.
@@ -194,28 +206,48 @@ impl<L: Location, E: Event, S: Coordinates> Search<'_, L, E, S> {
     ) -> Option<(usize, HybridTime, Vec<f64>, f64, bool)> {
         let names = &trajectory.components().first()?.locations;
         let mut nearest: Option<(usize, HybridTime, Vec<f64>, f64, bool)> = None;
-        for (j, phase) in (0..).zip(trajectory.phases()) {
-            let location = names.get(*phase.locations.first()?)?;
-            for (number, one) in self.forbidden.iter().enumerate() {
-                if one.location.as_ref().is_some_and(|other| other != location) {
-                    continue;
-                }
-                for sample in &phase.samples {
-                    let own = trajectory.variables().iter().zip(&sample.values);
+        for (j, (location, states)) in (0..).zip(followed(trajectory)) {
+            let location = names.get(location)?;
+            let here = |one: &Forbidden| one.location.as_ref().is_none_or(|name| name == location);
+            for (number, one) in self.forbidden.iter().enumerate().filter(|(_, one)| here(one)) {
+                for (t, values) in &states {
+                    let own = trajectory.variables().iter().zip(values);
                     let own = own.map(|(name, value)| (name.as_str(), *value));
                     let fixed = parameters.iter().map(|(name, value)| (name.as_str(), *value));
                     let state: Vec<(&str, f64)> = own.chain(fixed).collect();
                     let Ok(verdict) = one.states.evaluate(&state[..]) else { continue };
-                    let is_nearer = nearest.as_ref().is_none_or(|(.., margin, _)| verdict.margin > *margin);
-                    if is_nearer {
-                        let at = HybridTime { t: sample.t, j };
-                        nearest = Some((number, at, sample.values.clone(), verdict.margin, verdict.holds));
+                    if nearest.as_ref().is_none_or(|(.., margin, _)| verdict.margin > *margin) {
+                        let at = HybridTime { t: *t, j };
+                        nearest = Some((number, at, values.clone(), verdict.margin, verdict.holds));
                     }
                 }
             }
         }
         nearest
     }
+}
+
+/// What lies between the jumps of a run: the number of the location of its first component, and times
+/// with states, also between the samples.
+pub fn followed(trajectory: &Trajectory) -> Vec<(usize, Vec<(f64, Vec<f64>)>)> {
+    /// How many states there are from one sample to the next.
+    const PARTS: u32 = 8;
+    let between = |phase: pleach_automaton::trajectory::Phase| {
+        let mut states: Vec<(f64, Vec<f64>)> = Vec::new();
+        for pair in phase.samples.windows(2) {
+            states.push((pair[0].t, pair[0].values.clone()));
+            for part in 1..PARTS {
+                let share = f64::from(part) / f64::from(PARTS);
+                let t = pair[0].t + share * (pair[1].t - pair[0].t);
+                if pair[0].t < t && t < pair[1].t {
+                    states.extend(trajectory.values_at(t).map(|values| (t, values)));
+                }
+            }
+        }
+        states.extend(phase.samples.last().map(|last| (last.t, last.values.clone())));
+        (phase.locations.first().copied().unwrap_or(0), states)
+    };
+    trajectory.phases().map(between).collect()
 }
 
 /// The number at a share from −1 to 1 of the way.

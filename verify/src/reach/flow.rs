@@ -71,7 +71,8 @@ impl<'a> FlowPipe<'a> {
                 };
                 let count = if count.is_finite() { count as usize } else { usize::MAX };
                 let steps = Steps::new(flow, start, length);
-                let tracks = template.directions().par_iter().map(|direction| steps.track(direction));
+                let tracks =
+                    template.directions().par_iter().map(|direction| steps.track(direction));
                 let tracks = tracks.collect();
                 FlowPipe::Affine { steps, tracks, taken: 0, count, length }
             }
@@ -102,7 +103,8 @@ impl<'a> FlowPipe<'a> {
                 };
                 let stretches: Vec<Stretch> = (0..block).map(stretch).collect();
                 *taken += block;
-                let is_finite = |stretch: &Stretch| stretch.during.iter().all(|bound| bound.is_finite());
+                let is_finite =
+                    |stretch: &Stretch| stretch.during.iter().all(|bound| bound.is_finite());
                 stretches.iter().all(is_finite).then_some(stretches)
             }
             FlowPipe::Formulas { integration, template, until } => {

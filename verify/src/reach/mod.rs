@@ -1,29 +1,42 @@
 //! Reachability: every state that an automaton can come to, enclosed.
-mod affine;
-mod explore;
-mod exponential;
-mod falsify;
+//!
+//! A simulator follows one run; here all runs are followed at once, from sets of initial states, with
+//! inputs that are only known to lie in intervals, and with every rounding error. [`verify()`] asks
+//! whether any of them comes to [forbidden states](Forbidden), and has one of three [answers](Answer):
+//! it holds, which is a proof; a run violates it; or it is undecided.
+//!
+//! A [`Model`] is made from an automaton whose flows, guards and resets are formulas. [`explore()`]
+//! encloses its runs: affine flows by [support functions](affine), others by [Taylor models](taylor),
+//! and where guards may hold by [polytopes](polytope) in template directions that are cut, mapped and put
+//! together. [`falsify()`] searches for a run that comes to forbidden states. `docs/reachability.md`
+//! says what is guaranteed, and where not.
+
+pub mod affine;
+pub mod explore;
+pub mod exponential;
+pub mod falsify;
 mod flow;
-mod model;
-mod polytope;
-mod question;
-mod region;
+pub mod model;
+pub mod polytope;
+pub mod question;
+pub mod region;
 mod series;
-mod set;
-mod settings;
-mod taylor;
+pub mod set;
+pub mod settings;
+pub mod taylor;
 mod taylor_model;
-mod vector;
-mod zonotope;
-pub use affine::*;
-pub use explore::*;
-pub use falsify::*;
-pub use question::*;
-pub use model::*;
-pub use region::*;
-pub use settings::*;
-pub use polytope::*;
-pub use set::*;
-pub use vector::*;
-pub use zonotope::*;
+pub mod vector;
+pub mod zonotope;
+
+pub use affine::AffineFlow;
+pub use explore::{Completion, Enclosure, Segment, Visit, explore};
 pub use exponential::exponential;
+pub use falsify::{Counterexample, Effort, falsify, followed};
+pub use model::{Assignments, Dynamics, Jump, Model, ModelError, Place, Uncertain};
+pub use polytope::{Bound, Polytope, Template};
+pub use question::{Answer, Doubt, Forbidden, Proof, ReachError, prove, verify};
+pub use region::{Conjunction, HalfSpace, Region, RegionError};
+pub use set::StateSet;
+pub use settings::{Directions, InvalidSetting, Settings};
+pub use vector::{IntervalMatrix, dot, dot_numbers, sum_up};
+pub use zonotope::Zonotope;

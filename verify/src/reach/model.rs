@@ -88,7 +88,9 @@ pub enum ModelError {
         location: String,
     },
     /// A reset is a function.
-    #[error("the reset of event `{event}` in location `{location}` is a function: write assignments")]
+    #[error(
+        "the reset of event `{event}` in location `{location}` is a function: write assignments"
+    )]
     Reset {
         /// The location.
         location: String,
@@ -104,8 +106,10 @@ pub enum ModelError {
         source: RegionError,
     },
     /// An input multiplies the state, or stands in a formula that is not affine.
-    #[error("input `{input}` enters the flow of location `{location}` other than added with a \
-             factor: make it a constant parameter, or the flow affine")]
+    #[error(
+        "input `{input}` enters the flow of location `{location}` other than added with a \
+             factor: make it a constant parameter, or the flow affine"
+    )]
     Input {
         /// The input.
         input: String,
@@ -165,7 +169,9 @@ impl Model {
         automaton: &Automaton<L, E, S>,
         uncertain: &[Uncertain],
     ) -> Result<Self, ModelError> {
-        let unknown = uncertain.iter().find(|one| !automaton.parameters().any(|(name, _)| name == one.parameter));
+        let unknown = uncertain
+            .iter()
+            .find(|one| !automaton.parameters().any(|(name, _)| name == one.parameter));
         if let Some(Uncertain { parameter, .. }) = unknown {
             return Err(ModelError::Parameter { parameter: parameter.clone() });
         }
@@ -309,9 +315,14 @@ fn coefficients(
 }
 
 /// The first variable of a formula that is none of these.
-fn stranger(formula: &Expression, variables: &[String], inputs: &[(&str, Interval)]) -> Option<String> {
+fn stranger(
+    formula: &Expression,
+    variables: &[String],
+    inputs: &[(&str, Interval)],
+) -> Option<String> {
     let is_known = |name: &str| {
-        variables.iter().any(|known| known == name) || inputs.iter().any(|(known, _)| *known == name)
+        variables.iter().any(|known| known == name)
+            || inputs.iter().any(|(known, _)| *known == name)
     };
     formula.variables().into_iter().find(|name| !is_known(name)).map(str::to_owned)
 }
@@ -354,14 +365,18 @@ impl Dynamics {
             let middle = |(entry, (_, values)): (&Interval, &(&str, Interval))| {
                 *entry * Interval::point(values.midpoint())
             };
-            center.push(column.iter().zip(inputs).map(middle).fold(*offset, |sum, term| sum + term));
+            center
+                .push(column.iter().zip(inputs).map(middle).fold(*offset, |sum, term| sum + term));
         }
         let generators = inputs.iter().enumerate().map(|(number, (_, values))| {
             let half = Interval::point(super::vector::radius(*values));
             forms.iter().map(|(_, column, _)| column[number] * half).collect()
         });
         let generators: Vec<Vec<Interval>> = generators.collect();
-        Ok(Dynamics::Affine(AffineFlow::new(matrix, Zonotope::from_intervals(&center, &generators))))
+        Ok(Dynamics::Affine(AffineFlow::new(
+            matrix,
+            Zonotope::from_intervals(&center, &generators),
+        )))
     }
 }
 

@@ -100,7 +100,8 @@ impl Polytope {
 
     /// A box, bounded in all directions of a template.
     pub fn around(template: Template, sides: &[Interval]) -> Self {
-        let bounds = template.directions.iter().map(|direction| over_box(direction, sides)).collect();
+        let bounds =
+            template.directions.iter().map(|direction| over_box(direction, sides)).collect();
         Polytope { template: Arc::new(template), bounds }
     }
 
@@ -116,9 +117,8 @@ impl Polytope {
 
     /// The box that the first directions bound; `None` if it has no points.
     pub fn hull(&self) -> Option<Vec<Interval>> {
-        let side = |axis: usize| {
-            Interval::new(-self.bounds[2 * axis + 1], self.bounds[2 * axis]).ok()
-        };
+        let side =
+            |axis: usize| Interval::new(-self.bounds[2 * axis + 1], self.bounds[2 * axis]).ok();
         (0..self.template.dimension()).map(side).collect()
     }
 
@@ -136,9 +136,8 @@ impl Polytope {
 
     /// Whether opposite bounds contradict each other: then there are no points.
     pub fn is_seen_empty(&self) -> bool {
-        (0..self.template.dimension()).any(|axis| {
-            self.bounds[2 * axis] < -self.bounds[2 * axis + 1]
-        })
+        (0..self.template.dimension())
+            .any(|axis| self.bounds[2 * axis] < -self.bounds[2 * axis + 1])
     }
 
     /// Whether every point of `other`, over the same template, is in this one.
@@ -193,7 +192,12 @@ impl Polytope {
     }
 
     /// The bound on ℓ · x that these multipliers prove.
-    fn certified(&self, direction: &[Interval], multipliers: &[(usize, f64)], sides: &[Interval]) -> f64 {
+    fn certified(
+        &self,
+        direction: &[Interval],
+        multipliers: &[(usize, f64)],
+        sides: &[Interval],
+    ) -> f64 {
         let mut rest = direction.to_vec();
         let mut bound = Interval::point(0.0);
         for &(place, multiplier) in multipliers.iter().filter(|(_, multiplier)| *multiplier > 0.0) {
@@ -246,10 +250,14 @@ impl<'a> Simplex<'a> {
         for _ in 0..Self::PIVOTS * self.basis.len() {
             let Some(entering) = self.entering() else { return true };
             let direction = &self.polytope.template.directions[entering];
-            let column: Vec<f64> =
-                self.inverse.iter().map(|row| row.iter().zip(direction).map(|(a, b)| a * b).sum()).collect();
+            let column: Vec<f64> = self
+                .inverse
+                .iter()
+                .map(|row| row.iter().zip(direction).map(|(a, b)| a * b).sum())
+                .collect();
             let Some(leaving) = self.leaving(&column) else {
-                self.ray = self.basis.iter().zip(&column).map(|(place, entry)| (*place, -entry)).collect();
+                self.ray =
+                    self.basis.iter().zip(&column).map(|(place, entry)| (*place, -entry)).collect();
                 self.ray.push((entering, 1.0));
                 return false;
             };

@@ -159,7 +159,12 @@ pub fn prove(
             let mut locations = model.locations().iter();
             locations.position(|place| place.name == *name).ok_or_else(|| ReachError::Location {
                 location: name.clone(),
-                known: model.locations().iter().map(|place| place.name.as_str()).collect::<Vec<_>>().join(", "),
+                known: model
+                    .locations()
+                    .iter()
+                    .map(|place| place.name.as_str())
+                    .collect::<Vec<_>>()
+                    .join(", "),
             })
         };
         let location = one.location.as_ref().map(place).transpose()?;

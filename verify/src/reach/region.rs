@@ -98,14 +98,16 @@ impl Region {
     /// As for [`of`](Self::of).
     pub fn exactly(predicate: &Predicate, variables: &[String]) -> Result<Self, RegionError> {
         let text = || predicate.to_string();
-        let stranger = predicate.variables().into_iter().find(|name| !variables.iter().any(|v| v == name));
+        let stranger =
+            predicate.variables().into_iter().find(|name| !variables.iter().any(|v| v == name));
         if let Some(variable) = stranger {
             return Err(RegionError::Variable { predicate: text(), variable: variable.to_owned() });
         }
         if !predicate.is_data() || !predicate.propositions().is_empty() {
             return Err(RegionError::Function { predicate: text() });
         }
-        let cases = predicate.by_cases(ALTERNATIVES).and_then(|it| it.disjunctive_form(ALTERNATIVES));
+        let cases =
+            predicate.by_cases(ALTERNATIVES).and_then(|it| it.disjunctive_form(ALTERNATIVES));
         let cases = cases.map_err(|_| RegionError::Alternatives { predicate: text() })?;
         let alternatives = cases.iter().map(|case| Conjunction::of(case, variables));
         Ok(Region { alternatives: alternatives.collect() })
@@ -131,8 +133,10 @@ impl Conjunction {
         let named = Named { names: variables, sides: &sides };
         let affine = self.half_spaces.iter().map(|half_space| {
             let opposite: Vec<f64> = half_space.direction.iter().map(|entry| -entry).collect();
-            let most = polytope.template().position(&opposite).map(|place| polytope.bounds()[place]);
-            let most = most.unwrap_or(f64::INFINITY).min(super::polytope::over_box(&opposite, &sides));
+            let most =
+                polytope.template().position(&opposite).map(|place| polytope.bounds()[place]);
+            let most =
+                most.unwrap_or(f64::INFINITY).min(super::polytope::over_box(&opposite, &sides));
             (Interval::point(-most) - Interval::point(half_space.bound_over(&sides))).lower()
         });
         let others = self.others.iter().map(|other| {
@@ -170,7 +174,9 @@ impl Conjunction {
         let cut = if has_changed { cut.tightened()? } else { cut };
         let sides = cut.hull()?;
         let named = Named { names: variables, sides: &sides };
-        let never = |other: &Comparison| !matches!(other.truth(&named), Ok(Truth::Always | Truth::Undecided));
+        let never = |other: &Comparison| {
+            !matches!(other.truth(&named), Ok(Truth::Always | Truth::Undecided))
+        };
         (!self.others.iter().any(never)).then_some(cut)
     }
 }

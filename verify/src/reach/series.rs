@@ -68,7 +68,9 @@ impl Coefficient for Interval {
             Function::Cosine => Some(self.cos()),
             Function::Exponential => Some(self.exp()),
             Function::Logarithm => (self.lower() > 0.0).then(|| self.ln()).flatten(),
-            Function::Power(exponent) => (self.lower() > 0.0).then(|| self.power(exponent)).flatten(),
+            Function::Power(exponent) => {
+                (self.lower() > 0.0).then(|| self.power(exponent)).flatten()
+            }
             Function::HyperbolicTangent => Some(self.tanh()),
         }
     }
@@ -113,9 +115,8 @@ impl Function {
     /// The derivative of this order, divided by the factorial of the order.
     fn coefficient(self, order: usize, at: Interval) -> Option<Interval> {
         let sign = |is_negative: bool| Interval::point(if is_negative { -1.0 } else { 1.0 });
-        let factorial = (1..=order).fold(Interval::point(1.0), |product, factor| {
-            product * Interval::point(factor as f64)
-        });
+        let factorial = (1..=order)
+            .fold(Interval::point(1.0), |product, factor| product * Interval::point(factor as f64));
         Some(match self {
             Function::Reciprocal => {
                 let inverse = at.function(Function::Reciprocal)?;
@@ -198,7 +199,12 @@ impl SeriesProgram {
 
     /// The coefficients x₀, …, xₙ of each variable, for n = `order`; `None` where a formula has no
     /// value.
-    pub fn solve<C: Coefficient>(&self, start: &[C], order: usize, context: C::Context) -> Option<Vec<Vec<C>>> {
+    pub fn solve<C: Coefficient>(
+        &self,
+        start: &[C],
+        order: usize,
+        context: C::Context,
+    ) -> Option<Vec<Vec<C>>> {
         let mut solution: Vec<Vec<C>> = start.iter().map(|first| vec![first.clone()]).collect();
         let mut series = Series::new(&self.operations, context);
         for next in 1..=order {
@@ -295,7 +301,9 @@ impl<'a, C: Coefficient> Series<'a, C> {
             Operation::Sine(inner) => {
                 self.convolution((inner, number + 1), order, 1..=order, count).scaled(share())
             }
-            Operation::Cosine(inner) if order == 0 => self.at(inner, 0).function(Function::Cosine)?,
+            Operation::Cosine(inner) if order == 0 => {
+                self.at(inner, 0).function(Function::Cosine)?
+            }
             Operation::Cosine(inner) => {
                 self.convolution((inner, number - 1), order, 1..=order, count).scaled(-share())
             }
@@ -328,7 +336,8 @@ impl<'a, C: Coefficient> Series<'a, C> {
                 self.convolution((inner, number + 1), order, 1..=order, count).scaled(share())
             }
             Operation::OneLessSquare => {
-                let one = C::number(Interval::point(if order == 0 { 1.0 } else { 0.0 }), self.context);
+                let one =
+                    C::number(Interval::point(if order == 0 { 1.0 } else { 0.0 }), self.context);
                 one.minus(&self.convolution((number - 1, number - 1), order, 0..=order, |_| 1.0))
             }
         })

@@ -78,9 +78,8 @@ impl StateSet {
             let clamped = |(entry, side): (f64, &Interval)| entry.clamp(side.lower(), side.upper());
             point.into_iter().zip(&self.hull).map(clamped).collect::<Vec<f64>>()
         };
-        let is_inside = |point: &[f64]| {
-            self.polytope.iter().all(|polytope| polytope.contains_point(point))
-        };
+        let is_inside =
+            |point: &[f64]| self.polytope.iter().all(|polytope| polytope.contains_point(point));
         let mut point = drawn();
         for _ in 0..DRAWS {
             if is_inside(&point) {

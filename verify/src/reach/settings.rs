@@ -72,7 +72,8 @@ impl Default for Settings {
 impl Settings {
     /// Says which setting makes no sense, if one does.
     pub(super) fn check(&self, dimension: usize) -> Result<(), InvalidSetting> {
-        let wrong = |setting, value: String, expected| Err(InvalidSetting { setting, value, expected });
+        let wrong =
+            |setting, value: String, expected| Err(InvalidSetting { setting, value, expected });
         if self.horizon.is_nan() || self.horizon < 0.0 {
             return wrong("horizon", self.horizon.to_string(), "a duration, or ∞");
         }
@@ -94,7 +95,11 @@ impl Settings {
         if let Directions::Listed(listed) = &self.directions
             && let Some(bad) = listed.iter().find(|direction| direction.len() != dimension)
         {
-            return wrong("directions", format!("{bad:?}"), "vectors with an entry for each variable");
+            return wrong(
+                "directions",
+                format!("{bad:?}"),
+                "vectors with an entry for each variable",
+            );
         }
         Ok(())
     }

@@ -112,9 +112,8 @@ impl Integration {
         self.state = step.end();
         self.time = self.time + Interval::point(step.length);
         self.name_errors();
-        let after = directions.iter().map(|direction| {
-            combined(direction, &self.state).range().upper()
-        });
+        let after =
+            directions.iter().map(|direction| combined(direction, &self.state).range().upper());
         let after = after.collect();
         Some(Stretch { from, to: self.time.upper(), during, after })
     }
@@ -145,7 +144,8 @@ impl Integration {
                 length *= factor.clamp(0.2, 0.9);
                 continue;
             }
-            self.next_step = length.max(self.next_step.min(self.longest_step) * 0.25) * factor.clamp(0.3, 1.5);
+            self.next_step =
+                length.max(self.next_step.min(self.longest_step) * 0.25) * factor.clamp(0.3, 1.5);
             return Some(Step { length, coefficients, last });
         }
     }
@@ -182,7 +182,8 @@ impl Integration {
             name[*symbol] = Some((first + number) as u8);
         }
         for component in &mut self.state {
-            component.give_up(|monomial, _| monomial.symbols().any(|s| name[usize::from(s)].is_none()));
+            component
+                .give_up(|monomial, _| monomial.symbols().any(|s| name[usize::from(s)].is_none()));
             component.rename(|symbol| name[usize::from(symbol)].unwrap_or(symbol));
         }
         self.symbols = first + kept;
@@ -199,7 +200,8 @@ fn remainder(
     /// How often a box is tried.
     const TRIALS: usize = 4;
     let within = Interval::new(0.0, length).ok()?;
-    let known: Vec<Interval> = coefficients.iter().map(|series| polynomial(series, within)).collect();
+    let known: Vec<Interval> =
+        coefficients.iter().map(|series| polynomial(series, within)).collect();
     let power = power_of(within, order);
     let mut guess: Vec<Interval> = known.iter().map(|side| inflated(*side, 0.01)).collect();
     for _ in 0..TRIALS {
@@ -233,9 +235,10 @@ fn inflated(side: Interval, share: f64) -> Interval {
 
 /// Σ xⱼ tʲ for times t, as one interval.
 fn polynomial(series: &[TaylorModel], time: Interval) -> Interval {
-    series.iter().rev().fold(Interval::point(0.0), |sum, coefficient| {
-        sum * time + coefficient.range()
-    })
+    series
+        .iter()
+        .rev()
+        .fold(Interval::point(0.0), |sum, coefficient| sum * time + coefficient.range())
 }
 
 /// What a step adds to the remainders, as a share of the state.
@@ -267,9 +270,10 @@ impl Step {
         let end = |(series, last): (&Vec<TaylorModel>, &Interval)| {
             let limits = series[0].limits();
             let nothing = TaylorModel::constant(Interval::point(0.0), limits);
-            let sum = series.iter().rev().fold(nothing, |sum, coefficient| {
-                sum.scaled(time).plus(coefficient)
-            });
+            let sum = series
+                .iter()
+                .rev()
+                .fold(nothing, |sum, coefficient| sum.scaled(time).plus(coefficient));
             sum.plus(&TaylorModel::number(power * *last, limits))
         };
         self.coefficients.iter().zip(&self.last).map(end).collect()

@@ -98,7 +98,11 @@ impl TaylorModel {
     }
 
     /// c + Σ aᵢ ξᵢ.
-    pub fn affine(center: f64, slopes: impl IntoIterator<Item = (u8, f64)>, limits: Limits) -> Self {
+    pub fn affine(
+        center: f64,
+        slopes: impl IntoIterator<Item = (u8, f64)>,
+        limits: Limits,
+    ) -> Self {
         let slopes = slopes.into_iter().map(|(number, slope)| (Monomial::symbol(number), slope));
         let mut terms: Vec<_> = std::iter::once((Monomial::ONE, center)).chain(slopes).collect();
         terms.retain(|(_, coefficient)| *coefficient != 0.0);
@@ -141,7 +145,8 @@ impl TaylorModel {
             }
         }
         let error = (size * (self.terms.len() as f64 + 2.0) * f64::EPSILON).next_up();
-        Interval::new((lower - error).next_down(), (upper + error).next_up()).unwrap_or(Interval::WHOLE)
+        Interval::new((lower - error).next_down(), (upper + error).next_up())
+            .unwrap_or(Interval::WHOLE)
     }
 
     /// Moves the terms that `leaves` says into the remainder.
@@ -296,7 +301,10 @@ impl TaylorModel {
 
     /// f(self) = Σ cₖ (self − m)ᵏ + r (self − m)ⁿ, where m is the constant term, for a function with
     /// Taylor coefficients `coefficients(k, at)`: those at m, and one at all values for the last.
-    pub fn composed(&self, coefficient: impl Fn(usize, Interval) -> Option<Interval>) -> Option<Self> {
+    pub fn composed(
+        &self,
+        coefficient: impl Fn(usize, Interval) -> Option<Interval>,
+    ) -> Option<Self> {
         let (middle, varying) = self.split();
         let last = self.limits.degree + 1;
         let around = self.range().hull(Interval::point(middle));

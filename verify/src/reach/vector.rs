@@ -84,8 +84,7 @@ fn rounded_outward(lower: f64, upper: f64, size: f64, count: usize) -> Interval 
     let count = count as f64;
     // The second term is for products too small to be numbers.
     let error = inflated(size, count) * (count + 3.0) * UNIT_ROUNDOFF + count * f64::MIN_POSITIVE;
-    Interval::new((lower - error).next_down(), (upper + error).next_up())
-        .unwrap_or(Interval::WHOLE)
+    Interval::new((lower - error).next_down(), (upper + error).next_up()).unwrap_or(Interval::WHOLE)
 }
 
 /// A matrix of intervals: every matrix with entries in them.

@@ -89,6 +89,8 @@ impl FlowpipePicture {
     fn draw_patches(&self, sheet: &mut Sheet, across: &Axis, up: &Axis) {
         /// Boxes are drawn at least as large, in pixels.
         const SMALLEST: f64 = 0.6;
+        /// In pixels.
+        const SEAM: f64 = 0.5;
         let mut last = None;
         for patch in &self.patches {
             let [left, right] = patch.across.map(|value| across.place(value));
@@ -100,7 +102,8 @@ impl FlowpipePicture {
             }
             last = Some((patch.location, drawn));
             let name = self.locations.get(patch.location).map_or("", String::as_str);
-            sheet.area([left, top], [width, height], area_colour(patch.location), name);
+            // Neighbours overlap a little, so that no seam shows.
+            sheet.area([left, top], [width + SEAM, height], area_colour(patch.location), name);
         }
     }
 
