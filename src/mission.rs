@@ -193,6 +193,8 @@ impl Gallery<'_, '_> {
 }
 
 impl<M: Medium<Message, Point>> Observer<Network<M>> for Gallery<'_, '_> {
+    const SEES_JUMPS: bool = false;
+
     fn flows(&mut self, network: &Network<M>, _: HybridTime, _: f64) -> ControlFlow<End> {
         let (snapshot, events) = (network.snapshot(), network.events());
         if let Err(error) = self.show(&snapshot, &events) {

@@ -8,10 +8,12 @@ use std::time::Duration;
 use std::{fs, io};
 
 use crate::generated::{is_update, read, root};
+use pleach::automaton::network::Automata;
+use pleach::automaton::network::access_point::ACCESS_POINT_GLOSSARY;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::robot::GLOSSARY;
 use pleach::automaton::network::scenario::{Control, Scenario, ValidScenario};
-use pleach::automaton::network::{dealing_automaton, duty_automaton, mission_automaton};
+use pleach::automaton::network::user::USER_GLOSSARY;
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::figures::Album;
@@ -47,45 +49,53 @@ fn keep_up_to_date(path: &str, document: &str) {
 
 // ---- The automata ------------------------------------------------------------------------------
 
-#[test]
-fn the_drawing_of_the_duty_automaton_is_up_to_date() {
-    keep_up_to_date("docs/pictures/duty.svg", &diagram::svg(&duty_automaton().unwrap()));
+/// The chapters on the automata of all nodes: title, name of the drawing, introduction, automaton.
+macro_rules! for_each_automaton {
+    ($automata:expr, $act:ident) => {{
+        let it: Automata = $automata;
+        [
+            $act("The duty of a robot", "duty", DUTY, &it.duty),
+            $act("The mission as one robot sees it", "mission", MISSION, &it.mission),
+            $act("The exchange of duties", "exchange", EXCHANGE, &it.dealing),
+            $act("The control period of a robot", "control", CONTROL, &it.control),
+            $act("The service of an access point", "service", SERVICE, &it.service),
+            $act("The control period of an access point", "rounds", ROUNDS, &it.rounds),
+            $act("The user", "request", REQUEST, &it.request),
+        ]
+    }};
 }
 
 #[test]
-fn the_drawing_of_the_mission_automaton_is_up_to_date() {
-    keep_up_to_date("docs/pictures/mission.svg", &diagram::svg(&mission_automaton().unwrap()));
-}
-
-#[test]
-fn the_drawing_of_the_exchange_automaton_is_up_to_date() {
-    keep_up_to_date("docs/pictures/exchange.svg", &diagram::svg(&dealing_automaton().unwrap()));
+fn the_drawings_of_the_automata_are_up_to_date() {
+    fn draw<L: Location, E: Event, S: Valuation>(
+        _: &str,
+        name: &str,
+        _: &str,
+        automaton: &Automaton<L, E, S>,
+    ) {
+        keep_up_to_date(&format!("docs/pictures/{name}.svg"), &diagram::svg(automaton));
+    }
+    for_each_automaton!(Automata::new().unwrap(), draw);
 }
 
 #[test]
 fn the_page_on_the_automata_is_up_to_date() {
-    let (duty, mission) = (duty_automaton().unwrap(), mission_automaton().unwrap());
-    let dealing = dealing_automaton().unwrap();
-    let page = format!(
-        "{INTRODUCTION}\n{}\n{}\n{}\n{}",
-        chapter("The duty of a robot", "duty", DUTY, &duty),
-        chapter("The mission as one robot sees it", "mission", MISSION, &mission),
-        chapter("The exchange of duties", "exchange", EXCHANGE, &dealing),
-        glossary(),
-    );
-    keep_up_to_date("docs/automata.md", &page);
+    let chapters = for_each_automaton!(Automata::new().unwrap(), chapter).join("\n");
+    keep_up_to_date("docs/automata.md", &format!("{INTRODUCTION}\n{chapters}\n{}", glossaries()));
 }
 
 const INTRODUCTION: &str = "\
 <!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it documents -->
 
-# The automata of a robot
+# The automata of the network
 
-Every robot runs these automata over its own state. This page is written by the library from the
-transition tables, guards and resets that the robots run. A transition reads `event [guard] /
-reset (urgency, priority)`; all of them are taken *at once*, and where several could be, the
-smaller priority goes first. The names in the guards are quantities and propositions that a robot
-measures of itself; the last section lists them.
+Every robot runs the first four of these automata over its own state, every access point the next
+two, and the user the last. This page is written by the library from the tables, guards, resets,
+flows, invariants and laws that the nodes run. A transition reads `event [guard] / reset (urgency,
+priority)`; all of them are taken *at once*, and where several could be, the smaller priority goes
+first. A location shows its flow, its invariant after the word \"while\", and what is chosen there
+at each sample. Names in guards are quantities and propositions that a node measures of itself; the
+last section lists them.
 ";
 
 const DUTY: &str = "\
@@ -105,10 +115,37 @@ word that the robot has heard; those of priority 1 are what it finds out itself,
 issue the next word. Robots are in different phases while a word spreads.
 ";
 
-fn glossary() -> String {
-    let rows = GLOSSARY.iter().map(|(name, text)| format!("| `{name}` | {} |\n", text.trim()));
-    let rows: String = rows.collect();
-    format!("## What the guards speak of\n\n| name | meaning |\n| --- | --- |\n{rows}")
+const CONTROL: &str = "\
+Time passes in one location only, by the flow of equation (23), and while its invariant holds: the
+robot stays in the region that the motion problem (21) has given it. At the sample it goes through
+the other locations, which take no time (Algorithm 5). In each it waits for what its neighbours say,
+up to the next tick of its clock; the reset lists what it does then, in this order.
+";
+
+const SERVICE: &str = "\
+All access points run this automaton. Transitions of priority 0 follow the newest notice that it
+hears; those of priority 1 are taken by the access point that the user has asked for tasks.
+";
+
+const ROUNDS: &str = "\
+Access points pass on what they hear in the same rounds of beacons as robots. They take no part in
+routes and moves, and rest until the next sample.
+";
+
+const REQUEST: &str = "\
+The user asks the first access point for its tasks in every control period until it hears an answer.
+";
+
+fn glossaries() -> String {
+    let glossary = |title: &str, names: &[(&str, &str)]| {
+        let row = |(name, text): &(&str, &str)| format!("| `{name}` | {} |\n", text.trim());
+        let rows: String = names.iter().map(row).collect();
+        format!("### {title}\n\n| name | meaning |\n| --- | --- |\n{rows}")
+    };
+    let robots = glossary("Robots", GLOSSARY);
+    let access_points = glossary("Access points", ACCESS_POINT_GLOSSARY);
+    let user = glossary("The user", USER_GLOSSARY);
+    format!("## What the guards speak of\n\n{robots}\n{access_points}\n{user}")
 }
 
 fn chapter<L: Location, E: Event, S: Valuation>(

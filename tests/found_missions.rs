@@ -7,14 +7,31 @@ use std::path::PathBuf;
 
 #[test]
 fn what_failed_once_does_not_fail_again() {
-    let files = std::fs::read_dir("tests/scenarios/found").unwrap();
-    let mut files: Vec<PathBuf> = files.map(|entry| entry.unwrap().path()).collect();
-    files.sort();
-    assert!(!files.is_empty());
-    for file in files {
+    for file in files("tests/scenarios/found") {
         let scenario = scenario_file::read(&file).unwrap();
         let end = mission::run(&scenario, &mut []).unwrap().end;
         let said = format!("{}: {:?}: {}", scenario.name, end.outcome, end.reason);
         assert_eq!(end.outcome, Outcome::Serviced, "{said}");
     }
+}
+
+/// Missions that end without a violation and in time, whether all tasks can be serviced or not.
+#[test]
+fn hard_missions_come_to_an_end() {
+    for file in files("tests/scenarios/hard") {
+        let scenario = scenario_file::read(&file).unwrap();
+        let end = mission::run(&scenario, &mut []).unwrap().end;
+        let said = format!("{}: {:?}: {}", scenario.name, end.outcome, end.reason);
+        let has_ended = matches!(end.outcome, Outcome::Serviced | Outcome::InsufficientRobots);
+        assert!(has_ended, "{said}");
+    }
+}
+
+/// The files of a folder, by name.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let files = std::fs::read_dir(folder).unwrap();
+    let mut files: Vec<PathBuf> = files.map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    assert!(!files.is_empty());
+    files
 }

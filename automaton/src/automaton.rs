@@ -10,6 +10,7 @@ use thiserror::Error;
 use crate::builder::Builder;
 use crate::coordinates::Coordinates;
 use crate::flow::Flow;
+use crate::law::Command;
 use crate::located::{Holds, Place};
 use crate::observed::Watch;
 use crate::reset::Reset;
@@ -74,6 +75,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) modes: Vec<Mode<S>>,
     /// By node: the edges that leave it, in their total order.
     pub(crate) leaving: Vec<Vec<EdgeIndex>>,
+    /// Propositions of which at most one is true at a time.
+    pub(crate) exclusive: Vec<Vec<String>>,
 }
 
 /// What an edge of the graph carries.
@@ -100,6 +103,10 @@ pub struct Mode<S> {
     pub flow: Option<Flow<S>>,
     /// What must hold for time to pass; without an invariant, nothing must.
     pub invariant: Option<Predicate>,
+    /// The same by numbers, where the state has them.
+    pub(crate) watch: Option<Watch<S>>,
+    /// What is chosen at each sample, case by case; see [`law`](crate::law).
+    pub commands: Vec<Command>,
 }
 
 /// A transition that has been taken.
@@ -133,6 +140,33 @@ pub struct TransitionError {
     pub part: String,
     /// What is wrong with the state or the formula.
     pub source: EvaluationError,
+}
+
+/// The invariant of a location does not hold although time is to pass there, or has passed.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("the invariant `{invariant}` of location `{location}` does not hold: {values}")]
+pub struct InvariantError {
+    /// The location.
+    pub location: &'static str,
+    /// What must hold.
+    pub invariant: String,
+    /// The variables and propositions that it names, with their values.
+    pub values: String,
+}
+
+impl InvariantError {
+    fn new(location: &'static str, invariant: &Predicate, state: &impl Valuation) -> Self {
+        let variables = invariant.variables().into_iter().map(|name| {
+            let value = state.value(name);
+            value.map_or_else(|| format!("{name} is unknown"), |value| format!("{name} = {value}"))
+        });
+        let propositions = invariant.propositions().into_iter().map(|name| {
+            let truth = state.truth(name);
+            truth.map_or_else(|| format!("{name} is unknown"), |truth| format!("{name} is {truth}"))
+        });
+        let values: Vec<String> = variables.chain(propositions).collect();
+        InvariantError { location, invariant: invariant.to_string(), values: values.join(", ") }
+    }
 }
 
 impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
@@ -185,7 +219,13 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
 
     /// The node of `location`, unless the automaton lacks it. Enums are small: looking through them
     /// is faster than any map.
+    #[inline]
     pub(crate) fn node(&self, location: L) -> Option<NodeIndex> {
+        if let Some(place) = location.place()
+            && self.locations.get(place) == Some(&location)
+        {
+            return Some(NodeIndex::new(place));
+        }
         self.locations.iter().position(|listed| *listed == location).map(NodeIndex::new)
     }
 
@@ -199,6 +239,34 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// Flow and invariant of `location`.
     pub fn mode(&self, location: L) -> Option<&Mode<S>> {
         self.modes.get(self.node(location)?.index())
+    }
+
+    /// Checks that time may pass in `location`: its invariant holds in `state`.
+    ///
+    /// # Errors
+    ///
+    /// [`InvariantError`] if it does not hold, or has no value.
+    pub fn check_invariant(&self, location: L, state: &S) -> Result<(), InvariantError> {
+        let Some(mode) = self.mode(location) else { return Ok(()) };
+        let Some(invariant) = &mode.invariant else { return Ok(()) };
+        let known = mode.watch.as_ref().and_then(|watch| watch.holds(state));
+        if known.is_some_and(|holds| holds) || invariant.holds(state).is_ok_and(|holds| holds) {
+            return Ok(());
+        }
+        Err(InvariantError::new(location.name(), invariant, state))
+    }
+
+    /// Lets `duration` ≥ 0 seconds pass in the place where `state` stands, by its
+    /// [exact](Flow::exact) flow; without one the state rests.
+    pub fn flow_in_place<P>(&self, state: &mut S, duration: f64)
+    where
+        P: Place<Location = L>,
+        S: Holds<P>,
+    {
+        let mode = self.mode(state.current().location());
+        if let Some(flow) = mode.and_then(|mode| mode.flow.as_ref()) {
+            let _is_exact = flow.advance(state, duration);
+        }
     }
 
     /// The first transition in total order that leaves `location`, has to be taken (*must* or *at
@@ -259,14 +327,24 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         self.step(&mut location, state)
     }
 
+    /// Two propositions that are true although the model says that they exclude each other.
+    fn two_at_once(&self, state: &S) -> Option<[&str; 2]> {
+        self.exclusive.iter().find_map(|group| {
+            let holds = |name: &&str| state.truth(name) == Some(true);
+            let mut true_ones = group.iter().map(String::as_str).filter(holds);
+            Some([true_ones.next()?, true_ones.next()?])
+        })
+    }
+
     fn first(
         &self,
         location: L,
         state: &S,
         eligible: impl Fn(&Transition<E, S>) -> bool,
     ) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
+        debug_assert!(self.two_at_once(state).is_none(), "{:?}", self.two_at_once(state));
         let leaving = self.node(location).and_then(|node| self.leaving.get(node.index()));
-        for &edge in leaving.into_iter().flatten() {
+        for &edge in leaving.map_or(&[][..], Vec::as_slice) {
             let transition = &self.graph[edge];
             if eligible(transition) && transition.allows(location, state)? {
                 let target = self.rows[edge.index()].target;

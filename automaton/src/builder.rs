@@ -11,6 +11,7 @@ use crate::automaton::{Automaton, Mode, Transition};
 use crate::coordinates::{Coordinate, Coordinates};
 use crate::edge::Edge;
 use crate::flow::{Flow, Rate};
+use crate::law::{Command, Laws};
 use crate::located::Transfer;
 use crate::observed::{Observed, Watch};
 use crate::reset::Reset;
@@ -39,6 +40,10 @@ pub struct Builder<L, E, S> {
     parameters: Vec<(String, f64)>,
     /// What changes alike in all locations.
     throughout: Vec<Rate<S>>,
+    /// Propositions of which at most one is true at a time.
+    exclusive: Vec<Vec<String>>,
+    /// What is chosen at samples.
+    commands: Vec<(L, Command)>,
     /// The names of all variables and propositions, where the state is not its coordinates.
     observed: Option<Names>,
     /// How a guard is looked up by numbers, where the state has them.
@@ -210,6 +215,8 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             known: None,
             parameters: Vec::new(),
             throughout: Vec::new(),
+            exclusive: Vec::new(),
+            commands: Vec::new(),
             observed: None,
             watch: |_| None,
             transfers: Vec::new(),
@@ -282,7 +289,8 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         }
         let leaving = locations.iter().map(|&location| self.leaving(location)).collect();
         let modes = locations.iter().map(|&location| self.mode(location)).collect();
-        let Builder { rows, initial, initial_state, ranges, known, parameters, .. } = self;
+        let Builder { rows, initial, initial_state, ranges, known, parameters, exclusive, .. } =
+            self;
         Ok(Automaton {
             rows,
             initial,
@@ -295,6 +303,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             graph,
             modes,
             leaving,
+            exclusive,
         })
     }
 
@@ -346,7 +355,14 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         let guards = conditions.chain(edges).map(|(place, guard)| (place, guard.predicate()));
         let invariants = self.invariants.iter();
         let invariants = invariants.map(|(location, invariant)| (location.name(), invariant));
-        for (place, predicate) in guards.chain(invariants) {
+        let commands = self.commands.iter();
+        let commands = commands.map(|(location, command)| (location.name(), &command.guard));
+        let unknown = self.exclusive.iter().flatten().find(|name| !known.contains(&name.as_str()));
+        if let Some(name) = unknown {
+            let (place, proposition) = ("propositions that exclude each other", name.clone());
+            return Err(BuildError::UnknownProposition { place, proposition });
+        }
+        for (place, predicate) in guards.chain(invariants).chain(commands) {
             if let Some(name) =
                 predicate.propositions().into_iter().find(|name| !known.contains(name))
             {
@@ -518,6 +534,9 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         for (location, invariant) in &self.invariants {
             parts.push(Part::reading(location.name(), "invariant", invariant));
         }
+        for (location, command) in &self.commands {
+            parts.push(Part::reading(location.name(), "law", &command.guard));
+        }
         parts
     }
 
@@ -554,9 +573,12 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     fn mode(&self, location: L) -> Mode<S> {
         let flow = self.flows.iter().find(|(place, _)| *place == location);
         let invariant = self.invariants.iter().find(|(place, _)| *place == location);
+        let commands = self.commands.iter().filter(|(place, _)| *place == location);
         Mode {
             flow: flow.map(|(_, flow)| flow.clone()),
             invariant: invariant.map(|(_, invariant)| invariant.clone()),
+            watch: invariant.and_then(|(_, invariant)| (self.watch)(invariant)),
+            commands: commands.map(|(_, command)| command.clone()).collect(),
         }
     }
 }
@@ -567,6 +589,21 @@ impl<L: Location, E: Event, S: Observed> Builder<L, E, S> {
     pub fn observing(mut self) -> Self {
         self.observed = Some((S::VARIABLES, S::PROPOSITIONS));
         self.watch = Watch::of;
+        self
+    }
+
+    /// States are made such that at most one of these propositions is true at a time: checks look
+    /// nowhere else, and in builds with debug assertions every step of the automaton watches it.
+    pub fn at_most_one(mut self, propositions: &[&str]) -> Self {
+        self.exclusive.push(propositions.iter().map(|&name| name.to_owned()).collect());
+        self
+    }
+
+    /// At each sample `laws` choose a value, as far as they speak of a location. Drawings and
+    /// tables show them; whoever samples asks them.
+    pub fn commanding<T>(mut self, laws: &Laws<L, S, T>) -> Self {
+        let commands = laws.commands();
+        self.commands.extend(commands.map(|(location, command)| (location, command.clone())));
         self
     }
 }

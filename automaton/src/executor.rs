@@ -136,7 +136,12 @@ pub trait System {
 /// Someone who looks on while a system runs.
 pub trait Observer<S: System + ?Sized> {
     /// A jump has been taken.
+    ///
+    /// An observer that does not look at jumps sets [`SEES_JUMPS`](Self::SEES_JUMPS) to false.
     fn jumped(&mut self, _entry: TraceEntry<S::Jump>) {}
+
+    /// Whether it is told of [jumps](Self::jumped). Where nobody looks, nothing is put together.
+    const SEES_JUMPS: bool = true;
 
     /// `duration` seconds are about to pass from `now` on; the system is in the state x⁺ of the
     /// last jump. A break ends the run here.
@@ -146,12 +151,15 @@ pub trait Observer<S: System + ?Sized> {
 }
 
 /// Nobody looks on.
-impl<S: System + ?Sized> Observer<S> for () {}
+impl<S: System + ?Sized> Observer<S> for () {
+    const SEES_JUMPS: bool = false;
+}
 
 /// A round of jumps while it is under way.
 pub struct Round<'a, J> {
     now: HybridTime,
-    report: &'a mut dyn FnMut(TraceEntry<J>),
+    /// None where nobody looks at jumps.
+    report: Option<&'a mut dyn FnMut(TraceEntry<J>)>,
 }
 
 impl<J> Round<'_, J> {
@@ -175,8 +183,17 @@ impl<J> Round<'_, J> {
         self.record(Participants::All, jump);
     }
 
+    /// The components that `participants` finds have jumped together: this is one jump. It is
+    /// asked only where an observer looks at jumps.
+    pub fn jumped_by(&mut self, jump: J, participants: impl FnOnce() -> Participants) {
+        let by = if self.report.is_some() { participants() } else { Participants::All };
+        self.record(by, jump);
+    }
+
     fn record(&mut self, by: Participants, jump: J) {
-        (self.report)(TraceEntry { at: self.now, by, jump });
+        if let Some(report) = &mut self.report {
+            report(TraceEntry { at: self.now, by, jump });
+        }
         self.now = self.now.after_jump();
     }
 }
@@ -372,12 +389,13 @@ impl Executor {
 }
 
 /// Returns the hybrid time after the jumps of the round.
-fn take_round<S: System>(
+fn take_round<S: System, O: Observer<S>>(
     system: &mut S,
-    observer: &mut impl Observer<S>,
+    observer: &mut O,
     now: HybridTime,
 ) -> Result<HybridTime, S::Error> {
-    let mut round = Round { now, report: &mut |entry| observer.jumped(entry) };
+    let report: &mut dyn FnMut(TraceEntry<S::Jump>) = &mut |entry| observer.jumped(entry);
+    let mut round = Round { now, report: O::SEES_JUMPS.then_some(report) };
     system.jump(&mut round)?;
     Ok(round.now)
 }

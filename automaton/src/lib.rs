@@ -28,6 +28,7 @@ pub mod diagram;
 pub mod edge;
 pub mod executor;
 pub mod flow;
+pub mod law;
 pub mod located;
 pub mod moment;
 pub mod named;

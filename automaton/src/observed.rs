@@ -21,6 +21,91 @@ pub trait Observed: Valuation {
     fn proposition(&self, number: usize) -> bool;
 }
 
+/// Implements [`Observed`] and [`Valuation`] for a state: each quantity and each proposition with
+/// its name, its documentation, and the expression that measures it. The glossary is a constant
+/// with the name and the documentation of each.
+///
+/// ```
+/// use pleach_automaton::{Observed, observed};
+/// use pleach_guards::Valuation;
+///
+/// struct Lamp { hours: f64, is_lit: bool }
+/// observed! {
+///     impl Observed for Lamp as lamp;
+///     /// What guards may speak of.
+///     pub const GLOSSARY;
+///     quantities {
+///         /// Hours since the lamp was made.
+///         age: lamp.hours,
+///     }
+///     propositions {
+///         /// The lamp is lit.
+///         lit: lamp.is_lit,
+///     }
+/// }
+/// let lamp = Lamp { hours: 12.0, is_lit: true };
+/// assert_eq!((lamp.quantity(0), lamp.truth("lit")), (12.0, Some(true)));
+/// assert_eq!(GLOSSARY[0], ("age", " Hours since the lamp was made."));
+/// ```
+#[macro_export]
+macro_rules! observed {
+    (
+        impl Observed for $state:ident as $this:ident;
+        $(#[$note:meta])* $visibility:vis const $glossary:ident;
+        quantities { $($(#[doc = $measure:literal])+ $quantity:ident: $number:expr,)* }
+        propositions { $($(#[doc = $text:literal])+ $name:ident: $holds:expr,)* }
+    ) => {
+        $(#[$note])*
+        $visibility const $glossary: &[(&str, &str)] = &[
+            $((stringify!($quantity), concat!($($measure),+)),)*
+            $((stringify!($name), concat!($($text),+)),)*
+        ];
+
+        const _: () = {
+            #[allow(non_camel_case_types, dead_code)]
+            enum Quantity { $($quantity,)* }
+
+            #[allow(non_camel_case_types, dead_code)]
+            enum Proposition { $($name,)* }
+
+            impl $crate::Observed for $state {
+                const VARIABLES: &'static [&'static str] = &[$(stringify!($quantity)),*];
+                const PROPOSITIONS: &'static [&'static str] = &[$(stringify!($name)),*];
+
+                fn quantity(&self, number: usize) -> f64 {
+                    let $this = self;
+                    $(if number == Quantity::$quantity as usize {
+                        return $number;
+                    })*
+                    f64::NAN
+                }
+
+                fn proposition(&self, number: usize) -> bool {
+                    let $this = self;
+                    $(if number == Proposition::$name as usize {
+                        return $holds;
+                    })*
+                    false
+                }
+            }
+
+            impl $crate::guards::Valuation for $state {
+                fn value(&self, variable: &str) -> Option<f64> {
+                    let names = <Self as $crate::Observed>::VARIABLES;
+                    let number = names.iter().position(|name| *name == variable)?;
+                    Some($crate::Observed::quantity(self, number))
+                }
+
+                fn truth(&self, proposition: &str) -> Option<bool> {
+                    let names = <Self as $crate::Observed>::PROPOSITIONS;
+                    let number = names.iter().position(|name| *name == proposition)?;
+                    Some($crate::Observed::proposition(self, number))
+                }
+            }
+        };
+    };
+}
+
 /// A guard over quantities and propositions by their numbers.
 pub(crate) struct Watch<S> {
     test: Test,
@@ -59,23 +144,22 @@ impl<S> Watch<S> {
     /// Whether the guard holds; none where a quantity is not a number, so that it has no verdict.
     #[inline]
     pub(crate) fn holds(&self, state: &S) -> Option<bool> {
-        self.judge(&self.test, state)
+        match &self.test {
+            Test::All(parts) if parts.is_empty() => Some(true),
+            Test::Proposition(number) => Some((self.proposition)(state, *number)),
+            Test::Comparison(left, relation, right) => {
+                self.compare(*left, *relation, *right, state)
+            }
+            test => self.judge(test, state),
+        }
     }
 
+    #[inline(never)]
     fn judge(&self, test: &Test, state: &S) -> Option<bool> {
         Some(match test {
             Test::Proposition(number) => (self.proposition)(state, *number),
             Test::Comparison(left, relation, right) => {
-                let (left, right) = (self.value(*left, state), self.value(*right, state));
-                if left.is_nan() || right.is_nan() {
-                    return None;
-                }
-                match relation {
-                    Relation::AtMost => left <= right,
-                    Relation::LessThan => left < right,
-                    Relation::AtLeast => left >= right,
-                    Relation::MoreThan => left > right,
-                }
+                self.compare(*left, *relation, *right, state)?
             }
             Test::Not(inner) => !self.judge(inner, state)?,
             Test::All(parts) => {
@@ -97,6 +181,25 @@ impl<S> Watch<S> {
         })
     }
 
+    #[inline]
+    fn compare(
+        &self,
+        left: Operand,
+        relation: Relation,
+        right: Operand,
+        state: &S,
+    ) -> Option<bool> {
+        let (left, right) = (self.value(left, state), self.value(right, state));
+        let order = left.partial_cmp(&right)?;
+        Some(match relation {
+            Relation::AtMost => order.is_le(),
+            Relation::LessThan => order.is_lt(),
+            Relation::AtLeast => order.is_ge(),
+            Relation::MoreThan => order.is_gt(),
+        })
+    }
+
+    #[inline]
     fn value(&self, operand: Operand, state: &S) -> f64 {
         match operand {
             Operand::Constant(value) => value,

@@ -14,6 +14,8 @@ mod faulty_models;
 mod guarantees;
 mod many_components;
 mod models;
+#[cfg(feature = "network")]
+mod network_checks;
 mod pictures;
 mod sampled_rooms;
 mod semantics;

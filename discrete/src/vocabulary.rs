@@ -52,8 +52,17 @@ macro_rules! vocabulary {
                     assert!($crate::vocabulary::all_differ(NAMES), "two names are the same");
                 NAMES[self as usize]
             }
+
+            $crate::vocabulary!(@place $kind);
         }
     )+};
+    (@place Location) => {
+        #[inline]
+        fn place(self) -> Option<usize> {
+            Some(self as usize)
+        }
+    };
+    (@place $kind:ident) => {};
     (@word $variant:ident $word:literal) => { $word };
     (@word $variant:ident) => { stringify!($variant) };
 }

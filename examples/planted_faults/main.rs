@@ -18,10 +18,11 @@ use std::{env, fmt, fs, io};
 use catalogue::{CatalogueError, Fault, faults};
 
 /// What is copied from the root of the workspace: all that the packages are built from.
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 14] = [
     "Cargo.toml",
     "Cargo.lock",
     "rustfmt.toml",
+    "docs",
     "src",
     "guards",
     "discrete",

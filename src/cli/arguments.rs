@@ -246,6 +246,14 @@ pub enum Automaton {
     Exchange,
     /// Where the mission stands: elections, advance, shifts of the secondary team
     Mission,
+    /// The control period of a robot: beacons, routes, the move, and the flow between samples
+    Control,
+    /// What an access point does for the user: announcements, elections, the end of the mission
+    Service,
+    /// The control period of an access point
+    Rounds,
+    /// What the user does
+    Request,
 }
 
 /// The languages of drawings.

@@ -2,18 +2,23 @@
 
 use super::arguments::{Automaton as Which, DiagramArguments, DiagramFormat};
 use super::status::{Failure, Status};
-use pleach::automaton::network::{dealing_automaton, duty_automaton, mission_automaton};
+use pleach::automaton::network::Automata;
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::guards::Valuation;
 
 /// Prints the drawing of an automaton.
 pub fn print(arguments: &DiagramArguments) -> Result<Status, Failure> {
-    let internal = |error: pleach::automaton::BuildError| Failure::Internal(error.to_string());
+    let automata = Automata::new().map_err(|error| Failure::Internal(error.to_string()))?;
+    let format = arguments.format;
     let drawing = match arguments.automaton {
-        Which::Duty => draw(&duty_automaton().map_err(internal)?, arguments.format),
-        Which::Exchange => draw(&dealing_automaton().map_err(internal)?, arguments.format),
-        Which::Mission => draw(&mission_automaton().map_err(internal)?, arguments.format),
+        Which::Duty => draw(&automata.duty, format),
+        Which::Exchange => draw(&automata.dealing, format),
+        Which::Mission => draw(&automata.mission, format),
+        Which::Control => draw(&automata.control, format),
+        Which::Service => draw(&automata.service, format),
+        Which::Rounds => draw(&automata.rounds, format),
+        Which::Request => draw(&automata.request, format),
     };
     println!("{}", drawing.trim_end());
     Ok(Status::Done)

@@ -7,6 +7,7 @@ use super::terminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pleach::automaton::network::record::{End, MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::Scenario;
+use pleach::discrete::Location as _;
 use pleach::mission::Watcher;
 use pleach::story;
 use std::io;

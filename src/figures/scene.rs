@@ -1,6 +1,7 @@
 //! One instant of a mission as a picture, in the visual language of Figs. 8 to 10 and 14.
 
 use pleach_automaton::network::record::Snapshot;
+use pleach_discrete::Location as _;
 use svg::Document;
 use svg::node::element::{Circle, Group, Polyline, Text};
 

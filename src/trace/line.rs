@@ -2,6 +2,7 @@
 
 use crate::automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
 use crate::automaton::network::scenario::Scenario;
+use crate::discrete::Location as _;
 use crate::discrete::network::{Phase, Role};
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
@@ -153,7 +154,7 @@ fn role_called(name: &str) -> Result<Role, String> {
 }
 
 fn phase_called(name: &str) -> Result<Phase, String> {
-    (Phase::ALL.into_iter().find(|phase| phase.name() == name))
+    (Phase::ALL.iter().copied().find(|phase| phase.name() == name))
         .ok_or_else(|| format!("no phase is called {name:?}"))
 }
 

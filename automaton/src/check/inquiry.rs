@@ -54,7 +54,7 @@ impl<'a> Inquiry<'a> {
     /// A witness that does not rest on the rounding of the model's numbers: the one that is known,
     /// or another one at ordinary numbers.
     fn robust(&self, fault: &Predicate, known: State) -> Option<State> {
-        let fault = fault.negation_normal_form();
+        let fault = self.here(fault).negation_normal_form();
         if is_robust(&fault, &known) {
             return Some(known);
         }
@@ -83,6 +83,14 @@ impl<'a> Inquiry<'a> {
         !matches!(self.decide(predicate), Decision::Impossible(_))
     }
 
+    /// The predicate, with what is given of all states.
+    fn here(&self, predicate: &Predicate) -> Predicate {
+        if self.model.given == always() {
+            return predicate.clone();
+        }
+        predicate.clone() & self.model.given.clone()
+    }
+
     /// A witness is evaluated once more: whatever a report shows, holds.
     fn decide(&self, predicate: &Predicate) -> Decision {
         let region = &self.model.region;
@@ -90,6 +98,7 @@ impl<'a> Inquiry<'a> {
             let (region, resolution) = (region.clone(), 1.0);
             Decision::Undecided(Doubt::Remainder { region, resolution })
         };
+        let predicate = &self.here(predicate);
         match decide(predicate, region, &self.effort) {
             Ok(Decision::Witness(state)) if predicate.holds(&state) != Ok(true) => open(),
             Ok(decision) => decision,

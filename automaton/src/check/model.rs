@@ -30,6 +30,8 @@ pub(crate) struct Model {
     pub(crate) has_coordinates: bool,
     /// All variables that are known to be there.
     pub(crate) region: Region,
+    /// What holds in every state because states are made so.
+    pub(crate) given: Predicate,
     /// What belongs to another component.
     pub(crate) inputs: Vec<String>,
 }
@@ -105,14 +107,16 @@ impl Model {
             initial_state: None,
             has_coordinates: automaton.known.is_some(),
             region: Region::new(),
+            given: Predicate::all(automaton.exclusive.iter().map(|group| at_most_one(group))),
             inputs: Vec::new(),
         };
         if !automaton.parameters.is_empty() {
             model.substitute(&automaton.numbers());
         }
         let declared = automaton.known.iter().flatten().map(|name| (*name).to_owned());
-        let names: Vec<String> = declared.chain(model.variables()).collect();
         let propositions = propositions_of(automaton);
+        let named = model.variables().into_iter().chain(propositions.iter().cloned());
+        let names: Vec<String> = declared.chain(named).collect();
         for name in names {
             let is_proposition = propositions.contains(&name);
             let range = if is_proposition { 0.0..=1.0 } else { automaton.range(&name) };
@@ -233,6 +237,12 @@ impl Transition {
     }
 }
 
+/// At most one of these propositions is true, in numbers.
+fn at_most_one(propositions: &[String]) -> Predicate {
+    let sum: Expression = propositions.iter().map(|name| variable(name)).sum();
+    sum.at_most(1.0)
+}
+
 /// A predicate in which every proposition is a number, at least 1 where it is true: numbers are
 /// what decisions are about.
 fn in_numbers(predicate: &Predicate) -> Predicate {
@@ -252,7 +262,7 @@ fn propositions_of<L: Location, E: Event, S: Valuation>(
     let invariants = automaton.modes.iter().filter_map(|mode| mode.invariant.as_ref());
     let guards = automaton.graph.edge_weights().map(|transition| transition.guard.predicate());
     let named = invariants.chain(guards).flat_map(Predicate::propositions);
-    named.map(str::to_owned).collect()
+    named.map(str::to_owned).chain(automaton.exclusive.iter().flatten().cloned()).collect()
 }
 
 fn motion<S>(flow: &Flow<S>) -> Motion {

@@ -27,6 +27,8 @@ pub(crate) struct Place {
     /// The rates, each by itself; or the name of the flow.
     pub flow: Vec<String>,
     pub invariant: Option<String>,
+    /// What is chosen at each sample, without the conditions, and with them.
+    pub commands: Vec<(String, String)>,
     /// Whether runs have left it out.
     pub is_missed: bool,
 }
@@ -64,7 +66,12 @@ impl Sketch {
                 None => vec![flow.name().into_owned()],
             });
             let invariant = mode.and_then(|mode| mode.invariant.as_ref()).map(ToString::to_string);
-            Place { name: location.name(), flow, invariant, is_missed: false }
+            let commands = mode.map_or(&[][..], |mode| &mode.commands);
+            let commands = commands
+                .iter()
+                .map(|it| (format!("{} := {}", it.commanded, it.name), it.to_string()))
+                .collect();
+            Place { name: location.name(), flow, invariant, commands, is_missed: false }
         };
         let rank = |edge| {
             let ranks = automaton
@@ -100,11 +107,12 @@ impl Sketch {
 }
 
 impl Place {
-    /// The name, then the flow and the invariant if there are any.
+    /// The name, then the flow, the invariant, and what is chosen at samples, if there are any.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![self.name.to_owned()];
         lines.extend(self.flow.iter().cloned());
         lines.extend(self.invariant.iter().map(|invariant| format!("while {invariant}")));
+        lines.extend(self.commands.iter().map(|(short, _)| short.clone()));
         lines
     }
 }

@@ -3,12 +3,12 @@
 use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;
 
-use super::sketch::Sketch;
+use super::sketch::{Place, Sketch};
 use crate::automaton::{Automaton, Transition};
 
 /// The automaton in Markdown: the full location × event table; below it guard and reset, a row an
 /// event where all its transitions agree, and else a row a transition; and, where time changes or
-/// restricts anything, flow and invariant of every location.
+/// restricts anything, flow and invariant of every location, and what is chosen there at samples.
 ///
 /// The name of a guard is left out where it is the formula itself.
 pub fn table<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
@@ -16,9 +16,10 @@ pub fn table<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>
     text.push('\n');
     text.push_str(&markdown(&transitions(automaton)));
     let sketch = Sketch::of(automaton);
-    if sketch.places.iter().any(|place| !place.flow.is_empty() || place.invariant.is_some()) {
+    let modes = modes(&sketch);
+    if modes.len() > 1 {
         text.push('\n');
-        text.push_str(&markdown(&modes(&sketch)));
+        text.push_str(&markdown(&modes));
     }
     text
 }
@@ -115,16 +116,26 @@ fn is_same<E, S>(one: &Transition<E, S>, other: &Transition<E, S>) -> bool {
     one.guard == other.guard && one.reset.name() == other.reset.name()
 }
 
+/// The locations, with what is said of any of them.
 fn modes(sketch: &Sketch) -> Columns {
     let places = || sketch.places.iter();
-    vec![
-        ("location", places().map(|place| format!("**{}**", place.name)).collect()),
-        ("flow", places().map(|place| or_nothing(place.flow.join(", "))).collect()),
-        (
-            "time passes while",
-            places().map(|place| or_nothing(place.invariant.clone().unwrap_or_default())).collect(),
-        ),
-    ]
+    let column = |cell: &dyn Fn(&Place) -> String| -> Vec<String> {
+        places().map(|place| or_nothing(cell(place))).collect()
+    };
+    let mut columns: Columns = vec![("location", column(&|place| format!("**{}**", place.name)))];
+    if places().any(|place| !place.flow.is_empty() || place.invariant.is_some()) {
+        let invariant = |place: &Place| place.invariant.clone().unwrap_or_default();
+        columns.push(("flow", column(&|place| place.flow.join(", "))));
+        columns.push(("time passes while", column(&invariant)));
+    }
+    if places().any(|place| !place.commands.is_empty()) {
+        let chosen = |place: &Place| -> String {
+            let cases: Vec<&str> = place.commands.iter().map(|(_, case)| case.as_str()).collect();
+            cases.join("; else ")
+        };
+        columns.push(("chosen at a sample", column(&chosen)));
+    }
+    columns
 }
 
 fn or_nothing(text: String) -> String {

@@ -1,34 +1,51 @@
-//! The automata that a robot runs, over the state of [`Robot`](super::Robot): the tables of the
-//! discrete layer with guards and resets.
+//! The automata that nodes run, each over the state of its node: the tables of the discrete layer
+//! with guards and resets, flows, invariants and laws.
 
 use crate::BuildError;
 
+use super::access_point::{RoundAutomaton, ServiceAutomaton, round_automaton, service_automaton};
 use super::robot::{
-    DealingAutomaton, DutyAutomaton, MissionAutomaton, dealing_automaton, duty_automaton,
-    mission_automaton,
+    ControlAutomaton, DealingAutomaton, DutyAutomaton, MissionAutomaton, Targets,
+    control_automaton, dealing_automaton, duty_automaton, mission_automaton, targets,
 };
+use super::user::{RequestAutomaton, request_automaton};
 
-/// The automata of a robot; all robots run the same.
+/// The automata of all nodes; nodes of one kind run the same.
 #[derive(Clone, Debug)]
 pub struct Automata {
     /// What the robot does.
     pub duty: DutyAutomaton,
+    /// Where the robot goes.
+    pub targets: Targets,
     /// The mission as the robot knows it.
     pub mission: MissionAutomaton,
     /// Where the robot stands in the exchange of duties.
     pub dealing: DealingAutomaton,
+    /// Where the robot stands in its control period.
+    pub control: ControlAutomaton,
+    /// The service of the tasks, for an access point.
+    pub service: ServiceAutomaton,
+    /// Where an access point stands in its control period.
+    pub rounds: RoundAutomaton,
+    /// What the user does.
+    pub request: RequestAutomaton,
 }
 
 impl Automata {
-    /// The automata of a robot.
+    /// The automata.
     ///
     /// # Errors
     /// Never with the tables and guards of this crate; they are checked all the same.
     pub fn new() -> Result<Self, BuildError> {
         Ok(Automata {
             duty: duty_automaton()?,
+            targets: targets(),
             mission: mission_automaton()?,
             dealing: dealing_automaton()?,
+            control: control_automaton()?,
+            service: service_automaton()?,
+            rounds: round_automaton()?,
+            request: request_automaton()?,
         })
     }
 }

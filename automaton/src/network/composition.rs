@@ -11,6 +11,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use pleach_continuous::Point;
+use pleach_discrete::network::Stage;
 
 use super::access_point::AccessPoint;
 use super::beacon::Notice;
@@ -18,7 +19,7 @@ use super::medium::Radio;
 use super::member::{Member, MemberView, Sense};
 use super::message::Message;
 use super::record::{End, MissionEvent, Outcome};
-use super::robot::{Robot, RobotError, Stage};
+use super::robot::{Robot, RobotError};
 use super::scenario::{Scenario, ValidScenario};
 use super::site::Site;
 use super::user::User;
@@ -50,9 +51,9 @@ impl KernelTimes {
     /// The part that a stage belongs to.
     const fn of(&mut self, stage: Stage) -> &mut Duration {
         match stage {
-            Stage::Sample | Stage::Beacons(_) => &mut self.coordination,
-            Stage::Move => &mut self.motion,
-            Stage::Proposals(_) | Stage::Objections(_) => &mut self.acceptance,
+            Stage::Moving | Stage::Beacons => &mut self.coordination,
+            Stage::Planning => &mut self.motion,
+            Stage::Proposals | Stage::Objections => &mut self.acceptance,
             _ => &mut self.routing,
         }
     }
@@ -183,7 +184,7 @@ impl<M: Medium<Message, Point>> System for Network<M> {
             self.events.clear();
         }
         let first = self.nodes.view(0).and_then(MemberView::robot);
-        let stage = first.map_or(Stage::Sample, Robot::stage);
+        let stage = first.map_or(Stage::Moving, Robot::stage);
         let begin = Instant::now();
         self.nodes.jump(round)?;
         *self.times.of(stage) += begin.elapsed();

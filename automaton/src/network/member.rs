@@ -95,6 +95,14 @@ impl Node for Member {
         }
     }
 
+    fn check_invariant(&self) -> Result<(), RobotError> {
+        match self {
+            Member::Robot(robot) => robot.check_invariant(),
+            Member::AccessPoint(access_point) => access_point.check_invariant(),
+            Member::User(user) => user.check_invariant(),
+        }
+    }
+
     fn body(&self) -> Point {
         match self {
             Member::Robot(robot) => robot.body(),

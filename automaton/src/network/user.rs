@@ -3,38 +3,157 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Bulletin, NodeId};
+use pleach_discrete::network::{Bulletin, NodeId, REQUESTS, Request, RequestEvent};
+use pleach_guards::network::{control, service as guards};
 
 use super::beacon::Notice;
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
 use super::robot::RobotError;
+use super::service::{Asked, Asking, Informed, Preparing, Waiting};
 use super::shared::Shared;
 use super::site::Site;
+use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::node::{Input, Node, Outputs};
+use crate::{Automaton, BuildError, Flow, Transfer};
 
 /// A user tells the first access point what there is to do, and hears from it what comes of it.
 ///
-/// The network is given one control period to find itself. Then the user repeats its request in
-/// every period until it has heard an answer.
+/// The network is given one control period to connect. Then the user repeats its request in every
+/// period until it has heard an answer.
 #[derive(Clone, Debug)]
 pub struct User {
     site: Arc<Site>,
+    request: Current<Asked>,
+    /// What is left to do of the row that was taken last.
+    acts: UserActs,
     tasks: Arc<[Point]>,
     news: Shared<Bulletin<Notice>>,
     clock: f64,
-    is_new: bool,
+}
+
+/// What a user does when it takes a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UserAct {
+    /// τ := 0.
+    RestartClock,
+    /// It sends its tasks to the first access point.
+    Ask,
+}
+
+/// What a user does when it takes a row, in this order.
+pub type UserActs = &'static [UserAct];
+
+/// The automaton of a user.
+pub type RequestAutomaton = Automaton<Request, RequestEvent, User>;
+
+crate::observed! {
+    impl Observed for User as user;
+    /// What the guards of the user speak of.
+    pub const USER_GLOSSARY;
+    quantities {
+        /// τ: seconds since the last sample.
+        clock: user.clock,
+        /// Δt: seconds from sample to sample.
+        period: user.site.settings.period,
+    }
+    propositions {
+        /// The first access point has told what becomes of its request.
+        hears_answer: user.news.sequence() > 0,
+        /// The mission is said to have ended.
+        hears_end: matches!(user.notice(), Notice::Ended { .. }),
+    }
+}
+
+impl Holds<Asked> for User {
+    type Effects = UserActs;
+
+    fn current(&self) -> &Current<Asked> {
+        &self.request
+    }
+
+    fn current_mut(&mut self) -> &mut Current<Asked> {
+        &mut self.request
+    }
+
+    fn carry_out(&mut self, acts: UserActs) {
+        self.acts = acts;
+    }
+}
+
+/// A row on which the user does `acts`, called `name`.
+fn row<A: DataOf<Asked>, B: DataOf<Asked> + Copy + Send + Sync>(
+    event: RequestEvent,
+    guard: pleach_guards::Guard,
+    name: &str,
+    acts: UserActs,
+    target: B,
+) -> Transfer<Request, RequestEvent, User> {
+    Transfer::new(event, guard, name, move |_: &A, _: &User, effects: &mut UserActs| {
+        *effects = acts;
+        target
+    })
+}
+
+/// The automaton of a user.
+///
+/// # Errors
+/// Never with the table and guards of this crate; they are checked all the same.
+pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
+    use RequestEvent as On;
+    use UserAct::{Ask, RestartClock};
+    use guards::{another_period, answer_heard, prepared, request_over};
+    let (clock, ask) = ("τ := 0", "τ := 0, ask for the tasks");
+    let waiting = |location| (location, control::waiting());
+    let builder = Automaton::builder(REQUESTS, Request::Preparing).observing();
+    let builder = [Request::Preparing, Request::Asking, Request::Waiting, Request::Informed]
+        .map(waiting)
+        .into_iter()
+        .fold(builder, |builder, (location, invariant)| {
+            let flow = Flow::exact("τ̇ = 1", |user: &mut User, duration| user.clock += duration);
+            builder.flow(location, flow).invariant(location, invariant)
+        });
+    builder
+        .carried_out(row::<Preparing, _>(On::Prepared, prepared(), clock, &[RestartClock], Asking))
+        .carried_out(row::<Preparing, _>(On::AnswerHeard, answer_heard(), "", &[], Waiting))
+        .carried_out(row::<Preparing, _>(On::EndHeard, request_over(), "", &[], Informed))
+        .carried_out(row::<Asking, _>(
+            On::PeriodOver,
+            another_period(),
+            ask,
+            &[RestartClock, Ask],
+            Asking,
+        ))
+        .carried_out(row::<Asking, _>(On::AnswerHeard, answer_heard(), "", &[], Waiting))
+        .carried_out(row::<Asking, _>(On::EndHeard, request_over(), "", &[], Informed))
+        .carried_out(row::<Waiting, _>(
+            On::PeriodOver,
+            another_period(),
+            clock,
+            &[RestartClock],
+            Waiting,
+        ))
+        .carried_out(row::<Waiting, _>(On::EndHeard, request_over(), "", &[], Informed))
+        .carried_out(row::<Informed, _>(
+            On::PeriodOver,
+            another_period(),
+            clock,
+            &[RestartClock],
+            Informed,
+        ))
+        .build()
 }
 
 impl User {
     /// A user who wants nothing yet.
     pub fn new(site: Arc<Site>) -> Self {
         User {
+            request: Current::new(Asked::Preparing(Preparing)),
+            acts: &[],
             tasks: Arc::from([]),
             news: Shared::new(Bulletin::first(Notice::Quiet)),
             clock: site.settings.period,
-            is_new: true,
             site,
         }
     }
@@ -45,14 +164,29 @@ impl User {
     }
 
     fn hear(&mut self, news: &Shared<Bulletin<Notice>>) {
-        if news.sequence() > self.news.sequence() {
+        if news.is_newer_than(&self.news) {
             self.news = news.clone();
         }
     }
 
-    /// The newest word on the mission that it knows.
+    /// The newest notice on the mission that it knows.
     pub fn notice(&self) -> &Notice {
         self.news.notice()
+    }
+
+    /// Takes a row, if one is enabled.
+    fn jump(&mut self, outputs: &mut Outputs<Message, MissionEvent>) -> Result<(), RobotError> {
+        let site = Arc::clone(&self.site);
+        site.automata.request.step_in_place::<Asked>(self)?;
+        for act in std::mem::take(&mut self.acts) {
+            match act {
+                UserAct::RestartClock => self.clock = 0.0,
+                UserAct::Ask => {
+                    outputs.send(self.desk(), Message::Request(Arc::clone(&self.tasks)))
+                }
+            }
+        }
+        Ok(())
     }
 }
 
@@ -70,14 +204,11 @@ impl Node for User {
     ) -> Result<(), RobotError> {
         match input {
             Input::Sensed(Sense::Tasks(tasks)) => self.tasks = tasks,
-            Input::Heard { message: Message::News(news), .. } => self.hear(news),
-            Input::Tick => {
-                self.clock = 0.0;
-                let waits_for_answer = self.news.sequence() == 0;
-                if !std::mem::take(&mut self.is_new) && waits_for_answer {
-                    outputs.send(self.desk(), Message::Request(Arc::clone(&self.tasks)));
-                }
+            Input::Heard { message: Message::News(news), .. } => {
+                self.hear(news);
+                self.jump(outputs)?;
             }
+            Input::Tick => self.jump(outputs)?,
             Input::Sensed(Sense::Position(_)) | Input::Heard { .. } => {}
         }
         Ok(())
@@ -88,7 +219,14 @@ impl Node for User {
     }
 
     fn flow(&mut self, duration: f64) {
-        self.clock += duration;
+        let site = Arc::clone(&self.site);
+        site.automata.request.flow_in_place::<Asked>(self, duration);
+    }
+
+    fn check_invariant(&self) -> Result<(), RobotError> {
+        let node = self.site.robots + self.site.access_points.len();
+        let holds = self.site.automata.request.check_invariant(self.request.location(), self);
+        holds.map_err(|source| RobotError::Invariant { node, source })
     }
 
     /// It stands at the first access point.

@@ -12,6 +12,7 @@
 use std::convert::Infallible;
 
 use super::{Input, Medium, Node, NodeId, Observed, Outputs};
+use crate::Participants;
 use crate::executor::{Round, System};
 
 /// A joint jump of an ensemble; who takes part stands in the trace.
@@ -36,7 +37,6 @@ pub struct Ensemble<N: Node, M> {
     has_moved: bool,
     /// Who takes part in the current jump.
     takes_part: Vec<bool>,
-    participants: Vec<NodeId>,
 }
 
 impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
@@ -45,7 +45,6 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         Ensemble {
             bodies: Vec::with_capacity(nodes.len()),
             takes_part: vec![false; nodes.len()],
-            participants: Vec::with_capacity(nodes.len()),
             outputs: Outputs::of(0),
             has_moved: true,
             nodes,
@@ -130,13 +129,11 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     }
 
     fn record(&mut self, round: &mut Round<'_, NodeJump>, jump: NodeJump) {
-        let took_part = |&id: &NodeId| self.takes_part[id];
-        self.participants.clear();
-        self.participants.extend((0..self.nodes.len()).filter(took_part));
-        match self.participants.len() == self.nodes.len() {
-            true => round.jumped_together(jump),
-            false => round.jumped_some(self.participants.as_slice().into(), jump),
-        }
+        let count = self.nodes.len();
+        round.jumped_by(jump, || {
+            let who: Box<[NodeId]> = (0..count).filter(|&id| self.takes_part[id]).collect();
+            if who.len() == count { Participants::All } else { Participants::Some(who) }
+        });
         self.takes_part.fill(false);
     }
 }
@@ -184,7 +181,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
         self.nodes.iter_mut().for_each(|node| node.flow(duration));
         self.medium.flow(duration);
         self.has_moved = true;
-        Ok(())
+        self.nodes.iter().try_for_each(Node::check_invariant)
     }
 }
 

@@ -74,6 +74,16 @@ pub trait Node {
     /// exactly that, the tick is due afterwards, whatever rounding does.
     fn flow(&mut self, duration: f64);
 
+    /// Whether what must hold while time passes holds now; nothing must unless the node says so.
+    /// It is asked after each flow, before anything else happens.
+    ///
+    /// # Errors
+    ///
+    /// What does not hold.
+    fn check_invariant(&self) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
     /// What the physical world knows of the node now.
     fn body(&self) -> Self::Body;
 }

@@ -214,6 +214,10 @@ const fn later(source: Activity, event: DutyEvent, target: Activity) -> Row<Acti
     Row { source, event, target, urgency: Urgency::AtOnce, priority: 1 }
 }
 
+const fn last(source: Activity, event: DutyEvent, target: Activity) -> Row<Activity, DutyEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority: 2 }
+}
+
 /// Two robots exchange their duties: both transitions.
 const fn exchange(mover: Activity, parked: Activity) -> [Row<Activity, DutyEvent>; 2] {
     [row(mover, parked.taken_over(), parked), row(parked, mover.taken_over(), mover)]
@@ -233,7 +237,7 @@ macro_rules! rows {
 /// The table of a robot's duty.
 ///
 /// Priority 0: what a step of the mission or an exchange asks for. Priority 1: what the robot
-/// itself finds about its post.
+/// itself finds about its post. Priority 2: what it finds once it is attached to the parent it wants.
 pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
     use Activity::*;
     use DutyEvent as On;
@@ -269,7 +273,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         later(Standby, On::Attached, Standby),
         later(Following, On::Attached, Following),
         later(Leading, On::Attached, Leading),
-        later(Standby, On::Promoted, Relay),
+        last(Standby, On::Promoted, Relay),
         later(Relay, On::Branched, Junction),
         later(Relay, On::Retired, Standby),
         later(Junction, On::Merged, Relay),

@@ -4,6 +4,7 @@
 pub mod activity;
 pub mod agreement;
 pub mod bulletin;
+pub mod control;
 pub mod dealing;
 pub mod election;
 pub mod exchange;
@@ -12,11 +13,13 @@ pub mod lineage;
 pub mod path;
 pub mod post;
 pub mod role;
+pub mod service;
 pub mod tables;
 
 pub use activity::{Activity, DUTIES, DutyEvent};
 pub use agreement::Agreement;
 pub use bulletin::Bulletin;
+pub use control::{CONTROL, ROUNDS, Round, RoundEvent, Stage, StageEvent};
 pub use dealing::{DEALINGS, Dealing, DealingEvent};
 pub use election::{Bid, Election};
 pub use exchange::{Dealings, Exchange, Reply};
@@ -25,6 +28,7 @@ pub use lineage::Lineage;
 pub use path::{Hop, Path, Subgroup};
 pub use post::{Anchor, Post, PostId, PostKind};
 pub use role::{Phase, Role};
+pub use service::{REQUESTS, Request, RequestEvent, SERVICE, Service, ServiceEvent};
 pub use tables::{MISSION, MissionStep};
 
 /// A node of the network: robots are numbered first, from 0, then access points.

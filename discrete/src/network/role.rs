@@ -1,5 +1,7 @@
 //! What a robot is for the network, and where the mission stands for it.
 
+use crate::vocabulary;
+
 /// The role of a robot (Sec. II and V-D of the paper).
 ///
 /// Being a junction and being a leaf are facts about the post that a robot holds; where both
@@ -38,47 +40,22 @@ impl Role {
     }
 }
 
-/// The phase of the mission, as one robot knows it (Algorithms 1 to 5).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Phase {
-    /// No task is announced.
-    Idle,
-    /// The leader of the announced task is being elected (Algorithm 1).
-    LeaderElection,
-    /// The primary team is the active team (Sec. V-A3).
-    Advance,
-    /// A recruit is being elected (Remark 5.4).
-    RecruitElection,
-    /// The path Σ is announced and its break points are agreed (Sec. V-C2).
-    PathAgreement,
-    /// A subgroup of the secondary team is the active team (Algorithm 3).
-    Shift,
-    /// The mission has ended.
-    Ended,
-}
-
-impl Phase {
-    /// Every phase, in the order of their declaration.
-    pub const ALL: [Phase; 7] = [
-        Phase::Idle,
-        Phase::LeaderElection,
-        Phase::Advance,
-        Phase::RecruitElection,
-        Phase::PathAgreement,
-        Phase::Shift,
-        Phase::Ended,
-    ];
-
-    /// The name used in traces and diagrams.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Phase::Idle => "idle",
-            Phase::LeaderElection => "leader election",
-            Phase::Advance => "advance",
-            Phase::RecruitElection => "recruit election",
-            Phase::PathAgreement => "path agreement",
-            Phase::Shift => "shift",
-            Phase::Ended => "ended",
-        }
+vocabulary! {
+    /// The phase of the mission, as one robot knows it (Algorithms 1 to 5).
+    pub enum Phase: Location {
+        /// No task is announced.
+        Idle = "idle",
+        /// The leader of the announced task is being elected (Algorithm 1).
+        LeaderElection = "leader election",
+        /// The primary team is the active team (Sec. V-A3).
+        Advance = "advance",
+        /// A recruit is being elected (Remark 5.4).
+        RecruitElection = "recruit election",
+        /// The path Σ is announced and its break points are agreed (Sec. V-C2).
+        PathAgreement = "path agreement",
+        /// A subgroup of the secondary team is the active team (Algorithm 3).
+        Shift = "shift",
+        /// The mission has ended.
+        Ended = "ended",
     }
 }

@@ -4,95 +4,46 @@
 //! into events, and the resets, are attached to the rows where numbers are known.
 
 use super::Phase;
-use crate::{Event, Location, Row, TransitionTable, Urgency};
+use crate::{Row, TransitionTable, Urgency, vocabulary};
 
 #[cfg(any(kani, test))]
 mod proofs;
 
-impl Location for Phase {
-    const ALL: &'static [Self] = &Phase::ALL;
-
-    fn name(self) -> &'static str {
-        Phase::name(self)
-    }
-}
-
-/// What moves the mission on, in the eyes of one robot (Algorithms 1, 3 and 5).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum MissionStep {
-    /// The mission has ended.
-    Ended,
-    /// A task is announced.
-    Announced,
-    /// The leader election is over (Algorithm 1).
-    Elected,
-    /// The elected leader has past duties: it calls for a recruit (L_b = 1).
-    Bound,
-    /// The primary team is at a local stationary point: p₁ calls for a recruit (L_b = 0).
-    Trapped,
-    /// The primary team cannot move although it has room.
-    Blocked,
-    /// A recruit is called for (Remark 5.4).
-    Called,
-    /// This robot won the recruit election: it announces the path Σ.
-    Recruited,
-    /// The recruit election is over without a recruit.
-    Unaided,
-    /// The path Σ is announced.
-    PathHeard,
-    /// The break points 𝓑 are agreed.
-    PointsAgreed,
-    /// Every member of the active subgroup has arrived, eq. (26).
-    SubgroupArrived,
-    /// The last robot of Σ is relieved: it joins the primary team, or leads it.
-    Relieved,
-    /// The primary team is the active team again.
-    Resumed,
-    /// The leader has reached its task, eq. (2).
-    Reached,
-    /// The task is serviced.
-    Serviced,
-}
-
-impl Event for MissionStep {
-    const ALL: &'static [Self] = &[
-        MissionStep::Ended,
-        MissionStep::Announced,
-        MissionStep::Elected,
-        MissionStep::Bound,
-        MissionStep::Trapped,
-        MissionStep::Blocked,
-        MissionStep::Called,
-        MissionStep::Recruited,
-        MissionStep::Unaided,
-        MissionStep::PathHeard,
-        MissionStep::PointsAgreed,
-        MissionStep::SubgroupArrived,
-        MissionStep::Relieved,
-        MissionStep::Resumed,
-        MissionStep::Reached,
-        MissionStep::Serviced,
-    ];
-
-    fn name(self) -> &'static str {
-        match self {
-            MissionStep::Ended => "ended",
-            MissionStep::Announced => "announced",
-            MissionStep::Elected => "elected",
-            MissionStep::Bound => "bound",
-            MissionStep::Trapped => "trapped",
-            MissionStep::Blocked => "blocked",
-            MissionStep::Called => "called",
-            MissionStep::Recruited => "recruited",
-            MissionStep::Unaided => "unaided",
-            MissionStep::PathHeard => "path heard",
-            MissionStep::PointsAgreed => "points agreed",
-            MissionStep::SubgroupArrived => "subgroup arrived",
-            MissionStep::Relieved => "relieved",
-            MissionStep::Resumed => "resumed",
-            MissionStep::Reached => "reached",
-            MissionStep::Serviced => "serviced",
-        }
+vocabulary! {
+    /// What moves the mission on, in the eyes of one robot (Algorithms 1, 3 and 5).
+    pub enum MissionStep: Event {
+        /// The mission has ended.
+        Ended = "ended",
+        /// A task is announced.
+        Announced = "announced",
+        /// The leader election is over (Algorithm 1).
+        Elected = "elected",
+        /// The elected leader has past duties: it calls for a recruit (L_b = 1).
+        Bound = "bound",
+        /// The primary team is at a local stationary point: p₁ calls for a recruit (L_b = 0).
+        Trapped = "trapped",
+        /// The primary team cannot move although it has room.
+        Blocked = "blocked",
+        /// A recruit is called for (Remark 5.4).
+        Called = "called",
+        /// This robot won the recruit election: it announces the path Σ.
+        Recruited = "recruited",
+        /// The recruit election is over without a recruit.
+        Unaided = "unaided",
+        /// The path Σ is announced.
+        PathHeard = "path heard",
+        /// The break points 𝓑 are agreed.
+        PointsAgreed = "points agreed",
+        /// Every member of the active subgroup has arrived, eq. (26).
+        SubgroupArrived = "subgroup arrived",
+        /// The last robot of Σ is relieved: it joins the primary team, or leads it.
+        Relieved = "relieved",
+        /// The primary team is the active team again.
+        Resumed = "resumed",
+        /// The leader has reached its task, eq. (2).
+        Reached = "reached",
+        /// The task is serviced.
+        Serviced = "serviced",
     }
 }
 
@@ -107,7 +58,8 @@ const fn step(
 
 /// The table of the mission automaton.
 ///
-/// Priority 0: what the newest notice says. Priority 1: what the robot itself finds.
+/// Priority 0: what the newest notice says. Priorities from 1: what the robot itself finds; a team
+/// that has reached its task calls for no recruit, and one that can call for one does not give up.
 pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::Idle, MissionStep::Ended, Phase::Ended),
     step(0, Phase::Idle, MissionStep::Announced, Phase::LeaderElection),
@@ -124,8 +76,8 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::Advance, MissionStep::Called, Phase::RecruitElection),
     step(1, Phase::Advance, MissionStep::Bound, Phase::RecruitElection),
     step(1, Phase::Advance, MissionStep::Reached, Phase::Idle),
-    step(1, Phase::Advance, MissionStep::Trapped, Phase::RecruitElection),
-    step(1, Phase::Advance, MissionStep::Blocked, Phase::Ended),
+    step(2, Phase::Advance, MissionStep::Trapped, Phase::RecruitElection),
+    step(3, Phase::Advance, MissionStep::Blocked, Phase::Ended),
     step(0, Phase::RecruitElection, MissionStep::Ended, Phase::Ended),
     step(0, Phase::RecruitElection, MissionStep::Announced, Phase::LeaderElection),
     step(0, Phase::RecruitElection, MissionStep::PathHeard, Phase::PathAgreement),
@@ -141,13 +93,14 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::Shift, MissionStep::Resumed, Phase::Advance),
     step(1, Phase::Shift, MissionStep::SubgroupArrived, Phase::Shift),
     step(1, Phase::Shift, MissionStep::Relieved, Phase::Advance),
-    step(1, Phase::Shift, MissionStep::Blocked, Phase::Ended),
+    step(3, Phase::Shift, MissionStep::Blocked, Phase::Ended),
 ]);
 
 #[cfg(test)]
 mod tests {
     use super::super::{Activity, DutyEvent};
     use super::*;
+    use crate::{Event, Location};
 
     #[test]
     fn the_table_is_deterministic_and_every_location_is_reached() {
@@ -166,7 +119,7 @@ mod tests {
         };
         names(Activity::ALL.iter().map(|activity| activity.name()).collect());
         names(DutyEvent::ALL.iter().map(|event| event.name()).collect());
-        names(Phase::ALL.iter().map(|&phase| Location::name(phase)).collect());
+        names(Phase::ALL.iter().map(|phase| phase.name()).collect());
         names(MissionStep::ALL.iter().map(|step| step.name()).collect());
     }
 

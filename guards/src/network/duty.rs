@@ -143,5 +143,6 @@ pub fn retired() -> Guard {
 
 /// It takes over a duty called `name` in an exchange.
 pub fn takes(name: &'static str) -> Guard {
-    Guard::new(&format!("takes {name}"), proposition(&format!("takes {name}")))
+    let fact = format!("takes_{}", name.replace(' ', "_"));
+    Guard::new(&format!("takes {name}"), proposition(&fact))
 }

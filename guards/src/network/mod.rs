@@ -4,8 +4,11 @@
 //! Real quantities have margins in their unit; propositions are true or false. The guards of one
 //! activity or phase exclude one another or are ordered by its table.
 
+pub mod control;
 pub mod dealing;
 pub mod duty;
+pub mod service;
+pub mod target;
 
 use crate::{Guard, proposition, variable};
 

@@ -5,6 +5,8 @@
 //! stands, and for how long it has not got on. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
+use std::collections::VecDeque;
+
 use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Election, NodeId, Phase, Subgroup};
 
@@ -17,7 +19,8 @@ impl Robot {
     /// In place of the flow: the robot stands at `position`, and has not got on for
     /// `still_periods` control periods.
     pub fn stand_at(&mut self, position: Point, still_periods: u32) {
-        (self.position, self.arrival, self.resting_place) = (position, position, position);
+        (self.position, self.arrival) = (position, position);
+        self.resting_places = VecDeque::from([position]);
         self.still_periods = still_periods;
         self.stir();
     }
@@ -140,7 +143,8 @@ impl Robot {
             rate: _,
             site: _,
             // Between two stimuli a robot is at rest and has nothing left to do.
-            stage: _,
+            control: _,
+            acts: _,
             is_new: _,
             label: _,
             facts: _,
@@ -173,10 +177,11 @@ impl Robot {
             destination: _,
             waypoint: _,
             proposal: _,
+            problem: _,
             heard_moves: _,
             must_judge_moves: _,
             arrival: _,
-            resting_place: _,
+            resting_places: _,
         } = self;
         let waited = match self.phase() {
             Phase::RecruitElection => (*waited_rounds).min(2 * self.longest_wait() + 1),

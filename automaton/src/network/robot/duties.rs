@@ -23,6 +23,7 @@ use super::super::duty::{
 };
 use super::super::record::MissionEvent;
 use super::Robot;
+use super::target::targets;
 
 /// The automaton of a robot's duty.
 pub type DutyAutomaton = Automaton<Activity, DutyEvent, Robot>;
@@ -415,6 +416,29 @@ fn attached<A: DataOf<Duty> + Holder + From<Held>>() -> Row {
     )
 }
 
+/// What a jump takes place together with, a step of the mission or an exchange of duties, is one
+/// thing at a time: the propositions that speak of it exclude each other, and `step`, which says
+/// something of several steps.
+fn labels(step: &'static str) -> [&'static str; 15] {
+    [
+        step,
+        "wins",
+        "on_coming_path",
+        "is_relieved",
+        "reaches_task",
+        "takes_standby",
+        "takes_relay",
+        "takes_junction",
+        "takes_leaf",
+        "takes_bound_leader",
+        "takes_waiting_on_the_path",
+        "takes_awaiting_release",
+        "takes_shifting_along_the_path",
+        "takes_following_the_team",
+        "takes_leading_the_team",
+    ]
+}
+
 /// The duty automaton (Algorithms 3 and 4, Remark 5.6).
 ///
 /// # Errors
@@ -423,6 +447,11 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
     use DutyEvent as On;
     let automaton = Automaton::builder(DUTIES, Activity::Standby)
         .observing()
+        .commanding(&targets())
+        .at_most_one(&labels("called_off"))
+        .at_most_one(&labels("superseded"))
+        .at_most_one(&labels("dissolved"))
+        .at_most_one(&labels("takes_post_ahead"))
         .carried_out(Transfer::new(On::Elected, guards::elected(), "lead", lead))
         .carried_out(bound::<Standby>())
         .carried_out(bound::<Relay>())

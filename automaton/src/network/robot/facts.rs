@@ -3,16 +3,15 @@
 //! Numbers end here. The guards turn what is measured into events, and the tables of the duty and
 //! mission automata know events only.
 
-use pleach_discrete::Location as _;
+use pleach_continuous::network::motion::FEASIBILITY_TOLERANCE;
 use pleach_discrete::network::{Activity, MissionStep, Phase, Post};
-use pleach_guards::Valuation;
-
-use crate::Observed;
 
 use super::super::beacon::Notice;
 use super::super::duty::{AwaitingRelease, Duty, Waiting};
+use super::super::scenario::RoutingMethod;
 use super::Robot;
 use super::attachment::PATIENCE_WITH_BARREN_POSTS;
+use super::step::{MAX_SWEEPS, NEGOTIATION_ROUNDS};
 
 macro_rules! facts {
     (
@@ -30,81 +29,17 @@ macro_rules! facts {
             $($(#[doc = $text])+ pub $name: bool,)+
         }
 
-        /// The names of the quantities that guards may speak of.
-        pub const VARIABLES: &[&str] =
-            &[$(stringify!($quantity),)+ $(stringify!($live_quantity)),+];
-
-        /// The names of the propositions that guards may speak of.
-        pub const PROPOSITIONS: &[&str] = &[
-            "takes standby",
-            "takes relay",
-            "takes junction",
-            "takes leaf",
-            "takes bound leader",
-            "takes waiting on the path",
-            "takes awaiting release",
-            "takes shifting along the path",
-            "takes following the team",
-            "takes leading the team",
-            $(stringify!($name),)+
-            $(stringify!($live),)+
-        ];
-
-        /// The numbers of the quantities.
-        #[allow(non_camel_case_types)]
-        enum Quantity { $($quantity,)+ $($live_quantity,)+ }
-
-        /// The numbers of the propositions, behind those of the duties to be taken over.
-        #[allow(non_camel_case_types)]
-        enum Proposition { $($name,)+ $($live,)+ }
-
-        impl Observed for Robot {
-            const VARIABLES: &'static [&'static str] = VARIABLES;
-            const PROPOSITIONS: &'static [&'static str] = PROPOSITIONS;
-
-            fn quantity(&self, number: usize) -> f64 {
-                let $robot = self;
-                $(if number == Quantity::$quantity as usize {
-                    return $robot.facts.$quantity;
-                })+
-                $(if number == Quantity::$live_quantity as usize {
-                    return $number;
-                })+
-                f64::NAN
+        crate::observed! {
+            impl Observed for Robot as $robot;
+            /// Quantities and propositions with what they say, in the order of their declaration.
+            pub const GLOSSARY;
+            quantities {
+                $($(#[doc = $measure])+ $quantity: $robot.facts.$quantity,)+
+                $($(#[doc = $live_measure])+ $live_quantity: $number,)+
             }
-
-            fn proposition(&self, number: usize) -> bool {
-                let $robot = self;
-                let Some(number) = number.checked_sub(Activity::ALL.len()) else {
-                    return $robot.takes_over(Activity::ALL[number]);
-                };
-                $(if number == Proposition::$name as usize {
-                    return $robot.facts.$name;
-                })+
-                $(if number == Proposition::$live as usize {
-                    return $holds;
-                })+
-                false
-            }
-        }
-
-        /// Quantities and propositions with what they say, in the order of their declaration.
-        pub const GLOSSARY: &[(&str, &str)] = &[
-            $((stringify!($quantity), concat!($($measure),+)),)+
-            $((stringify!($live_quantity), concat!($($live_measure),+)),)+
-            $((stringify!($name), concat!($($text),+)),)+
-            $((stringify!($live), concat!($($live_text),+)),)+
-        ];
-
-        impl Valuation for Robot {
-            fn value(&self, variable: &str) -> Option<f64> {
-                let number = VARIABLES.iter().position(|name| *name == variable)?;
-                Some(self.quantity(number))
-            }
-
-            fn truth(&self, proposition: &str) -> Option<bool> {
-                let number = PROPOSITIONS.iter().position(|name| *name == proposition)?;
-                Some(self.proposition(number))
+            propositions {
+                $($(#[doc = $text])+ $name: $robot.facts.$name,)+
+                $($(#[doc = $live_text])+ $live: $holds,)+
             }
         }
     };
@@ -173,6 +108,30 @@ facts! {
             barren: f64::from(robot.barren_periods),
             /// Control periods after which a post without a branch is given up.
             barren_patience: f64::from(PATIENCE_WITH_BARREN_POSTS),
+            /// τ: seconds since the last sample.
+            clock: robot.time_since_sample(),
+            /// Δt: seconds from sample to sample.
+            period: robot.site.settings.period,
+            /// By how much it is outside of the region that it was given at the last sample.
+            outside: robot.outside(),
+            /// By how much rounding may take it outside.
+            rounding: FEASIBILITY_TOLERANCE,
+            /// The number of this round of beacons.
+            round: robot.control.count() as f64,
+            /// The number of rounds in this control period.
+            rounds: robot.rounds_of_this_period() as f64,
+            /// The number of this iteration of the routes.
+            iteration: robot.control.count() as f64,
+            /// The number of iterations in a control period.
+            iterations: robot.site.settings.routing_iterations as f64,
+            /// The number of this sweep of the routes.
+            sweep: robot.control.count() as f64,
+            /// The number of sweeps in a control period.
+            sweeps: MAX_SWEEPS as f64,
+            /// How often moves have been judged in this control period.
+            attempt: robot.control.count() as f64,
+            /// How often they are judged, the last time not counted.
+            attempts: NEGOTIATION_ROUNDS as f64,
         }
         propositions {
             /// It is exchanging duties with another robot.
@@ -217,6 +176,46 @@ facts! {
             may_give: robot.may_be_relieved(),
             /// The mover has heard its reply.
             reply_heard: robot.is_reply_heard(),
+            /// The mission has ended, as far as it knows.
+            mission_over: robot.phase() == Phase::Ended,
+            /// A robot is still attached to the post that it has left, and to the robot itself.
+            held_back: robot.is_held_by_old_news(),
+            /// A mover that cannot pass asks for way, and it stands in it.
+            asked_for_way: robot.way_to_clear().is_some(),
+            /// It is off the reference of its post.
+            off_post: robot.is_off_post(),
+            /// A mover is near.
+            near_mover: robot.is_near_mover(),
+            /// A subgroup of Σ is the active team.
+            in_active_subgroup: robot.active_subgroup().is_some(),
+            /// It is off the place ahead on Σ.
+            off_place_ahead: robot.is_off_place_ahead(),
+            /// The primary team is the active team.
+            advances: robot.phase() == Phase::Advance,
+            /// A redundant robot is attached to its post.
+            bears_redundant: robot.bears_redundant(),
+            /// Routes are found by ADAL.
+            adal: robot.site.settings.routing_method == RoutingMethod::Adal,
+            /// It exchanges duties now, and takes over that of a robot on standby.
+            takes_standby: robot.takes_over(Activity::Standby),
+            /// It exchanges duties now, and takes over that of a relay.
+            takes_relay: robot.takes_over(Activity::Relay),
+            /// It exchanges duties now, and takes over that of a junction.
+            takes_junction: robot.takes_over(Activity::Junction),
+            /// It exchanges duties now, and takes over that of a leaf.
+            takes_leaf: robot.takes_over(Activity::Leaf),
+            /// It exchanges duties now, and takes over that of a bound leader.
+            takes_bound_leader: robot.takes_over(Activity::Bound),
+            /// It exchanges duties now, and takes over that of a robot that waits on Σ.
+            takes_waiting_on_the_path: robot.takes_over(Activity::Waiting),
+            /// It exchanges duties now, and takes over that of a leader that awaits its release.
+            takes_awaiting_release: robot.takes_over(Activity::AwaitingRelease),
+            /// It exchanges duties now, and takes over that of a robot that shifts along Σ.
+            takes_shifting_along_the_path: robot.takes_over(Activity::Shifting),
+            /// It exchanges duties now, and takes over that of a member of the primary team.
+            takes_following_the_team: robot.takes_over(Activity::Following),
+            /// It exchanges duties now, and takes over that of the leader.
+            takes_leading_the_team: robot.takes_over(Activity::Leading),
             /// It finds now that it has reached its task.
             reaches_task: robot.takes_step(MissionStep::Reached),
         }

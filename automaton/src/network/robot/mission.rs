@@ -164,8 +164,14 @@ fn resumed<A: DataOf<Mission>>() -> Row {
 /// Never with the table and guards of this crate; they are checked all the same.
 pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
+    // A notice says one thing; an election is won or in vain; a subgroup is on its way or none is.
+    let notices =
+        ["announced", "called", "path_announced", "resumed", "service_announced", "end_announced"];
     Automaton::builder(MISSION, Phase::Idle)
         .observing()
+        .at_most_one(&notices)
+        .at_most_one(&["won", "unaided"])
+        .at_most_one(&["subgroup_arrived", "relieved"])
         .carried_out(ended::<Idle>())
         .carried_out(ended::<LeaderElection>())
         .carried_out(ended::<Advance>())

@@ -11,6 +11,7 @@
 
 mod abstraction;
 mod attachment;
+mod control;
 mod dealing;
 mod duties;
 mod exchange;
@@ -24,32 +25,37 @@ mod path;
 mod recruit;
 mod routing;
 mod step;
+mod target;
 mod team;
 mod yielding;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use pleach_continuous::geometry::Destination;
 use pleach_continuous::network::acceptance::Segment;
+use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
     Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Post, PostId,
     Role,
 };
 
+pub use control::{Act, Acts, ControlAutomaton, control_automaton};
 pub use dealing::{Deal, DealingAutomaton, DealingEffect, dealing_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
-pub use facts::{Facts, GLOSSARY, PROPOSITIONS, VARIABLES};
+pub use facts::{Facts, GLOSSARY};
 pub use links::TreeLink;
 pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
 pub use routing::RouteLink;
-pub use step::{RobotError, Stage};
+pub use step::RobotError;
+pub use target::{Targets, targets};
 
 use crate::automaton::TransitionError;
 use crate::located::Current;
 
 use super::beacon::{Beacon, Notice, TeamReport, Voice};
+use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
@@ -66,8 +72,9 @@ pub struct Robot {
     rate: f64,
     site: Arc<Site>,
 
-    // Where it stands in its control period, and whether that is its first.
-    stage: Stage,
+    // Where it stands in its control period, what it does now, and whether that is its first.
+    control: Current<Control>,
+    acts: Acts,
     is_new: bool,
 
     // Its continuous state: x, u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
@@ -146,10 +153,13 @@ pub struct Robot {
     destination: Option<Destination>,
     waypoint: Option<Point>,
     proposal: Option<Segment>,
+    /// Problem (21) of the last sample, if it has one: the region in which the robot moves.
+    problem: Option<MotionProblem>,
     heard_moves: Vec<(NodeId, Segment)>,
     must_judge_moves: bool,
     arrival: Point,
-    resting_place: Point,
+    /// Where it has been, from the last place on, each off those before.
+    resting_places: VecDeque<Point>,
     still_periods: u32,
 
     // What it tells observers; no robot reads it.
@@ -175,7 +185,8 @@ impl Robot {
         Robot {
             id,
             rate,
-            stage: Stage::Sample,
+            control: Current::new(Control::Moving(Moving {})),
+            acts: &[],
             is_new: true,
             position,
             velocity: Vector::zeros(),
@@ -228,10 +239,11 @@ impl Robot {
             destination: None,
             waypoint: None,
             proposal: None,
+            problem: None,
             heard_moves: Vec::new(),
             must_judge_moves: false,
             arrival: position,
-            resting_place: position,
+            resting_places: VecDeque::from([position]),
             still_periods: 0,
             log: Vec::new(),
             site,

@@ -21,6 +21,7 @@ use super::super::scenario::MotionSolver;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::links::TreeLink;
+use crate::automaton::TransitionError;
 use crate::node::Outputs;
 
 /// A robot this share of ρ from the reference of its post has settled.
@@ -42,6 +43,8 @@ const NEARBY: f64 = 0.1;
 const OBSTINACY: u32 = 3;
 /// A robot that stays within this share of ρ or σ, the smaller one, stands still.
 const STILL: f64 = 0.3;
+/// A robot that comes back to one of this many places at which it has been last stands still.
+const RESTING_PLACES: usize = 8;
 /// A proposed move shorter than this share of σ is not made.
 const LEAST_MOVE: f64 = 1e-6;
 /// Relative slack when lengths are compared with limits: they are sums of rounded ones.
@@ -60,30 +63,10 @@ impl Robot {
         }
     }
 
-    /// ψ_i: where the robot goes now (Algorithm 2), if it goes anywhere.
-    pub fn goal(&self) -> Option<Point> {
-        if self.is_engaged() || self.phase() == Phase::Ended || self.is_held_by_old_news() {
-            return None;
-        }
-        if let Duty::Shifting(_) = *self.duty {
-            self.active_subgroup()?;
-            return self.next_hop().map(|hop| hop.place.reference).filter(|&p| self.is_off(p));
-        }
-        if self.duty.is_primary() {
-            let waits = self.phase() != Phase::Advance
-                || self.leads() && (self.facts.distance <= self.reach() || self.bears_others());
-            return if waits { None } else { self.team_goal() };
-        }
-        let station = self.duty.station()?;
-        self.place_aside().or_else(|| {
-            (self.is_off(station.reference) && !self.is_near_mover()).then_some(station.reference)
-        })
-    }
-
     /// Whether somebody that hangs on the post that this robot has left has not heard of it, and
     /// still hangs on the robot: it would keep to the one that goes, and not to the one that came.
     /// Where nobody came, the robot stands for its post on the way.
-    fn is_held_by_old_news(&self) -> bool {
+    pub(super) fn is_held_by_old_news(&self) -> bool {
         self.duty.left().is_some_and(|left| {
             self.holder(left).is_some()
                 && self.neighbours.iter().any(|neighbour| {
@@ -94,11 +77,11 @@ impl Robot {
     }
 
     /// Redundant robots still hang on the new leader: they need a moment to hang elsewhere.
-    fn bears_others(&self) -> bool {
+    pub(super) fn bears_redundant(&self) -> bool {
         self.children().any(|child| child.post().is_some_and(|post| post.is_redundant()))
     }
 
-    fn is_off(&self, reference: Point) -> bool {
+    pub(super) fn is_off(&self, reference: Point) -> bool {
         (reference - self.position).norm() > SETTLED * self.clearance()
     }
 
@@ -142,11 +125,21 @@ impl Robot {
     }
 
     /// Lines 4 to 7 of Algorithm 5: the next position, if the robot moves.
-    pub(super) fn propose(&mut self) {
-        self.proposal = None;
+    ///
+    /// # Errors
+    /// When a guard of its target has no value.
+    pub(super) fn propose(&mut self) -> Result<(), TransitionError> {
+        let target = self.target()?;
+        self.approach(target);
+        Ok(())
+    }
+
+    /// Solves the motion problem towards `goal` and keeps its solution as the proposal.
+    fn approach(&mut self, goal: Option<Point>) {
+        (self.proposal, self.problem) = (None, None);
         self.heard_moves.clear();
         self.must_judge_moves = true;
-        let Some(goal) = self.goal() else {
+        let Some(goal) = goal else {
             self.waypoint = None;
             return;
         };
@@ -165,7 +158,15 @@ impl Robot {
             && self.site.free_space.sees(segment.from, segment.to)
         {
             self.proposal = Some(segment);
+            self.problem = Some(problem);
         }
+    }
+
+    /// By how much the robot is outside of the region that the motion problem has given it at the
+    /// last sample: cell, trust region, posts and links; 0 if it stands still.
+    pub(super) fn outside(&self) -> f64 {
+        let margin = self.problem.as_ref().map_or(0.0, |it| it.smallest_margin(&self.position));
+        (-margin).max(0.0)
     }
 
     /// a₁ of the geodesic to the goal, round parked robots where that is a short way round.
@@ -383,10 +384,11 @@ impl Robot {
     pub(super) fn set_off(&mut self) {
         let segment = self.own_move();
         let step = self.site.settings.step_radius;
-        // Going to and fro is standing still as well.
+        // Going to and fro is standing still as well, between two places or a few.
         let leash = STILL * self.clearance().min(step);
-        if (segment.to - self.resting_place).norm() > leash {
-            self.resting_place = segment.to;
+        if self.resting_places.iter().all(|place| (segment.to - place).norm() > leash) {
+            self.resting_places.truncate(RESTING_PLACES - 1);
+            self.resting_places.push_front(segment.to);
             self.still_periods = 0;
         } else {
             self.still_periods = self.still_periods.saturating_add(1);

@@ -6,56 +6,30 @@
 //! τ = Δt.
 
 use pleach_continuous::Point;
-use pleach_discrete::network::NodeId;
+use std::sync::Arc;
 
+use pleach_discrete::network::{NodeId, Stage};
+
+use super::super::control::Control;
 use super::super::member::Sense;
 use super::super::message::Message;
 use super::super::record::MissionEvent;
-use super::super::scenario::RoutingMethod;
 use super::Robot;
-use crate::automaton::TransitionError;
+use crate::automaton::{InvariantError, TransitionError};
+use crate::located::Place as _;
 use crate::node::{Input, Node, Outputs};
 
 /// Sweeps until the routes are feasible: with each, overloaded robots are relieved of what does
 /// not come over the tree, and a tree that can carry the rates needs few.
-const MAX_SWEEPS: usize = 6;
+pub(super) const MAX_SWEEPS: usize = 6;
 /// Rounds in which proposals are checked and halved; a mover that still meets an objection in the
 /// one after them gives its move up.
-const NEGOTIATION_ROUNDS: usize = 8;
+pub(super) const NEGOTIATION_ROUNDS: usize = 8;
 /// More transitions than this at one instant are taken for endless; a mission has about ten
 /// steps, and a robot takes a few of them at a time.
 const MOST_JUMPS: usize = 32;
 
 type Out = Outputs<Message, MissionEvent>;
-
-/// Where a robot stands in its control period: what it waits for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// The next sample, while it moves.
-    Sample,
-    /// Beacons, in this round.
-    Beacons(usize),
-    /// The flows of the period before over the links as they are now; for ADAL.
-    OldFlows,
-    /// Multipliers, in this iteration.
-    Multipliers(usize),
-    /// Flows, in this iteration.
-    Flows(usize),
-    /// The demands of its children in the tree, in this sweep.
-    Demands(usize),
-    /// The flows after this sweep.
-    SweptFlows(usize),
-    /// Whether somebody cannot pass on what it is sent after this sweep.
-    Shortages(usize),
-    /// The flows that were taken off overloaded robots after this sweep.
-    Reliefs(usize),
-    /// Nothing: it is about to propose a move.
-    Move,
-    /// Proposals, in this round.
-    Proposals(usize),
-    /// Objections, in this round.
-    Objections(usize),
-}
 
 /// Why a robot cannot go on.
 #[derive(Debug, thiserror::Error)]
@@ -63,6 +37,14 @@ pub enum RobotError {
     /// A guard speaks of something that robots do not measure.
     #[error(transparent)]
     Guard(#[from] TransitionError),
+    /// Time has passed although an invariant does not hold.
+    #[error("node {node}: {source}")]
+    Invariant {
+        /// The node.
+        node: NodeId,
+        /// Its invariant.
+        source: InvariantError,
+    },
     /// A robot jumps and jumps, and no time passes.
     #[error("robot {robot} takes more than {MOST_JUMPS} transitions at one instant")]
     Zeno {
@@ -99,20 +81,21 @@ impl Node for Robot {
     }
 
     fn time_to_tick(&self) -> Option<f64> {
-        Some(match self.stage {
-            Stage::Sample => self.time_to_sample(),
+        Some(match self.stage() {
+            Stage::Moving => self.time_to_sample(),
             _ => 0.0,
         })
     }
 
-    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; at the sample the robot is where
-    /// its certified move ends, to the last bit.
+    /// By the flow of the stage.
     fn flow(&mut self, duration: f64) {
-        self.clock += duration;
-        self.position = match self.time_to_sample() > 0.0 {
-            true => self.position + self.velocity * duration,
-            false => self.arrival,
-        };
+        let site = Arc::clone(&self.site);
+        site.automata.control.flow_in_place::<Control>(self, duration);
+    }
+
+    fn check_invariant(&self) -> Result<(), RobotError> {
+        let holds = self.site.automata.control.check_invariant(self.stage(), self);
+        holds.map_err(|source| RobotError::Invariant { node: self.id, source })
     }
 
     fn body(&self) -> Point {
@@ -121,9 +104,24 @@ impl Node for Robot {
 }
 
 impl Robot {
-    /// What the robot waits for.
-    pub const fn stage(&self) -> Stage {
-        self.stage
+    /// Where it stands in its control period.
+    pub fn stage(&self) -> Stage {
+        self.control.location()
+    }
+
+    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; at the sample the robot is where
+    /// its certified move ends, to the last bit.
+    pub(super) fn advance(&mut self, duration: f64) {
+        self.clock += duration;
+        self.position = match self.time_to_sample() > 0.0 {
+            true => self.position + self.velocity * duration,
+            false => self.arrival,
+        };
+    }
+
+    /// τ.
+    pub(super) const fn time_since_sample(&self) -> f64 {
+        self.clock
     }
 
     /// Time until the clock calls for the next sample.
@@ -153,122 +151,18 @@ impl Robot {
         }
     }
 
-    /// The stages of a control period, in their order.
-    #[inline(never)]
-    fn tick(&mut self, outputs: &mut Out) -> Result<(), RobotError> {
-        self.stage = match self.stage {
-            Stage::Sample => {
-                self.restart_clock();
-                self.jump()?;
-                self.begin_period()?;
-                self.speak(outputs);
-                Stage::Beacons(1)
-            }
-            Stage::Beacons(round) => {
-                self.end_round();
-                self.deliberate()?;
-                self.jump()?;
-                if round < self.rounds_of_this_period() {
-                    self.speak(outputs);
-                    Stage::Beacons(round + 1)
-                } else {
-                    self.begin_routes(outputs)
-                }
-            }
-            Stage::OldFlows => {
-                self.begin_routing();
-                self.tell_multiplier(outputs);
-                Stage::Multipliers(1)
-            }
-            Stage::Multipliers(iteration) => {
-                self.primal_step();
-                self.tell_flows(outputs);
-                Stage::Flows(iteration)
-            }
-            Stage::Flows(iteration) => {
-                self.dual_step();
-                if iteration < self.site.settings.routing_iterations {
-                    self.tell_multiplier(outputs);
-                    Stage::Multipliers(iteration + 1)
-                } else {
-                    self.begin_sweep(outputs);
-                    Stage::Demands(1)
-                }
-            }
-            Stage::Demands(sweep) => {
-                self.end_sweep();
-                self.tell_flows(outputs);
-                Stage::SweptFlows(sweep)
-            }
-            Stage::SweptFlows(sweep) => {
-                self.settle_residual();
-                if sweep < MAX_SWEEPS {
-                    self.admit_shortage(outputs);
-                    Stage::Shortages(sweep)
-                } else {
-                    self.end_routes();
-                    Stage::Move
-                }
-            }
-            Stage::Shortages(sweep) => {
-                self.tell_flows(outputs);
-                Stage::Reliefs(sweep)
-            }
-            Stage::Reliefs(sweep) => {
-                self.sweep_again(outputs);
-                Stage::Demands(sweep + 1)
-            }
-            Stage::Move => {
-                self.propose();
-                self.tell_proposal(outputs);
-                Stage::Proposals(0)
-            }
-            Stage::Proposals(round) => {
-                self.object(outputs);
-                Stage::Objections(round)
-            }
-            Stage::Objections(round) if round < NEGOTIATION_ROUNDS => {
-                self.tell_proposal(outputs);
-                Stage::Proposals(round + 1)
-            }
-            Stage::Objections(_) => {
-                self.set_off();
-                self.jump()?;
-                Stage::Sample
-            }
-        };
-        Ok(())
-    }
-
     /// Whether an objection that is heard now is the last.
-    pub(super) const fn is_last_chance(&self) -> bool {
-        matches!(
-            self.stage,
-            Stage::Proposals(NEGOTIATION_ROUNDS) | Stage::Objections(NEGOTIATION_ROUNDS)
-        )
+    pub(super) fn is_last_chance(&self) -> bool {
+        let stage = self.control.location();
+        matches!(stage, Stage::Proposals | Stage::Objections)
+            && self.control.count() == NEGOTIATION_ROUNDS
     }
 
     /// A control period has a fixed number of rounds. In the first one there are as many as news
     /// can take to cross the network and come back, so that the tree stands when the clock starts.
-    fn rounds_of_this_period(&self) -> usize {
+    pub(super) fn rounds_of_this_period(&self) -> usize {
         let in_a_period = self.site.settings.rounds_per_period;
         if self.is_new { in_a_period.max(self.site.rounds_there_and_back()) } else { in_a_period }
-    }
-
-    /// The very same beacon as before is sent unless something in it has changed.
-    fn speak(&mut self, outputs: &mut Out) {
-        outputs.broadcast(Message::Beacon(self.next_beacon()));
-    }
-
-    fn begin_routes(&mut self, outputs: &mut Out) -> Stage {
-        self.is_new = false;
-        self.survey_links();
-        if self.site.settings.routing_method == RoutingMethod::Adal {
-            self.tell_flows(outputs);
-            return Stage::OldFlows;
-        }
-        self.tell_multiplier(outputs);
-        Stage::Multipliers(1)
     }
 
     /// The robot's own transitions, which are taken at once.

@@ -3,7 +3,7 @@
 use pleach_continuous::Point;
 use pleach_discrete::network::{Phase, PostId, PostKind};
 
-use super::super::beacon::{Notice, TeamReport};
+use super::super::beacon::{Beacon, Notice, TeamReport};
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
 use super::Robot;
@@ -59,12 +59,22 @@ impl Robot {
     }
 
     /// Whether this robot is p₁: nobody of the team follows it.
+    ///
+    /// In an exchange of duties there is an instant in which the mover has taken its new duty and
+    /// the parked robot still holds its own: the duty of the mover has no holder. A robot that hears
+    /// of an exchange does not take itself for p₁.
     pub(super) fn is_first(&self) -> bool {
         let Some(post) = self.duty.post().filter(|post| post.is_primary()) else { return false };
         let follower = PostKind::Primary { follows: Some(post.id) };
         let told = matches!(*self.bulletin.notice(),
             Notice::Advance { joined: Some((_, followed)) } if followed == post.id);
-        !told && !self.neighbours.iter().any(|n| n.post().is_some_and(|p| p.kind == follower))
+        let gives =
+            |beacon: &Beacon| beacon.reply.as_ref().is_some_and(|reply| reply.accepted.is_some());
+        !told
+            && !self.neighbours.iter().any(|neighbour| {
+                neighbour.post().is_some_and(|post| post.kind == follower)
+                    || gives(&neighbour.beacon)
+            })
     }
 
     /// The post of a newcomer that this robot should hang on but does not yet reach.

@@ -45,10 +45,7 @@ impl Robot {
     /// The place to step aside to, if a mover nearby asks for way.
     pub(super) fn place_aside(&self) -> Option<Point> {
         let station = self.duty.station()?;
-        let asking = self.neighbours.iter().find_map(|neighbour| {
-            let way = self.way_of(neighbour)?;
-            (way.distance(self.position) < PASSING * self.clearance()).then_some(way)
-        })?;
+        let asking = self.way_to_clear()?;
         let leash =
             self.site.settings.service_radius.max((self.position - station.reference).norm());
         let room = |place: Point| asking.distance(place).min(PASSING * self.clearance());
@@ -67,6 +64,14 @@ impl Robot {
             }
         }
         best.1
+    }
+
+    /// The stretch ahead of a mover that asks for way, if this robot stands in it.
+    pub(super) fn way_to_clear(&self) -> Option<Segment> {
+        self.neighbours.iter().find_map(|neighbour| {
+            let way = self.way_of(neighbour)?;
+            (way.distance(self.position) < PASSING * self.clearance()).then_some(way)
+        })
     }
 
     /// The stretch ahead of a mover that asks for way.

@@ -1,6 +1,7 @@
 //! The table is total, deterministic and connected.
 
 use super::*;
+use crate::{Event, Location};
 
 /// One of `values`: any of them.
 fn any_of<T: Copy>(values: &[T]) -> T {
@@ -32,7 +33,7 @@ fn answers_in_one_way<L: Location, E: Event>(
 #[kani::proof]
 #[kani::unwind(36)]
 fn a_phase_answers_every_step_in_one_way() {
-    let (phase, step) = (any_of(&Phase::ALL), any_of(MissionStep::ALL));
+    let (phase, step) = (any_of(Phase::ALL), any_of(MissionStep::ALL));
     kani::cover!(MISSION.next(phase, step) == Ok(Phase::Shift));
     assert!(answers_in_one_way(&MISSION, phase, step));
 }
@@ -43,7 +44,7 @@ fn a_phase_answers_every_step_in_one_way() {
 fn every_phase_is_reached() {
     let mut phases = [false; Phase::ALL.len()];
     MISSION.mark_reachable(Phase::Idle, &mut phases);
-    let phase = any_of(&Phase::ALL);
+    let phase = any_of(Phase::ALL);
     kani::cover!(phase == Phase::Shift);
     assert!(phases[phase as usize]);
 }
@@ -52,7 +53,7 @@ fn every_phase_is_reached() {
 #[kani::proof]
 #[kani::unwind(36)]
 fn the_end_is_heard_and_final() {
-    let (phase, step) = (any_of(&Phase::ALL), any_of(MissionStep::ALL));
+    let (phase, step) = (any_of(Phase::ALL), any_of(MissionStep::ALL));
     kani::cover!(phase == Phase::Shift && step == MissionStep::Blocked);
     if phase == Phase::Ended {
         assert!(MISSION.next(phase, step).is_err());

@@ -191,17 +191,13 @@ impl Nodes {
     fn stir(&self, node: &mut Node, stimulus: &Stimulus) -> Result<(), RobotError> {
         match (node, stimulus) {
             (Node::Robot(robot), Stimulus::Hear(_)) => robot.think(),
-            (Node::AccessPoint(access_point), Stimulus::Hear(_)) => {
-                access_point.think();
-                Ok(())
-            }
+            (Node::AccessPoint(access_point), Stimulus::Hear(_)) => Ok(access_point.think()?),
             (node @ Node::Robot(_), &Stimulus::Move(place)) => {
                 node.step(Input::Sensed(Sense::Position(self.positions[place])))
             }
             (Node::Robot(robot), &Stimulus::Period(still)) => robot.pass_period(still),
             (Node::AccessPoint(access_point), Stimulus::Period(_) | Stimulus::Announce) => {
-                access_point.serve();
-                Ok(())
+                Ok(access_point.serve()?)
             }
             (node, Stimulus::Round(_)) => node.step(Input::Tick),
             _ => Ok(()),

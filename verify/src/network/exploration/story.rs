@@ -5,6 +5,7 @@ use std::fmt::Write;
 use pleach_automaton::network::Robot;
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::duty::Duty;
+use pleach_discrete::Location as _;
 use pleach_discrete::network::{Anchor, NodeId, PostKind};
 
 use super::node::Local;

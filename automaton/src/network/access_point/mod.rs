@@ -8,15 +8,24 @@ use std::sync::Arc;
 use pleach_continuous::Point;
 use pleach_discrete::network::{Agreement, Anchor, Bulletin, Election, IdSet, Lineage, NodeId};
 
+mod rounds;
+mod service;
+
 use super::beacon::{Beacon, Notice, Voice};
 use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
-use super::record::{MissionEvent, Outcome};
+use super::record::MissionEvent;
 use super::robot::RobotError;
+use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::Shared;
 use super::site::Site;
+use crate::automaton::TransitionError;
+use crate::located::{Current, Place as _};
 use crate::node::{Input, Node, Outputs};
+
+pub use rounds::{RoundAct, RoundActs, RoundAutomaton, round_automaton};
+pub use service::{ACCESS_POINT_GLOSSARY, ServiceAutomaton, ServiceEffect, service_automaton};
 
 /// The first task is announced when the roster has not changed for this many rounds: between two
 /// robots whose links to an access point differ by one, news of them come two rounds apart.
@@ -34,7 +43,8 @@ pub struct AccessPoint {
     position: Point,
     heard: Vec<Arc<Beacon>>,
     bulletin: Shared<Bulletin<Notice>>,
-    announced: Option<(usize, Arc<IdSet>)>,
+    /// The newest bulletin that it has heard and not taken up.
+    newest: Option<Shared<Bulletin<Notice>>>,
     election: Option<Election>,
     election_rounds: usize,
     agreement: Option<Agreement>,
@@ -44,8 +54,11 @@ pub struct AccessPoint {
     settled_rounds: usize,
     /// What the user has asked for.
     requested: Option<Arc<[Point]>>,
-    /// Rounds of this control period so far; none while time passes.
-    round: Option<usize>,
+    /// Where it stands in the service of the tasks, and in its control period.
+    service: Current<Serving>,
+    rounds: Current<Rounds>,
+    /// What is left to do of the row that was taken last.
+    acts: RoundActs,
     is_new: bool,
     clock: f64,
     voice: Voice,
@@ -62,7 +75,7 @@ impl AccessPoint {
             site,
             heard: Vec::new(),
             bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
-            announced: None,
+            newest: None,
             election: None,
             election_rounds: 0,
             agreement: None,
@@ -71,7 +84,9 @@ impl AccessPoint {
             roster: Arc::default(),
             settled_rounds: 0,
             requested: None,
-            round: None,
+            service: Current::new(Serving::Gathering(Gathering)),
+            rounds: Current::new(Rounds::Resting(Resting)),
+            acts: &[],
             is_new: true,
             clock: period,
             voice: Voice::default(),
@@ -124,11 +139,15 @@ impl AccessPoint {
     }
 
     /// Puts together what it has heard in one round.
-    pub fn think(&mut self) {
-        self.hear_word();
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn think(&mut self) -> Result<(), TransitionError> {
+        self.hear_notices()?;
         self.find_route();
         self.call_roll();
         self.heard.clear();
+        Ok(())
     }
 
     /// The first access point tells the user what there is to know.
@@ -145,12 +164,12 @@ impl AccessPoint {
         if self.is_new { in_a_period.max(self.site.rounds_there_and_back()) } else { in_a_period }
     }
 
-    fn hear_word(&mut self) {
+    fn hear_notices(&mut self) -> Result<(), TransitionError> {
         let newest = self.heard.iter().map(|b| &b.bulletin).max_by_key(|b| b.sequence());
-        if let Some(newest) = newest
-            && newest.sequence() > self.bulletin.sequence()
-        {
-            self.take_up(newest.clone());
+        self.newest = newest.filter(|heard| heard.is_newer_than(&self.bulletin)).cloned();
+        if self.newest.is_some() {
+            self.jump()?;
+            self.newest = None;
         }
         for beacon in &self.heard {
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
@@ -160,13 +179,18 @@ impl AccessPoint {
                 own.merge(heard);
             }
         }
+        Ok(())
+    }
+
+    /// Takes a row of the service, if one is enabled.
+    fn jump(&mut self) -> Result<(), TransitionError> {
+        let site = Arc::clone(&self.site);
+        site.automata.service.step_in_place::<Serving>(self)?;
+        Ok(())
     }
 
     fn take_up(&mut self, bulletin: Shared<Bulletin<Notice>>) {
         let number = bulletin.sequence();
-        if let Notice::Task { task, roster, .. } = bulletin.notice() {
-            self.announced = Some((*task, Arc::clone(roster)));
-        }
         match bulletin.notice() {
             Notice::Task { .. } | Notice::Call { .. } => {
                 self.election = Some(Election::new(number));
@@ -232,78 +256,24 @@ impl AccessPoint {
         }
     }
 
-    /// Announces the next of the user's tasks when the one before is serviced, and says when the
-    /// mission has ended.
-    pub fn serve(&mut self) {
-        let Some(tasks) = self.requested.clone() else { return };
-        let next = match self.bulletin.notice() {
-            Notice::Quiet if self.settled_rounds < ROUNDS_UNTIL_ROSTER_SETTLES => return,
-            Notice::Quiet => 0,
-            Notice::Serviced { task } => task + 1,
-            Notice::Task { .. } | Notice::Call { .. } => return self.supervise_election(),
-            _ => return,
-        };
-        let notice = match tasks.get(next) {
-            Some(_) if self.roster.is_empty() => Notice::Ended {
-                outcome: Outcome::InsufficientRobots,
-                reason: "no robot is connected to an access point".into(),
-                task: Some(next),
-            },
-            Some(&position) => {
-                self.log.push(MissionEvent::TaskAnnounced { task: next });
-                Notice::Task {
-                    task: next,
-                    position,
-                    roster: Arc::clone(&self.roster),
-                    eligible: Arc::new((0..self.site.access_points.len()).collect()),
-                }
-            }
-            None => Notice::Ended {
-                outcome: Outcome::Serviced,
-                reason: format!("all {next} tasks are serviced").into(),
-                task: None,
-            },
-        };
-        self.issue(notice);
+    /// Once a round: serves the user, if it has asked for tasks.
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn serve(&mut self) -> Result<(), TransitionError> {
+        if self.requested.is_some() && self.announced().is_some() && self.is_electing() {
+            self.election_rounds += 1;
+        }
+        self.jump()
     }
 
-    /// Ends the mission if no robot bids for a task, because none can come close to it, or if
-    /// robots that took part do not answer any more.
-    fn supervise_election(&mut self) {
-        let Some((task, roster)) = self.announced.clone() else { return };
-        let Some(election) = &self.election else { return };
-        self.election_rounds += 1;
-        let is_leader_election = matches!(self.bulletin.notice(), Notice::Task { .. });
-        let longest = self.longest_wait();
-        let (outcome, reason) = if election.is_complete(&roster) {
-            if !is_leader_election || election.best().is_some() {
-                return;
-            }
-            let reason = format!(
-                "no robot can come within the service radius of task {task}: it lies in a wall, \
-                 too near to one, or in a part of the workspace that no robot can enter"
-            );
-            (Outcome::UnreachableTask, reason)
-        } else if self.election_rounds > PATIENCE_WITH_ELECTIONS * longest {
-            let missing: Vec<NodeId> =
-                roster.iter().filter(|&robot| !election.has_token(robot)).collect();
-            let reason = format!(
-                "the election for task {task} cannot end: robots {missing:?} do not answer any more"
-            );
-            (Outcome::Blocked, reason)
-        } else {
-            return;
-        };
-        self.issue(Notice::Ended { outcome, reason: reason.into(), task: Some(task) });
+    fn is_electing(&self) -> bool {
+        matches!(*self.service, Serving::Electing(_))
     }
 
     /// No message is longer under way than there are nodes to pass it on.
     fn longest_wait(&self) -> usize {
         self.site.robots + self.site.access_points.len()
-    }
-
-    fn issue(&mut self, notice: Notice) {
-        self.take_up(Shared::new(self.bulletin.next(notice)));
     }
 
     /// The newest word on the mission that it knows.
@@ -319,12 +289,11 @@ impl AccessPoint {
             _ => 0,
         };
         let patience = PATIENCE_WITH_ELECTIONS * self.longest_wait() + 1;
-        let electing = matches!(self.bulletin.notice(), Notice::Task { .. } | Notice::Call { .. });
-        let rounds = if electing { self.election_rounds.min(patience) } else { 0 };
+        let rounds = if self.is_electing() { self.election_rounds.min(patience) } else { 0 };
         format!(
             "{:?}",
             (
-                (self.number, &self.bulletin, &self.announced, &self.election, rounds),
+                (self.number, &self.bulletin, &*self.service, &self.election, rounds),
                 (&self.agreement, &self.route, &self.crossing, &self.roster, settled),
             )
         )
@@ -354,7 +323,7 @@ impl Node for AccessPoint {
             Input::Heard { message: Message::Request(tasks), .. } => {
                 self.requested = Some(Arc::clone(tasks));
             }
-            Input::Tick => self.tick(outputs),
+            Input::Tick => self.tick(outputs)?,
             Input::Heard { .. } | Input::Sensed(_) => {}
         }
         self.log.drain(..).for_each(|event| outputs.report(event));
@@ -362,44 +331,23 @@ impl Node for AccessPoint {
     }
 
     fn time_to_tick(&self) -> Option<f64> {
-        Some(match self.round {
-            Some(_) => 0.0,
-            None => (self.site.settings.period - self.clock).max(0.0),
+        Some(match *self.rounds {
+            Rounds::Listening(_) => 0.0,
+            Rounds::Resting(_) => (self.site.settings.period - self.clock).max(0.0),
         })
     }
 
     fn flow(&mut self, duration: f64) {
-        self.clock += duration;
+        let site = Arc::clone(&self.site);
+        site.automata.rounds.flow_in_place::<Rounds>(self, duration);
+    }
+
+    fn check_invariant(&self) -> Result<(), RobotError> {
+        let holds = self.site.automata.rounds.check_invariant(self.rounds.location(), self);
+        holds.map_err(|source| RobotError::Invariant { node: self.id(), source })
     }
 
     fn body(&self) -> Point {
         self.position
-    }
-}
-
-impl AccessPoint {
-    /// It speaks in every round of a control period, and thinks after each.
-    fn tick(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
-        let round = match self.round {
-            Some(round) => {
-                let known = self.bulletin.clone();
-                self.think();
-                self.serve();
-                if self.bulletin != known {
-                    self.tell_user(outputs);
-                }
-                round
-            }
-            None => {
-                self.clock = 0.0;
-                self.tell_user(outputs);
-                0
-            }
-        };
-        self.round = (round < self.rounds_of_this_period()).then_some(round + 1);
-        match self.round {
-            Some(_) => outputs.broadcast(Message::Beacon(self.speak())),
-            None => self.is_new = false,
-        }
     }
 }

@@ -1,0 +1,144 @@
+//! The automaton of an access point's control period: rounds of beacons.
+
+use std::sync::Arc;
+
+use pleach_discrete::network::{ROUNDS, Round, RoundEvent};
+use pleach_guards::{Guard, network::control as guards};
+
+use crate::located::{Current, DataOf, Holds};
+use crate::node::Outputs;
+use crate::{Automaton, BuildError, Flow, Transfer};
+
+use super::super::message::Message;
+use super::super::record::MissionEvent;
+use super::super::robot::RobotError;
+use super::super::service::{Listening, Resting, Rounds};
+use super::AccessPoint;
+
+/// The automaton of an access point's control period.
+pub type RoundAutomaton = Automaton<Round, RoundEvent, AccessPoint>;
+
+/// A part of the work of a control period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RoundAct {
+    /// τ := 0.
+    RestartClock,
+    /// It puts together what it has heard, and serves the user.
+    Think,
+    /// The first access point tells the user the newest notice.
+    TellUser,
+    /// It tells its public state.
+    TellBeacon,
+}
+
+/// What an access point does when it takes a row, in this order.
+pub type RoundActs = &'static [RoundAct];
+
+impl RoundAct {
+    const fn name(self) -> &'static str {
+        match self {
+            RoundAct::RestartClock => "τ := 0",
+            RoundAct::Think => "deliberate, serve",
+            RoundAct::TellUser => "tell the user",
+            RoundAct::TellBeacon => "tell beacon",
+        }
+    }
+}
+
+impl Holds<Rounds> for AccessPoint {
+    type Effects = RoundActs;
+
+    fn current(&self) -> &Current<Rounds> {
+        &self.rounds
+    }
+
+    fn current_mut(&mut self) -> &mut Current<Rounds> {
+        &mut self.rounds
+    }
+
+    fn carry_out(&mut self, acts: RoundActs) {
+        self.acts = acts;
+    }
+}
+
+impl AccessPoint {
+    /// The number of this round of beacons; 0 between samples.
+    pub(super) fn round(&self) -> usize {
+        match *self.rounds {
+            Rounds::Listening(Listening { round }) => round,
+            Rounds::Resting(_) => 0,
+        }
+    }
+
+    /// The clock calls: the access point takes the next row of its control period.
+    pub(super) fn tick(
+        &mut self,
+        outputs: &mut Outputs<Message, MissionEvent>,
+    ) -> Result<(), RobotError> {
+        let site = Arc::clone(&self.site);
+        site.automata.rounds.step_in_place::<Rounds>(self)?;
+        for act in std::mem::take(&mut self.acts) {
+            match act {
+                RoundAct::RestartClock => self.clock = 0.0,
+                RoundAct::Think => {
+                    let known = self.bulletin.clone();
+                    self.think()?;
+                    self.serve()?;
+                    if self.bulletin != known {
+                        self.tell_user(outputs);
+                    }
+                }
+                RoundAct::TellUser => self.tell_user(outputs),
+                RoundAct::TellBeacon => outputs.broadcast(Message::Beacon(self.speak())),
+            }
+        }
+        self.is_new &= self.round() > 0;
+        Ok(())
+    }
+}
+
+fn row<A: DataOf<Rounds>, B: DataOf<Rounds>>(
+    event: RoundEvent,
+    guard: Guard,
+    acts: RoundActs,
+    next: fn(&A) -> B,
+) -> Transfer<Round, RoundEvent, AccessPoint> {
+    let names: Vec<&str> = acts.iter().map(|act| act.name()).collect();
+    let name = names.join(", ");
+    Transfer::new(event, guard, &name, move |data: &A, _: &AccessPoint, effects: &mut RoundActs| {
+        *effects = acts;
+        next(data)
+    })
+}
+
+/// The automaton of an access point's control period.
+///
+/// # Errors
+/// Never with the table and guards of this crate; they are checked all the same.
+pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
+    use RoundAct::{RestartClock, TellBeacon, TellUser, Think};
+    let wait = |point: &mut AccessPoint, duration: f64| point.clock += duration;
+    Automaton::builder(ROUNDS, Round::Resting)
+        .observing()
+        .flow(Round::Resting, Flow::exact("τ̇ = 1", wait))
+        .invariant(Round::Resting, guards::waiting())
+        .carried_out(row(
+            RoundEvent::SampleDue,
+            guards::sample_due(),
+            &[RestartClock, TellUser, TellBeacon],
+            |_: &Resting| Listening { round: 1 },
+        ))
+        .carried_out(row(
+            RoundEvent::NextRound,
+            guards::next_round(),
+            &[Think, TellBeacon],
+            |listening: &Listening| Listening { round: listening.round + 1 },
+        ))
+        .carried_out(row(
+            RoundEvent::RoundsOver,
+            guards::rounds_over(),
+            &[Think],
+            |_: &Listening| Resting,
+        ))
+        .build()
+}

@@ -1,0 +1,327 @@
+//! The automaton of the service: what an access point announces, and when it ends the mission.
+
+use std::sync::Arc;
+
+use pleach_discrete::network::{Bulletin, NodeId, SERVICE, Service, ServiceEvent};
+use pleach_guards::{Guard, network::service as guards};
+
+use crate::located::{Current, DataOf, Holds};
+use crate::{Automaton, BuildError, Transfer};
+
+use super::super::beacon::Notice;
+use super::super::record::{MissionEvent, Outcome};
+use super::super::service::{Announced, Electing, Gathering, Over, Serviced, Serving, UnderWay};
+use super::super::shared::Shared;
+use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
+
+/// The automaton of the service.
+pub type ServiceAutomaton = Automaton<Service, ServiceEvent, AccessPoint>;
+
+crate::observed! {
+    impl Observed for AccessPoint as point;
+    /// What the guards of access points speak of.
+    pub const ACCESS_POINT_GLOSSARY;
+    quantities {
+        /// τ: seconds since the last sample.
+        clock: point.clock,
+        /// Δt: seconds from sample to sample.
+        period: point.site.settings.period,
+        /// The number of this round of beacons.
+        round: point.round() as f64,
+        /// The number of rounds in this control period.
+        rounds: point.rounds_of_this_period() as f64,
+        /// The number of robots that are connected to an access point.
+        robots: point.roster.len() as f64,
+        /// Rounds for which the roster has not changed.
+        settled: point.settled_rounds as f64,
+        /// Rounds after which robots count as gathered.
+        settling: ROUNDS_UNTIL_ROSTER_SETTLES as f64,
+        /// Rounds since the election began.
+        waited: point.election_rounds as f64,
+        /// Rounds after which an election should be over.
+        longest_wait: (PATIENCE_WITH_ELECTIONS * point.longest_wait()) as f64,
+    }
+    propositions {
+        /// The newest notice that it hears tells of a task, or of a call for a recruit.
+        hears_election: matches!(point.heard_notice(), Some(Notice::Task { .. } | Notice::Call { .. })),
+        /// The newest notice that it hears tells of a path Σ, or that the team advances.
+        hears_progress: matches!(point.heard_notice(), Some(Notice::Path(_) | Notice::Advance { .. })),
+        /// The newest notice that it hears tells that the task is serviced.
+        hears_service: matches!(point.heard_notice(), Some(Notice::Serviced { .. })),
+        /// The newest notice that it hears tells that the mission has ended.
+        hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
+        /// The user has asked it for tasks.
+        asked: point.requested.is_some(),
+        /// There is a task after the one announced last.
+        task_left: point.next_task().is_some(),
+        /// It has heard who takes part in the election.
+        knows_electors: point.announced().is_some(),
+        /// The token of every robot that takes part is known.
+        election_over: point.is_election_over(),
+        /// The election is that of a leader.
+        leader_wanted: matches!(point.notice(), Notice::Task { .. }),
+        /// A robot has bid in the election.
+        has_bid: point.election.as_ref().is_some_and(|election| election.best().is_some()),
+    }
+}
+
+/// What a transition does beside.
+#[derive(Clone, Debug)]
+pub enum ServiceEffect {
+    /// It takes up this bulletin.
+    TakeUp(Shared<Bulletin<Notice>>),
+    /// It issues the next notice.
+    Issue(Notice),
+    /// It tells observers.
+    Report(MissionEvent),
+}
+
+type Effects = Vec<ServiceEffect>;
+
+impl Holds<Serving> for AccessPoint {
+    type Effects = Effects;
+
+    fn current(&self) -> &Current<Serving> {
+        &self.service
+    }
+
+    fn current_mut(&mut self) -> &mut Current<Serving> {
+        &mut self.service
+    }
+
+    fn carry_out(&mut self, effects: Effects) {
+        for effect in effects {
+            match effect {
+                ServiceEffect::TakeUp(bulletin) => self.take_up(bulletin),
+                ServiceEffect::Issue(notice) => {
+                    self.take_up(Shared::new(self.bulletin.next(notice)));
+                }
+                ServiceEffect::Report(event) => self.log.push(event),
+            }
+        }
+    }
+}
+
+impl AccessPoint {
+    /// The task announced last and who elects its leader, if it matters and is known.
+    pub(super) fn announced(&self) -> Option<&Announced> {
+        match &*self.service {
+            Serving::Electing(Electing { announced })
+            | Serving::UnderWay(UnderWay { announced }) => announced.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The notice that it has heard and not taken up.
+    fn heard_notice(&self) -> Option<&Notice> {
+        self.newest.as_ref().map(|bulletin| bulletin.notice())
+    }
+
+    /// The number of the task after the one serviced last, if the user has asked for one.
+    fn next_task(&self) -> Option<usize> {
+        let next = match *self.service {
+            Serving::Serviced(Serviced { task }) => task + 1,
+            _ => 0,
+        };
+        self.requested.as_ref().is_some_and(|tasks| next < tasks.len()).then_some(next)
+    }
+
+    fn is_election_over(&self) -> bool {
+        self.announced().is_some_and(|announced| {
+            self.election.as_ref().is_some_and(|known| known.is_complete(&announced.roster))
+        })
+    }
+}
+
+// ---- The resets ------------------------------------------------------------------------------
+
+/// Which task is announced as far as a place knows.
+trait Knows {
+    fn announced(&self) -> Option<Announced>;
+}
+
+macro_rules! knows {
+    ($($place:ty: $announced:expr),+ $(,)?) => {
+        $(impl Knows for $place {
+            fn announced(&self) -> Option<Announced> {
+                ($announced)(self)
+            }
+        })+
+    };
+}
+
+knows! {
+    Gathering: |_| None,
+    Electing: |place: &Electing| place.announced.clone(),
+    UnderWay: |place: &UnderWay| place.announced.clone(),
+    Serviced: |_| None,
+}
+
+/// It takes up the notice that it has heard.
+fn take_up(point: &AccessPoint, effects: &mut Effects) -> Option<Notice> {
+    let newest = point.newest.clone()?;
+    let notice = newest.notice().clone();
+    effects.push(ServiceEffect::TakeUp(newest));
+    Some(notice)
+}
+
+fn hear_election<A: Knows>(
+    place: &A,
+    point: &AccessPoint,
+    effects: &mut Effects,
+) -> Option<Electing> {
+    let announced = match take_up(point, effects)? {
+        Notice::Task { task, roster, .. } => Some(Announced { task, roster }),
+        _ => place.announced(),
+    };
+    Some(Electing { announced })
+}
+
+fn hear_progress<A: Knows>(
+    place: &A,
+    point: &AccessPoint,
+    effects: &mut Effects,
+) -> Option<UnderWay> {
+    take_up(point, effects)?;
+    Some(UnderWay { announced: place.announced() })
+}
+
+fn hear_service<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Serviced> {
+    match take_up(point, effects)? {
+        Notice::Serviced { task } => Some(Serviced { task }),
+        _ => None,
+    }
+}
+
+fn hear_end<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
+    take_up(point, effects).map(|_| Over)
+}
+
+fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Electing> {
+    let task = point.next_task()?;
+    let position = *point.requested.as_ref()?.get(task)?;
+    let roster = Arc::clone(&point.roster);
+    let announced = Some(Announced { task, roster: Arc::clone(&roster) });
+    let eligible = Arc::new((0..point.site.access_points.len()).collect());
+    effects.push(ServiceEffect::Report(MissionEvent::TaskAnnounced { task }));
+    effects.push(ServiceEffect::Issue(Notice::Task { task, position, roster, eligible }));
+    Some(Electing { announced })
+}
+
+fn end(effects: &mut Effects, outcome: Outcome, task: Option<usize>, reason: String) -> Over {
+    effects.push(ServiceEffect::Issue(Notice::Ended { outcome, reason: reason.into(), task }));
+    Over
+}
+
+fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
+    let reason = "no robot is connected to an access point".to_owned();
+    end(effects, Outcome::InsufficientRobots, point.next_task(), reason)
+}
+
+fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
+    let count = point.requested.as_ref().map_or(0, |tasks| tasks.len());
+    end(effects, Outcome::Serviced, None, format!("all {count} tasks are serviced"))
+}
+
+fn end_without_bid(place: &Electing, _: &AccessPoint, effects: &mut Effects) -> Option<Over> {
+    let task = place.announced.as_ref()?.task;
+    let reason = format!(
+        "no robot can come within the service radius of task {task}: it lies in a wall, too near \
+         to one, or in a part of the workspace that no robot can enter"
+    );
+    Some(end(effects, Outcome::UnreachableTask, Some(task), reason))
+}
+
+fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
+    let Announced { task, roster } = place.announced.as_ref()?;
+    let election = point.election.as_ref()?;
+    let missing: Vec<NodeId> = roster.iter().filter(|&robot| !election.has_token(robot)).collect();
+    let reason = format!(
+        "the election for task {task} cannot end: robots {missing:?} do not answer any more"
+    );
+    Some(end(effects, Outcome::Blocked, Some(*task), reason))
+}
+
+// ---- The automaton ---------------------------------------------------------------------------
+
+type Row = Transfer<Service, ServiceEvent, AccessPoint>;
+
+fn election_heard<A: DataOf<Serving> + Knows>() -> Row {
+    let (guard, name) = (guards::election_heard(), "take up the election");
+    Transfer::where_known(ServiceEvent::ElectionHeard, guard, name, hear_election::<A>)
+}
+
+fn progress_heard<A: DataOf<Serving> + Knows>() -> Row {
+    let (guard, name) = (guards::progress_heard(), "take up the notice");
+    Transfer::where_known(ServiceEvent::ProgressHeard, guard, name, hear_progress::<A>)
+}
+
+fn service_heard<A: DataOf<Serving>>() -> Row {
+    let (guard, name) = (guards::service_heard(), "take up the notice");
+    Transfer::where_known(ServiceEvent::ServiceHeard, guard, name, hear_service::<A>)
+}
+
+fn end_heard<A: DataOf<Serving>>() -> Row {
+    let (guard, name) = (guards::end_heard(), "take up the notice");
+    Transfer::where_known(ServiceEvent::EndHeard, guard, name, hear_end::<A>)
+}
+
+fn announces<A: DataOf<Serving>>(guard: Guard) -> Row {
+    Transfer::where_known(ServiceEvent::Announces, guard, "announce the next task", announce::<A>)
+}
+
+fn nobody_there<A: DataOf<Serving>>(guard: Guard) -> Row {
+    let name = "end the mission: insufficient robots";
+    Transfer::new(ServiceEvent::NobodyThere, guard, name, end_without_robots::<A>)
+}
+
+fn all_serviced<A: DataOf<Serving>>(guard: Guard) -> Row {
+    let name = "end the mission: serviced";
+    Transfer::new(ServiceEvent::AllServiced, guard, name, end_serviced::<A>)
+}
+
+/// The automaton of the service of the user's tasks.
+///
+/// # Errors
+/// Never with the table and guards of this crate; they are checked all the same.
+pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
+    let notices = ["hears_election", "hears_progress", "hears_service", "hears_end"];
+    Automaton::builder(SERVICE, Service::Gathering)
+        .observing()
+        .at_most_one(&notices)
+        .carried_out(election_heard::<Gathering>())
+        .carried_out(election_heard::<Electing>())
+        .carried_out(election_heard::<UnderWay>())
+        .carried_out(election_heard::<Serviced>())
+        .carried_out(progress_heard::<Gathering>())
+        .carried_out(progress_heard::<Electing>())
+        .carried_out(progress_heard::<UnderWay>())
+        .carried_out(progress_heard::<Serviced>())
+        .carried_out(service_heard::<Gathering>())
+        .carried_out(service_heard::<Electing>())
+        .carried_out(service_heard::<UnderWay>())
+        .carried_out(service_heard::<Serviced>())
+        .carried_out(end_heard::<Gathering>())
+        .carried_out(end_heard::<Electing>())
+        .carried_out(end_heard::<UnderWay>())
+        .carried_out(end_heard::<Serviced>())
+        .carried_out(announces::<Gathering>(guards::announces_first()))
+        .carried_out(announces::<Serviced>(guards::announces_next()))
+        .carried_out(nobody_there::<Gathering>(guards::nobody_there_first()))
+        .carried_out(nobody_there::<Serviced>(guards::nobody_there_next()))
+        .carried_out(all_serviced::<Gathering>(guards::nothing_to_service()))
+        .carried_out(all_serviced::<Serviced>(guards::all_serviced()))
+        .carried_out(Transfer::where_known(
+            ServiceEvent::NobodyBids,
+            guards::nobody_bids(),
+            "end the mission: unreachable task",
+            end_without_bid,
+        ))
+        .carried_out(Transfer::where_known(
+            ServiceEvent::NobodyAnswers,
+            guards::nobody_answers(),
+            "end the mission: blocked",
+            end_unanswered,
+        ))
+        .build()
+}

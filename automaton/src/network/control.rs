@@ -1,0 +1,65 @@
+//! The stages of a control period with the data that each of them needs: how often it has been
+//! taken.
+
+use pleach_discrete::network::Stage;
+
+macro_rules! stages {
+    ($($(#[$note:meta])* $name:ident $(($count:ident: $(#[$what:meta])*))?),+ $(,)?) => {
+        crate::places_of! {
+            /// Where a robot stands in its control period: a [`Stage`] with the data that it owns.
+            #[derive(Copy)]
+            pub enum Control: Stage { $($(#[$note])* $name($name)),+ }
+        }
+
+        $($(#[$note])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct $name { $($(#[$what])* pub $count: usize)? })+
+
+        impl Control {
+            /// Which round, iteration, sweep or attempt this is; 0 in stages that are taken once.
+            pub const fn count(&self) -> usize {
+                match self {
+                    $(Control::$name($name { $($count)? }) => stages!(@ $($count)?)),+
+                }
+            }
+        }
+    };
+    (@) => { 0 };
+    (@ $count:ident) => { *$count };
+}
+
+stages! {
+    /// It moves until the next sample.
+    Moving,
+    /// It waits for beacons.
+    Beacons(round: /// The round, from 1.
+    ),
+    /// It waits for the flows of the period before.
+    OldFlows,
+    /// It waits for multipliers.
+    Multipliers(iteration: /// The iteration, from 1.
+    ),
+    /// It waits for flows.
+    Flows(iteration: /// The iteration, from 1.
+    ),
+    /// It waits for demands.
+    Demands(sweep: /// The sweep, from 1.
+    ),
+    /// It waits for the flows of a sweep.
+    SweptFlows(sweep: /// The sweep, from 1.
+    ),
+    /// It waits for news of shortages.
+    Shortages(sweep: /// The sweep, from 1.
+    ),
+    /// It waits for the flows that others take back.
+    Reliefs(sweep: /// The sweep, from 1.
+    ),
+    /// It is about to propose a move.
+    Planning,
+    /// It waits for proposals.
+    Proposals(attempt: /// How often moves have been judged.
+    ),
+    /// It waits for objections.
+    Objections(attempt: /// How often moves have been judged before this time.
+    ),
+}

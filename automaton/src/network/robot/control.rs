@@ -1,0 +1,290 @@
+//! The automaton of the control period: what a robot does at each tick of its clock (Algorithm 5).
+//!
+//! Each row of [`CONTROL`] carries a list of [`Act`]s. They are what the robot does when it takes
+//! the row, in their order; drawings show them as its reset.
+
+use std::sync::Arc;
+
+use pleach_discrete::network::{CONTROL, Stage, StageEvent};
+use pleach_guards::{Guard, network::control as guards};
+
+use crate::located::{Current, DataOf, Holds};
+use crate::node::Outputs;
+use crate::{Automaton, BuildError, Flow, Transfer};
+
+use super::super::control::{
+    Beacons, Control, Demands, Flows, Moving, Multipliers, Objections, OldFlows, Planning,
+    Proposals, Reliefs, Shortages, SweptFlows,
+};
+use super::super::message::Message;
+use super::super::record::MissionEvent;
+use super::{Robot, RobotError};
+
+/// The automaton of the control period.
+pub type ControlAutomaton = Automaton<Stage, StageEvent, Robot>;
+
+macro_rules! acts {
+    ($($(#[$note:meta])+ $act:ident = $name:literal,)+) => {
+        /// A part of the work of a control period.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Act {
+            $($(#[$note])+ $act),+
+        }
+
+        impl Act {
+            /// What drawings call it.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Act::$act => $name),+
+                }
+            }
+        }
+    };
+}
+
+acts! {
+    /// τ := 0 and u := 0.
+    RestartClock = "τ := 0, u := 0",
+    /// It takes the transitions of its duty and of the mission that are enabled (line 9).
+    Jump = "jump",
+    /// What it considers once a period: whether its post is needed, and robots in its way.
+    Consider = "consider post and partner",
+    /// It puts together what it has heard.
+    Deliberate = "deliberate",
+    /// It tells its public state.
+    TellBeacon = "tell beacon",
+    /// The links over which it can route.
+    SurveyLinks = "survey links",
+    /// It tells its flows to those who receive them.
+    TellFlows = "tell flows",
+    /// Routes begin where those of the period before ended.
+    BeginRoutes = "begin routes",
+    /// It tells its multiplier.
+    TellMultiplier = "tell λ",
+    /// F_ij from the multipliers (line 2).
+    StepPrimal = "primal step",
+    /// λ_i from the flows (line 2).
+    StepDual = "dual step",
+    /// It begins a sweep: what is not carried goes to the parent in the tree.
+    BeginSweep = "begin sweep",
+    /// It takes what its children have told into its flow to the parent.
+    EndSweep = "end sweep",
+    /// c_i of the flows as they are now.
+    SettleResidual = "settle c",
+    /// It says so if it cannot pass on what it is sent.
+    AdmitShortage = "admit shortage",
+    /// Overloaded robots are relieved of what does not come over the tree, and a sweep begins.
+    SweepAgain = "relieve, begin sweep",
+    /// The routes of this period stand.
+    EndRoutes = "end routes",
+    /// u := QP(ψ, cell): target, geodesic and motion problem (lines 4 to 7).
+    Propose = "u := QP(ψ, cell)",
+    /// It tells the move that it intends.
+    TellProposal = "tell proposal",
+    /// It objects to moves that it cannot accept.
+    Object = "object",
+    /// The certified move begins (line 8).
+    SetOff = "set off",
+}
+
+/// The acts of the row that was taken last.
+pub type Acts = &'static [Act];
+
+impl Holds<Control> for Robot {
+    type Effects = Acts;
+
+    fn current(&self) -> &Current<Control> {
+        &self.control
+    }
+
+    fn current_mut(&mut self) -> &mut Current<Control> {
+        &mut self.control
+    }
+
+    fn carry_out(&mut self, acts: Acts) {
+        self.acts = acts;
+    }
+}
+
+impl Robot {
+    /// The clock calls: the robot takes the next row of its control period.
+    #[inline(never)]
+    pub(super) fn tick(
+        &mut self,
+        outputs: &mut Outputs<Message, MissionEvent>,
+    ) -> Result<(), RobotError> {
+        let site = Arc::clone(&self.site);
+        site.automata.control.step_in_place::<Control>(self)?;
+        for act in std::mem::take(&mut self.acts) {
+            self.perform(*act, outputs)?;
+        }
+        Ok(())
+    }
+
+    fn perform(
+        &mut self,
+        act: Act,
+        outputs: &mut Outputs<Message, MissionEvent>,
+    ) -> Result<(), RobotError> {
+        match act {
+            Act::RestartClock => self.restart_clock(),
+            Act::Jump => self.jump()?,
+            Act::Consider => self.begin_period()?,
+            Act::Deliberate => {
+                self.end_round();
+                self.deliberate()?;
+            }
+            Act::TellBeacon => outputs.broadcast(Message::Beacon(self.next_beacon())),
+            Act::SurveyLinks => {
+                self.is_new = false;
+                self.survey_links();
+            }
+            Act::TellFlows => self.tell_flows(outputs),
+            Act::BeginRoutes => self.begin_routing(),
+            Act::TellMultiplier => self.tell_multiplier(outputs),
+            Act::StepPrimal => self.primal_step(),
+            Act::StepDual => self.dual_step(),
+            Act::BeginSweep => self.begin_sweep(outputs),
+            Act::EndSweep => self.end_sweep(),
+            Act::SettleResidual => self.settle_residual(),
+            Act::AdmitShortage => self.admit_shortage(outputs),
+            Act::SweepAgain => self.sweep_again(outputs),
+            Act::EndRoutes => self.end_routes(),
+            Act::Propose => self.propose()?,
+            Act::TellProposal => self.tell_proposal(outputs),
+            Act::Object => self.object(outputs),
+            Act::SetOff => self.set_off(),
+        }
+        Ok(())
+    }
+}
+
+type Row = Transfer<Stage, StageEvent, Robot>;
+
+fn row<A: DataOf<Control>, B: DataOf<Control>>(
+    event: StageEvent,
+    guard: Guard,
+    acts: Acts,
+    next: fn(&A) -> B,
+) -> Row {
+    let names: Vec<&str> = acts.iter().map(|act| act.name()).collect();
+    Transfer::new(
+        event,
+        guard,
+        &names.join(", "),
+        move |data: &A, _: &Robot, effects: &mut Acts| {
+            *effects = acts;
+            next(data)
+        },
+    )
+}
+
+/// The automaton of the control period (Algorithm 5).
+///
+/// # Errors
+/// Never with the table and guards of this crate; they are checked all the same.
+pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
+    use Act::*;
+    use StageEvent as On;
+    Automaton::builder(CONTROL, Stage::Moving)
+        .observing()
+        .flow(Stage::Moving, Flow::exact("ẋ = u, τ̇ = 1", Robot::advance))
+        .invariant(Stage::Moving, guards::moving())
+        .carried_out(row(
+            On::SampleDue,
+            guards::sample_due(),
+            &[RestartClock, Jump, Consider, TellBeacon],
+            |_: &Moving| Beacons { round: 1 },
+        ))
+        .carried_out(row(
+            On::NextRound,
+            guards::next_round(),
+            &[Deliberate, Jump, TellBeacon],
+            |beacons: &Beacons| Beacons { round: beacons.round + 1 },
+        ))
+        .carried_out(row(
+            On::RoutesDue,
+            guards::routes_due(),
+            &[Deliberate, Jump, SurveyLinks, TellMultiplier],
+            |_: &Beacons| Multipliers { iteration: 1 },
+        ))
+        .carried_out(row(
+            On::OldFlowsDue,
+            guards::old_flows_due(),
+            &[Deliberate, Jump, SurveyLinks, TellFlows],
+            |_: &Beacons| OldFlows {},
+        ))
+        .carried_out(row(
+            On::OldFlowsHeard,
+            guards::heard(),
+            &[BeginRoutes, TellMultiplier],
+            |_: &OldFlows| Multipliers { iteration: 1 },
+        ))
+        .carried_out(row(
+            On::MultipliersHeard,
+            guards::heard(),
+            &[StepPrimal, TellFlows],
+            |heard: &Multipliers| Flows { iteration: heard.iteration },
+        ))
+        .carried_out(row(
+            On::NextIteration,
+            guards::next_iteration(),
+            &[StepDual, TellMultiplier],
+            |flows: &Flows| Multipliers { iteration: flows.iteration + 1 },
+        ))
+        .carried_out(row(
+            On::SweepDue,
+            guards::sweep_due(),
+            &[StepDual, BeginSweep],
+            |_: &Flows| Demands { sweep: 1 },
+        ))
+        .carried_out(row(
+            On::DemandsHeard,
+            guards::heard(),
+            &[EndSweep, TellFlows],
+            |demands: &Demands| SweptFlows { sweep: demands.sweep },
+        ))
+        .carried_out(row(
+            On::SweepOver,
+            guards::sweep_over(),
+            &[SettleResidual, AdmitShortage],
+            |flows: &SweptFlows| Shortages { sweep: flows.sweep },
+        ))
+        .carried_out(row(
+            On::RoutesDone,
+            guards::routes_done(),
+            &[SettleResidual, EndRoutes],
+            |_: &SweptFlows| Planning {},
+        ))
+        .carried_out(row(
+            On::ShortagesHeard,
+            guards::heard(),
+            &[TellFlows],
+            |shortages: &Shortages| Reliefs { sweep: shortages.sweep },
+        ))
+        .carried_out(row(On::ReliefsHeard, guards::heard(), &[SweepAgain], |reliefs: &Reliefs| {
+            Demands { sweep: reliefs.sweep + 1 }
+        }))
+        .carried_out(row(On::MoveDue, guards::heard(), &[Propose, TellProposal], |_: &Planning| {
+            Proposals { attempt: 0 }
+        }))
+        .carried_out(row(
+            On::ProposalsHeard,
+            guards::heard(),
+            &[Object],
+            |proposals: &Proposals| Objections { attempt: proposals.attempt },
+        ))
+        .carried_out(row(
+            On::NextAttempt,
+            guards::next_attempt(),
+            &[TellProposal],
+            |objections: &Objections| Proposals { attempt: objections.attempt + 1 },
+        ))
+        .carried_out(row(
+            On::MoveCertified,
+            guards::move_certified(),
+            &[SetOff, Jump],
+            |_: &Objections| Moving {},
+        ))
+        .build()
+}

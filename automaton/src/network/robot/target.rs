@@ -1,0 +1,66 @@
+//! The targets ψ_i as laws of the duty (Algorithm 2): where a robot goes at a sample.
+
+use pleach_continuous::Point;
+use pleach_discrete::network::Activity;
+use pleach_guards::network::target as guards;
+
+use crate::automaton::TransitionError;
+use crate::law::Laws;
+use crate::located::Place as _;
+
+use super::Robot;
+
+/// Where robots go, by what they do.
+pub type Targets = Laws<Activity, Robot, Point>;
+
+/// The target laws: Algorithm 2, and for robots that hold a post what brings them back to it.
+pub fn targets() -> Targets {
+    use Activity::{
+        AwaitingRelease, Bound, Following, Junction, Leading, Leaf, Relay, Shifting, Standby,
+        Waiting,
+    };
+    let laws = Laws::of("ψ")
+        .case(Shifting, guards::shifts(), "place ahead on Σ", Robot::reference_ahead)
+        .case(Following, guards::follows(), "robot ahead", Robot::team_goal)
+        .case(Leading, guards::leads(), "task", Robot::team_goal);
+    let posted = [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease];
+    posted.into_iter().fold(laws, |laws, activity| {
+        laws.case(activity, guards::gives_way(), "place aside", Robot::place_aside).case(
+            activity,
+            guards::returns(),
+            "own post",
+            Robot::own_reference,
+        )
+    })
+}
+
+impl Robot {
+    /// ψ_i: where the robot goes now, if it goes anywhere; nowhere if a guard has no value.
+    pub fn goal(&self) -> Option<Point> {
+        self.target().ok().flatten()
+    }
+
+    /// As [`goal`](Self::goal).
+    ///
+    /// # Errors
+    /// When a guard has no value.
+    pub(super) fn target(&self) -> Result<Option<Point>, TransitionError> {
+        self.site.automata.targets.value(self.duty.location(), self)
+    }
+
+    fn own_reference(&self) -> Option<Point> {
+        self.duty.station().map(|station| station.reference)
+    }
+
+    fn reference_ahead(&self) -> Option<Point> {
+        self.next_hop().map(|hop| hop.place.reference)
+    }
+
+    pub(super) fn is_off_post(&self) -> bool {
+        self.own_reference().is_some_and(|reference| self.is_off(reference))
+    }
+
+    pub(super) fn is_off_place_ahead(&self) -> bool {
+        self.reference_ahead().is_some_and(|reference| self.is_off(reference))
+    }
+}

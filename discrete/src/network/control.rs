@@ -1,0 +1,157 @@
+//! The stages of a robot's control period, and the table between them (Algorithm 5).
+//!
+//! Control is sampled. Time passes in one location only, [`Stage::Moving`]; at the sample the robot
+//! goes through the others, which take no time. In each it waits for what its neighbours say, up to
+//! the next tick of its clock; then it works on what it has heard, and speaks.
+
+use crate::{Row, TransitionTable, Urgency, vocabulary};
+
+vocabulary! {
+    /// Where a robot stands in its control period: what it waits for.
+    pub enum Stage: Location {
+        /// The next sample, while it moves.
+        Moving = "moving",
+        /// Beacons.
+        Beacons = "beacons",
+        /// The flows of the period before, over the links as they are now; for ADAL.
+        OldFlows = "old flows",
+        /// Multipliers.
+        Multipliers = "multipliers",
+        /// Flows.
+        Flows = "flows",
+        /// The demands of its children in the tree.
+        Demands = "demands",
+        /// The flows after a sweep.
+        SweptFlows = "swept flows",
+        /// Whether a neighbour cannot pass on what it is sent after a sweep.
+        Shortages = "shortages",
+        /// The flows that were taken off overloaded robots after a sweep.
+        Reliefs = "reliefs",
+        /// Nothing: it is about to propose a move.
+        Planning = "planning",
+        /// Proposals of moves.
+        Proposals = "proposals",
+        /// Objections to its move.
+        Objections = "objections",
+    }
+
+    /// What takes a robot from one stage of its control period to another.
+    pub enum StageEvent: Event {
+        /// τ = Δt.
+        SampleDue = "sample due",
+        /// A round of beacons is over, and another one follows.
+        NextRound = "next round",
+        /// The last round of beacons is over.
+        RoutesDue = "routes due",
+        /// The last round of beacons is over, and ADAL needs the flows of the period before.
+        OldFlowsDue = "old flows due",
+        /// Every neighbour has told the flows of the period before.
+        OldFlowsHeard = "old flows heard",
+        /// Every neighbour has told its multiplier.
+        MultipliersHeard = "multipliers heard",
+        /// Every neighbour has told its flows, and another iteration follows.
+        NextIteration = "next iteration",
+        /// Every neighbour has told its flows of the last iteration.
+        SweepDue = "sweep due",
+        /// Demands have gone up the tree.
+        DemandsHeard = "demands heard",
+        /// A sweep is over, and another one may be needed.
+        SweepOver = "sweep over",
+        /// The last sweep is over.
+        RoutesDone = "routes done",
+        /// Shortages have been told from robot to robot.
+        ShortagesHeard = "shortages heard",
+        /// Every neighbour has told the flows that it has taken back.
+        ReliefsHeard = "reliefs heard",
+        /// The routes are as they will be.
+        MoveDue = "move due",
+        /// Every neighbour has told its proposal.
+        ProposalsHeard = "proposals heard",
+        /// Every neighbour has objected that has to, and moves are judged once more.
+        NextAttempt = "next attempt",
+        /// The last objections are heard: what is left of the moves is certified.
+        MoveCertified = "move certified",
+    }
+
+    /// Where an access point stands in its control period.
+    pub enum Round: Location {
+        /// It waits for the next sample.
+        Resting = "resting",
+        /// It has told its beacon, and waits for those of others.
+        Listening = "listening",
+    }
+
+    /// What takes an access point from round to round.
+    pub enum RoundEvent: Event {
+        /// τ = Δt.
+        SampleDue = "sample due",
+        /// A round of beacons is over, and another one follows.
+        NextRound = "next round",
+        /// The last round of beacons is over.
+        RoundsOver = "rounds over",
+    }
+}
+
+const fn row(source: Stage, event: StageEvent, target: Stage) -> Row<Stage, StageEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
+}
+
+/// The table of the control period.
+pub const CONTROL: TransitionTable<Stage, StageEvent> = {
+    use Stage::*;
+    use StageEvent as On;
+    TransitionTable::new(&[
+        row(Moving, On::SampleDue, Beacons),
+        row(Beacons, On::NextRound, Beacons),
+        row(Beacons, On::RoutesDue, Multipliers),
+        row(Beacons, On::OldFlowsDue, OldFlows),
+        row(OldFlows, On::OldFlowsHeard, Multipliers),
+        row(Multipliers, On::MultipliersHeard, Flows),
+        row(Flows, On::NextIteration, Multipliers),
+        row(Flows, On::SweepDue, Demands),
+        row(Demands, On::DemandsHeard, SweptFlows),
+        row(SweptFlows, On::SweepOver, Shortages),
+        row(SweptFlows, On::RoutesDone, Planning),
+        row(Shortages, On::ShortagesHeard, Reliefs),
+        row(Reliefs, On::ReliefsHeard, Demands),
+        row(Planning, On::MoveDue, Proposals),
+        row(Proposals, On::ProposalsHeard, Objections),
+        row(Objections, On::NextAttempt, Proposals),
+        row(Objections, On::MoveCertified, Moving),
+    ])
+};
+
+const fn round(source: Round, event: RoundEvent, target: Round) -> Row<Round, RoundEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority: 0 }
+}
+
+/// The table of an access point's control period.
+pub const ROUNDS: TransitionTable<Round, RoundEvent> = TransitionTable::new(&[
+    round(Round::Resting, RoundEvent::SampleDue, Round::Listening),
+    round(Round::Listening, RoundEvent::NextRound, Round::Listening),
+    round(Round::Listening, RoundEvent::RoundsOver, Round::Resting),
+]);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Event, Location};
+
+    #[test]
+    fn the_table_is_deterministic_and_every_stage_is_reached() {
+        assert!(CONTROL.is_deterministic());
+        assert_eq!(CONTROL.unreachable_from(Stage::Moving), vec![]);
+        let named = |event: &&StageEvent| CONTROL.rows().iter().any(|row| row.event == **event);
+        assert!(StageEvent::ALL.iter().all(|event| named(&event)));
+    }
+
+    /// From every stage there is a way on to the next sample, and routes come before moves.
+    #[test]
+    fn every_stage_leads_to_the_next_sample() {
+        for &stage in Stage::ALL {
+            assert!(!CONTROL.unreachable_from(stage).contains(&Stage::Moving), "{stage:?}");
+        }
+        let into_planning = CONTROL.rows().iter().filter(|row| row.target == Stage::Planning);
+        assert!(into_planning.map(|row| row.event).eq([StageEvent::RoutesDone]));
+    }
+}

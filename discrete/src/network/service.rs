@@ -1,0 +1,163 @@
+//! The service of a user's tasks, as an access point knows it, and as the user does: locations and
+//! tables.
+
+use crate::{Row, TransitionTable, Urgency, vocabulary};
+
+vocabulary! {
+    /// Where the service of the tasks stands for an access point.
+    pub enum Service: Location {
+        /// No task has been announced; robots gather at the access points.
+        Gathering = "gathering",
+        /// A leader or a recruit is being elected (Algorithm 1, Remark 5.4).
+        Electing = "electing",
+        /// The leader pursues its task, or a recruit is on its way to it.
+        UnderWay = "under way",
+        /// The task announced last is serviced.
+        Serviced = "serviced",
+        /// The mission has ended.
+        Over = "over",
+    }
+
+    /// What changes it.
+    pub enum ServiceEvent: Event {
+        /// It hears of an election that it does not know.
+        ElectionHeard = "election heard",
+        /// It hears that a path Σ is announced, or that the primary team advances.
+        ProgressHeard = "progress heard",
+        /// It hears that the task is serviced.
+        ServiceHeard = "service heard",
+        /// It hears that the mission has ended.
+        EndHeard = "end heard",
+        /// It announces the next task.
+        Announces = "announces",
+        /// There is no robot to announce the next task to.
+        NobodyThere = "nobody there",
+        /// There is no task left.
+        AllServiced = "all serviced",
+        /// No robot bids for the task.
+        NobodyBids = "nobody bids",
+        /// Robots that take part in the election do not answer.
+        NobodyAnswers = "nobody answers",
+    }
+
+    /// What a user does.
+    pub enum Request: Location {
+        /// The first control period has not begun.
+        Preparing = "preparing",
+        /// It asks for its tasks in every control period.
+        Asking = "asking",
+        /// Its request has been heard: it waits for news.
+        Waiting = "waiting",
+        /// It knows that the mission has ended.
+        Informed = "informed",
+    }
+
+    /// What changes it.
+    pub enum RequestEvent: Event {
+        /// The first control period begins: the network has it to connect.
+        Prepared = "prepared",
+        /// A control period is over without an answer.
+        PeriodOver = "period over",
+        /// The first access point has announced a task.
+        AnswerHeard = "answer heard",
+        /// The mission is said to have ended.
+        EndHeard = "end heard",
+    }
+}
+
+const fn row(
+    priority: u8,
+    source: Service,
+    event: ServiceEvent,
+    target: Service,
+) -> Row<Service, ServiceEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority }
+}
+
+/// The table of an access point.
+///
+/// Priority 0: what others say. Priority 1: what the first access point does by itself.
+pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
+    use Service::*;
+    use ServiceEvent as On;
+    TransitionTable::new(&[
+        row(0, Gathering, On::ElectionHeard, Electing),
+        row(0, Gathering, On::ProgressHeard, UnderWay),
+        row(0, Gathering, On::ServiceHeard, Serviced),
+        row(0, Gathering, On::EndHeard, Over),
+        row(1, Gathering, On::Announces, Electing),
+        row(1, Gathering, On::NobodyThere, Over),
+        row(1, Gathering, On::AllServiced, Over),
+        row(0, Electing, On::ElectionHeard, Electing),
+        row(0, Electing, On::ProgressHeard, UnderWay),
+        row(0, Electing, On::ServiceHeard, Serviced),
+        row(0, Electing, On::EndHeard, Over),
+        row(1, Electing, On::NobodyBids, Over),
+        row(1, Electing, On::NobodyAnswers, Over),
+        row(0, UnderWay, On::ElectionHeard, Electing),
+        row(0, UnderWay, On::ProgressHeard, UnderWay),
+        row(0, UnderWay, On::ServiceHeard, Serviced),
+        row(0, UnderWay, On::EndHeard, Over),
+        row(0, Serviced, On::ElectionHeard, Electing),
+        row(0, Serviced, On::ProgressHeard, UnderWay),
+        row(0, Serviced, On::ServiceHeard, Serviced),
+        row(0, Serviced, On::EndHeard, Over),
+        row(1, Serviced, On::Announces, Electing),
+        row(1, Serviced, On::NobodyThere, Over),
+        row(1, Serviced, On::AllServiced, Over),
+    ])
+};
+
+const fn request(
+    priority: u8,
+    source: Request,
+    event: RequestEvent,
+    target: Request,
+) -> Row<Request, RequestEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority }
+}
+
+/// The table of the user.
+///
+/// Priority 0: what it hears. Priority 1: what its clock says.
+pub const REQUESTS: TransitionTable<Request, RequestEvent> = {
+    use Request::*;
+    use RequestEvent as On;
+    TransitionTable::new(&[
+        request(1, Preparing, On::Prepared, Asking),
+        request(0, Preparing, On::AnswerHeard, Waiting),
+        request(0, Preparing, On::EndHeard, Informed),
+        request(1, Asking, On::PeriodOver, Asking),
+        request(0, Asking, On::AnswerHeard, Waiting),
+        request(0, Asking, On::EndHeard, Informed),
+        request(1, Waiting, On::PeriodOver, Waiting),
+        request(0, Waiting, On::EndHeard, Informed),
+        request(1, Informed, On::PeriodOver, Informed),
+    ])
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Event, Location};
+
+    fn is_complete<L: Location, E: Event>(table: &TransitionTable<'_, L, E>, initial: L) {
+        assert!(table.is_deterministic());
+        assert_eq!(table.unreachable_from(initial), vec![]);
+        let named = |event: &&E| table.rows().iter().any(|row| row.event == **event);
+        assert!(E::ALL.iter().all(|event| named(&event)));
+    }
+
+    #[test]
+    fn the_tables_are_deterministic_and_every_location_is_reached() {
+        is_complete(&SERVICE, Service::Gathering);
+        is_complete(&REQUESTS, Request::Preparing);
+    }
+
+    #[test]
+    fn the_end_is_final() {
+        assert!(SERVICE.rows().iter().all(|row| row.source != Service::Over));
+        let mut informed = REQUESTS.rows().iter().filter(|row| row.source == Request::Informed);
+        assert!(informed.all(|row| row.target == Request::Informed));
+    }
+}

@@ -1,0 +1,115 @@
+//! The guards of the service of a user's tasks: of access points and of the user.
+
+use crate::{Guard, Predicate, proposition, variable};
+
+fn named(name: &str, predicate: Predicate) -> Guard {
+    Guard::new(name, predicate)
+}
+
+/// It hears of an election that it does not know.
+pub fn election_heard() -> Guard {
+    named("election heard", proposition("hears_election"))
+}
+
+/// It hears that a path Σ is announced, or that the primary team advances.
+pub fn progress_heard() -> Guard {
+    named("progress heard", proposition("hears_progress"))
+}
+
+/// It hears that the task is serviced.
+pub fn service_heard() -> Guard {
+    named("service heard", proposition("hears_service"))
+}
+
+/// It hears that the mission has ended.
+pub fn end_heard() -> Guard {
+    named("end heard", proposition("hears_end"))
+}
+
+/// Robots have gathered: their roster has not changed for a while.
+fn settled() -> Predicate {
+    variable("settled").at_least(variable("settling"))
+}
+
+fn first(name: &str, predicate: Predicate) -> Guard {
+    named(name, proposition("asked") & settled() & predicate)
+}
+
+fn next(name: &str, predicate: Predicate) -> Guard {
+    named(name, proposition("asked") & predicate)
+}
+
+fn can_announce() -> Predicate {
+    proposition("task_left") & variable("robots").at_least(1.0)
+}
+
+fn lacks_robots() -> Predicate {
+    proposition("task_left") & variable("robots").less_than(1.0)
+}
+
+/// Robots have gathered, and there is a task.
+pub fn announces_first() -> Guard {
+    first("announces", can_announce())
+}
+
+/// There is another task.
+pub fn announces_next() -> Guard {
+    next("announces", can_announce())
+}
+
+/// There is a task, and no robot is connected.
+pub fn nobody_there_first() -> Guard {
+    first("nobody there", lacks_robots())
+}
+
+/// There is another task, and no robot is connected.
+pub fn nobody_there_next() -> Guard {
+    next("nobody there", lacks_robots())
+}
+
+/// There is no task at all.
+pub fn nothing_to_service() -> Guard {
+    first("all serviced", !proposition("task_left"))
+}
+
+/// There is no other task.
+pub fn all_serviced() -> Guard {
+    next("all serviced", !proposition("task_left"))
+}
+
+/// The leader election is over, and no robot has bid.
+pub fn nobody_bids() -> Guard {
+    let over = proposition("asked") & proposition("election_over");
+    named("nobody bids", over & proposition("leader_wanted") & !proposition("has_bid"))
+}
+
+/// The election lasts longer than news can take.
+pub fn nobody_answers() -> Guard {
+    let waits = proposition("asked") & proposition("knows_electors");
+    let overdue = variable("waited").more_than(variable("longest_wait"));
+    named("nobody answers", waits & !proposition("election_over") & overdue)
+}
+
+/// The first control period begins.
+pub fn prepared() -> Guard {
+    named("prepared", period_over())
+}
+
+/// A control period is over.
+pub fn another_period() -> Guard {
+    named("period over", period_over())
+}
+
+fn period_over() -> Predicate {
+    variable("clock").at_least(variable("period"))
+}
+
+/// The first access point has announced a task.
+pub fn answer_heard() -> Guard {
+    named("answer heard", proposition("hears_answer") & !proposition("hears_end"))
+}
+
+/// The mission is said to have ended.
+pub fn request_over() -> Guard {
+    named("end heard", proposition("hears_end"))
+}

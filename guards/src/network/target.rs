@@ -1,0 +1,37 @@
+//! The guards of the targets ψ (Algorithm 2): where a robot goes at a sample.
+
+use crate::{Predicate, proposition, variable};
+
+/// A robot has a target only while it does not exchange duties, the mission goes on, and no robot
+/// is still attached to it that has not heard of its successor.
+fn free_to_move(predicate: Predicate) -> Predicate {
+    let bound = proposition("engaged") | proposition("mission_over") | proposition("held_back");
+    (!bound).and(predicate)
+}
+
+/// A mover that cannot pass asks for way.
+pub fn gives_way() -> Predicate {
+    free_to_move(proposition("asked_for_way"))
+}
+
+/// It is off the reference of its post, and no mover is near.
+pub fn returns() -> Predicate {
+    free_to_move(proposition("off_post") & !proposition("near_mover"))
+}
+
+/// Its subgroup of Σ is the active team, and it is off the place ahead: eq. (25).
+pub fn shifts() -> Predicate {
+    free_to_move(proposition("in_active_subgroup") & proposition("off_place_ahead"))
+}
+
+/// The primary team is the active team: eq. (24).
+pub fn follows() -> Predicate {
+    free_to_move(proposition("advances"))
+}
+
+/// The primary team is the active team, the task is not within reach, and no redundant robot is
+/// attached to the leader: eq. (24).
+pub fn leads() -> Predicate {
+    let away = variable("distance").more_than(variable("reach"));
+    free_to_move(proposition("advances") & away & !proposition("bears_redundant"))
+}
