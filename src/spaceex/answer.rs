@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use crate::automaton::diagram::{FlowpipePicture, Patch};
 use crate::guards::Interval;
 use crate::verify::reach::{
-    Counterexample, Effort, Model, Polytope, Proof, ReachError, falsify, followed, prove,
+    Counterexample, Effort, Model, Polytope, Proof, ReachError, TimedState, falsify, followed,
+    prove,
 };
 
 use super::Problem;
@@ -153,7 +154,7 @@ impl Solution {
             })
         });
         let curve = |run: &Counterexample| -> Vec<Vec<[f64; 2]>> {
-            let point = |(t, values): &(f64, Vec<f64>)| {
+            let point = |(t, values): &TimedState| {
                 let value = |quantity: Option<usize>| {
                     quantity.map_or(Some(*t), |place| values.get(place).copied())
                 };

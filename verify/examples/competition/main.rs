@@ -61,7 +61,8 @@ fn main() -> TestResult<()> {
             continue;
         }
         let begin = Instant::now();
-        let (model, proof) = pool.install(|| solved(&instance).map_err(|error| error.to_string()))?;
+        let (model, proof) =
+            pool.install(|| solved(&instance).map_err(|error| error.to_string()))?;
         let seconds = begin.elapsed().as_secs_f64();
         let line = line(name, &instance, &model, &proof, seconds);
         eprint!("{line}");

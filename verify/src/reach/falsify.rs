@@ -227,13 +227,16 @@ impl<L: Location, E: Event, S: Coordinates> Search<'_, L, E, S> {
     }
 }
 
+/// A time in seconds, and the values of the variables then.
+pub type TimedState = (f64, Vec<f64>);
+
 /// What lies between the jumps of a run: the number of the location of its first component, and times
 /// with states, also between the samples.
-pub fn followed(trajectory: &Trajectory) -> Vec<(usize, Vec<(f64, Vec<f64>)>)> {
+pub fn followed(trajectory: &Trajectory) -> Vec<(usize, Vec<TimedState>)> {
     /// How many states there are from one sample to the next.
     const PARTS: u32 = 8;
     let between = |phase: pleach_automaton::trajectory::Phase| {
-        let mut states: Vec<(f64, Vec<f64>)> = Vec::new();
+        let mut states: Vec<TimedState> = Vec::new();
         for pair in phase.samples.windows(2) {
             states.push((pair[0].t, pair[0].values.clone()));
             for part in 1..PARTS {

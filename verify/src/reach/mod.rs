@@ -31,7 +31,7 @@ pub mod zonotope;
 pub use affine::AffineFlow;
 pub use explore::{Completion, Enclosure, Segment, Visit, explore};
 pub use exponential::exponential;
-pub use falsify::{Counterexample, Effort, falsify, followed};
+pub use falsify::{Counterexample, Effort, TimedState, falsify, followed};
 pub use model::{Assignments, Dynamics, Jump, Model, ModelError, Place, Uncertain};
 pub use polytope::{Bound, Polytope, Template};
 pub use question::{Answer, Doubt, Forbidden, Proof, ReachError, prove, verify};

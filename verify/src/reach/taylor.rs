@@ -128,7 +128,7 @@ impl Integration {
         let mut length = self.next_step.min(self.longest_step);
         loop {
             length = length.min(most);
-            if !(length > self.time.lower() * f64::EPSILON) {
+            if length.is_nan() || length <= self.time.lower() * f64::EPSILON {
                 return None;
             }
             let Some(last) = remainder(program, &coefficients, length, self.order) else {

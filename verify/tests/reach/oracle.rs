@@ -50,7 +50,8 @@ fn plane(rates: [&str; 2]) -> Named {
     let only = Name::new("flow");
     let listed = state.coordinates();
     let listed = listed.iter().zip(rates);
-    let listed: Vec<_> = listed.map(|(x, rate)| x.rate(rate.parse::<Expression>().unwrap())).collect();
+    let listed: Vec<_> =
+        listed.map(|(x, rate)| x.rate(rate.parse::<Expression>().unwrap())).collect();
     Automaton::starting_in(only).initially(state).flow(only, listed).build().unwrap()
 }
 
