@@ -97,7 +97,7 @@ fn clearance(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Who is within range of each of many robots, about a dozen others each; with construction.
+/// The robots within range of each of many, about a dozen others each; with construction.
 fn neighbours(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("neighbours");
     for count in [13_usize, 100, 1000, 10_000] {

@@ -10,7 +10,7 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use pleach::verify::network::exploration::{Campaign, CampaignError, QUICK, THOROUGH};
+use pleach_exploration::network::{Campaign, CampaignError, QUICK, THOROUGH};
 
 fn main() -> Result<ExitCode, CampaignError> {
     let mut words: Vec<String> = std::env::args().skip(1).collect();

@@ -151,7 +151,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pleach::automaton::trajectory::Phase;
+    use pleach::automaton::trajectory::FlowInterval;
 
     #[test]
     fn shifts_and_speeds_are_those_of_the_closed_form() {
@@ -162,8 +162,8 @@ mod tests {
     #[test]
     fn selecting_takes_no_time() {
         let trajectory = gear_shift().expect("it is sound").run(90.0).expect("it can be run");
-        let selecting = |phase: &Phase| phase.locations == [Selecting as usize];
-        let phases: Vec<_> = trajectory.phases().filter(selecting).collect();
+        let selecting = |phase: &FlowInterval| phase.locations == [Selecting as usize];
+        let phases: Vec<_> = trajectory.intervals().filter(selecting).collect();
         assert_eq!(phases.len(), 5);
         assert!(phases.iter().all(|phase| phase.samples.len() == 1));
     }

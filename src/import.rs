@@ -1,4 +1,4 @@
-//! Floor plans of one's own: maps of other programs as scenarios.
+//! Import of floor plans: maps of other programs as scenarios.
 //!
 //! | file | read as |
 //! | --- | --- |
@@ -56,14 +56,14 @@ pub struct Plan {
     /// Boundary and holes.
     pub workspace: WorkspaceOutline,
     /// Places that the map names, if any: access points, robots, tasks.
-    pub places: Places,
+    pub places: MapPlaces,
     /// What was simplified or left out, as sentences.
     pub notes: Vec<String>,
 }
 
 /// Places that a map names.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Places {
+pub struct MapPlaces {
     /// Where access points stand.
     pub access_points: Vec<[f64; 2]>,
     /// Where robots start.
@@ -74,6 +74,7 @@ pub struct Places {
 
 /// Why a map cannot be read.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ImportError {
     /// The file cannot be read.
     #[error("{}: cannot be read: {source}", path.display())]

@@ -120,7 +120,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A watcher of one's own is a few lines: see the README. A medium of one's own, that loses
+//! A custom watcher is a few lines: see the README. A custom medium, that loses
 //! messages for example, goes into [`mission::run_network`].
 //!
 //! # An automaton

@@ -45,6 +45,7 @@ pub trait Watcher {
 
 /// Why a mission could not be run to an end.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum MissionError {
     /// The network cannot be set up, or a guard cannot be evaluated.
     #[error(transparent)]
@@ -165,12 +166,14 @@ impl Gallery<'_, '_> {
         let loads =
             self.saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
         let loads: Vec<String> = loads.collect();
-        let reason = format!(
-            "{}; the load is {}: its links carry no more, so lower the rates, place robots closer \
-             together or add some",
-            end.reason,
-            loads.join(", ")
-        );
+        let loads = loads.join(", ");
+        let remedy = "lower the rates, place robots closer together or add some";
+        let reason = match end.outcome {
+            Outcome::Blocked => format!(
+                "robots cannot go on because their links carry no more: the load is {loads}; {remedy}"
+            ),
+            _ => format!("{}; the load is {loads}, and links carry no more: {remedy}", end.reason),
+        };
         End { reason, ..end }
     }
 

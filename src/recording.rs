@@ -25,6 +25,7 @@ use thiserror::Error;
 
 /// Why a trace cannot be recorded.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum RecordingError {
     /// The trace cannot be read.
     #[error(transparent)]

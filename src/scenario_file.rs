@@ -16,6 +16,7 @@ use toml::de::DeTable;
 
 /// Why no mission can start from a file.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ScenarioError {
     /// The file is missing, may not be read or is not UTF-8 text.
     #[error("{}: cannot be read: {source}; give the path of a scenario file", path.display())]
@@ -49,7 +50,7 @@ pub enum ScenarioError {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistake {
     /// Where it stands.
-    pub place: Place,
+    pub place: MistakePlace,
     /// The key, such as `robot[3].position`; empty where none is concerned.
     pub key: String,
     /// What is wrong and what would be right.
@@ -58,7 +59,8 @@ pub struct Mistake {
 
 /// Where a mistake stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+#[non_exhaustive]
+pub enum MistakePlace {
     /// In the text, both counted from 1.
     Text {
         /// The line.
@@ -73,8 +75,8 @@ pub enum Place {
 impl fmt::Display for Mistake {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.place {
-            Place::Text { line, column } => write!(formatter, "{line}:{column}: ")?,
-            Place::Setting(setting) => write!(formatter, "{setting}: ")?,
+            MistakePlace::Text { line, column } => write!(formatter, "{line}:{column}: ")?,
+            MistakePlace::Setting(setting) => write!(formatter, "{setting}: ")?,
         }
         if !self.key.is_empty() {
             write!(formatter, "{}: ", self.key)?;
@@ -138,8 +140,10 @@ pub fn parse_with(
     // A value that a setting has replaced does not stand in the text.
     let mistake = |start: usize, key: &KeyPath, message: String| {
         let setting = settings.iter().rev().find(|setting| setting.covers(key));
-        let place = setting
-            .map_or_else(|| lines.place(start), |setting| Place::Setting(setting.to_string()));
+        let place = setting.map_or_else(
+            || lines.place(start),
+            |setting| MistakePlace::Setting(setting.to_string()),
+        );
         Mistake { place, key: key.to_string(), message }
     };
 
@@ -149,7 +153,7 @@ pub fn parse_with(
     }
     for setting in settings {
         setting.apply(file.get_mut()).map_err(|message| {
-            let place = Place::Setting(setting.to_string());
+            let place = MistakePlace::Setting(setting.to_string());
             mistaken(vec![Mistake { place, key: String::new(), message }])
         })?;
     }
@@ -170,8 +174,8 @@ pub fn parse_with(
 
 fn one_per_line(path: &Path, mistakes: &[Mistake]) -> String {
     let line = |mistake: &Mistake| match mistake.place {
-        Place::Text { .. } => format!("{}:{mistake}", path.display()),
-        Place::Setting(_) => format!("{} with {mistake}", path.display()),
+        MistakePlace::Text { .. } => format!("{}:{mistake}", path.display()),
+        MistakePlace::Setting(_) => format!("{} with {mistake}", path.display()),
     };
     mistakes.iter().map(line).collect::<Vec<_>>().join("\n")
 }

@@ -3,6 +3,7 @@
 use crate::automaton::network::KernelTimes;
 use crate::automaton::network::record::{MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::{Scenario, Settings};
+use crate::figures::quantity;
 use crate::mission::{Completed, Watcher};
 use crate::verify::network::{Extreme, Extremes};
 use std::fmt;
@@ -133,7 +134,7 @@ impl Summary {
             self.name,
             self.tasks.len(),
             self.periods,
-            self.seconds,
+            quantity(self.seconds),
         )?;
         match self.completed.as_ref().map(|(completed, _)| &completed.end) {
             Some(end) if end.outcome == Outcome::Serviced => {
@@ -187,9 +188,10 @@ impl Summary {
             let noun = if robots.len() == 1 { "robot" } else { "robots" };
             writeln!(
                 formatter,
-                "  {label:<19} {value:.6} at k = {} ({noun} {}); {symbol} {bound}",
+                "  {label:<19} {value:.6} at k = {} ({noun} {}); {symbol} {}",
                 instant.step,
                 concerned.join(" and "),
+                quantity(bound),
             )?;
         }
         Ok(())

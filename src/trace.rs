@@ -14,7 +14,9 @@
 //! `active` (the robots that may move), `residual` and `multiplier` of every robot, `route`
 //! `[[from, to, T, R], …]` where T > 0, `tree` `[[child, parent], …]`, `task` (or null), and
 //! what an observer needs to draw the picture: `phase`, `active_team`, `primary_team`, `path`,
-//! `serviced` `[[task, robot], …]` and `post`.
+//! `serviced` `[[task, robot], …]` and `post`; then of every robot its `location` in the duty
+//! automaton and its place in the automaton of the `exchange` of duties, its `known_phase` of the
+//! mission, its `target` (or null), and how many messages it has `sent` and `heard` in the period.
 
 mod line;
 
@@ -163,6 +165,7 @@ fn parse(number: usize, text: io::Result<String>) -> Result<Line, TraceError> {
 /// Why a text is not a trace. Lines are counted from 1.
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // the fields are what the sentences show
+#[non_exhaustive]
 pub enum TraceError {
     /// There is no line at all.
     #[error("the trace is empty: its first line must be the header")]

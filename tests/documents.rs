@@ -23,7 +23,7 @@ use pleach::summary::Summary;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 17] = [
+const WRITTEN: [&str; 20] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
@@ -35,7 +35,10 @@ const WRITTEN: [&str; 17] = [
     "docs/robot.md",
     "docs/proofs.md",
     "docs/exploration.md",
+    "docs/how-to/batch.md",
+    "docs/how-to/controller.md",
     "docs/how-to/link-model.md",
+    "docs/how-to/map.md",
     "docs/how-to/medium.md",
     "docs/how-to/monitor.md",
     "docs/how-to/trace.md",
@@ -111,8 +114,8 @@ A mover that cannot pass a parked robot exchanges duties with it: it offers its 
 
 const MISSION: &str = "\
 The phase says where the mission stands for this robot. Transitions of priority 0 follow the newest
-word that the robot has heard; those of priority 1 are what it finds out itself, and their resets
-issue the next word. Robots are in different phases while a word spreads.
+notice that the robot has heard; those of priority 1 are what it finds out itself, and their resets
+issue the next notice. Robots are in different phases while a notice spreads.
 ";
 
 const CONTROL: &str = "\

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The packages with their product sources, the root package first.
+/// The packages that users depend on, the root package first.
 const PACKAGES: [&str; 6] = ["", "guards", "discrete", "continuous", "automaton", "verify"];
 
 fn root() -> &'static Path {
@@ -80,10 +80,14 @@ fn assert_none(offences: Vec<String>, rule: &str) {
     assert!(offences.is_empty(), "{rule}:\n{}", offences.join("\n"));
 }
 
+/// The manifest in a folder.
+fn manifest(folder: &Path) -> toml::Table {
+    fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap()
+}
+
 /// The `[dependencies]` table of a package.
 fn dependency_table(package: &str) -> toml::Table {
-    let manifest = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
-    let manifest: toml::Table = manifest.parse().unwrap();
+    let manifest = manifest(&root().join(package));
     let dependencies = manifest.get("dependencies").and_then(toml::Value::as_table);
     dependencies.cloned().unwrap_or_default()
 }
@@ -125,6 +129,34 @@ fn the_layers_know_only_those_below_them() {
     }
 }
 
+/// What explores and tests the product is no part of it: packages that are not published appear
+/// among the dependencies of tests only, and nothing turns on what drives robots by hand.
+#[test]
+fn users_do_not_build_what_tests_the_product() {
+    let workspace = manifest(root());
+    let members = workspace["workspace"]["members"].as_array().unwrap();
+    let folders = members.iter().map(|member| member.as_str().unwrap());
+    let unpublished: Vec<String> = folders
+        .map(|folder| manifest(&root().join(folder)))
+        .filter(|manifest| {
+            manifest["package"].get("publish").and_then(toml::Value::as_bool) == Some(false)
+        })
+        .map(|manifest| manifest["package"]["name"].as_str().unwrap().to_owned())
+        .collect();
+    assert!(unpublished.iter().any(|name| name == "pleach-exploration"), "{unpublished:?}");
+    for package in PACKAGES {
+        let manifest = manifest(&root().join(package));
+        assert!(manifest["package"].get("publish").is_none(), "{package:?} is published");
+        assert!(manifest.get("target").is_none(), "{package:?} has dependencies for some targets");
+        for (name, dependency) in dependency_table(package) {
+            assert!(!unpublished.contains(&name), "{package:?} depends on {name}");
+            let features = dependency.get("features").and_then(toml::Value::as_array);
+            let drives_robots = |feature: &toml::Value| feature.as_str() == Some("abstraction");
+            assert!(!features.is_some_and(|it| it.iter().any(drives_robots)), "{package:?}");
+        }
+    }
+}
+
 #[test]
 fn guards_and_the_discrete_layer_need_the_standard_library_only() {
     assert_eq!(dependencies("discrete"), Vec::<String>::new(), "dependencies of discrete");
@@ -147,6 +179,40 @@ fn every_file_of_tests_is_in_the_program_of_its_package() {
             assert!(is_named || !is_module, "{} is not in main.rs", path.display());
         }
     }
+}
+
+/// Where an automaton of the network stands is changed by its resets alone: what holds a location
+/// with its data is private, is made where its owner is made, and is assigned to nowhere. The one
+/// way to change it, `current_mut`, is called by the resets of `located.rs` and by nothing else.
+#[test]
+fn nothing_but_resets_changes_where_an_automaton_stands() {
+    let sources = sources();
+    let is_of_the_network =
+        |source: &&Source| source.package() == "automaton" && source.is_about_the_network();
+    let network = || sources.iter().filter(is_of_the_network);
+    let holds =
+        |line: &String| line.trim_start().split_once(": Current<").map(|it| it.0.to_owned());
+    let fields: Vec<String> = network()
+        .flat_map(|source| source.lines.iter().filter_map(|(_, line)| holds(line)))
+        .collect();
+    assert!(fields.len() >= 3, "the places are not where they are looked for: {fields:?}");
+    assert!(fields.iter().all(|field| !field.contains("pub")), "they are private: {fields:?}");
+    let changes: Vec<String> = fields
+        .iter()
+        .flat_map(|field| {
+            let (moved, borrowed) = (format!(".{field} = "), format!("&mut self.{field}"));
+            [moved, format!("({borrowed},"), format!("({borrowed})")]
+        })
+        .chain(["= Current::new(", ".current_mut()"].map(str::to_owned))
+        .collect();
+    let changes: Vec<&str> = changes.iter().map(String::as_str).collect();
+    let offences = network().flat_map(|source| source.lines_with(&changes)).collect();
+    assert_none(offences, "only resets change where an automaton stands");
+    let callers: Vec<&Source> = sources
+        .iter()
+        .filter(|source| !source.lines_with(&[".current_mut()"]).is_empty())
+        .collect();
+    assert!(callers.iter().all(|source| source.path == "automaton/src/located.rs"));
 }
 
 #[test]

@@ -1,14 +1,11 @@
 //! Every mission ends, with an outcome that says what happened.
 
-use crate::missions::{Mission, run, run_over, shipped};
+use crate::missions::{Arrival, Filtered, Mission, run, run_over, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Route};
 use pleach::automaton::network::scenario::{
     AccessPoint, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
 };
-use pleach::automaton::network::{Message, Radio, Site};
-use pleach::automaton::node::{Delivery, Envelope, Medium};
 use pleach::continuous::Point;
-use pleach::discrete::network::NodeId;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -85,7 +82,7 @@ fn a_task_farther_from_the_free_space_is_unreachable() {
         println!("{place}");
         assert_unserviced(&mission, Outcome::UnreachableTask, 0);
         let first = &mission.periods[0].snapshot.positions;
-        assert_eq!(first, &mission.last().positions, "{place}: nobody goes anywhere");
+        assert_eq!(first, &mission.last().positions, "{place}: no robot moves");
     }
 }
 
@@ -154,49 +151,14 @@ fn a_mission_takes_no_more_control_periods_than_allowed() {
 
 // ---- The monitor -------------------------------------------------------------------------------
 
-/// A radio that stops for one robot, so that what it generates goes nowhere.
-struct Muting {
-    radio: Radio,
-    muted: NodeId,
-    periods: usize,
-    from: usize,
-}
-
-impl Medium<Message, Point> for Muting {
-    fn update(&mut self, bodies: &[Point]) {
-        self.periods += 1;
-        self.radio.update(bodies);
-    }
-
-    fn send(&mut self, envelope: Envelope<Message>) {
-        self.radio.send(envelope);
-    }
-
-    fn time_to_arrival(&self) -> Option<f64> {
-        self.radio.time_to_arrival()
-    }
-
-    fn flow(&mut self, duration: f64) {
-        self.radio.flow(duration);
-    }
-
-    fn deliver<E>(
-        &mut self,
-        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
-    ) -> Result<(), E> {
-        let Muting { radio, muted, periods, from } = self;
-        radio.deliver(|delivery| {
-            let arrives = *periods <= *from || ![delivery.from, delivery.to].contains(muted);
-            if arrives { hand_over(delivery) } else { Ok(()) }
-        })
-    }
-}
-
+/// The radio stops for one robot, so that what it generates goes nowhere.
 #[test]
 fn the_monitor_stops_a_mission_at_the_first_violation() {
     let (muted, from) = (0, 20);
-    let medium = |site: &Site| Muting { radio: Radio::new(site), muted, periods: 0, from };
-    let (mission, _) = run_over(room([1.9, 0.2]), medium);
+    let mutes = |Arrival { period, sender, receiver, .. }: Arrival| {
+        period >= from && [sender, receiver].contains(&muted)
+    };
+    let (mission, _) = run_over(room([1.9, 0.2]), |site| Filtered::new(site, mutes));
     assert_eq!(mission.end.outcome, Outcome::InvariantViolated);
     assert_eq!(mission.last().step, from);
     let reason = &mission.end.reason;
@@ -228,6 +190,12 @@ fn the_program_tells_outcomes_by_its_exit_status() {
         (Path::new("scenarios/too-few.toml"), 3, "insufficient robots: task 1"),
         (Path::new("scenarios/unreachable.toml"), 3, "unreachable task: "),
         (&hasty, 3, "step limit: "),
+        // Five robots of rate 0.22: one relay cannot carry the traffic of all.
+        (
+            Path::new("tests/scenarios/saturated.toml"),
+            3,
+            "blocked: robots cannot go on because their links carry no more: the load is 1.000 at robot",
+        ),
     ];
     for (scenario, status, outcome) in expected {
         let output = pleach(scenario);

@@ -9,10 +9,11 @@ use std::path::{Path, PathBuf};
 
 use catalogue::faults;
 use pleach::verify::network::Property;
-use pleach::verify::network::exploration::{ALWAYS, Campaign, Counts, ENDS, QUICK, THOROUGH};
+use pleach_exploration::network::{ALWAYS, Campaign, Counts, ENDS, QUICK, THOROUGH};
 
 /// The packages that may have harnesses.
-const PACKAGES: [&str; 6] = ["", "guards", "discrete", "continuous", "automaton", "verify"];
+const PACKAGES: [&str; 7] =
+    ["", "guards", "discrete", "continuous", "automaton", "verify", "exploration"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

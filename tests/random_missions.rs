@@ -1,4 +1,4 @@
-//! Missions on floor plans that nobody tuned the robots to.
+//! Missions on floor plans to which the robots are not tuned.
 //!
 //! A few run in every `cargo test`; many with
 //! `cargo test --release --test it random_missions -- --ignored --nocapture`. To look at single
@@ -20,7 +20,7 @@ const MANY: u64 = 100;
 /// Missions of the hall, which take some fifty times as long.
 const MANY_HALLS: u64 = 5;
 
-/// Counts the robots that nobody needs.
+/// Counts the robots that are not needed.
 #[derive(Default)]
 struct Reserve {
     redundant: usize,
@@ -33,7 +33,7 @@ impl Watcher for Reserve {
     }
 }
 
-/// How a mission ends, and how many robots nobody needs then.
+/// How a mission ends, and how many robots are not needed then.
 fn end_of(scenario: &ValidScenario) -> (End, usize) {
     let mut reserve = Reserve::default();
     let end = run(scenario, &mut [&mut reserve]).unwrap().end;

@@ -47,8 +47,7 @@ fn networks_are_products() {
     assert_eq!(timers.automata[0].names(), ["clock", "level"]);
     let uncertain: Vec<(&str, Interval)> =
         timers.uncertain.iter().map(|one| (one.parameter.as_str(), one.values)).collect();
-    let over = |lower, upper| Interval::new(lower, upper).unwrap();
-    assert_eq!(uncertain, [("inflow", over(0.0, 0.5)), ("tank_level_after_1", over(1.0, 1.25))]);
+    assert_eq!(uncertain, [("inflow", Interval::new(0.0, 0.5).unwrap())]);
     let solution = timers.solve(&Effort::default(), &mut |_| ControlFlow::Continue(())).unwrap();
     assert_eq!(solution.verdict(), Verdict::Holds);
     assert_eq!(solution.proofs[0].enclosure.ending, Completion::Horizon);

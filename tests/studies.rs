@@ -81,7 +81,7 @@ fn the_bounds_are_kept_in_every_shipped_scenario() {
 }
 
 #[test]
-fn nobody_moves_any_more_when_a_mission_ends() {
+fn no_robot_moves_any_more_when_a_mission_ends() {
     for (name, ..) in SHIPPED {
         assert!(mission(name).last().active.is_empty(), "{name}");
     }
@@ -165,7 +165,7 @@ fn a_node_in_a_branch_is_elected_leader() {
     assert_eq!(second.subgroups_that_release(), [0, 1]);
 }
 
-/// Whoever relieves a leaf services its task from then on, and never leaves it.
+/// A robot that relieves a leaf services its task from then on, and never leaves it.
 #[test]
 fn the_task_of_a_leaf_that_leads_passes_to_its_replacement() {
     for name in ["leaf-leader", "study-1b", "study-1"] {
@@ -317,7 +317,7 @@ fn the_oracle_notices_what_is_wrong() {
         (|now| now.residuals[5] += 0.001, "robot 5: residual"),
         (|now| now.routes.retain(|route| route.from != 7), "residual"),
         (|now| now.tree.push((0, 1)), "robot 0 has two parents"),
-        (|now| now.tree.retain(|&(child, _)| child != 9), "hangs on 9, which hangs on nothing"),
+        (|now| now.tree.retain(|&(child, _)| child != 9), "is attached to 9, which has no parent"),
         (|now| now.tree = vec![(0, 1), (1, 2), (2, 0)], "the tree has a cycle"),
         (|now| now.serviced.clear(), "task 0 is left"),
     ];

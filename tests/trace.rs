@@ -1,7 +1,7 @@
 //! What is written into a trace can be read back, and is the same to the byte.
 
 use crate::common::{end, every_event, reports, room, show};
-use pleach::automaton::network::record::{End, Outcome};
+use pleach::automaton::network::record::{End, Outcome, Snapshot};
 use pleach::automaton::network::scenario::Settings;
 use pleach::mission::Watcher;
 use pleach::trace::{TraceEntry, TraceError, TraceReader, TraceWriter};
@@ -39,6 +39,30 @@ fn what_is_read_is_what_was_written() {
     expected.push(TraceEntry::End(end()));
     let entries: Vec<_> = reader.collect::<Result<_, _>>().unwrap();
     assert_eq!(entries, expected);
+}
+
+/// Traces of older builds do not say where robots are in their automata.
+#[test]
+fn a_trace_without_views_of_robots_is_read() {
+    let text = written();
+    let older = text.lines().map(|line| {
+        let mut line: serde_json::Value = serde_json::from_str(line).unwrap();
+        let fields = line.as_object_mut().unwrap();
+        for name in ["location", "exchange", "known_phase", "target", "sent", "heard"] {
+            fields.remove(name);
+        }
+        format!("{line}\n")
+    });
+    let older: String = older.collect();
+    let entries = TraceReader::new(older.as_bytes()).unwrap().map(Result::unwrap);
+    let steps = entries.filter_map(|entry| match entry {
+        TraceEntry::Step(snapshot) => Some(*snapshot),
+        _ => None,
+    });
+    let expected =
+        reports().into_iter().map(|report| Snapshot { robots: vec![], ..report.snapshot });
+    assert!(steps.eq(expected));
+    assert!(pleach::page::of_trace(older.as_bytes()).unwrap().contains("not recorded"));
 }
 
 #[test]
@@ -87,6 +111,9 @@ fn what_is_not_a_trace_is_refused() {
         error.to_string(),
         "line 5: role has 1 elements where position has 2: one for each robot"
     );
+    let unknown = written().replacen("\"leading the team\"", "\"asleep\"", 1);
+    let error = TraceReader::new(unknown.as_bytes()).unwrap().find_map(Result::err).unwrap();
+    assert_eq!(error.to_string(), "line 5: no location is called \"asleep\"");
 }
 
 proptest! {

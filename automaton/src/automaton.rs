@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use crate::builder::Builder;
 use crate::coordinates::Coordinates;
+use crate::coverage::tally::Tally;
 use crate::flow::Flow;
 use crate::law::Command;
 use crate::located::{Holds, Place};
@@ -67,6 +68,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) known: Option<Vec<&'static str>>,
     /// Names that stand for numbers, with these.
     pub(crate) parameters: Vec<(String, f64)>,
+    /// The coordinates of which no other component may say how they move.
+    pub(crate) own: Vec<&'static str>,
     pub(crate) locations: Vec<L>,
     pub(crate) events: Vec<E>,
     /// The nodes stand in the order of the locations.
@@ -75,6 +78,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) modes: Vec<Mode<S>>,
     /// By node: the edges that leave it, in their total order.
     pub(crate) leaving: Vec<Vec<EdgeIndex>>,
+    /// How often each row has been taken, if that is counted.
+    pub(crate) tally: Option<Tally>,
     /// Propositions of which at most one is true at a time.
     pub(crate) exclusive: Vec<Vec<String>>,
 }
@@ -126,6 +131,8 @@ pub struct Step<'a, L, E, S> {
     source: L,
     target: L,
     transition: &'a Transition<E, S>,
+    row: usize,
+    tally: Option<&'a Tally>,
 }
 
 /// A guard or a reset could not be evaluated.
@@ -347,8 +354,9 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         for &edge in leaving.map_or(&[][..], Vec::as_slice) {
             let transition = &self.graph[edge];
             if eligible(transition) && transition.allows(location, state)? {
-                let target = self.rows[edge.index()].target;
-                return Ok(Some(Step { source: location, target, transition }));
+                let (row, tally) = (edge.index(), self.tally.as_ref());
+                let target = self.rows[row].target;
+                return Ok(Some(Step { source: location, target, transition, row, tally }));
             }
         }
         Ok(None)
@@ -460,6 +468,9 @@ impl<'a, L: Location, E: Event, S> Step<'a, L, E, S> {
         let failed = |source| self.transition.error(self.source, "reset".into(), source);
         reset.apply(state).map_err(failed)?;
         *location = self.target;
+        if let Some(tally) = self.tally {
+            tally.count(self.row);
+        }
         Ok(self.jump())
     }
 }

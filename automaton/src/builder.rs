@@ -1,11 +1,15 @@
-//! How an automaton is put together, and what can be wrong with it.
+//! How an automaton is put together.
+
+mod checks;
+mod error;
 
 use std::ops::RangeInclusive;
 
 use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
 use pleach_discrete::{Event, Location, Row, TransitionTable};
-use pleach_guards::{Expression, Guard, Predicate, Valuation};
-use thiserror::Error;
+use pleach_guards::{Guard, Predicate, Valuation};
+
+pub use error::BuildError;
 
 use crate::automaton::{Automaton, Mode, Transition};
 use crate::coordinates::{Coordinate, Coordinates};
@@ -53,153 +57,6 @@ pub struct Builder<L, E, S> {
 
 /// The names of variables and of propositions.
 type Names = (&'static [&'static str], &'static [&'static str]);
-
-/// Why the parts do not make an automaton.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum BuildError {
-    /// `Location::ALL` lacks a location.
-    #[error("location {location} is missing in `Location::ALL` of its type")]
-    UnlistedLocation {
-        /// The location, as its `Debug` prints it.
-        location: String,
-    },
-    /// `Event::ALL` lacks an event.
-    #[error("event {event} is missing in `Event::ALL` of its type")]
-    UnlistedEvent {
-        /// The event, as its `Debug` prints it.
-        event: String,
-    },
-    /// The table has transitions, but none of them enters or leaves the initial location.
-    #[error("the initial location `{location}` occurs in no row of the table")]
-    InitialNotInTable {
-        /// The location.
-        location: &'static str,
-    },
-    /// Two rows share source and event, and do not both have a guard of their own.
-    #[error("two rows of the table leave location `{location}` on event `{event}`: keep one")]
-    Nondeterministic {
-        /// The source of the rows.
-        location: &'static str,
-        /// The event of the rows.
-        event: &'static str,
-    },
-    /// An event of the table has no guard.
-    #[error("event `{event}` has no guard: say when it happens with `on`")]
-    EventWithoutGuard {
-        /// The event.
-        event: &'static str,
-    },
-    /// A guard is given for an event that is in no row.
-    #[error("guard `{guard}` is given for event `{event}`, which is in no row of the table")]
-    GuardWithoutRow {
-        /// The name of the guard.
-        guard: String,
-        /// The event.
-        event: &'static str,
-    },
-    /// An event has two guards, or a location two flows or two invariants.
-    #[error("`{place}` is given its {part} twice: keep one")]
-    GivenTwice {
-        /// The event or the location.
-        place: &'static str,
-        /// What is given twice: guard, flow or invariant.
-        part: &'static str,
-    },
-    /// A row of the table is not carried out, although others are.
-    #[error("nothing says what the row of `{location}` on event `{event}` carries over")]
-    RowWithoutTransfer {
-        /// The source of the row.
-        location: &'static str,
-        /// The event of the row.
-        event: &'static str,
-    },
-    /// What is carried out is in no row of the table.
-    #[error("no row of the table leads from `{source_location}` on event `{event}` to `{target}`")]
-    TransferWithoutRow {
-        /// The source.
-        source_location: &'static str,
-        /// The event.
-        event: &'static str,
-        /// The target.
-        target: &'static str,
-    },
-    /// A guard or an invariant names a proposition that the state does not have.
-    #[error("`{place}` names proposition `{proposition}`, which the state does not have")]
-    UnknownProposition {
-        /// The event or the location.
-        place: &'static str,
-        /// The name of the proposition.
-        proposition: String,
-    },
-    /// A formula names a variable that the state does not have.
-    #[error("the {part} of `{place}` names variable `{variable}`, which the state does not have")]
-    UnknownVariable {
-        /// The event or the location.
-        place: &'static str,
-        /// What names it: guard, reset, flow or invariant.
-        part: &'static str,
-        /// The name of the variable.
-        variable: String,
-    },
-    /// A flow or a reset says twice what one coordinate does.
-    #[error("the {part} of `{place}` gives `{coordinate}` two values: keep one")]
-    CoordinateTwice {
-        /// The event or the location.
-        place: &'static str,
-        /// Flow or reset.
-        part: &'static str,
-        /// The coordinate.
-        coordinate: &'static str,
-    },
-    /// A parameter is called like a coordinate or another parameter.
-    #[error("parameter `{parameter}` is called like a coordinate or another parameter: rename one")]
-    ParameterNameTaken {
-        /// The name.
-        parameter: String,
-    },
-    /// A parameter is infinite or NaN.
-    #[error("parameter `{parameter}` is {value}: it must be a finite number")]
-    ParameterNotFinite {
-        /// The name.
-        parameter: String,
-        /// Its value.
-        value: f64,
-    },
-    /// Rates are given for all locations, but the flow of one is a function.
-    #[error("the flow of `{location}` is a function, to which no rates can be added")]
-    NoRates {
-        /// The location.
-        location: &'static str,
-    },
-    /// A range is declared for a variable that the state does not have.
-    #[error("a range is declared for variable `{variable}`, which the state does not have")]
-    RangeOfUnknownVariable {
-        /// The name of the variable.
-        variable: String,
-    },
-    /// A range is empty, or one of its ends is NaN.
-    #[error(
-        "the range of `{variable}` runs from {lower} to {upper}: the first must be at most the \
-         second"
-    )]
-    EmptyRange {
-        /// The name of the variable.
-        variable: String,
-        /// The lower end given.
-        lower: f64,
-        /// The upper end given.
-        upper: f64,
-    },
-    /// A coordinate of the initial state is NaN or infinite.
-    #[error("`{variable}` is {value} in the initial state: it must be a finite number")]
-    InitialNotFinite {
-        /// The name of the coordinate.
-        variable: &'static str,
-        /// Its value.
-        value: f64,
-    },
-}
 
 impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     pub(crate) fn new(table: TransitionTable<'_, L, E>, initial: L) -> Self {
@@ -298,11 +155,13 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             ranges,
             known,
             parameters,
+            own: Vec::new(),
             locations,
             events,
             graph,
             modes,
             leaving,
+            tally: None,
             exclusive,
         })
     }
@@ -348,30 +207,6 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         }
     }
 
-    fn check_propositions(&self, known: &[&str]) -> Result<(), BuildError> {
-        let conditions = self.conditions.iter().map(|(event, guard, _)| (event.name(), guard));
-        let edges = self.edges.iter();
-        let edges = edges.map(|(row, guard, _)| (self.rows[*row].event.name(), guard));
-        let guards = conditions.chain(edges).map(|(place, guard)| (place, guard.predicate()));
-        let invariants = self.invariants.iter();
-        let invariants = invariants.map(|(location, invariant)| (location.name(), invariant));
-        let commands = self.commands.iter();
-        let commands = commands.map(|(location, command)| (location.name(), &command.guard));
-        let unknown = self.exclusive.iter().flatten().find(|name| !known.contains(&name.as_str()));
-        if let Some(name) = unknown {
-            let (place, proposition) = ("propositions that exclude each other", name.clone());
-            return Err(BuildError::UnknownProposition { place, proposition });
-        }
-        for (place, predicate) in guards.chain(invariants).chain(commands) {
-            if let Some(name) =
-                predicate.propositions().into_iter().find(|name| !known.contains(name))
-            {
-                return Err(BuildError::UnknownProposition { place, proposition: name.to_owned() });
-            }
-        }
-        Ok(())
-    }
-
     /// All locations, or those that are mentioned.
     fn locations(&self) -> Vec<L> {
         let in_rows = self.rows.iter().flat_map(|row| [row.source, row.target]);
@@ -408,136 +243,6 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             }
         }
         Ok(())
-    }
-
-    fn check_parameters(&self, names: &[&'static str]) -> Result<(), BuildError> {
-        for (position, (name, value)) in self.parameters.iter().enumerate() {
-            let is_taken = names.contains(&name.as_str())
-                || self.parameters[..position].iter().any(|(other, _)| other == name);
-            if is_taken {
-                return Err(BuildError::ParameterNameTaken { parameter: name.clone() });
-            }
-            if !value.is_finite() {
-                let (parameter, value) = (name.clone(), *value);
-                return Err(BuildError::ParameterNotFinite { parameter, value });
-            }
-        }
-        Ok(())
-    }
-
-    fn check_vocabulary(&self) -> Result<(), BuildError> {
-        let (locations, events) = (self.locations(), self.events());
-        listed(&locations, self.initial)?;
-        for row in &self.rows {
-            listed(&locations, row.source)?;
-            listed(&locations, row.target)?;
-            if !events.contains(&row.event) {
-                return Err(BuildError::UnlistedEvent { event: format!("{:?}", row.event) });
-            }
-        }
-        let described = self.flows.iter().map(|(location, _)| *location);
-        let restricted = self.invariants.iter().map(|(location, _)| *location);
-        described
-            .chain(restricted)
-            .try_for_each(|location| listed(&locations, location).map(|_| ()))
-    }
-
-    fn check_table(&self) -> Result<(), BuildError> {
-        let has_own = |number: usize| self.edges.iter().any(|(edge, ..)| *edge == number);
-        for (number, row) in self.rows.iter().enumerate() {
-            let same =
-                |earlier: &Row<L, E>| (earlier.source, earlier.event) == (row.source, row.event);
-            let mut earlier = (0..number).filter(|&earlier| same(&self.rows[earlier]));
-            if earlier.any(|earlier| !(has_own(earlier) && has_own(number))) {
-                let (location, event) = (row.source.name(), row.event.name());
-                return Err(BuildError::Nondeterministic { location, event });
-            }
-        }
-        let rows = &self.rows;
-        let occurs = rows.iter().any(|row| [row.source, row.target].contains(&self.initial));
-        if !rows.is_empty() && !occurs {
-            return Err(BuildError::InitialNotInTable { location: self.initial.name() });
-        }
-        Ok(())
-    }
-
-    fn check_parts(&self) -> Result<(), BuildError> {
-        for (event, guard, _) in &self.conditions {
-            if !self.rows.iter().any(|row| row.event == *event) {
-                let (guard, event) = (guard.name().to_owned(), event.name());
-                return Err(BuildError::GuardWithoutRow { guard, event });
-            }
-        }
-        let events = self.conditions.iter().map(|(event, ..)| *event);
-        let described = self.flows.iter().map(|(location, _)| *location);
-        let restricted = self.invariants.iter().map(|(location, _)| *location);
-        once(events, "guard", E::name)?;
-        once(described, "flow", L::name)?;
-        once(restricted, "invariant", L::name)
-    }
-
-    /// Whatever flows, invariants, guards, resets and ranges name is a variable, and no coordinate
-    /// is given two values at once.
-    fn check_variables(&self, is_known: impl Fn(&str) -> bool) -> Result<(), BuildError> {
-        for part in self.formulas() {
-            if let Some(unknown) = part.variables.iter().find(|name| !is_known(name)) {
-                let Part { place, part, .. } = part;
-                return Err(BuildError::UnknownVariable { place, part, variable: unknown.clone() });
-            }
-            let mut given = part.coordinates.iter().enumerate();
-            if let Some((_, coordinate)) =
-                given.find(|(position, name)| part.coordinates[..*position].contains(name))
-            {
-                let Part { place, part, .. } = part;
-                return Err(BuildError::CoordinateTwice { place, part, coordinate });
-            }
-        }
-        for (variable, range) in &self.ranges {
-            let (variable, lower, upper) = (variable.clone(), *range.start(), *range.end());
-            if !is_known(&variable) {
-                return Err(BuildError::RangeOfUnknownVariable { variable });
-            }
-            let in_order = lower <= upper;
-            if !in_order {
-                return Err(BuildError::EmptyRange { variable, lower, upper });
-            }
-        }
-        Ok(())
-    }
-
-    fn check_initial_state(&self, names: &[&'static str]) -> Result<(), BuildError> {
-        for &variable in names {
-            let value = self.initial_state.as_ref().and_then(|state| state.value(variable));
-            if let Some(value) = value.filter(|value| !value.is_finite()) {
-                return Err(BuildError::InitialNotFinite { variable, value });
-            }
-        }
-        Ok(())
-    }
-
-    fn formulas(&self) -> Vec<Part> {
-        let mut parts = Vec::new();
-        let conditions = self.conditions.iter().map(|(event, guard, reset)| (*event, guard, reset));
-        let edges =
-            self.edges.iter().map(|(row, guard, reset)| (self.rows[*row].event, guard, reset));
-        for (event, guard, reset) in conditions.chain(edges) {
-            parts.push(Part::reading(event.name(), "guard", guard.predicate()));
-            let assignments = reset.assignments().into_iter().flatten();
-            let assigned = assignments.map(|one| (one.coordinate(), one.value()));
-            parts.push(Part::giving(event.name(), "reset", assigned));
-        }
-        for (location, flow) in &self.flows {
-            let rates = flow.rates().into_iter().flatten();
-            let given = rates.map(|one| (one.coordinate(), one.rate()));
-            parts.push(Part::giving(location.name(), "flow", given));
-        }
-        for (location, invariant) in &self.invariants {
-            parts.push(Part::reading(location.name(), "invariant", invariant));
-        }
-        for (location, command) in &self.commands {
-            parts.push(Part::reading(location.name(), "law", &command.guard));
-        }
-        parts
     }
 
     fn transition_of(
@@ -600,7 +305,7 @@ impl<L: Location, E: Event, S: Observed> Builder<L, E, S> {
     }
 
     /// At each sample `laws` choose a value, as far as they speak of a location. Drawings and
-    /// tables show them; whoever samples asks them.
+    /// tables show them; the component evaluates them at its samples.
     pub fn commanding<T>(mut self, laws: &Laws<L, S, T>) -> Self {
         let commands = laws.commands();
         self.commands.extend(commands.map(|(location, command)| (location, command.clone())));
@@ -612,6 +317,18 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
     pub(crate) fn over_coordinates(initial: L) -> Self {
         let known = Some(S::NAMES.to_vec());
         Builder { known, ..Builder::new(TransitionTable::new(&[]), initial) }
+    }
+
+    /// One over the same states, with the same parameters and ranges, that starts in `initial`.
+    pub(crate) fn after<M: Location>(automaton: &Automaton<M, E, S>, initial: L) -> Self {
+        Builder {
+            initial_state: automaton.initial_state.clone(),
+            known: automaton.known.clone(),
+            parameters: automaton.parameters.clone(),
+            ranges: automaton.ranges.clone(),
+            exclusive: automaton.exclusive.clone(),
+            ..Builder::new(TransitionTable::new(&[]), initial)
+        }
     }
 
     /// Runs start in `state`, unless they are given another one.
@@ -643,36 +360,6 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
     }
 }
 
-/// What one formula, or one list of formulas, names.
-struct Part {
-    place: &'static str,
-    part: &'static str,
-    variables: Vec<String>,
-    /// The coordinates that are given a rate or a value.
-    coordinates: Vec<&'static str>,
-}
-
-impl Part {
-    fn reading(place: &'static str, part: &'static str, predicate: &Predicate) -> Part {
-        let variables = predicate.variables().into_iter().map(str::to_owned).collect();
-        Part { place, part, variables, coordinates: Vec::new() }
-    }
-
-    fn giving<'a>(
-        place: &'static str,
-        part: &'static str,
-        formulas: impl Iterator<Item = (&'static str, &'a Expression)>,
-    ) -> Part {
-        let (mut variables, mut coordinates) = (Vec::new(), Vec::new());
-        for (coordinate, formula) in formulas {
-            variables.push(coordinate.to_owned());
-            variables.extend(formula.variables().into_iter().map(str::to_owned));
-            coordinates.push(coordinate);
-        }
-        Part { place, part, variables, coordinates }
-    }
-}
-
 fn listed<L: Location>(locations: &[L], location: L) -> Result<NodeIndex, BuildError> {
     let place = locations.iter().position(|listed| *listed == location).map(NodeIndex::new);
     place.ok_or_else(|| BuildError::UnlistedLocation { location: format!("{location:?}") })
@@ -687,19 +374,4 @@ fn first_mentions<T: PartialEq>(mentioned: impl Iterator<Item = T>) -> Vec<T> {
         }
     }
     new
-}
-
-fn once<P: PartialEq + Copy>(
-    places: impl Iterator<Item = P>,
-    part: &'static str,
-    name: fn(P) -> &'static str,
-) -> Result<(), BuildError> {
-    let mut seen = Vec::new();
-    for place in places {
-        if seen.contains(&place) {
-            return Err(BuildError::GivenTwice { place: name(place), part });
-        }
-        seen.push(place);
-    }
-    Ok(())
 }

@@ -7,7 +7,7 @@ use std::ops::{Add, Deref, Div, Mul, Neg, Sub};
 use pleach_guards::{Expression, Valuation, constant, variable};
 
 use crate::flow::Rate;
-use crate::reset::Assignment;
+use crate::reset::{Assignment, NewValue};
 
 /// A state x ∈ ℝⁿ whose coordinates have names.
 ///
@@ -80,7 +80,17 @@ impl<S> Coordinate<S> {
 
     /// The reset x⁺ = `value` of this coordinate, where `value` is worked out in x⁻.
     pub fn becomes(&self, value: impl Into<Expression>) -> Assignment<S> {
-        Assignment::new(self.name, value.into())
+        Assignment::new(self.name, NewValue::Exactly(value.into()))
+    }
+
+    /// The reset x⁺ ∈ [`lower`, `upper`] of this coordinate, where both ends are worked out in x⁻:
+    /// any number of the interval, of which the [policy](crate::Policy) of a run takes one.
+    pub fn becomes_within(
+        &self,
+        lower: impl Into<Expression>,
+        upper: impl Into<Expression>,
+    ) -> Assignment<S> {
+        Assignment::new(self.name, NewValue::Within(lower.into(), upper.into()))
     }
 }
 
@@ -240,7 +250,7 @@ macro_rules! coordinates {
 
             fn from_values(values: &[f64]) -> Self {
                 let mut values = values.iter().copied();
-                // Whoever hands over fewer values than there are names gets what is not a number.
+                // Where fewer values are given than there are names, the rest are what is not a number.
                 $state { $($field: values.next().unwrap_or(f64::NAN)),+ }
             }
 

@@ -42,6 +42,7 @@
 
 mod parts;
 mod report;
+pub(crate) mod tally;
 
 use pleach_discrete::{Event, Location};
 use pleach_guards::EvaluationError;
@@ -52,7 +53,7 @@ use crate::composition::Composition;
 use crate::composition::blueprint::Blueprint;
 use crate::coordinates::Coordinates;
 use crate::diagram::sketch::Sketch;
-use crate::trajectory::{Phase, Trajectory};
+use crate::trajectory::{FlowInterval, Trajectory};
 use parts::Parts;
 
 pub use parts::{BoundaryCoverage, LocationCoverage, TransitionCoverage};
@@ -141,7 +142,7 @@ impl Coverage {
         self.check(trajectory)?;
         for (number, component) in components.iter_mut().enumerate() {
             component.enter_initial(trajectory, number);
-            for phase in trajectory.phases() {
+            for phase in trajectory.intervals() {
                 component.see(&phase, number)?;
             }
         }
@@ -268,7 +269,7 @@ impl ComponentCoverage {
     }
 
     /// Looks at the guards of the transitions that leave the location of this phase.
-    fn see(&mut self, phase: &Phase, number: usize) -> Result<(), CoverageError> {
+    fn see(&mut self, phase: &FlowInterval, number: usize) -> Result<(), CoverageError> {
         let ComponentCoverage { name, transitions, slots, .. } = self;
         let here = phase.locations[number];
         for transition in transitions.iter_mut().filter(|transition| transition.source == here) {

@@ -78,7 +78,7 @@ pub enum Decision {
 pub enum Proof {
     /// In each alternative, linear comparisons contradict each other in exact arithmetic.
     Linear,
-    /// In each of so many boxes, which cover the region, interval arithmetic excludes it.
+    /// Interval arithmetic excludes it in each of this number of boxes, which cover the region.
     Intervals {
         /// The number of boxes that were looked at.
         boxes: usize,
@@ -111,7 +111,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// At most so many `alternatives` of a predicate, and `boxes` in the search of each; a box is
+    /// At most this number of `alternatives` of a predicate, and `boxes` in the search of each; a box is
     /// not halved any more when its sides are at most `resolution` of those of the region.
     ///
     /// # Errors

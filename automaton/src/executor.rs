@@ -140,7 +140,7 @@ pub trait Observer<S: System + ?Sized> {
     /// An observer that does not look at jumps sets [`SEES_JUMPS`](Self::SEES_JUMPS) to false.
     fn jumped(&mut self, _entry: TraceEntry<S::Jump>) {}
 
-    /// Whether it is told of [jumps](Self::jumped). Where nobody looks, nothing is put together.
+    /// Whether it is told of [jumps](Self::jumped). Where it is not, no entries are made.
     const SEES_JUMPS: bool = true;
 
     /// `duration` seconds are about to pass from `now` on; the system is in the state x⁺ of the
@@ -150,7 +150,7 @@ pub trait Observer<S: System + ?Sized> {
     }
 }
 
-/// Nobody looks on.
+/// No observer.
 impl<S: System + ?Sized> Observer<S> for () {
     const SEES_JUMPS: bool = false;
 }
@@ -206,7 +206,7 @@ pub struct Executor {
     detects_zeno: bool,
 }
 
-/// Jumps closer than so many spacings of the numbers around the present time count as jumps at one
+/// Jumps closer than this many spacings of the numbers around the present time count as jumps at one
 /// instant: what is measured of the time between them is mostly rounding.
 const SPACINGS: f64 = 16.0;
 
@@ -290,6 +290,7 @@ impl Reason<Infallible> {
 
 /// The limits of an [`Executor`] make no sense.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum InvalidLimit {
     /// The horizon is negative, infinite or NaN.
     #[error("the horizon is {0} s: it must be finite and at least 0")]

@@ -37,6 +37,7 @@ pub mod network;
 pub mod node;
 pub mod observed;
 pub mod reset;
+pub mod sliding;
 mod sweep;
 pub mod time;
 pub mod trace;
@@ -61,13 +62,18 @@ pub use located::{Current, DataOf, Holds, Place, Transfer};
 pub use moment::Moment;
 pub use named::{Name, Record, RepeatedName};
 pub use observed::Observed;
-pub use reset::{Assignment, Reset};
+pub use reset::{Assignment, NewValue, Reset};
+pub use sliding::Filippov;
 pub use sweep::sweep;
 pub use time::HybridTime;
 
 pub use trace::{Participants, Trace, TraceEntry};
 pub use trajectory::{Doubt, Trajectory, Why};
 pub use zeno::Zeno;
+
+/// What signatures name: matrices of linear flows and vectors as states, the
+/// [graph](Automaton::graph) of an automaton.
+pub use {nalgebra, petgraph};
 
 // For the macros.
 #[doc(hidden)]

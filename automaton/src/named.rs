@@ -57,7 +57,7 @@ impl Name {
 /// The one copy of `name` that stays.
 pub(crate) fn kept(name: &str) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
-    // A set of names stays whole, whatever happens to whoever holds it.
+    // A set of names stays whole, whatever happens to the holder of the lock.
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = names.get(name) {
         return known;

@@ -5,14 +5,14 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use pleach_guards::{EvaluationError, Expression, Substitution};
+use pleach_guards::{EvaluationError, Expression, Substitution, Valuation};
 
 use crate::coordinates::Coordinates;
 
 /// The reset of a transition.
 ///
-/// It is data where it is a list of assignments, which all read x⁻ and leave every other
-/// coordinate as it is; or else a function with the name that diagrams show, which analyses report
+/// It is data where it is a list of assignments, of values or of intervals from which a run takes
+/// one, which all read x⁻ and leave every other coordinate as it is; or else a function with the name that diagrams show, which analyses report
 /// as unchecked.
 ///
 /// ```
@@ -23,6 +23,9 @@ use crate::coordinates::Coordinates;
 ///
 /// let bounce: Reset<Ball> = velocity.becomes(-0.5 * &velocity).into();
 /// assert_eq!(bounce.to_string(), "velocity := −0.5 · velocity");
+///
+/// let scatter: Reset<Ball> = velocity.becomes_within(0.5, 0.6).into();
+/// assert_eq!(scatter.to_string(), "velocity :∈ [0.5, 0.6]");
 ///
 /// let halt = Reset::new("halt", |ball: &mut Ball| ball.velocity = 0.0);
 /// assert_eq!(halt.to_string(), "halt");
@@ -39,16 +42,26 @@ enum Form<S> {
 
 type Apply<S> = dyn Fn(&mut S) -> Result<(), EvaluationError> + Send + Sync;
 
-/// One coordinate's new value, as a formula over x⁻; made by
-/// [`Coordinate::becomes`](crate::Coordinate::becomes).
+/// One coordinate's new value over x⁻; made by
+/// [`Coordinate::becomes`](crate::Coordinate::becomes) and
+/// [`Coordinate::becomes_within`](crate::Coordinate::becomes_within).
 pub struct Assignment<S> {
     coordinate: &'static str,
-    value: Expression,
+    value: NewValue,
     state: PhantomData<fn() -> S>,
 }
 
+/// What a coordinate becomes in a jump.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NewValue {
+    /// The value of this formula.
+    Exactly(Expression),
+    /// Any number of the interval between these two, its ends included.
+    Within(Expression, Expression),
+}
+
 impl<S> Assignment<S> {
-    pub(crate) fn new(coordinate: &'static str, value: Expression) -> Self {
+    pub(crate) fn new(coordinate: &'static str, value: NewValue) -> Self {
         Assignment { coordinate, value, state: PhantomData }
     }
 
@@ -58,8 +71,37 @@ impl<S> Assignment<S> {
     }
 
     /// What it becomes.
-    pub fn value(&self) -> &Expression {
+    pub fn value(&self) -> &NewValue {
         &self.value
+    }
+}
+
+impl NewValue {
+    /// Its formulas: one, or the two ends of an interval.
+    pub fn formulas(&self) -> impl Iterator<Item = &Expression> {
+        let (first, second) = match self {
+            NewValue::Exactly(value) => (value, None),
+            NewValue::Within(lower, upper) => (lower, Some(upper)),
+        };
+        [first].into_iter().chain(second)
+    }
+
+    /// The same of formulas with expressions in the place of variables.
+    #[must_use]
+    pub fn substitute(&self, substitution: &Substitution) -> Self {
+        match self {
+            NewValue::Exactly(value) => NewValue::Exactly(value.substitute(substitution)),
+            NewValue::Within(lower, upper) => {
+                NewValue::Within(lower.substitute(substitution), upper.substitute(substitution))
+            }
+        }
+    }
+
+    /// Its value in `state`; of an interval its lower end.
+    fn least(&self, state: &impl Valuation) -> Result<f64, EvaluationError> {
+        match self {
+            NewValue::Exactly(value) | NewValue::Within(value, _) => value.evaluate(state),
+        }
     }
 }
 
@@ -110,11 +152,13 @@ impl<S> Reset<S> {
         }
     }
 
-    /// Turns x⁻ into x⁺.
+    /// Turns x⁻ into x⁺. Of an interval it takes the lower end, as [`Policy::Early`] does.
     ///
     /// # Errors
     ///
     /// The first formula that has no value in x⁻; the state is then as before.
+    ///
+    /// [`Policy::Early`]: crate::Policy::Early
     pub fn apply(&self, state: &mut S) -> Result<(), EvaluationError> {
         (self.apply)(state)
     }
@@ -163,7 +207,7 @@ impl<S: Coordinates> From<Assignment<S>> for Reset<S> {
 fn assign<S: Coordinates>(assignments: &[Assignment<S>], before: &S) -> Result<S, EvaluationError> {
     let mut after = before.to_values();
     for assignment in assignments {
-        let value = assignment.value.evaluate(before)?;
+        let value = assignment.value.least(before)?;
         let place = before.names().iter().position(|name| *name == assignment.coordinate);
         let unknown =
             || EvaluationError::UnknownVariable { variable: assignment.coordinate.into() };
@@ -197,7 +241,12 @@ impl<S> Clone for Form<S> {
 
 impl<S> fmt::Display for Assignment<S> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{} := {}", self.coordinate, self.value)
+        match &self.value {
+            NewValue::Exactly(value) => write!(formatter, "{} := {value}", self.coordinate),
+            NewValue::Within(lower, upper) => {
+                write!(formatter, "{} :∈ [{lower}, {upper}]", self.coordinate)
+            }
+        }
     }
 }
 

@@ -16,7 +16,7 @@ pub struct Trace<J> {
 pub struct TraceEntry<J> {
     /// When: the jump leads from (t, j) to (t, j + 1).
     pub at: HybridTime,
-    /// Who jumps.
+    /// The components that jump.
     pub by: Participants,
     /// What is done.
     pub jump: J,

@@ -21,7 +21,7 @@ use crate::time::HybridTime;
 
 /// The run of a composition: a hybrid arc x(t, j) with the locations along it.
 ///
-/// It is a list of phases with a jump between any two: in phase j, between jump j − 1 and jump j,
+/// It is a list of intervals with a jump between any two: in phase j, between jump j − 1 and jump j,
 /// the locations rest and the state flows. The flows are kept as they were solved, in pieces that
 /// are polynomials in time, so that values can be read at every instant as exactly as at any other.
 /// Where it could not be told whether something happens, there is a [`Doubt`]. What is written to a
@@ -79,7 +79,7 @@ pub struct Participant {
 
 /// What lies between two jumps.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Phase {
+pub struct FlowInterval {
     /// The locations of the components, as numbers in their lists.
     pub locations: Vec<usize>,
     /// At least one: the first is x⁺ of the jump before, the last x⁻ of the jump after. If no time
@@ -106,12 +106,13 @@ pub struct JumpRecord {
     pub at: HybridTime,
     /// The event or the label.
     pub label: String,
-    /// Who goes where.
+    /// The moves of the components.
     pub moves: Vec<Move>,
 }
 
 /// A trajectory cannot be written or read.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum FileError {
     /// The text is no trajectory, or the file fails.
     #[error("a trajectory cannot be written or read: {0}")]
@@ -132,11 +133,11 @@ impl Trajectory {
         &self.components
     }
 
-    /// The phases in their order, one more than there are jumps.
+    /// The intervals in their order, one more than there are jumps.
     ///
     /// They are put together one by one from what each component went through; with many components
     /// and jumps, [`values_at`](Self::values_at) and [`jumps`](Self::jumps) cost less.
-    pub fn phases(&self) -> impl ExactSizeIterator<Item = Phase> {
+    pub fn intervals(&self) -> impl ExactSizeIterator<Item = FlowInterval> {
         let mut locations = self.initial.clone();
         (0..self.jumps.len() + 1).map(move |number| {
             if let Some(jump) = number.checked_sub(1).and_then(|last| self.jumps.get(last)) {
@@ -144,7 +145,7 @@ impl Trajectory {
                     locations[one.component] = one.target;
                 }
             }
-            Phase { locations: locations.clone(), samples: self.samples_of(number) }
+            FlowInterval { locations: locations.clone(), samples: self.samples_of(number) }
         })
     }
 
@@ -215,7 +216,7 @@ impl Trajectory {
 
     /// Every sample in the order of hybrid time, with that time.
     pub fn samples(&self) -> impl Iterator<Item = (HybridTime, Sample)> {
-        (0..).zip(self.phases()).flat_map(|(j, phase)| {
+        (0..).zip(self.intervals()).flat_map(|(j, phase)| {
             let samples = phase.samples.into_iter();
             samples.map(move |sample| (HybridTime { t: sample.t, j }, sample))
         })

@@ -13,9 +13,13 @@ mod error_messages;
 mod faulty_models;
 mod guarantees;
 mod many_components;
+mod messages;
 mod models;
 #[cfg(feature = "network")]
 mod network_checks;
 mod pictures;
+mod records;
 mod sampled_rooms;
 mod semantics;
+mod sets;
+mod sliding;

@@ -270,7 +270,7 @@ fn plots_show_every_variable_and_every_location() {
             assert!(words.iter().any(|line| line == variable), "{variable} in {words:?}");
         }
         for (number, component) in run.components().iter().enumerate() {
-            for phase in run.phases() {
+            for phase in run.intervals() {
                 let location = &component.locations[phase.locations[number]];
                 assert!(words.iter().any(|line| line == location), "{location} in {words:?}");
             }
@@ -288,7 +288,7 @@ fn jumps_are_gaps_in_the_curve() {
     assert_eq!(plot.matches("class=\"before\"").count(), 1);
     assert_eq!(plot.matches("class=\"after\"").count(), 1);
     let moves = plot.matches(" M ").count() + plot.matches("\"M ").count();
-    assert_eq!(moves, 2 * run.phases().len(), "each curve begins anew after the jump");
+    assert_eq!(moves, 2 * run.intervals().len(), "each curve begins anew after the jump");
 }
 
 #[test]

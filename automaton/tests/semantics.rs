@@ -114,7 +114,7 @@ fn every_assignment_reads_the_state_before_the_jump() {
     let machine =
         built(clock().transition(from(Here).on(Go).to(There).must(after(2.0)).then(swap)));
     let trajectory = run(&machine, 3.0);
-    let phases: Vec<_> = trajectory.phases().collect();
+    let phases: Vec<_> = trajectory.intervals().collect();
     let [first, second] = &phases[..] else { panic!("there is one jump") };
     assert_eq!(first.samples.last().map(|x| x.values.clone()), Some(vec![2.0, 0.0]), "x⁻");
     assert_eq!(second.samples[0].values, [0.0, 2.0], "x⁺");
@@ -155,7 +155,7 @@ fn a_state_that_neither_time_nor_a_jump_can_leave_is_blocked() {
     let trajectory = run(&machine, 5.0);
     assert_eq!(trajectory.ending().reason, Reason::Blocked);
     assert!((trajectory.ending().at.t - 1.5).abs() < 1e-14);
-    let first = trajectory.phases().next().expect("there is one phase");
+    let first = trajectory.intervals().next().expect("there is one phase");
     let last = first.samples.last().map(|sample| sample.values[0]);
     assert!(last <= Some(1.5), "time stops while the invariant holds");
 }

@@ -76,7 +76,7 @@ impl Course {
         panic!("no team of {members} robots advances within {PATIENCE} control periods");
     }
 
-    /// Lets control periods pass until the mission has ended and nobody moves.
+    /// Lets control periods pass until the mission has ended and no robot moves.
     pub fn reach_rest(&mut self) {
         for _ in 0..PATIENCE {
             if self.rests() {
@@ -103,7 +103,7 @@ impl Course {
     fn advances(&self, members: usize) -> bool {
         let network = self.network();
         let moving = network.robots().into_iter().any(|robot| robot.is_active());
-        let newest = network.robots().into_iter().max_by_key(|robot| robot.word_number());
+        let newest = network.robots().into_iter().max_by_key(|robot| robot.notice_number());
         moving
             && newest.is_some_and(|robot| robot.phase() == Phase::Advance)
             && network.primary_team().len() >= members

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use pleach::automaton::network::record::{MissionEvent, Route, Snapshot};
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Message, Robot, Site};
-use pleach::automaton::node::{Input, Node, Outputs};
+use pleach::automaton::node::{Input, Node, Observed, Outputs};
 use pleach::continuous::Point;
 use pleach::continuous::geometry::{Disc, Segment, convex_region, voronoi_half_planes};
 use pleach::continuous::network::LinkReliability;
 use pleach::continuous::network::motion::MotionProblem;
-use pleach::continuous::network::rates::{Exchange, residual_gradient};
+use pleach::continuous::network::rates::{NeighbourTraffic, residual_gradient};
 use pleach::continuous::network::routing::problem::RoutingProblem;
 
 use crate::course::Course;
@@ -110,7 +110,7 @@ impl Scene {
         let mut discs = vec![Disc { center: position, radius: settings.step_radius }];
         discs.extend(parents);
         let mut problem = MotionProblem { position, waypoint, half_planes, discs };
-        let exchanges = self.routes_of(leader).map(|route| Exchange {
+        let exchanges = self.routes_of(leader).map(|route| NeighbourTraffic {
             neighbour: self.place(route.to),
             sent: route.share,
             received: 0.0,
@@ -121,7 +121,7 @@ impl Scene {
         problem
     }
 
-    /// The loads that the leader's neighbours certify while everybody takes a full step.
+    /// The loads that the leader's neighbours certify while all robots take a full step.
     pub fn held_flows(&self) -> Vec<(Segment, Vec<(f64, Segment)>)> {
         let step = self.site.settings.step_radius;
         let step_of = |node: usize| {
@@ -152,7 +152,7 @@ impl Scene {
     }
 }
 
-/// Robots that stand where those of a scene do, and nobody else, in a control period without end.
+/// Robots that stand where those of a scene do, and no others, in a control period without end.
 pub struct Crowd {
     robots: Vec<Robot>,
     outputs: Vec<Outputs<Message, MissionEvent>>,
@@ -176,7 +176,7 @@ impl Crowd {
     /// A control period begins.
     pub fn begin_period(&mut self) {
         for robot in &mut self.robots {
-            let still = robot.still_periods();
+            let still = robot.view().still_periods();
             robot.pass_period(still).expect("guards that can be evaluated");
         }
     }

@@ -12,6 +12,9 @@ pub mod geometry;
 #[cfg(feature = "network")]
 pub mod network;
 
+/// The linear algebra of [`Point`], [`Vector`] and of flows, in the version that signatures name.
+pub use nalgebra;
+
 /// A place in the plane.
 pub type Point = nalgebra::Point2<f64>;
 /// A displacement in the plane.

@@ -26,6 +26,10 @@ pub enum Course {
     Rising,
     /// It changes at most once, from holding to not holding.
     Falling,
+    /// As rising, and for rounding a shorter span tells no more of where.
+    FaintlyRising,
+    /// As falling, and for rounding a shorter span tells no more of where.
+    FaintlyFalling,
     /// It may change several times; a shorter span may tell more.
     Open,
     /// It may change several times, and rounding alone says so: a shorter span tells no more.
@@ -38,16 +42,24 @@ impl Course {
     /// The course of a conjunction.
     #[must_use]
     pub fn and(self, other: Course) -> Course {
-        use Course::{Always, Blurred, Falling, Never, Opaque, Open, Rising};
+        use Course::{
+            Always, Blurred, FaintlyFalling, FaintlyRising, Falling, Never, Opaque, Rising,
+        };
         match (self, other) {
             (Never, _) | (_, Never) => Never,
             (Always, course) | (course, Always) => course,
             (Opaque, _) | (_, Opaque) => Opaque,
-            (Rising, Rising) => Rising,
-            (Falling, Falling) => Falling,
-            (Blurred, Blurred) => Blurred,
-            // One rises and the other falls, or nothing is known about one of them.
-            (Rising | Falling | Open | Blurred, Rising | Falling | Open | Blurred) => Open,
+            (FaintlyRising, FaintlyRising) => FaintlyRising,
+            (FaintlyFalling, FaintlyFalling) => FaintlyFalling,
+            (Rising | FaintlyRising, Rising | FaintlyRising) => Rising,
+            (Falling | FaintlyFalling, Falling | FaintlyFalling) => Falling,
+            // One rises and the other falls, or nothing is known about one of them; a shorter span
+            // tells more if it does so of one.
+            (
+                Blurred | FaintlyRising | FaintlyFalling,
+                Blurred | FaintlyRising | FaintlyFalling,
+            ) => Blurred,
+            _ => Course::Open,
         }
     }
 
@@ -65,6 +77,8 @@ impl Course {
             Course::Never => Course::Always,
             Course::Rising => Course::Falling,
             Course::Falling => Course::Rising,
+            Course::FaintlyRising => Course::FaintlyFalling,
+            Course::FaintlyFalling => Course::FaintlyRising,
             Course::Open | Course::Blurred | Course::Opaque => self,
         }
     }
@@ -215,14 +229,16 @@ impl Tracked {
             Course::Always
         } else if is_exact && is_strict && upper.range.upper() <= lower.range.lower() {
             Course::Never
-        } else if margin.rate.lower() >= 0.0 {
-            Course::Rising
-        } else if margin.rate.upper() <= 0.0 {
-            Course::Falling
-        } else if margin.is_blurred() {
-            Course::Blurred
         } else {
-            Course::Open
+            let is_blurred = margin.is_blurred();
+            match (margin.rate.lower() >= 0.0, margin.rate.upper() <= 0.0) {
+                (true, _) if is_blurred => Course::FaintlyRising,
+                (true, _) => Course::Rising,
+                (_, true) if is_blurred => Course::FaintlyFalling,
+                (_, true) => Course::Falling,
+                _ if is_blurred => Course::Blurred,
+                _ => Course::Open,
+            }
         };
         (course, definedness)
     }

@@ -49,7 +49,7 @@ impl Expression {
         finite.then_some(form)
     }
 
-    /// As [`linear_form`](Self::linear_form), but in a type of numbers of one's own, such as exact
+    /// As [`linear_form`](Self::linear_form), but in a given type of numbers, such as exact
     /// fractions; `number` converts a constant, or says that there is no such number.
     ///
     /// Constants that roots and other functions make of constants are converted after rounding.

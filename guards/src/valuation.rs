@@ -6,7 +6,7 @@ use std::fmt;
 
 /// A state seen through the names of its variables.
 ///
-/// A state of one's own implements it with a `match`, which costs no allocation:
+/// A custom state implements it with a `match`, which costs no allocation:
 ///
 /// ```
 /// use pleach_guards::{variable, Valuation};

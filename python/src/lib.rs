@@ -1,18 +1,24 @@
-//! The Python module `pleach`: missions as numpy arrays. `pleach.pyi` describes it for Python.
+//! The Python module `pleach`: missions and models, their runs as numpy arrays. `pleach.pyi`
+//! describes it for Python.
 
 mod mission;
+mod model;
+mod trajectory;
 
 use mission::{Mission, Recorder};
+use model::{Automaton, Composition};
 use pleach_library::automaton::network::scenario::ValidScenario;
 use pleach_library::discrete::network::Role;
 use pleach_library::scenario_file::{self, Setting};
 use pleach_library::{mission as missions, starts};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyTuple};
+use pyo3::types::{PyBool, PyMapping, PyTuple};
 use std::path::{Path, PathBuf};
+use trajectory::Trajectory;
 
 pyo3::create_exception!(pleach, ScenarioError, PyValueError);
+pyo3::create_exception!(pleach, ModelError, PyValueError);
 
 /// Run the mission of a scenario file.
 #[pyfunction]
@@ -20,7 +26,7 @@ pyo3::create_exception!(pleach, ScenarioError, PyValueError);
 fn run(
     py: Python<'_>,
     scenario: PathBuf,
-    settings: Option<&Bound<'_, PyDict>>,
+    settings: Option<&Bound<'_, PyMapping>>,
     seed: Option<u64>,
 ) -> PyResult<Mission> {
     let text = std::fs::read_to_string(&scenario)?;
@@ -33,7 +39,7 @@ fn run(
 fn run_text(
     py: Python<'_>,
     text: &str,
-    settings: Option<&Bound<'_, PyDict>>,
+    settings: Option<&Bound<'_, PyMapping>>,
     seed: Option<u64>,
 ) -> PyResult<Mission> {
     carry_out(py, &read(text, Path::new("<text>"), settings)?, seed)
@@ -42,7 +48,7 @@ fn run_text(
 /// Remarks on a scenario from which a mission can start.
 #[pyfunction]
 #[pyo3(signature = (scenario, settings = None))]
-fn check(scenario: PathBuf, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<String>> {
+fn check(scenario: PathBuf, settings: Option<&Bound<'_, PyMapping>>) -> PyResult<Vec<String>> {
     let text = std::fs::read_to_string(&scenario)?;
     let remarks = read(&text, &scenario, settings)?.remarks();
     Ok(remarks.iter().map(|remark| format!("{}: {remark}", remark.key())).collect())
@@ -51,16 +57,21 @@ fn check(scenario: PathBuf, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Ve
 fn read(
     text: &str,
     path: &Path,
-    settings: Option<&Bound<'_, PyDict>>,
+    settings: Option<&Bound<'_, PyMapping>>,
 ) -> PyResult<ValidScenario> {
     let mut set = Vec::new();
-    for (key, value) in settings.into_iter().flatten() {
+    for (key, value) in settings.map(entries).transpose()?.unwrap_or_default() {
         let value = written(&value)?;
         let setting: Result<Setting, _> = format!("{key}={value}").parse();
         set.push(setting.map_err(|error| ScenarioError::new_err(error.to_string()))?);
     }
     scenario_file::parse_with(text, path, &set)
         .map_err(|error| ScenarioError::new_err(error.to_string()))
+}
+
+/// The entries of a mapping in its order.
+fn entries<'py>(mapping: &Bound<'py, PyMapping>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
+    mapping.items()?.iter().map(|entry| entry.extract()).collect()
 }
 
 /// A value as TOML writes it.
@@ -91,7 +102,11 @@ fn pleach(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("ROLES", PyTuple::new(py, Role::ALL.map(|role| role.name()))?)?;
     module.add("ScenarioError", py.get_type::<ScenarioError>())?;
+    module.add("ModelError", py.get_type::<ModelError>())?;
     module.add_class::<Mission>()?;
+    module.add_class::<Automaton>()?;
+    module.add_class::<Composition>()?;
+    module.add_class::<Trajectory>()?;
     module.add_function(wrap_pyfunction!(run, module)?)?;
     module.add_function(wrap_pyfunction!(run_text, module)?)?;
     module.add_function(wrap_pyfunction!(check, module)?)

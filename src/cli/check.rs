@@ -6,9 +6,10 @@ use super::plan::Planned;
 use super::source::Source;
 use super::status::{Failure, Status};
 use super::sweep::Sweep;
+use super::terminal;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::{Remark, ValidScenario};
-use pleach::figures::{Plan, Scene};
+use pleach::figures::{Plan, Scene, quantity};
 use pleach::mission::{self, Watcher};
 use std::fs;
 use std::io::{self, Write};
@@ -31,7 +32,9 @@ pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
             let name = source.name.display().to_string();
             let planned = Planned { number: 1, source: name, scenario, settings, seed: None };
             let remarks = planned.scenario.remarks();
-            io::stdout().lock().write_all(report(&planned, &remarks, drawing).as_bytes())?;
+            let told = report(&planned, &remarks, drawing);
+            let told = terminal::wrapped(&told, terminal::width(), terminal::SUMMARY_INDENT);
+            io::stdout().lock().write_all(told.as_bytes())?;
             if remarks.iter().any(|remark| matches!(remark, Remark::Task { .. })) {
                 worst = Status::Unserviced;
             }
@@ -53,13 +56,16 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
         ("robots", scenario.robot.len().to_string()),
         ("tasks", scenario.task.len().to_string()),
         ("links", format!("{links} at the start, {crossing} of them through walls")),
-        ("longest new link", format!("{:.6}, along the shortest way", site.build_length)),
+        (
+            "longest new link",
+            format!("{}, along the shortest way around walls", quantity(site.build_length)),
+        ),
         (
             "clearance",
             format!(
                 "{}; passages from {} on are open",
-                resolved.clearance,
-                2.0 * resolved.clearance
+                quantity(resolved.clearance),
+                quantity(2.0 * resolved.clearance)
             ),
         ),
     ];
@@ -81,7 +87,7 @@ fn workspace(scenario: &ValidScenario) -> String {
         1 => "1 hole".to_owned(),
         count => format!("{count} holes"),
     };
-    format!("{:.4} by {:.4}, {holes}", side(0), side(1))
+    format!("{} by {}, {holes}", quantity(side(0)), quantity(side(1)))
 }
 
 /// Draws the network before its first move, and says where.

@@ -56,6 +56,7 @@ impl Watcher for Progress {
         }
         for event in events.iter().filter(|event| story::is_telling(event)) {
             let line = format!("k = {:<6} {}", snapshot.step, story::tell(event));
+            let line = terminal::wrapped(&line, terminal::error_width(), terminal::STORY_INDENT);
             match &self.display {
                 Display::Quiet => {}
                 Display::Lines => eprintln!("{line}"),
@@ -79,7 +80,7 @@ fn spinner() -> ProgressBar {
     }
 }
 
-/// Where the mission stands: step, phase, task, who leads.
+/// Where the mission stands: step, phase, task, leader.
 fn standing(snapshot: &Snapshot, tasks: usize) -> String {
     let phase = snapshot.phase.name();
     let task = match snapshot.task {

@@ -129,9 +129,10 @@ fn check_standard_output(arguments: &RunArguments) -> Result<(), Failure> {
 }
 
 fn say(arguments: &RunArguments, text: &str) -> io::Result<()> {
+    let wrapped = |width| terminal::wrapped(text, width, terminal::SUMMARY_INDENT);
     match carries_data(arguments) {
-        true => io::stderr().lock().write_all(text.as_bytes()),
-        false => io::stdout().lock().write_all(text.as_bytes()),
+        true => io::stderr().lock().write_all(wrapped(terminal::error_width()).as_bytes()),
+        false => io::stdout().lock().write_all(wrapped(terminal::width()).as_bytes()),
     }
 }
 

@@ -1,6 +1,6 @@
 //! What the terminal at the output can show.
 
-use console::Term;
+use console::{Term, measure_text_width};
 
 /// Whether lines may be rewritten on the error output: it is a terminal, and not a dumb one.
 pub fn is_lively() -> bool {
@@ -10,7 +10,44 @@ pub fn is_lively() -> bool {
 
 /// Columns of the terminal at the standard output, if one is there.
 pub fn width() -> Option<usize> {
-    Term::stdout().size_checked().map(|(_, columns)| usize::from(columns))
+    columns(&Term::stdout())
+}
+
+/// Columns of the terminal at the error output, if one is there.
+pub fn error_width() -> Option<usize> {
+    columns(&Term::stderr())
+}
+
+fn columns(terminal: &Term) -> Option<usize> {
+    terminal.size_checked().map(|(_, columns)| usize::from(columns))
+}
+
+/// Where the second column of a summary and of a story begins.
+pub const SUMMARY_INDENT: usize = 22;
+pub const STORY_INDENT: usize = 11;
+
+/// The lines of a text, those that are too long for `width` columns broken between words. What is
+/// left of a line begins at column `indent`, or further left in a narrow terminal.
+pub fn wrapped(text: &str, width: Option<usize>, indent: usize) -> String {
+    let Some(width) = width.filter(|&width| width > 0) else { return text.to_owned() };
+    let indent = indent.min(width / 4);
+    text.split_inclusive('\n').map(|line| wrapped_line(line, width, indent)).collect()
+}
+
+fn wrapped_line(line: &str, width: usize, indent: usize) -> String {
+    let (mut done, mut rest) = (String::new(), line.to_owned());
+    while measure_text_width(rest.trim_end()) > width {
+        let start = rest.len() - rest.trim_start().len();
+        // The last space in reach, or for a word that is too long by itself the first behind it.
+        let spaces = rest.char_indices().filter(|&(at, c)| c == ' ' && at > start);
+        let in_reach = |&(at, _): &(usize, char)| measure_text_width(&rest[..at]) <= width;
+        let (near, far): (Vec<_>, Vec<_>) = spaces.partition(in_reach);
+        let Some(&(at, _)) = near.last().or(far.first()) else { break };
+        done += rest[..at].trim_end();
+        done.push('\n');
+        rest = format!("{:indent$}{}", "", rest[at..].trim_start_matches(' '));
+    }
+    done + &rest
 }
 
 /// The text cut to `width` columns, with an ellipsis in place of what is missing.
@@ -18,5 +55,26 @@ pub fn cut(text: &str, width: Option<usize>) -> String {
     match width {
         Some(width) => console::truncate_str(text, width, "…").into_owned(),
         None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lines_are_broken_between_words() {
+        let line = "k = 677    subgroup 2, [8 9 10], starts\nshort\n";
+        assert_eq!(wrapped(line, None, 11), line);
+        assert_eq!(wrapped(line, Some(80), 11), line);
+        let narrow = "k = 677    subgroup 2, [8 9\n       10], starts\nshort\n";
+        assert_eq!(wrapped(line, Some(28), 11), narrow);
+    }
+
+    #[test]
+    fn a_word_that_is_too_long_stays_whole() {
+        let text = wrapped("path 11→8→12→13→14 and on\n", Some(10), 4);
+        assert_eq!(text, "path\n  11→8→12→13→14\n  and on\n");
+        assert_eq!(wrapped("11→8→12→13→14", Some(5), 4), "11→8→12→13→14");
     }
 }

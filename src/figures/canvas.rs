@@ -16,10 +16,15 @@ pub(super) fn number(value: f64) -> String {
     if short == "-0" { "0".to_owned() } else { short.to_owned() }
 }
 
-/// Writes a quantity with as many decimals as it needs, four at most.
-pub(crate) fn quantity(value: f64) -> String {
-    let text = format!("{value:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+/// Writes a quantity for people: with four decimals or four significant digits at most, and as few
+/// as it needs.
+#[must_use]
+pub fn quantity(value: f64) -> String {
+    let exponent = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
+    let decimals = (3.0 - exponent).clamp(4.0, 300.0) as usize;
+    let text = format!("{value:.decimals$}");
+    let short = text.trim_end_matches('0').trim_end_matches('.');
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
 }
 
 /// Writes the corners of a polygon or polyline.

@@ -49,6 +49,14 @@ pub(super) fn draw(plan: &Plan, view: &View, left: f64) -> (Group, f64) {
             .add(stroke([x - 16.0, y], [x - 5.0, y], palette::LINK, link_width(0.05)))
             .add(stroke([x + 5.0, y], [x + 14.0, y], palette::LINK, link_width(0.6)))
     });
+    column.row("links reach through walls", |[x, y]| {
+        layer("sample").add(rectangle([x - 4.0, y - 7.0], [8.0, 14.0], palette::WALL)).add(stroke(
+            [x - 16.0, y],
+            [x + 16.0, y],
+            palette::LINK,
+            link_width(0.3),
+        ))
+    });
     column.row("edge of the tree", |[x, y]| {
         layer("sample")
             .add(stroke([x - 16.0, y], [x + 16.0, y], palette::LINK, link_width(0.6)))

@@ -33,12 +33,12 @@ mod spacing;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use canvas::quantity;
 pub(crate) use marks::TaskState;
 pub(crate) use screen::{link_data, mark_data, moment_data};
 pub(crate) use spacing::Walls;
 
 pub use album::Album;
+pub use canvas::quantity;
 pub use marks::Mark;
 pub use plan::Plan;
 pub use scene::Scene;

@@ -111,6 +111,7 @@ fn moment(step: usize, share: f64) -> Snapshot {
             task: None,
             junction: false,
         }],
+        robots: Vec::new(),
     }
 }
 
@@ -253,7 +254,7 @@ fn an_album_without_a_single_period_is_written_too() {
     std::fs::remove_dir_all(&folder).expect("removable");
 }
 
-/// A hall of 17 by 12 with pillars, and 60 robots in rows that hang on each other.
+/// A hall of 17 by 12 with pillars, and 60 robots in rows that are attached to each other.
 #[test]
 fn a_crowd_in_a_hall_is_drawn_with_every_number() {
     let square = |x: f64, y: f64| vec![[x, y], [x + 0.8, y], [x + 0.8, y + 0.8], [x, y + 0.8]];

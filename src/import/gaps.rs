@@ -18,6 +18,8 @@ pub struct Gap {
 /// How many times longer than the passage is wide the walls at either side of it must be: the
 /// inner corner of a room is no passage.
 const LENGTH_OF_WALLS: f64 = 3.0;
+/// By how much a passage may fall short of the width asked for, as a share of it: rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// The places where walls are less than `width` apart, the narrowest first; of several within one
 /// width of each other only the narrowest.
@@ -28,6 +30,7 @@ pub fn narrower_than(workspace: &WorkspaceOutline, width: f64) -> Vec<Gap> {
     let sides = Sides::of(workspace, width);
     let mut gaps: Vec<Gap> =
         (0..sides.corners.len()).filter_map(|c| sides.gap_at(c, width)).collect();
+    gaps.retain(|gap| gap.width < width * (1.0 - ROUNDING));
     gaps.sort_by(|one, other| {
         one.width.total_cmp(&other.width).then(one.at[0].total_cmp(&other.at[0]))
     });

@@ -1,7 +1,7 @@
 //! Floor plans in GeoJSON (RFC 7946).
 
 use super::outline::{Ring, floor, oriented, scaled};
-use super::{Places, Plan, Reading};
+use super::{MapPlaces, Plan, Reading};
 use geojson::{Feature, FeatureCollection, GeoJson, Geometry, GeometryValue, Position};
 use i_overlay::core::fill_rule::FillRule;
 
@@ -13,7 +13,7 @@ const EARTH: f64 = 6_371_008.8;
 struct Found {
     floors: Vec<Ring>,
     walls: Vec<Ring>,
-    places: Places,
+    places: MapPlaces,
     ignored: usize,
 }
 
@@ -52,7 +52,7 @@ pub(super) fn read(text: &str, reading: &Reading) -> Result<Plan, String> {
         [floors, walls].map(|rings| rings.into_iter().map(place).collect::<Vec<_>>());
     let (workspace, left_out) = floor(&floors, &walls, FillRule::NonZero)?;
     notes.extend(left_out);
-    let places = Places {
+    let places = MapPlaces {
         access_points: place(places.access_points),
         robots: place(places.robots),
         tasks: place(places.tasks),

@@ -1,7 +1,7 @@
 //! Maps of cells, each free or not, and how they become outlines.
 
 use super::outline::{Ring, scaled};
-use super::{Places, Plan, Reading, cells};
+use super::{MapPlaces, Plan, Reading, cells};
 use crate::automaton::network::scenario::WorkspaceOutline;
 
 /// The most cells of a map.
@@ -83,6 +83,6 @@ impl Grid {
             .map(|ring| scaled(ring.into_iter().map(placed).collect(), reading.scale));
         let boundary = rings.next().unwrap_or_default();
         let workspace = WorkspaceOutline { boundary, holes: rings.collect() };
-        Ok(Plan { workspace, places: Places::default(), notes })
+        Ok(Plan { workspace, places: MapPlaces::default(), notes })
     }
 }

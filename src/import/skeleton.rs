@@ -8,6 +8,7 @@ use crate::automaton::network::scenario::{
     ValidScenario,
 };
 use crate::continuous::Point;
+use crate::figures::quantity;
 use crate::starts::{self, Dice};
 use std::fmt::Write;
 use thiserror::Error;
@@ -53,6 +54,7 @@ impl Choices {
 
 /// Why no scenario comes of a floor plan.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum SkeletonError {
     /// No mission can start on it.
     #[error("no scenario comes of this map: {0}")]
@@ -72,6 +74,8 @@ pub enum SkeletonError {
 const RANGE: f64 = 1.0 / 6.0;
 /// u / l by default.
 const TRANSITION: f64 = 1.25;
+/// The most passages that are named with their places.
+const PASSAGES_NAMED: usize = 8;
 /// Places along the longer side of the map that are looked at for access points and tasks.
 const LATTICE: usize = 48;
 /// Decimals of coordinates, relative to the extent: a millionth of it.
@@ -91,7 +95,7 @@ pub fn skeleton(
     let mut notes = narrow_passages(&scenario, &settings);
 
     let site = Site::new(&scenario)?;
-    let places = Places::of(&site);
+    let places = Lattice::of(&site);
     let access_points = first_of([&choices.access_points, &plan.places.access_points]);
     scenario.access_point = match access_points.is_empty() {
         false => access_points,
@@ -166,26 +170,35 @@ fn first_of(lists: [&Vec<[f64; 2]>; 2]) -> Vec<[f64; 2]> {
     lists.into_iter().find(|list| !list.is_empty()).cloned().unwrap_or_default()
 }
 
+/// The passages that are too narrow, the widest by their places: a robot that is a little smaller
+/// gets through those, and clutter makes many that are narrower.
 fn narrow_passages(scenario: &Scenario, settings: &Settings) -> Vec<String> {
     let width = 2.0 * settings.clearance;
     let gaps = gaps::narrower_than(&scenario.workspace, width);
-    gaps.iter()
+    let mut notes: Vec<String> = (gaps.iter().rev().take(PASSAGES_NAMED))
         .map(|gap| {
             let [x, y] = rounded(gap.at, scenario);
             format!(
-                "the passage at ({x}, {y}) is {:.4} wide: robots need 2 clearances = {width}",
-                gap.width
+                "the passage at ({x}, {y}) is {} wide: robots need 2 clearances = {}",
+                quantity(gap.width),
+                quantity(width)
             )
         })
-        .collect()
+        .collect();
+    match gaps.len().saturating_sub(PASSAGES_NAMED) {
+        0 => {}
+        1 => notes.push("one more passage is narrower than these".into()),
+        more => notes.push(format!("{more} more passages are narrower than these")),
+    }
+    notes
 }
 
 /// Places on a lattice in the free space, with their distance from walls.
-struct Places {
+struct Lattice {
     places: Vec<Point>,
 }
 
-impl Places {
+impl Lattice {
     fn of(site: &Site) -> Self {
         let corners = site.workspace.boundary();
         let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));

@@ -1,7 +1,7 @@
 //! Floor plans drawn as SVG: closed paths, rectangles, polygons and circles.
 
 use super::outline::{Ring, floor, scaled};
-use super::{Places, Plan, Reading};
+use super::{MapPlaces, Plan, Reading};
 use i_overlay::core::fill_rule::FillRule;
 use kurbo::{Affine, BezPath, Circle, Ellipse, PathEl, Point, Rect, Shape};
 use quick_xml::Reader;
@@ -43,7 +43,7 @@ pub(super) fn read(text: &str, reading: &Reading) -> Result<Plan, String> {
             ),
         );
     }
-    Ok(Plan { workspace, places: Places::default(), notes })
+    Ok(Plan { workspace, places: MapPlaces::default(), notes })
 }
 
 /// The closed rings of a path, curves as chords.

@@ -10,14 +10,23 @@ use super::table::Table;
 
 /// Fields of numbers, one or a point for each robot, and how many decimals a page keeps of them;
 /// those of lengths depend on the scenario.
-const MEASURED: [(&str, Option<i32>); 4] =
-    [("position", None), ("distance", None), ("residual", Some(6)), ("multiplier", Some(6))];
+const MEASURED: [(&str, Option<i32>); 7] = [
+    ("position", None),
+    ("target", None),
+    ("distance", None),
+    ("residual", Some(6)),
+    ("multiplier", Some(6)),
+    ("sent", Some(0)),
+    ("heard", Some(0)),
+];
+/// A field of points, or `null` where there is none.
+const OPTIONAL_POINTS: &str = "target";
 /// Decimals of T_ij and R_ij.
 const LINK_DECIMALS: i32 = 6;
 /// The field with the links in use, `[[from, to, T, R], …]`.
 const LINKS: &str = "route";
 /// Fields with one name for each robot.
-const NAMED: [&str; 2] = ["role", "mark"];
+const NAMED: [&str; 5] = ["role", "mark", "location", "exchange", "known_phase"];
 /// What the place of a line in the tables says already.
 const IMPLIED: [&str; 2] = ["k", "t"];
 
@@ -76,7 +85,10 @@ impl Steps {
     ) {
         for (name, value) in line.into_iter().chain(more) {
             if let Some(table) = self.numbers.get_mut(&*name) {
-                table.push(numbers(&value));
+                table.push(match name == OPTIONAL_POINTS {
+                    true => optional_points(&value),
+                    false => numbers(&value),
+                });
             } else if name == LINKS {
                 self.links.push(&value);
             } else if !IMPLIED.contains(&&*name) {
@@ -117,8 +129,17 @@ impl Links {
     }
 }
 
-/// The numbers of a list, those of points one after the other. JSON has no other word for what is
-/// no number than `null`.
+/// The coordinates of a list of points, two that are no numbers for each point that is missing.
+fn optional_points(points: &Value) -> Vec<f64> {
+    let coordinates = |point: &Value| match point {
+        Value::Null => vec![f64::NAN; 2],
+        point => numbers(point),
+    };
+    points.as_array().into_iter().flatten().flat_map(coordinates).collect()
+}
+
+/// The numbers of a list, those of points one after the other. JSON writes what is not a
+/// number as `null`.
 fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(entries) => entries.iter().flat_map(numbers).collect(),

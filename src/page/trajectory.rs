@@ -1,6 +1,6 @@
 //! The page of a trajectory: a run of any automaton or composition.
 
-use pleach_automaton::trajectory::{JumpRecord, Participant, Phase};
+use pleach_automaton::trajectory::{FlowInterval, JumpRecord, Participant};
 use pleach_automaton::{Automaton, Reason, Trajectory, diagram};
 use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;
@@ -55,7 +55,7 @@ pub struct Drawing {
 impl Drawing {
     /// The drawing of `automaton`.
     pub fn of<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Drawing {
-        let locations = L::ALL.iter().map(|location| location.name()).collect();
+        let locations = automaton.locations().iter().map(|location| location.name()).collect();
         Drawing { locations, svg: diagram::svg(automaton) }
     }
 }
@@ -139,7 +139,7 @@ impl<'a> TrajectoryPage<'a> {
                 "locations": component.locations,
                 "drawing": drawing(component),
             })).collect::<Vec<_>>(),
-            "phases": run.phases().map(|phase| phase_data(&phase)).collect::<Vec<_>>(),
+            "phases": run.intervals().map(|phase| phase_data(&phase)).collect::<Vec<_>>(),
             "events": run.jumps().iter().map(|jump| self.jump_data(jump)).collect::<Vec<_>>(),
             "end": rounded(run.ending().at.t),
             "drawings": self.drawings.iter().map(|drawing| &drawing.svg).collect::<Vec<_>>(),
@@ -162,7 +162,7 @@ impl<'a> TrajectoryPage<'a> {
     }
 }
 
-fn phase_data(phase: &Phase) -> Value {
+fn phase_data(phase: &FlowInterval) -> Value {
     let all = |numbers: &[f64]| numbers.iter().map(|&number| rounded(number)).collect::<Vec<_>>();
     json!({
         "locations": phase.locations,
@@ -175,4 +175,27 @@ fn phase_data(phase: &Phase) -> Value {
 /// To nine digits, more than any screen shows.
 fn rounded(number: f64) -> f64 {
     format!("{number:.8e}").parse().unwrap_or(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pleach_automaton::{Name, Record, from};
+
+    /// The locations of a model made from data are known to the automaton, not to its type.
+    #[test]
+    fn a_model_made_from_data_has_its_drawing() {
+        let clock = Record::new([("x", 0.0)]).unwrap();
+        let x = clock.coordinate("x").unwrap();
+        let [on, off] = ["on", "off"].map(Name::new);
+        let lamp = Automaton::<Name, Name, Record>::starting_in(on)
+            .initially(clock)
+            .flow(on, x.rate(1.0))
+            .transition(from(on).on(Name::new("out")).to(off).must(x.at_least(1.0)))
+            .build()
+            .unwrap();
+        let run = lamp.run(2.0).unwrap();
+        let data = TrajectoryPage::new("A lamp", &run).drawing(&lamp).data();
+        assert_eq!(data["components"][0]["drawing"], 0);
+    }
 }

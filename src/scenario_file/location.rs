@@ -1,6 +1,6 @@
 //! From keys and bytes to lines and columns.
 
-use super::Place;
+use super::MistakePlace;
 use crate::automaton::network::scenario::{KeyPath, KeyStep};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -56,10 +56,10 @@ impl<'t> Lines<'t> {
     }
 
     /// Line and column of byte `start`.
-    pub fn place(&self, start: usize) -> Place {
+    pub fn place(&self, start: usize) -> MistakePlace {
         let line = self.line_of(start);
         let before = &self.text[self.starts[line]..self.text.floor_char_boundary(start)];
-        Place::Text { line: line + 1, column: before.chars().count() + 1 }
+        MistakePlace::Text { line: line + 1, column: before.chars().count() + 1 }
     }
 
     /// The index of the line that holds byte `start`.

@@ -263,32 +263,26 @@ impl Instance<'_> {
                     return Err(wrong(format!("`{name}` is assigned twice")));
                 }
                 bound => {
-                    let Ok(value) = value.evaluate(&()) else {
-                        return Err(wrong(format!(
-                            "`{name}'` is bounded by `{value}`: bounds of assignments are numbers"
-                        )));
-                    };
                     let place = place.unwrap_or_else(|| {
-                        assigned.push((
-                            name.clone(),
-                            Assigned::Within(f64::NEG_INFINITY, f64::INFINITY),
-                        ));
+                        assigned.push((name.clone(), Assigned::Within(None, None)));
                         assigned.len() - 1
                     });
-                    match (&mut assigned[place].1, bound) {
-                        (Assigned::Within(lower, _), Relation::AtLeast | Relation::MoreThan) => {
-                            *lower = lower.max(value)
-                        }
-                        (Assigned::Within(_, upper), _) => *upper = upper.min(value),
-                        (Assigned::Value(_), _) => {
+                    let is_lower = matches!(bound, Relation::AtLeast | Relation::MoreThan);
+                    let bound = match &mut assigned[place].1 {
+                        Assigned::Within(lower, _) if is_lower => lower,
+                        Assigned::Within(_, upper) => upper,
+                        Assigned::Value(_) => {
                             return Err(wrong(format!("`{name}` is assigned twice")));
                         }
+                    };
+                    if bound.replace(value).is_some() {
+                        return Err(wrong(format!("`{name}'` is bounded twice from one side")));
                     }
                 }
             }
         }
-        let is_unbounded = |one: &Assigned| matches!(one, Assigned::Within(lower, upper) if !(lower <= upper && lower.is_finite() && upper.is_finite()));
-        match assigned.iter().find(|(_, one)| is_unbounded(one)) {
+        let is_open = |one: &Assigned| matches!(one, Assigned::Within(None, _) | Assigned::Within(_, None));
+        match assigned.iter().find(|(_, one)| is_open(one)) {
             Some((name, _)) => {
                 Err(wrong(format!("what `{name}'` may be is not bounded from both sides")))
             }
@@ -301,7 +295,8 @@ impl Instance<'_> {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Assigned {
     Value(Expression),
-    Within(f64, f64),
+    /// Between two values.
+    Within(Option<Expression>, Option<Expression>),
 }
 
 fn turned(relation: Relation) -> Relation {

@@ -1,6 +1,6 @@
 //! Automata as models and configurations of SpaceEx.
 
-use crate::automaton::{Automaton, Coordinates};
+use crate::automaton::{Assignment, Automaton, Coordinates, NewValue};
 use crate::discrete::{Event, Location, Urgency};
 use crate::guards::{Comparison, Expression, Predicate, Relation};
 use crate::verify::reach::{Directions, Forbidden, Settings, Uncertain};
@@ -84,10 +84,8 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
             let assignments = transition.reset.assignments().ok_or_else(|| {
                 format!("the reset of event `{}` is a function", transition.event.name())
             })?;
-            let assignments = assignments
-                .iter()
-                .map(|one| Ok(format!("{} := {}", one.coordinate(), plain(one.value())?)));
-            let assignments = assignments.collect::<Result<Vec<_>, String>>()?.join(" & ");
+            let assignments = assignments.iter().map(assignment).collect::<Result<Vec<_>, _>>()?;
+            let assignments = assignments.join(" & ");
             lines.push(format!(
                 r#"    <transition source="{}" target="{}"{urgent}>"#,
                 source.index() + 1,
@@ -224,6 +222,17 @@ fn compared(comparison: &Comparison) -> Result<String, String> {
         Relation::MoreThan => ">",
     };
     Ok(format!("{} {symbol} {}", plain(&comparison.left)?, plain(&comparison.right)?))
+}
+
+/// An assignment, of a value or of bounds on it.
+fn assignment<S>(assignment: &Assignment<S>) -> Result<String, String> {
+    let name = assignment.coordinate();
+    Ok(match assignment.value() {
+        NewValue::Exactly(value) => format!("{name} := {}", plain(value)?),
+        NewValue::Within(lower, upper) => {
+            format!("{name}' >= {} & {name}' <= {}", plain(lower)?, plain(upper)?)
+        }
+    })
 }
 
 /// A formula in the spelling of keyboards.

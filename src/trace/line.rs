@@ -1,9 +1,11 @@
 //! The lines of a trace as JSON shows them.
 
-use crate::automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
+use crate::automaton::network::record::{
+    End, MissionEvent, Outcome, PostView, RobotSnapshot, Route, Snapshot,
+};
 use crate::automaton::network::scenario::Scenario;
-use crate::discrete::Location as _;
-use crate::discrete::network::{Phase, Role};
+use crate::discrete::Location;
+use crate::discrete::network::{Activity, Dealing, Phase, Role};
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -63,6 +65,20 @@ pub(super) struct StepLine {
     path: Vec<usize>,
     serviced: Vec<(usize, usize)>,
     post: Vec<PostLine>,
+    #[serde(flatten)]
+    robots: RobotsLine,
+}
+
+/// The [`RobotSnapshot`]s, each list with an element for each robot; traces may lack all of them.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+struct RobotsLine {
+    location: Vec<Cow<'static, str>>,
+    exchange: Vec<Cow<'static, str>>,
+    known_phase: Vec<Cow<'static, str>>,
+    target: Vec<Option<[f64; 2]>>,
+    sent: Vec<u64>,
+    heard: Vec<u64>,
 }
 
 /// A [`PostView`] with the names of the format.
@@ -105,6 +121,7 @@ impl From<&Snapshot> for StepLine {
             path: snapshot.path.clone(),
             serviced: snapshot.serviced.clone(),
             post: snapshot.posts.iter().map(PostLine::from).collect(),
+            robots: RobotsLine::from(&*snapshot.robots),
         }
     }
 }
@@ -119,18 +136,18 @@ impl TryFrom<StepLine> for Snapshot {
             ("residual", line.residual.len()),
             ("multiplier", line.multiplier.len()),
         ] {
-            if length != robots {
-                return Err(format!(
-                    "{name} has {length} elements where position has {robots}: one for each robot"
-                ));
-            }
+            fitting(name, length, robots)?;
         }
         Ok(Self {
             step: line.k,
             time: line.t,
             positions: line.position.into_iter().map(Point2::from).collect(),
-            roles: line.role.iter().map(|name| role_called(name)).collect::<Result<_, _>>()?,
-            phase: phase_called(&line.phase)?,
+            roles: line
+                .role
+                .iter()
+                .map(|name| called("role", &Role::ALL, Role::name, name))
+                .collect::<Result<_, _>>()?,
+            phase: called("phase", Phase::ALL, Phase::name, &line.phase)?,
             active: line.active,
             active_team: line.active_team,
             primary_team: line.primary_team,
@@ -144,18 +161,74 @@ impl TryFrom<StepLine> for Snapshot {
             task: line.task,
             serviced: line.serviced,
             posts: line.post.into_iter().map(PostView::from).collect(),
+            robots: line.robots.views(robots)?,
         })
     }
 }
 
-fn role_called(name: &str) -> Result<Role, String> {
-    (Role::ALL.into_iter().find(|role| role.name() == name))
-        .ok_or_else(|| format!("no role is called {name:?}"))
+impl From<&[RobotSnapshot]> for RobotsLine {
+    fn from(robots: &[RobotSnapshot]) -> Self {
+        Self {
+            location: robots.iter().map(|robot| robot.activity.name().into()).collect(),
+            exchange: robots.iter().map(|robot| robot.dealing.name().into()).collect(),
+            known_phase: robots.iter().map(|robot| robot.phase.name().into()).collect(),
+            target: robots.iter().map(|robot| robot.target.map(|target| target.into())).collect(),
+            sent: robots.iter().map(|robot| robot.sent).collect(),
+            heard: robots.iter().map(|robot| robot.heard).collect(),
+        }
+    }
 }
 
-fn phase_called(name: &str) -> Result<Phase, String> {
-    (Phase::ALL.iter().copied().find(|phase| phase.name() == name))
-        .ok_or_else(|| format!("no phase is called {name:?}"))
+impl RobotsLine {
+    /// The views of this many robots, or none where the trace has none.
+    fn views(self, robots: usize) -> Result<Vec<RobotSnapshot>, String> {
+        let lengths = [
+            ("location", self.location.len()),
+            ("exchange", self.exchange.len()),
+            ("known_phase", self.known_phase.len()),
+            ("target", self.target.len()),
+            ("sent", self.sent.len()),
+            ("heard", self.heard.len()),
+        ];
+        if lengths.iter().all(|&(_, length)| length == 0) {
+            return Ok(Vec::new());
+        }
+        lengths.into_iter().try_for_each(|(name, length)| fitting(name, length, robots))?;
+        let view = |robot: usize| {
+            Ok(RobotSnapshot {
+                activity: called("location", Activity::ALL, Activity::name, &self.location[robot])?,
+                dealing: called(
+                    "location of an exchange",
+                    Dealing::ALL,
+                    Dealing::name,
+                    &self.exchange[robot],
+                )?,
+                phase: called("phase", Phase::ALL, Phase::name, &self.known_phase[robot])?,
+                target: self.target[robot].map(Point2::from),
+                sent: self.sent[robot],
+                heard: self.heard[robot],
+            })
+        };
+        (0..robots).map(view).collect()
+    }
+}
+
+fn fitting(name: &str, length: usize, robots: usize) -> Result<(), String> {
+    if length == robots {
+        return Ok(());
+    }
+    Err(format!("{name} has {length} elements where position has {robots}: one for each robot"))
+}
+
+/// What is called `name`, of `all` that there is.
+fn called<T: Copy>(
+    kind: &str,
+    all: &[T],
+    name_of: fn(T) -> &'static str,
+    name: &str,
+) -> Result<T, String> {
+    (all.iter().copied().find(|one| name_of(*one) == name))
+        .ok_or_else(|| format!("no {kind} is called {name:?}"))
 }
 
 impl From<&PostView> for PostLine {

@@ -3,6 +3,7 @@
 use super::chromium::Page;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::ValidScenario;
+use pleach::discrete::Location as _;
 use pleach::mission::{self, Watcher};
 use pleach::page::{self, MissionPage};
 use pleach::scenario_file;
@@ -69,6 +70,9 @@ fn assert_numbers(page: &mut Page, snapshot: &Snapshot) {
            residual: [...Array(mission.robots).keys()].map(i => mission.residual(i, player.at)), \
            multiplier: [...Array(mission.robots).keys()].map(i => mission.multiplier(i, player.at)), \
            role: [...Array(mission.robots).keys()].map(i => mission.role(i, player.at)), \
+           location: [...Array(mission.robots).keys()].map(i => mission.named('location', i, player.at)), \
+           target: [...Array(mission.robots).keys()].map(i => mission.targetOf(i, player.at)), \
+           heard: [...Array(mission.robots).keys()].map(i => mission.numbers.heard.at(i, player.at)), \
            route: mission.linksAt(player.at).map(l => [l.from, l.to, l.share, l.reliability]), \
            tree: mission.value('tree', player.at), \
            task: mission.value('task', player.at) }))(pleach)",
@@ -81,6 +85,15 @@ fn assert_numbers(page: &mut Page, snapshot: &Snapshot) {
         assert!(close(number(&shown["residual"][robot]), snapshot.residuals[robot]));
         assert!(close(number(&shown["multiplier"][robot]), snapshot.multipliers[robot]));
         assert_eq!(shown["role"][robot], snapshot.roles[robot].name());
+        let view = snapshot.robots[robot];
+        assert_eq!(shown["location"][robot], view.activity.name());
+        assert_eq!(shown["heard"][robot].as_u64(), Some(view.heard));
+        let target: Option<[f64; 2]> =
+            serde_json::from_value(shown["target"][robot].clone()).unwrap();
+        assert_eq!(target.is_some(), view.target.is_some());
+        if let (Some([x, y]), Some(target)) = (target, view.target) {
+            assert!(close(x, target.x) && close(y, target.y));
+        }
     }
     let tree: Vec<(usize, usize)> = serde_json::from_value(shown["tree"].clone()).unwrap();
     assert_eq!(tree, snapshot.tree);
@@ -166,7 +179,9 @@ fn a_robot_under_the_pointer_tells_its_facts() {
     page.point("#plan", Some(place));
     let facts = page.value("document.getElementById('facts').innerText");
     let facts = facts.as_str().unwrap();
-    for fact in ["Robot 11", "leader", "task 1", "robot 10"] {
+    for fact in
+        ["Robot 11", "leader", "leading the team", "task 1, at (", "robot 10", "sent", "heard"]
+    {
         assert!(facts.contains(fact), "{fact} is not in {facts}");
     }
     page.photograph("study-1-facts");

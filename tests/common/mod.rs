@@ -2,9 +2,11 @@
 
 #![allow(dead_code)] // not every test needs everything
 
-use pleach::automaton::network::record::{End, MissionEvent, Outcome, PostView, Route, Snapshot};
+use pleach::automaton::network::record::{
+    End, MissionEvent, Outcome, PostView, RobotSnapshot, Route, Snapshot,
+};
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::discrete::network::{Phase, Role};
+use pleach::discrete::network::{Activity, Dealing, Phase, Role};
 use pleach::mission::Watcher;
 use std::path::Path;
 
@@ -75,6 +77,24 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
             task: None,
             junction: false,
         }],
+        robots: vec![
+            RobotSnapshot {
+                activity: Activity::Relay,
+                dealing: Dealing::Free,
+                phase: Phase::Advance,
+                target: None,
+                sent: 12,
+                heard: 9,
+            },
+            RobotSnapshot {
+                activity: Activity::Leading,
+                dealing: Dealing::Offering,
+                phase: Phase::Advance,
+                target: Some([0.9, 0.25].into()),
+                sent: 14,
+                heard: 8,
+            },
+        ],
     }
 }
 

@@ -82,7 +82,7 @@ impl Brief {
         }
     }
 
-    /// The scenario, if everybody finds a place.
+    /// The scenario, if all robots find a place.
     pub fn scenario(self, name: String, dice: &mut Dice) -> Option<Scenario> {
         let outline = self.floor.outline()?;
         let mut scenario = Scenario {

@@ -1,4 +1,4 @@
-//! Random missions on floor plans that nobody tuned the robots to.
+//! Random missions on floor plans to which the robots are not tuned.
 //!
 //! A [`Family`] and a seed give a [`Scenario`], always the same one. It can start (it passes
 //! [`ValidScenario::new`]), its tasks can be reached, and it has more robots than a tree of

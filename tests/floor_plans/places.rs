@@ -174,7 +174,7 @@ impl Places {
         Some(())
     }
 
-    /// Whether a robot may start at `place`, so many clearances from others, connected to them.
+    /// Whether a robot may start at `place`, this many clearances from others, connected to them.
     fn is_place(&self, place: Point, spacing: f64) -> bool {
         let room = spacing * self.settings.clearance;
         self.free_space.contains(place)

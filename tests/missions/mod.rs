@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // not every test needs everything
 
+mod medium;
+
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, ValidScenario};
 use pleach::automaton::network::{Message, Network, Site};
@@ -15,6 +17,8 @@ use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
+
+pub use medium::{Arrival, Filtered};
 
 /// What a control period showed.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +79,7 @@ pub fn network_over<M: Medium<Message, Point>>(
     Network::with_medium(scenario, site, medium).expect("a network")
 }
 
-/// Runs a network for at most `periods` control periods with nobody but a recorder looking on,
+/// Runs a network for at most `periods` control periods with a recorder as the only observer,
 /// so that it may start where the monitor refuses and go on where the monitor stops.
 pub fn run_unmonitored<M: Medium<Message, Point>>(
     network: &mut Network<M>,

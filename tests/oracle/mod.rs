@@ -187,7 +187,7 @@ impl Plan {
         if let Some((child, parent)) = edges.iter().find(|&&(_, parent)| {
             parent < self.robots() && !edges.iter().any(|&(child, _)| child == parent)
         }) {
-            return Err(format!("robot {child} hangs on {parent}, which hangs on nothing"));
+            return Err(format!("robot {child} is attached to {parent}, which has no parent"));
         }
         while !edges.is_empty() {
             let kept: Vec<_> = (edges.iter().copied())
@@ -298,7 +298,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Who answers for a task is within δ of it all the way, for discs are convex, and at the end
+    /// The robot that holds a task is within δ of it all the way, for discs are convex, and at the end
     /// of it somebody does.
     fn tasks_stay_serviced(&self, before: &Snapshot, now: &Snapshot) -> Result<(), String> {
         for &(task, robot) in &before.serviced {

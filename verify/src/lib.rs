@@ -2,12 +2,11 @@
 //!
 //! Each property is a documented pure function. Monitors, tests, exhaustive exploration and
 //! proofs call that function, so that all of them speak of the same thing.
-//! [`temporal`] judges trajectories of any system by formulas over time; [`exploration`] visits
-//! every state of a discrete system; [`network`] holds the properties of the robot network.
+//! [`temporal`] judges trajectories of any system by formulas over time; [`network`] holds the
+//! properties of the robot network.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may panic"))]
 
-pub mod exploration;
 pub mod network;
 pub mod reach;
 pub mod temporal;

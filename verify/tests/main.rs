@@ -2,7 +2,5 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod exploration;
-mod protocol;
 mod reach;
 mod temporal;

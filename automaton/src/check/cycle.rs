@@ -15,7 +15,7 @@ use pleach_guards::{Predicate, Substitution, not, variable};
 
 use super::inquiry::{Inquiry, closed, open};
 use super::reachability::Reach;
-use super::report::{Kind, Place};
+use super::report::{FindingPlace, Kind};
 use crate::decision::State;
 
 /// The most cycles that are looked at, and the longest.
@@ -26,7 +26,8 @@ impl Inquiry<'_> {
     pub(super) fn report_cycles(&mut self, reach: &Reach) {
         let cycles = self.forced_cycles(reach);
         if cycles.len() >= MOST_CYCLES {
-            let place = Place { component: self.model.component.clone(), ..Place::default() };
+            let place =
+                FindingPlace { component: self.model.component.clone(), ..FindingPlace::default() };
             let message = format!("of the cycles of forced transitions, {MOST_CYCLES} are checked");
             self.note(Kind::Unexplored, place, message);
         }

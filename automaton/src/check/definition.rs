@@ -14,7 +14,7 @@ use pleach_guards::{Comparison, Expression, Predicate, always, not};
 
 use super::inquiry::Inquiry;
 use super::reachability::Reach;
-use super::report::{Kind, Place};
+use super::report::{FindingPlace, Kind};
 
 impl Inquiry<'_> {
     pub(super) fn report_undefined(&mut self, reach: &Reach) {
@@ -40,6 +40,16 @@ impl Inquiry<'_> {
                 let what = format!("the new value of `{name}`");
                 self.report_formula(&place, &taken, &what, value);
             }
+            for (name, [lower, upper]) in &transition.intervals {
+                let fault = taken.clone() & lower.more_than(upper);
+                if let Some(witness) = self.witness(Kind::Undefined, &place, &fault) {
+                    let message = format!(
+                        "`{name}` has no new value where `[{lower}, {upper}]` is empty: change the \
+                         guard or the ends of the interval"
+                    );
+                    self.warn_with(Kind::Undefined, place.clone(), message, witness);
+                }
+            }
         }
     }
 
@@ -51,7 +61,13 @@ impl Inquiry<'_> {
         Predicate::all([mode.invariant.clone()].into_iter().chain(waiting))
     }
 
-    fn report_sides(&mut self, place: &Place, there: &Predicate, what: &str, of: &Predicate) {
+    fn report_sides(
+        &mut self,
+        place: &FindingPlace,
+        there: &Predicate,
+        what: &str,
+        of: &Predicate,
+    ) {
         match of {
             Predicate::Comparison(Comparison { left, right, .. }) => {
                 self.report_formula(place, there, what, left);
@@ -65,7 +81,13 @@ impl Inquiry<'_> {
         }
     }
 
-    fn report_formula(&mut self, place: &Place, there: &Predicate, what: &str, of: &Expression) {
+    fn report_formula(
+        &mut self,
+        place: &FindingPlace,
+        there: &Predicate,
+        what: &str,
+        of: &Expression,
+    ) {
         let mut gaps = Vec::new();
         collect(of, always(), &mut gaps);
         for Gap { part, lacks_value } in gaps {

@@ -4,7 +4,7 @@ use pleach_discrete::Urgency;
 use pleach_guards::{Comparison, Predicate, Relation, always};
 
 use super::model::Model;
-use super::report::{Finding, Kind, Place, Report, Severity};
+use super::report::{Finding, FindingPlace, Kind, Report, Severity};
 use super::robustness::{is_robust, ordinary, with_room};
 use crate::decision::{Decision, Doubt, Effort, State, decide};
 
@@ -21,11 +21,11 @@ impl<'a> Inquiry<'a> {
     }
 
     /// A state in which `fault` holds. That there is none is noted as an exclusion, and that
-    /// nobody knows as a note; functions have notes of their own.
+    /// is unknown as a note; functions have notes of their own.
     pub(super) fn witness(
         &mut self,
         kind: Kind,
-        place: &Place,
+        place: &FindingPlace,
         fault: &Predicate,
     ) -> Option<State> {
         match self.decide(fault) {
@@ -106,26 +106,44 @@ impl<'a> Inquiry<'a> {
         }
     }
 
-    pub(super) fn error(&mut self, kind: Kind, place: Place, message: String, witness: State) {
+    pub(super) fn error(
+        &mut self,
+        kind: Kind,
+        place: FindingPlace,
+        message: String,
+        witness: State,
+    ) {
         let finding = Finding::new(kind, Severity::Error, place, message);
         self.report.add(finding.shown_by(witness));
     }
 
-    pub(super) fn warn_with(&mut self, kind: Kind, place: Place, message: String, witness: State) {
+    pub(super) fn warn_with(
+        &mut self,
+        kind: Kind,
+        place: FindingPlace,
+        message: String,
+        witness: State,
+    ) {
         let finding = Finding::new(kind, Severity::Warning, place, message);
         self.report.add(finding.shown_by(witness));
     }
 
-    pub(super) fn warning(&mut self, kind: Kind, place: Place, message: String) {
+    pub(super) fn warning(&mut self, kind: Kind, place: FindingPlace, message: String) {
         self.report.add(Finding::new(kind, Severity::Warning, place, message));
     }
 
-    pub(super) fn note_with(&mut self, kind: Kind, place: Place, message: String, witness: State) {
+    pub(super) fn note_with(
+        &mut self,
+        kind: Kind,
+        place: FindingPlace,
+        message: String,
+        witness: State,
+    ) {
         let finding = Finding::new(kind, Severity::Note, place, message);
         self.report.add(finding.shown_by(witness));
     }
 
-    pub(super) fn note(&mut self, kind: Kind, place: Place, message: String) {
+    pub(super) fn note(&mut self, kind: Kind, place: FindingPlace, message: String) {
         self.report.add(Finding::new(kind, Severity::Note, place, message));
     }
 

@@ -8,7 +8,7 @@
 use super::model::{Effect, Model, Motion};
 use super::product::{Product, explore};
 use super::reachability::Reach;
-use super::report::{Finding, Kind, Place, Report, Severity};
+use super::report::{Finding, FindingPlace, Kind, Report, Severity};
 
 /// An event that components take together.
 pub(super) struct Label {
@@ -76,7 +76,7 @@ fn report_unexplored(product: &Product, report: &mut Report) {
         "whether labels block is open: only {} combinations of locations were looked at",
         product.states.len()
     );
-    report.add(Finding::new(Kind::Unexplored, Severity::Note, Place::default(), message));
+    report.add(Finding::new(Kind::Unexplored, Severity::Note, FindingPlace::default(), message));
 }
 
 fn report_lonely(label: &Label, models: &[Model], report: &mut Report) {
@@ -184,10 +184,10 @@ pub(super) fn report_inputs(models: &[Model], report: &mut Report) {
     for model in models.iter().filter(|model| !has_functions(model)) {
         let read = model.variables();
         for input in model.inputs.iter().filter(|input| !read.contains(input)) {
-            let place = Place {
+            let place = FindingPlace {
                 component: model.component.clone(),
                 variable: Some(input.clone()),
-                ..Place::default()
+                ..FindingPlace::default()
             };
             let message = "it is connected, and no formula reads it: leave the connection out";
             report.add(Finding::new(Kind::UnreadInput, Severity::Warning, place, message.into()));
@@ -205,9 +205,9 @@ fn has_functions(model: &Model) -> bool {
     model.modes.iter().any(moved) || model.transitions.iter().any(changed)
 }
 
-fn on_label(model: Option<&Model>, label: &Label) -> Place {
+fn on_label(model: Option<&Model>, label: &Label) -> FindingPlace {
     let component = model.and_then(|model| model.component.clone());
-    Place { component, events: vec![label.name.clone()], ..Place::default() }
+    FindingPlace { component, events: vec![label.name.clone()], ..FindingPlace::default() }
 }
 
 fn named(model: &Model) -> String {

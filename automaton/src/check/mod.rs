@@ -90,7 +90,7 @@ mod report;
 mod robustness;
 mod structure;
 
-pub use report::{Exclusion, Finding, Kind, Place, Report, Severity};
+pub use report::{Exclusion, Finding, FindingPlace, Kind, Report, Severity};
 
 use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;

@@ -6,11 +6,11 @@ use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::{Expression, not};
 use pleach_guards::{Guard, Interval, Predicate, Substitution, Valuation, always, variable};
 
-use super::report::Place;
+use super::report::FindingPlace;
 use crate::automaton::Automaton;
 use crate::decision::{Region, State};
 use crate::flow::Flow;
-use crate::reset::Reset;
+use crate::reset::{Assignment, NewValue, Reset};
 
 /// An automaton, alone or as a component.
 #[derive(Clone, Debug)]
@@ -63,11 +63,15 @@ pub(crate) struct Transition {
     pub(crate) priority: u8,
     pub(crate) guard: Guard,
     pub(crate) effect: Effect,
+    /// The intervals from which it takes new values: the variable and both ends.
+    pub(crate) intervals: Vec<(String, [Expression; 2])>,
 }
 
 /// A reset.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Effect {
+    /// What becomes any number of an interval is its lower end and a share of its width: the share is
+    /// a variable between 0 and 1, of which a witness says what was taken.
     Assignments(Vec<(String, Expression)>),
     Function(String),
 }
@@ -95,6 +99,7 @@ impl Model {
                     in_numbers(transition.guard.predicate()),
                 ),
                 effect: effect(&transition.reset),
+                intervals: intervals(&transition.reset),
             })
         });
         let mut model = Model {
@@ -118,8 +123,8 @@ impl Model {
         let named = model.variables().into_iter().chain(propositions.iter().cloned());
         let names: Vec<String> = declared.chain(named).collect();
         for name in names {
-            let is_proposition = propositions.contains(&name);
-            let range = if is_proposition { 0.0..=1.0 } else { automaton.range(&name) };
+            let is_fraction = propositions.contains(&name) || name.starts_with(SHARE);
+            let range = if is_fraction { 0.0..=1.0 } else { automaton.range(&name) };
             let range = Interval::new(*range.start(), *range.end()).unwrap_or(Interval::WHOLE);
             model.region.insert(name, range);
         }
@@ -146,6 +151,8 @@ impl Model {
             if let Effect::Assignments(assignments) = &mut transition.effect {
                 change(assignments);
             }
+            let ends = transition.intervals.iter_mut().flat_map(|(_, ends)| ends);
+            ends.for_each(|end| *end = end.substitute(numbers));
         }
     }
 
@@ -160,19 +167,19 @@ impl Model {
         in_predicates.chain(in_formulas).map(str::to_owned).collect()
     }
 
-    pub(crate) fn mode_at(&self, location: usize) -> Place {
-        Place {
+    pub(crate) fn mode_at(&self, location: usize) -> FindingPlace {
+        FindingPlace {
             component: self.component.clone(),
             location: Some(self.modes[location].name),
-            ..Place::default()
+            ..FindingPlace::default()
         }
     }
 
-    pub(crate) fn place_of(&self, transitions: &[usize]) -> Place {
+    pub(crate) fn place_of(&self, transitions: &[usize]) -> FindingPlace {
         let location = transitions.first().map(|&first| self.transitions[first].source);
         let events = transitions.iter().map(|&one| self.event(one).to_owned()).collect();
         let location = location.map(|location| self.modes[location].name);
-        Place { component: self.component.clone(), location, events, variable: None }
+        FindingPlace { component: self.component.clone(), location, events, variable: None }
     }
 
     pub(crate) fn event(&self, transition: usize) -> &str {
@@ -274,14 +281,33 @@ fn motion<S>(flow: &Flow<S>) -> Motion {
     }
 }
 
+/// How the names of shares begin.
+const SHARE: &str = "share of the interval of ";
+
 fn effect<S>(reset: &Reset<S>) -> Effect {
+    let value = |one: &Assignment<S>| {
+        let value = match one.value() {
+            NewValue::Exactly(value) => value.clone(),
+            NewValue::Within(lower, upper) => {
+                let share = variable(&format!("{SHARE}{}", one.coordinate()));
+                lower + share * (upper - lower)
+            }
+        };
+        (one.coordinate().to_owned(), value)
+    };
     match reset.assignments() {
-        Some(assignments) => Effect::Assignments(
-            assignments
-                .iter()
-                .map(|one| (one.coordinate().to_owned(), one.value().clone()))
-                .collect(),
-        ),
+        Some(assignments) => Effect::Assignments(assignments.iter().map(value).collect()),
         None => Effect::Function(reset.name().into_owned()),
     }
+}
+
+fn intervals<S>(reset: &Reset<S>) -> Vec<(String, [Expression; 2])> {
+    let assignments = reset.assignments().into_iter().flatten();
+    let interval = |one: &Assignment<S>| match one.value() {
+        NewValue::Exactly(_) => None,
+        NewValue::Within(lower, upper) => {
+            Some((one.coordinate().to_owned(), [lower.clone(), upper.clone()]))
+        }
+    };
+    assignments.filter_map(interval).collect()
 }

@@ -3,7 +3,7 @@
 //! Two forced transitions overlap if their guards can hold in one state of the location, their
 //! priorities are the same, and it makes a difference which is taken: they lead to different
 //! locations or reset differently. Where one *may* be taken and another *must*, the latter goes
-//! first, which is no fault. Where several *may* be taken, whoever asks for one says which; that is
+//! first, which is no fault. Where several *may* be taken, the caller says which; that is
 //! a freedom of the model, and worth one note for each location.
 
 use pleach_discrete::Urgency;

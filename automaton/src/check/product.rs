@@ -28,9 +28,9 @@ struct Step {
     from: usize,
     to: usize,
     label: Option<usize>,
-    /// Who takes part.
+    /// The participants.
     components: Vec<usize>,
-    /// Who of them has a guard.
+    /// Those with a guard.
     guarded: Vec<usize>,
 }
 

@@ -8,7 +8,7 @@ use crate::decision::{Proof, State};
 ///
 /// It prints as a list, the worst first.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[must_use = "a report that nobody reads helps nobody"]
+#[must_use = "a report is of use only if it is read"]
 pub struct Report {
     findings: Vec<Finding>,
     exclusions: Vec<Exclusion>,
@@ -23,7 +23,7 @@ pub struct Finding {
     /// How bad it is.
     pub severity: Severity,
     /// Where it is.
-    pub place: Place,
+    pub place: FindingPlace,
     /// What is wrong, and what would be right.
     pub message: String,
     /// A state in which it shows. For what happens in a jump, it is the state before, x⁻.
@@ -37,7 +37,7 @@ pub struct Exclusion {
     /// What cannot be.
     pub kind: Kind,
     /// Where.
-    pub place: Place,
+    pub place: FindingPlace,
     /// Why.
     pub proof: Proof,
 }
@@ -96,7 +96,7 @@ pub enum Kind {
     RefusedLabel,
     /// A label whose components never come together where all of them take it.
     BlockedLabel,
-    /// A component that waits for ever for labels that nobody else takes any more.
+    /// A component that waits for ever for labels that no other takes any more.
     Deadlock,
     /// A connected input that no formula reads.
     UnreadInput,
@@ -107,7 +107,7 @@ pub enum Kind {
 /// Where a finding is, as far as that makes sense for its kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
-pub struct Place {
+pub struct FindingPlace {
     /// The component of a composition.
     pub component: Option<String>,
     /// The location.
@@ -143,7 +143,7 @@ impl Report {
         self.findings.push(finding);
     }
 
-    pub(super) fn exclude(&mut self, kind: Kind, place: Place, proof: Proof) {
+    pub(super) fn exclude(&mut self, kind: Kind, place: FindingPlace, proof: Proof) {
         self.exclusions.push(Exclusion { kind, place, proof });
     }
 
@@ -178,13 +178,18 @@ impl Report {
 }
 
 impl Finding {
-    pub(super) fn new(kind: Kind, severity: Severity, place: Place, message: String) -> Self {
+    pub(super) fn new(
+        kind: Kind,
+        severity: Severity,
+        place: FindingPlace,
+        message: String,
+    ) -> Self {
         Finding { kind, severity, place, message, witness: None }
     }
 
     /// Whether both are notes that differ in nothing but the component.
     fn is_repeated_by(&self, other: &Finding) -> bool {
-        let at = |finding: &Finding| Place { component: None, ..finding.place.clone() };
+        let at = |finding: &Finding| FindingPlace { component: None, ..finding.place.clone() };
         self.severity == Severity::Note
             && other.severity == Severity::Note
             && self.place.component != other.place.component
@@ -242,7 +247,7 @@ impl fmt::Display for Severity {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FindingPlace {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let component = self.component.iter().map(|name| format!("component `{name}`"));
         let location = self.location.iter().map(|name| format!("location `{name}`"));

@@ -6,7 +6,7 @@ use pleach_guards::Valuation;
 use super::inquiry::Inquiry;
 use super::model::{Effect, Motion};
 use super::reachability::Reach;
-use super::report::{Finding, Kind, Place, Severity};
+use super::report::{Finding, FindingPlace, Kind, Severity};
 
 impl Inquiry<'_> {
     /// The initial state is there, and a run can begin in it.
@@ -40,7 +40,7 @@ impl Inquiry<'_> {
                     "the initial state is outside the declared range `{}`: begin inside it",
                     model.range_of(name)
                 );
-                let place = Place { variable: Some(name.clone()), ..place.clone() };
+                let place = FindingPlace { variable: Some(name.clone()), ..place.clone() };
                 self.warn_with(Kind::StartsOutOfRange, place, message, state.clone());
             }
         }
@@ -49,8 +49,8 @@ impl Inquiry<'_> {
     /// One note for every function, with all transitions that it stands at.
     pub(super) fn report_functions(&mut self) {
         let model = self.model;
-        let mut notes: Vec<(Place, String)> = Vec::new();
-        let mut note = |place: Place, part: &str, name: &str| {
+        let mut notes: Vec<(FindingPlace, String)> = Vec::new();
+        let mut note = |place: FindingPlace, part: &str, name: &str| {
             let message = format!("the {part} `{name}` is a function, which no check can see into");
             match notes.iter_mut().find(|(_, other)| *other == message) {
                 Some((known, _)) => {

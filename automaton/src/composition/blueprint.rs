@@ -14,7 +14,7 @@ use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
 use crate::diagram::sketch::Sketch;
 use crate::flow::{Flow, Motion};
-use crate::reset::Reset;
+use crate::reset::{NewValue, Reset};
 
 /// Locations and events are numbers here, in the order of `ALL`, and formulas are compiled against
 /// the coordinates of the automaton's own state.
@@ -23,6 +23,8 @@ pub(crate) struct Blueprint {
     pub(crate) events: Vec<&'static str>,
     pub(crate) coordinates: Vec<&'static str>,
     pub(crate) initial: usize,
+    /// The coordinates of which no other component may say how they move.
+    pub(crate) own: Vec<&'static str>,
     /// For pictures.
     pub(crate) sketch: Sketch,
 }
@@ -71,8 +73,15 @@ pub(crate) struct RateProgram {
 
 /// A reset.
 pub(crate) enum Change {
-    Assignments(Vec<(usize, Program)>),
+    Assignments(Vec<(usize, Assigned)>),
     Function(Arc<ResetFunction>),
+}
+
+/// What a coordinate becomes.
+pub(crate) enum Assigned {
+    Value(Program),
+    /// Any number between these.
+    Interval([Program; 2]),
 }
 
 /// From the coordinates to their rates.
@@ -125,7 +134,8 @@ impl Blueprint {
         }
         let events = automaton.events().iter().map(|event| event.name()).collect();
         let initial = position(automaton.locations(), automaton.initial());
-        Ok(Blueprint { places, events, coordinates: names.to_vec(), initial, sketch })
+        let (coordinates, own) = (names.to_vec(), automaton.own.clone());
+        Ok(Blueprint { places, events, coordinates, initial, own, sketch })
     }
 }
 
@@ -240,8 +250,13 @@ fn change<S: Coordinates>(
 ) -> Result<Change, EvaluationError> {
     if let Some(assignments) = reset.assignments() {
         let compile = |assignment: &crate::reset::Assignment<S>| {
-            let value = assignment.value().compile(names)?;
-            Ok((place_of(names, assignment.coordinate())?, value))
+            let assigned = match assignment.value() {
+                NewValue::Exactly(value) => Assigned::Value(value.compile(names)?),
+                NewValue::Within(lower, upper) => {
+                    Assigned::Interval([lower.compile(names)?, upper.compile(names)?])
+                }
+            };
+            Ok((place_of(names, assignment.coordinate())?, assigned))
         };
         return Ok(Change::Assignments(assignments.iter().map(compile).collect::<Result<_, _>>()?));
     }

@@ -6,8 +6,8 @@ use pleach_discrete::{Event, Location};
 use pleach_guards::EvaluationError;
 use thiserror::Error;
 
-use super::blueprint::{Blueprint, Change, PlaceMotion};
-use super::{Accumulation, Component, Composition, Label};
+use super::blueprint::{Blueprint, Change, Place, PlaceMotion};
+use super::{Accumulation, Channel, Component, Composition, Label};
 use crate::automaton::Automaton;
 use crate::check::model::Model;
 use crate::coordinates::Coordinates;
@@ -20,6 +20,8 @@ pub struct CompositionBuilder {
     labels: Vec<String>,
     /// From an output to an input.
     connections: Vec<(String, String)>,
+    /// Components that carry messages; they come after all others.
+    channels: Vec<Channel>,
     /// Whether the part added last is the first of many that are alike.
     is_each: bool,
     /// The first thing that was wrong with a part.
@@ -104,6 +106,50 @@ pub enum CompositionError {
         coordinate: &'static str,
         /// The location with the flow or the transition that does.
         location: &'static str,
+    },
+    /// A channel begins or ends at an event that does not exist.
+    #[error("no component has the event `{event}`: write `component.event`")]
+    UnknownMessage {
+        /// The event.
+        event: String,
+    },
+    /// Two channels end at one event.
+    #[error("`{event}` is the end of two channels: give the receiver an event for each sender")]
+    HeardTwice {
+        /// The event.
+        event: String,
+    },
+    /// A message that has to arrive in time would find its receiver unable to take it.
+    #[error(
+        "messages have to arrive at `{event}` in time, but component `{component}` has no \
+         transition with that event from location `{location}`: add one, if only to ignore them"
+    )]
+    NotReceptive {
+        /// The receiver.
+        component: String,
+        /// Its event.
+        event: String,
+        /// Where it cannot take a message.
+        location: &'static str,
+    },
+    /// A channel cannot be.
+    #[error("channel `{channel}`: {reason}")]
+    Channel {
+        /// Its name.
+        channel: String,
+        /// What stands against it.
+        reason: &'static str,
+    },
+    /// A component slides along a surface that depends on what it only reads.
+    #[error(
+        "component `{component}` slides along a surface that depends on `{coordinate}`, but reads it \
+         from another component: of its rate nothing is known there"
+    )]
+    SurfaceReads {
+        /// The component.
+        component: String,
+        /// The coordinate.
+        coordinate: &'static str,
     },
     /// There is no component at all.
     #[error("a composition needs at least one component")]
@@ -224,6 +270,14 @@ impl CompositionBuilder {
         self
     }
 
+    /// Messages go from one component to another, or back to the same. The channel becomes a
+    /// component after all others, and the events of both ends are then called `component.event`,
+    /// unless they are labels with a name already.
+    pub fn channel(mut self, channel: Channel) -> Self {
+        self.channels.push(channel);
+        self
+    }
+
     /// The composition.
     ///
     /// # Errors
@@ -233,6 +287,7 @@ impl CompositionBuilder {
         if let Some(fault) = self.fault.take() {
             return Err(fault);
         }
+        self = self.join_channels()?;
         self.check_names()?;
         let sources = self.sources()?;
         let mut composition = Composition {
@@ -273,6 +328,58 @@ impl CompositionBuilder {
 
     fn fault(&mut self, fault: CompositionError) {
         self.fault.get_or_insert(fault);
+    }
+
+    /// Turns channels into components.
+    fn join_channels(mut self) -> Result<Self, CompositionError> {
+        let mut heard: Vec<String> = Vec::new();
+        for channel in std::mem::take(&mut self.channels) {
+            let (send, _) = self.end_of_channel(&channel.output, None)?;
+            let shared = (channel.inputs.len() > 1).then(|| channel.name.clone());
+            let mut arrive = String::new();
+            for input in &channel.inputs {
+                if heard.contains(input) {
+                    return Err(CompositionError::HeardTwice { event: input.clone() });
+                }
+                let receiver;
+                (arrive, receiver) = self.end_of_channel(input, shared.as_deref())?;
+                if channel.has_deadline() {
+                    self.parts[receiver].check_receptive(&arrive)?;
+                }
+                heard.push(input.clone());
+            }
+            self = channel.join(self, &send, &arrive)?;
+        }
+        match self.fault.take() {
+            Some(fault) => Err(fault),
+            None => Ok(self),
+        }
+    }
+
+    /// The label of an event at which a channel begins or ends, written `component.event`, and the
+    /// number of the component. The label is `label`, or else what is written.
+    fn end_of_channel(
+        &mut self,
+        event: &str,
+        label: Option<&str>,
+    ) -> Result<(String, usize), CompositionError> {
+        let label = label.unwrap_or(event);
+        for (number, part) in self.parts.iter_mut().enumerate() {
+            let own = event.strip_prefix(&*part.name).and_then(|it| it.strip_prefix('.'));
+            let Some(own) = own else { continue };
+            if part.event(label).is_some() {
+                return Ok((label.to_owned(), number));
+            }
+            let Some(place) = part.event(own) else { continue };
+            if label == event && self.labels.iter().any(|label| label == own) {
+                return Ok((own.to_owned(), number));
+            }
+            let before = part.blueprint.events[place];
+            part.renamed.retain(|(renamed, _)| renamed != before);
+            part.renamed.push((before.to_owned(), label.to_owned()));
+            return Ok((label.to_owned(), number));
+        }
+        Err(CompositionError::UnknownMessage { event: event.to_owned() })
     }
 
     fn check_names(&self) -> Result<(), CompositionError> {
@@ -389,6 +496,25 @@ impl Part {
         self.event_names().position(|event| event == name)
     }
 
+    /// In every location that is ever entered there is a transition with this event.
+    fn check_receptive(&self, event: &str) -> Result<(), CompositionError> {
+        let (number, places) = (self.event(event), &self.blueprint.places);
+        let is_entered = |place: usize| {
+            let mut leaving = places.iter().flat_map(|place| &place.leaving);
+            place == self.blueprint.initial || leaving.any(|leaving| leaving.target == place)
+        };
+        let is_deaf = |place: &Place| !place.leaving.iter().any(|it| Some(it.event) == number);
+        let mut numbered = places.iter().enumerate();
+        match numbered.find(|(number, place)| is_deaf(place) && is_entered(*number)) {
+            Some((_, place)) => Err(CompositionError::NotReceptive {
+                component: self.name.clone(),
+                event: event.to_owned(),
+                location: place.name,
+            }),
+            None => Ok(()),
+        }
+    }
+
     /// What the events are called in this component.
     fn event_names(&self) -> impl Iterator<Item = &str> {
         self.blueprint.events.iter().map(|event| {
@@ -401,6 +527,12 @@ impl Part {
 impl Component {
     /// Nothing that is given as data changes an input. What functions write to inputs is dropped.
     fn check_inputs(&self) -> Result<(), CompositionError> {
+        let names = self.blueprint.coordinates.iter().zip(&self.owned);
+        let mut inputs = names.filter(|(_, owned)| !**owned).map(|(name, _)| *name);
+        if let Some(coordinate) = inputs.find(|name| self.blueprint.own.contains(name)) {
+            let component = self.name.clone();
+            return Err(CompositionError::SurfaceReads { component, coordinate });
+        }
         for place in &self.blueprint.places {
             let moved: Vec<usize> = match &place.motion {
                 PlaceMotion::Rates(rates) => rates.iter().map(|rate| rate.coordinate).collect(),

@@ -101,6 +101,17 @@ pub enum ExplorationError {
         /// How many are allowed.
         limit: usize,
     },
+    /// A jump takes a value from an interval, and so leads to more states than can be listed.
+    #[error(
+        "`{variable}` becomes any number of an interval on `{event}`: only resets to single values \
+         can be explored"
+    )]
+    Interval {
+        /// The variable.
+        variable: String,
+        /// The event, or the label.
+        event: String,
+    },
     /// A guard or a reset has no value.
     #[error(transparent)]
     Failure(#[from] Failure),
@@ -184,7 +195,12 @@ impl Explorer<'_> {
         self.states[number].leaving = jumps.len();
         self.transitions += jumps.len();
         for jump in jumps {
-            let taken = standing.taken(&jump, &values)?;
+            if let Some(variable) = standing.chosen(&jump) {
+                let (variable, event) =
+                    (variable.to_owned(), self.composition.name_of(&locations, &jump));
+                return Err(ExplorationError::Interval { variable, event });
+            }
+            let taken = standing.taken(&jump, &values, &mut || 0.0)?;
             let mut target = locations.clone();
             for one in &taken.moves {
                 target[one.component] = one.target;

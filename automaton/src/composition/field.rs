@@ -95,6 +95,11 @@ impl<'a> Field<'a> {
         !self.solved.is_empty()
     }
 
+    /// Whether the rates of a component are a function.
+    pub(super) fn has_functions(&self) -> bool {
+        self.moving.iter().any(|(_, place)| matches!(place.motion, PlaceMotion::Field(_)))
+    }
+
     /// The variables with curved rows and what they read, if all their rates are linear and they
     /// are few. What rests is no variable of it.
     pub(super) fn linear(&self) -> Option<LinearPart> {

@@ -13,8 +13,9 @@ use super::solver::Solver;
 use super::tension::{Conditions, Readiness, Tension};
 use crate::executor::Limit;
 use crate::moment::Moment;
+use crate::trajectory::Why;
 
-/// An invariant that ends so many spacings of the numbers around the present time after the start
+/// An invariant that ends at most this many spacings of the numbers around the present time after the start
 /// of a flow ends at its start.
 const SPACINGS: f64 = 4.0;
 
@@ -29,8 +30,8 @@ pub(super) struct Flight {
     pub(super) landing: Vec<f64>,
     /// Where it cannot be said whether something happens.
     pub(super) doubts: Vec<Doubt>,
-    /// Whether a flow is a function that was taken at a few instants only.
-    pub(super) is_fitted: bool,
+    /// Why something may be missed at any time of it.
+    pub(super) unknowns: Vec<Why>,
     /// Why it cannot go on at its end.
     pub(super) halt: Option<Halt>,
 }
@@ -80,7 +81,7 @@ impl Plan<'_> {
             pieces: Vec::new(),
             landing: field.start.clone(),
             doubts: Vec::new(),
-            is_fitted: false,
+            unknowns: Vec::new(),
             halt: None,
         };
         if conditions.tension(&field.start)?.holds {
@@ -323,10 +324,10 @@ impl<'a> Search<'a, '_> {
         };
         let duration = self.noticeable(duration);
         let landing = self.solver.state_at(duration).map_err(|reason| failed(reason.into()))?;
-        let is_fitted = self.solver.is_fitted();
+        let unknowns = self.solver.unknowns();
         let pieces = self.solver.into_pieces(duration.seconds());
         Ok(Flight {
-            is_fitted,
+            unknowns,
             since: self.since,
             duration,
             pieces: pieces.map_err(|reason| failed(reason.into()))?,
@@ -441,7 +442,7 @@ impl Flight {
             pieces: vec![piece],
             landing,
             doubts: Vec::new(),
-            is_fitted: false,
+            unknowns: Vec::new(),
             halt: None,
         }
     }

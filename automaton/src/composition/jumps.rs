@@ -4,7 +4,7 @@
 
 use pleach_guards::{EvaluationError, Verdict};
 
-use super::blueprint::{Change, Leaving};
+use super::blueprint::{Assigned, Change, Leaving};
 use super::simulation::{Failure, Move, Taken};
 use super::{Component, Composition};
 
@@ -120,15 +120,31 @@ impl<'a> Standing<'a> {
         jump.parts.iter().map(move |&(component, transition)| &self.leaving(component)[transition])
     }
 
+    /// A variable that the jump gives any number of an interval.
+    pub(super) fn chosen(self, jump: &Joint) -> Option<&'a str> {
+        jump.parts.iter().zip(self.parts(jump)).find_map(|(&(component, _), leaving)| {
+            let Change::Assignments(assignments) = &leaving.change else { return None };
+            let mut intervals =
+                assignments.iter().filter(|(_, one)| matches!(one, Assigned::Interval(_)));
+            let slots = &self.composition.components[component].slots;
+            intervals.next().map(|(coordinate, _)| &*self.composition.variables[slots[*coordinate]])
+        })
+    }
+
     /// What a jump does in `state`. All parts find x⁻ and change only what belongs to them, so that
-    /// their order is no matter.
-    pub(super) fn taken(self, jump: &Joint, state: &[f64]) -> Result<Taken, Failure> {
+    /// their order is no matter. Of each interval it takes the `share` that is given next.
+    pub(super) fn taken(
+        self,
+        jump: &Joint,
+        state: &[f64],
+        share: &mut dyn FnMut() -> f64,
+    ) -> Result<Taken, Failure> {
         let mut changes = Vec::new();
         let mut moves = Vec::with_capacity(jump.parts.len());
         for (&(component, transition), leaving) in jump.parts.iter().zip(self.parts(jump)) {
             let source = self.locations[component];
             self.composition.components[component]
-                .change(&leaving.change, state, &mut changes)
+                .change(&leaving.change, state, share, &mut changes)
                 .map_err(|fault| self.formula(component, source, "the reset".into(), &fault))?;
             moves.push(Move { component, source, target: leaving.target, transition });
         }
@@ -167,18 +183,38 @@ impl<'a> Standing<'a> {
     }
 }
 
+/// The number so far on the way from the lower to the upper end; no number if there is none, because
+/// the interval is empty or infinite.
+fn within([lower, upper]: [f64; 2], share: f64) -> f64 {
+    let width = upper - lower;
+    if width >= 0.0 && width.is_finite() {
+        // Rounding must not lead out of the interval.
+        if share < 1.0 { share.mul_add(width, lower).min(upper) } else { upper }
+    } else {
+        f64::NAN
+    }
+}
+
 impl Component {
     /// Adds what becomes of the coordinates that are assigned to.
     fn change(
         &self,
         change: &Change,
         before: &[f64],
+        share: &mut dyn FnMut() -> f64,
         changes: &mut Vec<(usize, f64)>,
     ) -> Result<(), EvaluationError> {
         match change {
             Change::Assignments(assignments) => {
-                for (coordinate, value) in assignments {
-                    let new = value.evaluate_at(before, &self.slots);
+                for (coordinate, assigned) in assignments {
+                    let new = match assigned {
+                        Assigned::Value(value) => value.evaluate_at(before, &self.slots),
+                        Assigned::Interval(ends) => {
+                            let [lower, upper] =
+                                ends.each_ref().map(|end| end.evaluate_at(before, &self.slots));
+                            within([lower, upper], share())
+                        }
+                    };
                     if new.is_nan() {
                         let expression =
                             format!("the new {}", self.blueprint.coordinates[*coordinate]);

@@ -8,6 +8,9 @@
 //! * a **connection** lets a component read a coordinate of another under a name of its own. What
 //!   is read belongs to the other component; a flow or a reset cannot change it.
 //!
+//! A [`Channel`] between two components carries messages from the one to the other: a component by
+//! itself, joined by labels to the sender and to the receiver.
+//!
 //! Coordinates of a composition are called `component.coordinate`; in a composition of a single
 //! component they keep their names.
 //!
@@ -65,6 +68,7 @@
 pub(crate) mod blueprint;
 mod builder;
 mod chance;
+pub mod channel;
 mod exploration;
 mod field;
 mod flight;
@@ -81,7 +85,11 @@ mod tension;
 
 use std::sync::Arc;
 
+/// How flows are integrated; a part of the [`Settings`].
+pub use pleach_continuous::flow::Method;
+
 pub use builder::{CompositionBuilder, CompositionError};
+pub use channel::Channel;
 pub use exploration::{Exploration, ExplorationError, Reached};
 pub use replay::ReplayError;
 pub use settings::{Accumulation, Policy, Settings};

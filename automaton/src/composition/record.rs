@@ -8,7 +8,7 @@ use super::{Component, Composition};
 use crate::executor::Ending;
 use crate::moment::Moment;
 use crate::time::HybridTime;
-use crate::trajectory::{Doubt, JumpRecord, Participant, Strand, Stretch, Trajectory, Why};
+use crate::trajectory::{Doubt, JumpRecord, Participant, Strand, Stretch, Trajectory};
 
 /// A trajectory in the making.
 pub(super) struct Record {
@@ -52,9 +52,9 @@ impl Record {
             };
             doubt.note(&mut self.doubts);
         }
-        if flight.is_fitted {
+        for &why in &flight.unknowns {
             let (from, to) = (flight.since.seconds(), flight.due().seconds());
-            let (components, why) = (components.clone(), Why::Solution);
+            let components = components.clone();
             Doubt { components, from, to, why }.note(&mut self.doubts);
         }
         let Some(mut stretch) = stretches.pop() else { return };

@@ -1,6 +1,6 @@
 //! How a composition is run.
 
-use pleach_continuous::flow::{EventSearch, Tolerances};
+use pleach_continuous::flow::{EventSearch, Method, Tolerances};
 use serde::{Deserialize, Serialize};
 
 use super::simulation::SimulationError;
@@ -9,8 +9,11 @@ use super::simulation::SimulationError;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// When transitions are taken that only may be.
+    /// When transitions are taken that only may be, and what is taken of intervals.
     pub policy: Policy,
+    /// How flows are integrated that have no closed form.
+    #[serde(default)]
+    pub method: Method,
     /// The error of an integration step, relative to the state; 1e-9 by default.
     pub relative_tolerance: f64,
     /// The error of an integration step, in the unit of the state; 1e-9 by default.
@@ -45,16 +48,18 @@ pub enum Accumulation {
     Off,
 }
 
-/// When a transition is taken that only may be.
+/// When a transition is taken that only may be, and which value of an interval a reset takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Policy {
-    /// As late as possible: where no time can pass, because an invariant ends.
+    /// As late as possible: where no time can pass, because an invariant ends. Of an interval its
+    /// upper end.
     Late,
-    /// As soon as its guard holds.
+    /// As soon as its guard holds. Of an interval its lower end.
     Early,
     /// At an instant drawn evenly from those between the first at which a guard holds and the last
     /// at which time can pass, or as soon after it as a guard holds again; of the transitions that
-    /// can be taken one is drawn, each as likely as the others. Equal seeds give equal runs, and what one
+    /// can be taken one is drawn, each as likely as the others, and of an interval a number, evenly.
+    /// Equal seeds give equal runs, and what one
     /// group draws is no matter to another.
     Random {
         /// Where the sequence of draws begins.
@@ -66,6 +71,7 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             policy: Policy::Late,
+            method: Method::Automatic,
             relative_tolerance: 1e-9,
             absolute_tolerance: 1e-9,
             largest_step: f64::INFINITY,

@@ -6,10 +6,11 @@ use pleach_guards::Enclosure;
 use super::field::{Field, LinearPart, Row};
 use super::settings::Settings;
 use crate::moment::Moment;
+use crate::trajectory::Why;
 
 /// Steps of fewer spacings of the numbers around the present time are crawling.
 const CRAWLING: f64 = 1024.0 * f64::EPSILON;
-/// A flow that crawls for so many steps in a row has met a singularity.
+/// A flow that crawls for this many steps in a row has met a singularity.
 const MOST_CRAWLING: u32 = 100;
 /// The largest error, relative to its size, with which the polynomial of a function stands for it.
 const FITTING: f64 = 1e-12;
@@ -43,8 +44,8 @@ impl<'a> Solver<'a> {
         limit: f64,
     ) -> Result<Self, String> {
         let steps = || {
-            let start = &field.start;
-            Method::Steps(Box::new(Integrator::new(field, 0.0, start, settings.tolerances())))
+            let integrator = Integrator::new(field, 0.0, &field.start, settings.tolerances());
+            Method::Steps(Box::new(integrator.with_method(settings.method)))
         };
         let method = if field.is_straight() {
             Method::Lines
@@ -69,9 +70,11 @@ impl<'a> Solver<'a> {
         matches!(self.method, Method::Lines)
     }
 
-    /// Whether some of it is a function that is taken at a few instants only.
-    pub(super) fn is_fitted(&self) -> bool {
-        self.field.has_solutions()
+    /// Why something may be missed, where flows are functions of which values alone are known.
+    pub(super) fn unknowns(&self) -> Vec<Why> {
+        let solution = self.field.has_solutions().then_some(Why::Solution);
+        let field = self.field.has_functions().then_some(Why::Field);
+        solution.into_iter().chain(field).collect()
     }
 
     /// The state at the start.
@@ -250,8 +253,7 @@ impl<'a> Solver<'a> {
         if self.crawled <= MOST_CRAWLING {
             return Ok(());
         }
-        let time = piece.start();
-        Err(format!("the flow is singular: steps are too short to leave {time} s"))
+        Err("the flow is singular: steps are too short to go on".to_owned())
     }
 }
 

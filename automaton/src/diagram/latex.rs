@@ -10,6 +10,7 @@ use crate::automaton::{Automaton, Transition};
 use crate::coordinates::Coordinates;
 use crate::flow::DOTTED;
 use crate::flow::Flow;
+use crate::reset::NewValue;
 
 /// H = (Q, X, Init, f, Inv, E, G, R) with the sets and maps of this automaton (Lygeros et al. 2003,
 /// [doi:10.1109/TAC.2002.806650](https://doi.org/10.1109/TAC.2002.806650)), as an `align*` of the
@@ -158,9 +159,18 @@ fn reset<E, S>(names: &[&'static str], transition: &Transition<E, S>) -> String 
         Some([]) => "x".to_owned(),
         Some(assignments) => column(&of_coordinates(names, |name| {
             let assignment = assignments.iter().find(|one| one.coordinate() == name);
-            assignment.map_or_else(|| variable(name).to_latex(), |one| one.value().to_latex())
+            assignment.map_or_else(|| variable(name).to_latex(), |one| new_value(one.value()))
         })),
         None => text(&transition.reset.name()),
+    }
+}
+
+fn new_value(value: &NewValue) -> String {
+    match value {
+        NewValue::Exactly(value) => value.to_latex(),
+        NewValue::Within(lower, upper) => {
+            format!(r"\left[{}, {}\right]", lower.to_latex(), upper.to_latex())
+        }
     }
 }
 

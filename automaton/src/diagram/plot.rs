@@ -9,7 +9,7 @@ mod sheet;
 use pleach_guards::constant;
 
 use crate::executor::{Ending, Reason};
-use crate::trajectory::{Phase, Trajectory};
+use crate::trajectory::{FlowInterval, Trajectory};
 use axis::{Axis, power_of_ten};
 use curve::Quantity;
 use sheet::{Sheet, WIDTH, area_colour, text_width};
@@ -124,7 +124,7 @@ fn draw_panel(
     top: f64,
 ) {
     let quantity = Quantity::Variable(variable);
-    let phases: Vec<Phase> = trajectory.phases().collect();
+    let phases: Vec<FlowInterval> = trajectory.intervals().collect();
     let values = phases.iter().flat_map(|phase| quantity.values(&phase.samples));
     let vertical = Axis::roomy(values, top + PANEL, top);
     let right = WIDTH - RIGHT;
@@ -223,7 +223,7 @@ struct Stay {
 /// Where the component was, phases of one location taken together.
 fn stays(trajectory: &Trajectory, component: usize) -> Vec<Stay> {
     let mut stays: Vec<Stay> = Vec::new();
-    for phase in trajectory.phases() {
+    for phase in trajectory.intervals() {
         let location = phase.locations[component];
         let (Some(first), Some(last)) = (phase.samples.first(), phase.samples.last()) else {
             continue;

@@ -2,7 +2,7 @@
 
 use petgraph::visit::EdgeRef;
 use pleach_discrete::{Event, Location, Urgency};
-use pleach_guards::{Valuation, constant};
+use pleach_guards::{Expression, Valuation, constant};
 
 use crate::automaton::{Automaton, Transition};
 use crate::reset::Reset;
@@ -199,7 +199,8 @@ fn start<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) ->
         transition.guard.predicate().variables().into_iter().for_each(&mut note);
         for assignment in transition.reset.assignments().into_iter().flatten() {
             note(assignment.coordinate());
-            assignment.value().variables().into_iter().for_each(&mut note);
+            let formulas = assignment.value().formulas();
+            formulas.flat_map(Expression::variables).for_each(&mut note);
         }
     }
     let line = |name: &String| Some(equation(name, state.value(name)?));

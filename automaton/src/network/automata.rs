@@ -48,4 +48,19 @@ impl Automata {
             request: request_automaton()?,
         })
     }
+
+    /// The same automata, which count how often their rows are taken by all nodes together.
+    #[must_use]
+    pub fn counted(self) -> Self {
+        Automata {
+            duty: self.duty.counted(),
+            targets: self.targets,
+            mission: self.mission.counted(),
+            dealing: self.dealing.counted(),
+            control: self.control.counted(),
+            service: self.service.counted(),
+            rounds: self.rounds.counted(),
+            request: self.request.counted(),
+        }
+    }
 }

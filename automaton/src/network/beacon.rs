@@ -8,19 +8,19 @@ use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{
-    Agreement, Bulletin, Election, Exchange, IdSet, Lineage, NodeId, PostId, Reply,
+    Agreement, Bulletin, Election, IdSet, Lineage, NodeId, Offer, PostId, Reply,
 };
 
 use super::duty::{Duty, Hop, Path};
 use super::record::Outcome;
 use super::shared::Shared;
 
-/// The newest word on the mission.
+/// The newest notice on the mission.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Notice {
     /// Nothing is announced.
     Quiet,
-    /// A task is announced; the robots of `roster` elect its leader, and those that hang on an
+    /// A task is announced; the robots of `roster` elect its leader, and those that are attached to an
     /// access point of `eligible` compete.
     Task {
         /// Its number.
@@ -34,7 +34,7 @@ pub enum Notice {
     },
     /// The primary team calls for a recruit (Remark 5.4).
     Call {
-        /// Who calls: p₁, or the leader when it has to be released.
+        /// The caller: p₁, or the leader when it has to be released.
         caller: NodeId,
         /// L_b.
         releases_leader: bool,
@@ -76,11 +76,11 @@ pub struct TeamReport {
 /// The public state of a node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beacon {
-    /// Who sends.
+    /// The sender.
     pub sender: NodeId,
     /// Where it is.
     pub position: Point,
-    /// The newest word on the mission that it knows.
+    /// The newest notice on the mission that it knows.
     pub bulletin: Shared<Bulletin<Notice>>,
     /// Its view of the current election.
     pub election: Option<Election>,
@@ -92,9 +92,9 @@ pub struct Beacon {
     pub crossing: Vec<usize>,
     /// Its way to an access point.
     pub lineage: Option<Arc<Lineage>>,
-    /// The node that it hangs on.
+    /// The node that it is attached to.
     pub parent: Option<NodeId>,
-    /// The robots that hang on it, itself included.
+    /// The robots that are attached to it, itself included.
     pub below: Arc<IdSet>,
     /// What it does; none for an access point.
     pub duty: Option<Duty>,
@@ -102,10 +102,10 @@ pub struct Beacon {
     pub parked: bool,
     /// Where it wants to go next, if it has been stuck for a while.
     pub way: Option<Point>,
-    /// For a redundant robot: whether it could hang on another node than its parent.
+    /// For a redundant robot: whether it could attach to another node than its parent.
     pub can_detach: bool,
     /// A standing offer to exchange duties.
-    pub offer: Option<Exchange<Duty>>,
+    pub offer: Option<Offer<Duty>>,
     /// How many offers it has made so far.
     pub offers_made: u32,
     /// The answer to an offer.

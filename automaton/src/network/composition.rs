@@ -19,7 +19,7 @@ use super::medium::Radio;
 use super::member::{Member, MemberView, Sense};
 use super::message::Message;
 use super::record::{End, MissionEvent, Outcome};
-use super::robot::{Robot, RobotError};
+use super::robot::{Robot, RobotError, RobotView};
 use super::scenario::{Scenario, ValidScenario};
 use super::site::Site;
 use super::user::User;
@@ -28,6 +28,7 @@ use crate::node::{Ensemble, Medium, NodeJump};
 
 /// What went wrong inside the simulator.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum NetworkError {
     /// A node cannot go on.
     #[error(transparent)]
@@ -84,7 +85,7 @@ impl Network<Radio> {
 }
 
 impl<M: Medium<Message, Point>> Network<M> {
-    /// The network of a scenario at its start, with a medium of one's own. Nodes are numbered from
+    /// The network of a scenario at its start, with the given medium. Nodes are numbered from
     /// 0: robots first, then access points, last the user.
     ///
     /// # Errors
@@ -136,7 +137,7 @@ impl<M> Network<M> {
     }
 
     /// The robots as observers see them, by number.
-    pub fn robots(&self) -> Vec<&Robot> {
+    pub fn robots(&self) -> Vec<RobotView<'_>> {
         self.nodes.views().filter_map(MemberView::robot).collect()
     }
 
@@ -169,7 +170,7 @@ impl<M: Medium<Message, Point>> System for Network<M> {
             return None;
         }
         let limit = self.site.settings.max_steps;
-        let is_at_rest = || !self.robots().into_iter().any(Robot::is_active);
+        let is_at_rest = || !self.robots().into_iter().any(RobotView::is_active);
         self.announced_end().filter(|_| is_at_rest()).or_else(|| {
             (self.step >= limit).then(|| End {
                 outcome: Outcome::StepLimit,
@@ -182,9 +183,10 @@ impl<M: Medium<Message, Point>> System for Network<M> {
     fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), NetworkError> {
         if std::mem::take(&mut self.has_flowed) {
             self.events.clear();
+            self.nodes.forget_traffic();
         }
         let first = self.nodes.view(0).and_then(MemberView::robot);
-        let stage = first.map_or(Stage::Moving, Robot::stage);
+        let stage = first.map_or(Stage::Moving, RobotView::stage);
         let begin = Instant::now();
         self.nodes.jump(round)?;
         *self.times.of(stage) += begin.elapsed();

@@ -238,7 +238,7 @@ impl Duty {
 
 /// A place of the path Σ with its reference position and where its robot stood at t_h.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct PathPlace {
     /// The reference position of the post there.
     pub reference: Point,
     /// x(t_h) of the robot there.
@@ -246,6 +246,6 @@ pub struct Place {
 }
 
 /// The path Σ with its geometry.
-pub type Path = path::Path<Place>;
+pub type Path = path::Path<PathPlace>;
 /// One place of the path Σ with its geometry.
-pub type Hop = path::Hop<Place>;
+pub type Hop = path::Hop<PathPlace>;

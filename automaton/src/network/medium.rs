@@ -1,4 +1,4 @@
-//! The radio: who hears whom.
+//! The radio: which nodes hear each other.
 
 use pleach_continuous::Point;
 use pleach_continuous::network::reliability::LinkReliability;

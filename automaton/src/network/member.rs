@@ -7,7 +7,7 @@ use pleach_continuous::Point;
 use super::access_point::AccessPoint;
 use super::message::Message;
 use super::record::MissionEvent;
-use super::robot::{Robot, RobotError};
+use super::robot::{Robot, RobotError, RobotView};
 use super::user::User;
 use crate::node::{Input, Node, Observed, Outputs};
 
@@ -35,7 +35,7 @@ pub enum Sense {
 #[derive(Clone, Copy, Debug)]
 pub enum MemberView<'a> {
     /// A robot.
-    Robot(&'a Robot),
+    Robot(RobotView<'a>),
     /// An access point.
     AccessPoint(&'a AccessPoint),
     /// The user.
@@ -44,7 +44,7 @@ pub enum MemberView<'a> {
 
 impl<'a> MemberView<'a> {
     /// The robot, if it is one.
-    pub const fn robot(self) -> Option<&'a Robot> {
+    pub const fn robot(self) -> Option<RobotView<'a>> {
         match self {
             MemberView::Robot(robot) => Some(robot),
             _ => None,
@@ -117,7 +117,7 @@ impl Observed for Member {
 
     fn view(&self) -> MemberView<'_> {
         match self {
-            Member::Robot(robot) => MemberView::Robot(robot),
+            Member::Robot(robot) => MemberView::Robot(robot.view()),
             Member::AccessPoint(access_point) => MemberView::AccessPoint(access_point),
             Member::User(user) => MemberView::User(user),
         }

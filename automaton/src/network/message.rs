@@ -34,6 +34,6 @@ pub enum Message {
     Objection,
     /// The tasks of a user in their order, to the first access point.
     Request(Arc<[Point]>),
-    /// The newest word on the mission, from the first access point to the user.
+    /// The newest notice on the mission, from the first access point to the user.
     News(Shared<Bulletin<Notice>>),
 }

@@ -1,6 +1,7 @@
 //! The robot network: one robot's automaton, the network composed of them, and their medium.
 
 pub mod access_point;
+mod act;
 pub mod automata;
 pub mod beacon;
 mod composition;
@@ -27,6 +28,8 @@ pub use link::Link;
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
-pub use robot::{Robot, control_automaton, dealing_automaton, duty_automaton, mission_automaton};
+pub use robot::{
+    Robot, RobotView, control_automaton, dealing_automaton, duty_automaton, mission_automaton,
+};
 pub use site::{Site, SiteError};
 pub use user::{User, request_automaton};

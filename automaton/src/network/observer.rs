@@ -6,8 +6,10 @@ use pleach_discrete::network::{NodeId, Phase, PostKind};
 
 use super::beacon::Notice;
 use super::composition::Network;
-use super::record::{MissionEvent, PostView, Route, Snapshot};
-use super::robot::Robot;
+use super::record::{MissionEvent, PostView, RobotSnapshot, Route, Snapshot};
+use super::robot::RobotView;
+use crate::located::Place as _;
+use crate::node::Traffic;
 
 impl<M> Network<M> {
     /// The observers' view of this instant, just before the robots move.
@@ -17,20 +19,33 @@ impl<M> Network<M> {
         Snapshot {
             step: self.step,
             time: self.step as f64 * self.site.settings.period,
-            positions: robots().map(Robot::position).collect(),
-            roles: robots().map(Robot::role).collect(),
+            positions: robots().map(RobotView::position).collect(),
+            roles: robots().map(RobotView::role).collect(),
             phase: overview.phase(),
             active: overview.active(),
             active_team: overview.active_team(),
             primary_team: overview.primary_team(),
             path: overview.path(),
-            residuals: robots().map(Robot::residual).collect(),
-            multipliers: robots().map(Robot::multiplier).collect(),
+            residuals: robots().map(RobotView::residual).collect(),
+            multipliers: robots().map(RobotView::multiplier).collect(),
             routes: overview.routes(),
             tree: overview.tree(),
             task: overview.task(),
             serviced: overview.serviced(),
             posts: overview.posts(),
+            robots: robots().map(|robot| self.robot_snapshot(robot)).collect(),
+        }
+    }
+
+    fn robot_snapshot(&self, robot: RobotView<'_>) -> RobotSnapshot {
+        let Traffic { sent, heard } = self.nodes.traffic(robot.id());
+        RobotSnapshot {
+            activity: robot.duty().location(),
+            dealing: robot.dealing(),
+            phase: robot.phase(),
+            target: robot.goal(),
+            sent,
+            heard,
         }
     }
 
@@ -58,9 +73,9 @@ impl<M> Network<M> {
     }
 }
 
-/// All robots side by side, as nobody but an observer sees them.
+/// All robots side by side, as only observers see them.
 struct Overview<'a> {
-    robots: Vec<&'a Robot>,
+    robots: Vec<RobotView<'a>>,
 }
 
 impl Overview<'_> {
@@ -72,16 +87,16 @@ impl Overview<'_> {
             .collect()
     }
 
-    /// Where the mission stands for the robot that knows the newest word.
+    /// Where the mission stands for the robot that knows the newest notice.
     fn phase(&self) -> Phase {
-        self.newest().map_or(Phase::Idle, Robot::phase)
+        self.newest().map_or(Phase::Idle, RobotView::phase)
     }
 
-    fn newest(&self) -> Option<&Robot> {
+    fn newest(&self) -> Option<RobotView<'_>> {
         self.robots
             .iter()
             .copied()
-            .max_by_key(|robot| (robot.word_number(), robot.subgroups_done()))
+            .max_by_key(|robot| (robot.notice_number(), robot.subgroups_done()))
     }
 
     fn task(&self) -> Option<usize> {
@@ -95,7 +110,8 @@ impl Overview<'_> {
     }
 
     fn primary_team(&self) -> Vec<NodeId> {
-        let member = |robot: &Robot| robot.duty().post().filter(|post| post.is_primary()).copied();
+        let member =
+            |robot: RobotView<'_>| robot.duty().post().filter(|post| post.is_primary()).copied();
         let Some(leader) = self.robots.iter().position(|robot| robot.leads()) else {
             return Vec::new();
         };
@@ -118,7 +134,7 @@ impl Overview<'_> {
         match self.phase() {
             Phase::Advance => self.primary_team(),
             Phase::Shift => {
-                let active = self.newest().and_then(Robot::active_subgroup);
+                let active = self.newest().and_then(RobotView::active_subgroup);
                 let places = active.map_or(0..0, |subgroup| subgroup.places());
                 let mut members: Vec<(usize, NodeId)> = (0..self.robots.len())
                     .filter_map(|id| Some((self.robots[id].duty().place()?, id)))
@@ -141,7 +157,7 @@ impl Overview<'_> {
     }
 
     fn routes(&self) -> Vec<Route> {
-        let of = |(from, robot): (NodeId, &Robot)| -> Vec<Route> {
+        let of = |(from, robot): (NodeId, RobotView<'_>)| -> Vec<Route> {
             robot
                 .routes()
                 .map(|link| Route {
@@ -156,7 +172,7 @@ impl Overview<'_> {
     }
 
     fn tree(&self) -> Vec<(NodeId, NodeId)> {
-        let edge = |(id, robot): (NodeId, &Robot)| Some((id, robot.tree_parent()?));
+        let edge = |(id, robot): (NodeId, RobotView<'_>)| Some((id, robot.tree_parent()?));
         self.robots.iter().copied().enumerate().filter_map(edge).collect()
     }
 
@@ -180,10 +196,9 @@ impl Overview<'_> {
             .filter_map(|(holder, robot)| {
                 let station = robot.duty().station().filter(|station| station.post.is_fixed())?;
                 let children = self.robots.iter().copied().filter(|child| {
-                    child
-                        .duty()
-                        .post()
-                        .is_some_and(|held| held.hangs_on(station.post.id) && !held.is_redundant())
+                    child.duty().post().is_some_and(|held| {
+                        held.is_child_of(station.post.id) && !held.is_redundant()
+                    })
                 });
                 Some(PostView {
                     reference: station.reference,

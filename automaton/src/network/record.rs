@@ -3,7 +3,7 @@
 //! Nodes are numbered from 0: robots first, then access points.
 
 use nalgebra::Point2;
-use pleach_discrete::network::{Phase, Role};
+use pleach_discrete::network::{Activity, Dealing, Phase, Role};
 use serde::{Deserialize, Serialize};
 
 /// The observers' view of one instant, just before the robots move.
@@ -42,6 +42,25 @@ pub struct Snapshot {
     pub serviced: Vec<(usize, usize)>,
     /// Fixed posts: reference position, the robot that holds it, and whether it is a junction.
     pub posts: Vec<PostView>,
+    /// What else each robot shows of itself; empty in what is read from traces that lack it.
+    pub robots: Vec<RobotSnapshot>,
+}
+
+/// Where a robot is in its automata, where it goes, and how much it says and hears.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotSnapshot {
+    /// Its location in the duty automaton.
+    pub activity: Activity,
+    /// Its location in the automaton of the exchange of duties.
+    pub dealing: Dealing,
+    /// Where the mission stands as far as it knows.
+    pub phase: Phase,
+    /// Where it goes; none if it stands still.
+    pub target: Option<Point2<f64>>,
+    /// The messages that it has sent in this control period.
+    pub sent: u64,
+    /// The messages that it has heard in this control period.
+    pub heard: u64,
 }
 
 /// A route in use, from robot `from` to node `to`.
@@ -108,7 +127,7 @@ pub enum MissionEvent {
     RouteInfeasible { robot: usize },
     /// A mover and the robot in its way exchange duties.
     DutiesExchanged { mover: usize, parked: usize },
-    /// p₁ hangs itself on another node of the tree (Remark 5.6).
+    /// p₁ attaches to another node of the tree (Remark 5.6).
     Reattached { robot: usize, parent: usize },
     /// The leader's tree has no recruit left; the election is repeated among the others.
     ElectionRepeated { task: usize },

@@ -1,12 +1,12 @@
-//! Values that many nodes hold and nobody changes.
+//! Immutable values that many nodes share.
 
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// A value shared between nodes: whoever has something newer shares another one.
+/// A value shared between nodes: a node with a newer value shares another one.
 ///
 /// Two of them are equal if they are one and the same, which costs nothing to find out; the same
-/// words in two places count as two.
+/// equal values in two places count as two.
 #[derive(Debug)]
 pub struct Shared<T>(Arc<T>);
 

@@ -1,8 +1,6 @@
 //! What every robot knows from the beginning: the floor plan, the access points, the radio and
 //! the settings.
 
-use std::fmt::Debug;
-
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
 use pleach_continuous::network::LinkReliability;
@@ -37,18 +35,20 @@ pub struct Site {
     /// The automata that every robot runs.
     pub automata: Automata,
     /// How ways are measured where they are not those of the floor plan.
+    #[cfg(feature = "abstraction")]
     measure: Option<Box<dyn Measure>>,
 }
 
-/// A way to measure ways: by the floor plan as robots do or, where only the shape of a network
-/// matters, by a graph of places.
-pub trait Measure: Debug + Send + Sync {
+/// A way to measure ways where only the shape of a network matters: by a graph of places.
+#[cfg(feature = "abstraction")]
+pub trait Measure: std::fmt::Debug + Send + Sync {
     /// The length of the shortest way.
     fn distance(&self, from: Point, to: Point) -> f64;
 }
 
 /// Why no site can be made of a scenario.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SiteError {
     /// The polygons do not make a workspace.
     #[error(transparent)]
@@ -85,6 +85,7 @@ impl Site {
             settings,
             has_own_link: false,
             automata: Automata::new()?,
+            #[cfg(feature = "abstraction")]
             measure: None,
         })
     }
@@ -104,6 +105,7 @@ impl Site {
     }
 
     /// The same site where the lengths of ways are those of `measure`.
+    #[cfg(feature = "abstraction")]
     #[must_use]
     pub fn measured_by(self, measure: impl Measure + 'static) -> Self {
         Site { measure: Some(Box::new(measure)), ..self }
@@ -117,10 +119,11 @@ impl Site {
 
     /// The length of the shortest way in 𝒲_f; infinite if there is none.
     pub fn distance(&self, from: Point, to: Point) -> f64 {
-        match &self.measure {
-            Some(measure) => measure.distance(from, to),
-            None => self.free_space.distance(from, to),
+        #[cfg(feature = "abstraction")]
+        if let Some(measure) = &self.measure {
+            return measure.distance(from, to);
         }
+        self.free_space.distance(from, to)
     }
 
     /// The geodesic length of a link, or infinity when it is longer than any link of the tree.

@@ -3,9 +3,12 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
+use pleach_discrete::Location as _;
 use pleach_discrete::network::{Bulletin, NodeId, REQUESTS, Request, RequestEvent};
+use pleach_guards::Guard;
 use pleach_guards::network::{control, service as guards};
 
+use super::act::{Act, acting};
 use super::beacon::Notice;
 use super::member::Sense;
 use super::message::Message;
@@ -82,18 +85,22 @@ impl Holds<Asked> for User {
     }
 }
 
-/// A row on which the user does `acts`, called `name`.
-fn row<A: DataOf<Asked>, B: DataOf<Asked> + Copy + Send + Sync>(
+impl Act for UserAct {
+    fn name(self) -> &'static str {
+        match self {
+            UserAct::RestartClock => "τ := 0",
+            UserAct::Ask => "ask for the tasks",
+        }
+    }
+}
+
+fn row<A: DataOf<Asked>, B: DataOf<Asked>>(
     event: RequestEvent,
-    guard: pleach_guards::Guard,
-    name: &str,
+    guard: Guard,
     acts: UserActs,
-    target: B,
+    next: fn(&A) -> B,
 ) -> Transfer<Request, RequestEvent, User> {
-    Transfer::new(event, guard, name, move |_: &A, _: &User, effects: &mut UserActs| {
-        *effects = acts;
-        target
-    })
+    acting(event, guard, acts, next)
 }
 
 /// The automaton of a user.
@@ -104,44 +111,25 @@ pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
     use RequestEvent as On;
     use UserAct::{Ask, RestartClock};
     use guards::{another_period, answer_heard, prepared, request_over};
-    let (clock, ask) = ("τ := 0", "τ := 0, ask for the tasks");
-    let waiting = |location| (location, control::waiting());
     let builder = Automaton::builder(REQUESTS, Request::Preparing).observing();
-    let builder = [Request::Preparing, Request::Asking, Request::Waiting, Request::Informed]
-        .map(waiting)
-        .into_iter()
-        .fold(builder, |builder, (location, invariant)| {
-            let flow = Flow::exact("τ̇ = 1", |user: &mut User, duration| user.clock += duration);
-            builder.flow(location, flow).invariant(location, invariant)
-        });
+    let builder = Request::ALL.iter().fold(builder, |builder, &location| {
+        let flow = Flow::exact("τ̇ = 1", |user: &mut User, duration| user.clock += duration);
+        builder.flow(location, flow).invariant(location, control::waiting())
+    });
     builder
-        .carried_out(row::<Preparing, _>(On::Prepared, prepared(), clock, &[RestartClock], Asking))
-        .carried_out(row::<Preparing, _>(On::AnswerHeard, answer_heard(), "", &[], Waiting))
-        .carried_out(row::<Preparing, _>(On::EndHeard, request_over(), "", &[], Informed))
-        .carried_out(row::<Asking, _>(
-            On::PeriodOver,
-            another_period(),
-            ask,
-            &[RestartClock, Ask],
-            Asking,
-        ))
-        .carried_out(row::<Asking, _>(On::AnswerHeard, answer_heard(), "", &[], Waiting))
-        .carried_out(row::<Asking, _>(On::EndHeard, request_over(), "", &[], Informed))
-        .carried_out(row::<Waiting, _>(
-            On::PeriodOver,
-            another_period(),
-            clock,
-            &[RestartClock],
-            Waiting,
-        ))
-        .carried_out(row::<Waiting, _>(On::EndHeard, request_over(), "", &[], Informed))
-        .carried_out(row::<Informed, _>(
-            On::PeriodOver,
-            another_period(),
-            clock,
-            &[RestartClock],
-            Informed,
-        ))
+        .carried_out(row(On::Prepared, prepared(), &[RestartClock], |_: &Preparing| Asking))
+        .carried_out(row(On::AnswerHeard, answer_heard(), &[], |_: &Preparing| Waiting))
+        .carried_out(row(On::EndHeard, request_over(), &[], |_: &Preparing| Informed))
+        .carried_out(row(On::PeriodOver, another_period(), &[RestartClock, Ask], |_: &Asking| {
+            Asking
+        }))
+        .carried_out(row(On::AnswerHeard, answer_heard(), &[], |_: &Asking| Waiting))
+        .carried_out(row(On::EndHeard, request_over(), &[], |_: &Asking| Informed))
+        .carried_out(row(On::PeriodOver, another_period(), &[RestartClock], |_: &Waiting| Waiting))
+        .carried_out(row(On::EndHeard, request_over(), &[], |_: &Waiting| Informed))
+        .carried_out(row(On::PeriodOver, another_period(), &[RestartClock], |_: &Informed| {
+            Informed
+        }))
         .build()
 }
 

@@ -24,6 +24,15 @@ pub enum NodeJump {
     Heard,
 }
 
+/// How many messages a node has sent and heard.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// Messages sent; one to everyone counts once.
+    pub sent: u64,
+    /// Messages heard.
+    pub heard: u64,
+}
+
 /// Nodes of one type, with the medium that carries their messages.
 ///
 /// It knows of its nodes nothing but that they are nodes, so that nothing goes from one to
@@ -35,7 +44,8 @@ pub struct Ensemble<N: Node, M> {
     outputs: Outputs<N::Message, N::Report>,
     bodies: Vec<N::Body>,
     has_moved: bool,
-    /// Who takes part in the current jump.
+    traffic: Vec<Traffic>,
+    /// The nodes that take part in the current jump.
     takes_part: Vec<bool>,
 }
 
@@ -45,6 +55,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         Ensemble {
             bodies: Vec::with_capacity(nodes.len()),
             takes_part: vec![false; nodes.len()],
+            traffic: vec![Traffic::default(); nodes.len()],
             outputs: Outputs::of(0),
             has_moved: true,
             nodes,
@@ -98,18 +109,20 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
 
     fn send(&mut self) {
         for envelope in self.outputs.drain_sent() {
+            self.traffic[envelope.from].sent += 1;
             self.medium.send(envelope);
         }
     }
 
     /// Says whether anything was heard.
     fn deliver(&mut self) -> Result<bool, N::Error> {
-        let Ensemble { nodes, medium, outputs, takes_part, .. } = self;
+        let Ensemble { nodes, medium, outputs, takes_part, traffic, .. } = self;
         let mut is_heard = false;
         medium.deliver(|delivery| {
             let Some(node) = nodes.get_mut(delivery.to) else { return Ok(()) };
             is_heard = true;
             takes_part[delivery.to] = true;
+            traffic[delivery.to].heard += 1;
             let input = Input::Heard { from: delivery.from, message: delivery.message };
             node.step(input, outputs.now_of(delivery.to))
         })?;
@@ -135,6 +148,19 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
             if who.len() == count { Participants::All } else { Participants::Some(who) }
         });
         self.takes_part.fill(false);
+    }
+}
+
+impl<N: Node, M> Ensemble<N, M> {
+    /// How much a node has sent and heard since the messages were last counted anew; observers
+    /// ask for it, and nothing if there is no such node.
+    pub fn traffic(&self, node: NodeId) -> Traffic {
+        self.traffic.get(node).copied().unwrap_or_default()
+    }
+
+    /// Counts messages anew.
+    pub fn forget_traffic(&mut self) {
+        self.traffic.fill(Traffic::default());
     }
 }
 
@@ -275,6 +301,11 @@ mod tests {
         assert_eq!(seen[0], [(2, 3), (2, 3)]);
         assert_eq!(seen[1], [(0, 1), (0, 4), (0, 1), (0, 4)]);
         assert_eq!(seen[2], [(1, 2), (1, 2)]);
+        let traffic = |sent, heard| Traffic { sent, heard };
+        let counted = [0, 1, 2, 3].map(|node| ensemble.traffic(node));
+        assert_eq!(counted, [traffic(4, 2), traffic(2, 4), traffic(2, 2), traffic(0, 0)]);
+        ensemble.forget_traffic();
+        assert_eq!(ensemble.traffic(1), Traffic::default());
     }
 
     /// What a person asks of a node is told to every other, and observers hear of it in order.

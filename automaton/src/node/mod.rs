@@ -9,7 +9,7 @@
 //!
 //! An [`Ensemble`] composes nodes with a [`Medium`] that carries every message, and is a
 //! [`System`](crate::System) for the [`Executor`](crate::Executor). The same node runs in a
-//! simulation, under an explorer, or in a process of its own: whoever drives it does nothing but
+//! simulation, under an explorer, or in a process of its own: its driver does nothing but
 //! hand it inputs and carry its outputs.
 //!
 //! Nothing but messages goes from node to node. What a person wants to know of a node is its
@@ -19,7 +19,7 @@ mod ensemble;
 mod medium;
 mod outputs;
 
-pub use ensemble::{Ensemble, NodeJump};
+pub use ensemble::{Ensemble, NodeJump, Traffic};
 pub use medium::{Delivery, FullMesh, Medium};
 pub use outputs::{Destination, Envelope, Outputs};
 

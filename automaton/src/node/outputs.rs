@@ -2,7 +2,7 @@
 
 use super::NodeId;
 
-/// For whom a message is.
+/// The destination of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Destination {
     /// Every node that hears the sender.
@@ -16,7 +16,7 @@ pub enum Destination {
 pub struct Envelope<M> {
     /// The sender.
     pub from: NodeId,
-    /// For whom it is.
+    /// Its destination.
     pub to: Destination,
     /// The message.
     pub message: M,

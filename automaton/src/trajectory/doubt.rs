@@ -30,6 +30,8 @@ pub enum Why {
     Function,
     /// A flow is given as a function that solves it, which was taken at a few instants only.
     Solution,
+    /// The rates of a flow are given as a function: an integrator could step across a singularity.
+    Field,
 }
 
 impl Doubt {
@@ -62,6 +64,7 @@ impl fmt::Display for Doubt {
         let why = match self.why {
             Why::Touch => "a margin touches zero and does not visibly pass it",
             Why::Function => "a condition is a function and was looked at only here and there",
+            Why::Field => "rates are a function and were taken only here and there",
             Why::Solution => "a flow is a function and was taken only here and there",
         };
         write!(formatter, "from {from} s to {to} s {why}")

@@ -89,7 +89,7 @@ fn lacks_value(
             let margin = transition.guard.evaluate(&point).map(|verdict| verdict.margin);
             let assignments = transition.reset.assignments().unwrap_or_default();
             !margin.is_ok_and(f64::is_finite)
-                || assignments.iter().any(|one| is_lacking(one.value()))
+                || assignments.iter().flat_map(|one| one.value().formulas()).any(is_lacking)
         })
 }
 

@@ -8,7 +8,7 @@ use super::Room::{A, B, C};
 use super::{Point, faults, machine, notes};
 use pleach_automaton::check::{Kind, Report, Severity};
 
-/// At most so many notes, and nothing worse.
+/// At most this many notes, and nothing worse.
 fn check(report: &Report, most_notes: usize) {
     assert!(report.is_sound(), "{report}");
     assert_eq!(faults(report), [""; 0]);

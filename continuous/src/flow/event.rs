@@ -70,6 +70,7 @@ const HALVINGS: u32 = 26;
 
 /// Why a search cannot be made.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum InvalidSearch {
     /// The resolution is negative, infinite or NaN.
     #[error("the resolution of an event search, {resolution} s, is not a finite number ≥ 0")]

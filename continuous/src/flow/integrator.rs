@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::mem;
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::controller::Controller;
@@ -12,7 +13,7 @@ use super::step::{Inside, Stages, Step};
 use super::{Tolerances, VectorField};
 
 /// How an [`Integrator`] makes its steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Method {
     /// Explicit where the flow is not stiff, and implicit where it is; both are noticed.
     #[default]
@@ -95,7 +96,7 @@ const SMALLEST_STEP: f64 = 4.0 * f64::EPSILON;
 const STRETCH: f64 = 0.01;
 /// |h λ| near the boundary of the region in which the explicit method is stable, which is at 6.1.
 const STABLE: f64 = 5.0;
-/// So many steps near the boundary make a flow stiff, and so many others in a row clear it of the
+/// This many steps near the boundary make a flow stiff, and this many others in a row clear it of the
 /// suspicion: Hairer and Wanner's numbers.
 const STIFF_STEPS: u32 = 15;
 const CALM_STEPS: u32 = 6;
@@ -104,7 +105,7 @@ const CALM_STEPS: u32 = 6;
 const SUSPECT: f64 = 2.0;
 /// Implicit steps with |h λ| below this are as long as explicit ones would be.
 const HARMLESS: f64 = 1.0;
-/// After so many of them in a row, steps are explicit again.
+/// The number of these in a row after which steps are explicit again.
 const HARMLESS_STEPS: u32 = 25;
 
 impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {

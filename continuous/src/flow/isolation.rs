@@ -149,8 +149,10 @@ impl<W: Watch + ?Sized> Isolation<'_, W> {
             let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
             let found = match self.watch.course(&enclosures, half) {
                 Course::Never => None,
-                Course::Falling => self.first_of(&[from])?,
-                Course::Rising | Course::Always => self.first_of(&[from, to])?,
+                Course::Falling | Course::FaintlyFalling => self.first_of(&[from])?,
+                Course::Rising | Course::FaintlyRising | Course::Always => {
+                    self.first_of(&[from, to])?
+                }
                 Course::Opaque => self.look_around(from, to)?,
                 course @ (Course::Open | Course::Blurred) => {
                     let middle = from + 0.5 * (to - from);

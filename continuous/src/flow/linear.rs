@@ -273,6 +273,7 @@ fn power_of_two_above(value: f64) -> f64 {
 
 /// Why a constant or linear flow cannot be made.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum InvalidFlow {
     /// Something has not the dimension of the state.
     #[error("{what}: length {found}, but the state has dimension {dimension}")]

@@ -55,7 +55,7 @@ const MOST_TERMS: usize = 7;
 /// By how much the error inside a step may be larger than what the tolerances allow at its end: on
 /// the flows of the tests it stays well below.
 const INSIDE: f64 = 10.0;
-/// So many terms make the cubic with states and rates of both ends.
+/// The number of terms of the cubic through the states and rates of both ends.
 const CUBIC_TERMS: usize = 3;
 
 impl Inside {

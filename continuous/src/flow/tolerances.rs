@@ -88,6 +88,7 @@ impl Tolerances {
 
 /// Why tolerances cannot be used.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum InvalidTolerances {
     /// The relative tolerance is out of range or NaN.
     #[error("the relative tolerance {relative} is not in [{SMALLEST_RELATIVE:e}, 1)")]

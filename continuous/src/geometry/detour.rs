@@ -16,7 +16,7 @@ impl FreeSpace {
     /// A shortest path from `from` to `to` that keeps out of `obstacles`, `None` if there is none.
     ///
     /// Paths around a disc follow a regular octagon about it. A disc that contains `to` is no
-    /// obstacle (its occupant is whom the robot comes to replace), and one that contains `from`
+    /// obstacle (the robot comes to replace its occupant), and one that contains `from`
     /// is taken just small enough not to. Ends outside the free space are treated as by
     /// [`geodesic`](Self::geodesic); the way between them and the free space minds no obstacle.
     ///

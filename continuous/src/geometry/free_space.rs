@@ -53,6 +53,7 @@ pub struct FreeSpace {
 
 /// Why there is no free space.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum FreeSpaceError {
     /// The clearance is not a length.
     #[error("the clearance is {clearance}; it is a finite length, 0 or more")]

@@ -29,7 +29,7 @@
 //! # Halving needs no agreement
 //!
 //! Shrinking a move towards its start replaces \[0, 1\] by \[0, γ\]: a smaller cube, hence a smaller
-//! or equal maximum. So whoever halves its own move never raises anyone's worst load, and a robot
+//! or equal maximum. So a robot that halves its own move never raises anyone's worst load, and a robot
 //! whose load passes once passes for the rest of the round, whatever its neighbours do. A round of
 //! "who exceeds asks its receivers and itself to halve" ends: when all who are involved stay, the
 //! load is what it is now, at most 1 with feasible routes.

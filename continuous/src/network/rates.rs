@@ -26,7 +26,7 @@ pub enum Receiver {
 /// A routing variable T_ij > 0 of one sender.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Route {
-    /// j: to whom.
+    /// j: the receiver.
     pub receiver: Receiver,
     /// T_ij: the share of the sender's time, in [0, 1].
     pub share: f64,
@@ -61,7 +61,7 @@ pub fn reliability_gradient(
 
 /// The traffic between a robot and one neighbour, in both directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exchange {
+pub struct NeighbourTraffic {
     /// x_j: where the neighbour is.
     pub neighbour: Point,
     /// T_ij: the share that the robot gives to the neighbour.
@@ -73,7 +73,7 @@ pub struct Exchange {
 /// ∇_{x_i} c_i of eq. (22) at fixed shares: Σ_j (T_ij − T_ji) ∇_{x_i} R_ij.
 pub fn residual_gradient(
     own: Point,
-    exchanges: impl IntoIterator<Item = Exchange>,
+    exchanges: impl IntoIterator<Item = NeighbourTraffic>,
     link: &(impl LinkReliability + ?Sized),
 ) -> Vector {
     exchanges.into_iter().fold(Vector::zeros(), |sum, exchange| {
@@ -85,7 +85,7 @@ pub fn residual_gradient(
 /// ∇_{x_i} c_j at fixed shares: how the residual of neighbour j changes when robot i moves.
 pub fn neighbour_residual_gradient(
     own: Point,
-    exchange: &Exchange,
+    exchange: &NeighbourTraffic,
     link: &(impl LinkReliability + ?Sized),
 ) -> Vector {
     reliability_gradient(own, exchange.neighbour, link) * (exchange.received - exchange.sent)
@@ -93,6 +93,7 @@ pub fn neighbour_residual_gradient(
 
 /// Why routes and positions do not fit together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum RatesError {
     /// Lists that speak of the robots have different lengths.
     #[error("{robots} robots, but {routes} lists of routes and {rates} rates: one of each is due")]
@@ -107,9 +108,9 @@ pub enum RatesError {
     /// A route leads to somebody who does not exist.
     #[error("robot {sender} has a route to {receiver:?}, which does not exist")]
     UnknownReceiver {
-        /// Who sends.
+        /// The sender.
         sender: usize,
-        /// To whom.
+        /// The receiver.
         receiver: Receiver,
     },
 }
@@ -120,7 +121,7 @@ pub enum RatesError {
 ///
 /// # Errors
 ///
-/// [`RatesError`] if the lists differ in length or a route leads to nobody.
+/// [`RatesError`] if the lists differ in length or a route leads to no node.
 pub fn residuals(
     routes: &[Vec<Route>],
     robots: &[Point],
@@ -197,12 +198,12 @@ mod tests {
             let share = |from: usize, to: Receiver| {
                 routes[from].iter().find(|route| route.receiver == to).map_or(0.0, |r| r.share)
             };
-            let to_robot = |other: usize| Exchange {
+            let to_robot = |other: usize| NeighbourTraffic {
                 neighbour: robots[other],
                 sent: share(0, Receiver::Robot(other)),
                 received: share(other, Receiver::Robot(0)),
             };
-            let to_access_point = Exchange {
+            let to_access_point = NeighbourTraffic {
                 neighbour: access_point,
                 sent: share(0, Receiver::AccessPoint(0)),
                 received: 0.0,
@@ -232,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn a_route_to_nobody_is_an_error() {
+    fn a_route_to_no_node_is_an_error() {
         let link = CubicReliability::new(0.4, 0.5).unwrap();
         let routes = vec![vec![Route { receiver: Receiver::AccessPoint(1), share: 0.5 }]];
         let result = residuals(&routes, &[Point::origin()], &[Point::origin()], &[0.1], &link);

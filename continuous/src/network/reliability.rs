@@ -124,6 +124,7 @@ pub struct CubicReliability {
 
 /// Why two ranges do not make a link model.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ReliabilityError {
     /// A range is not a finite number.
     #[error("the {name} of the links is {value}: it must be a finite length")]

@@ -92,7 +92,7 @@ fn an_explicit_step_has_order_8_at_its_end_and_7_within() {
     assert!((6.8..9.0).contains(&within), "local order {within} within");
 }
 
-/// The error at time 2 after so many steps of one length.
+/// The error at time 2 after `steps` steps of one length.
 fn error_after(count: u32, method: Method) -> f64 {
     let loose = Tolerances::new(0.5, 1e3).unwrap();
     let mut integrator = Integrator::new(&oscillator, 0.0, &[0.0, 1.0], loose).with_method(method);

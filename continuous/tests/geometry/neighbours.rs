@@ -1,4 +1,4 @@
-//! Who is near, against trying everybody.
+//! Neighbours, against a search of all.
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::Neighbours;

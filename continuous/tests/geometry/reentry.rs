@@ -36,7 +36,7 @@ fn a_millionth_outside_is_not_lost() {
     assert_eq!(space.geodesic_to(out, &space.destination(goal)), Some(path));
     assert!((space.distance(goal, out) - space.distance(out, goal)).abs() < ROUNDING);
     assert!(space.sees(out, goal) && space.sees(out, out));
-    assert!(!space.sees(goal, out), "nobody is sent out");
+    assert!(!space.sees(goal, out), "no robot is sent out");
     assert_eq!(space.distance(out, out), 0.0);
     // A robot beside a wall that is in range keeps it, and may go along it.
     let region = convex_region(&space, out, Point::new(1.5, out.y), 0.2);

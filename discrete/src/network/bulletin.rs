@@ -1,4 +1,4 @@
-//! The newest word on the mission, flooded through the network.
+//! The newest notice on the mission, flooded through the network.
 //!
 //! A mission goes through its steps one at a time, and at each step exactly one node may issue
 //! the next notice: the access point that announces, the elected leader, p₁ that calls for help,

@@ -31,7 +31,7 @@ pub struct Election {
 }
 
 impl Election {
-    /// An election in which nobody's token is known yet; `number` tells elections apart.
+    /// An election in which no token is known yet; `number` tells elections apart.
     pub const fn new(number: u32) -> Self {
         Election { number, tokens: IdSet::new(), best: None }
     }

@@ -28,8 +28,8 @@ mod proofs;
 
 /// A mover's standing offer to a parked robot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Exchange<D> {
-    /// To whom.
+pub struct Offer<D> {
+    /// The receiver.
     pub to: NodeId,
     /// The offers of one robot are numbered.
     pub number: u32,
@@ -40,7 +40,7 @@ pub struct Exchange<D> {
 /// The parked robot's answer, repeated until the mover has heard it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reply<D> {
-    /// To whom.
+    /// The receiver.
     pub to: NodeId,
     /// The number of the offer.
     pub number: u32,
@@ -48,7 +48,7 @@ pub struct Reply<D> {
     pub accepted: Option<D>,
 }
 
-impl<D> Exchange<D> {
+impl<D> Offer<D> {
     /// Whether `robot` is to answer, which has answered the offers of this mover up to the one
     /// with the number `answered`.
     pub fn asks(&self, robot: NodeId, answered: Option<u32>) -> bool {
@@ -58,7 +58,7 @@ impl<D> Exchange<D> {
 
 impl<D> Reply<D> {
     /// Whether the mover has heard this reply, to judge by its `offer`: it has given that one up.
-    pub fn is_heard(&self, offer: Option<&Exchange<D>>) -> bool {
+    pub fn is_heard(&self, offer: Option<&Offer<D>>) -> bool {
         offer.is_none_or(|offer| offer.number != self.number)
     }
 }
@@ -66,7 +66,7 @@ impl<D> Reply<D> {
 /// Where a robot stands in its exchanges: with an offer as a mover, with a reply as the parked one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dealings<D> {
-    offer: Option<Exchange<D>>,
+    offer: Option<Offer<D>>,
     offers_made: u32,
     reply: Option<Reply<D>>,
     /// What it gets for the duty that the reply hands over.
@@ -86,7 +86,7 @@ impl<D> Dealings<D> {
     }
 
     /// The standing offer.
-    pub const fn offer(&self) -> Option<&Exchange<D>> {
+    pub const fn offer(&self) -> Option<&Offer<D>> {
         self.offer.as_ref()
     }
 
@@ -112,8 +112,8 @@ impl<D> Dealings<D> {
 }
 
 impl<D> Dealings<D> {
-    /// Whether the mover, which has this offer and has made so many, has heard the reply.
-    pub fn has_heard_reply(&self, offer: Option<&Exchange<D>>, offers_made: u32) -> bool {
+    /// Whether the mover, which has this offer and has made this number of offers, has heard the reply.
+    pub fn has_heard_reply(&self, offer: Option<&Offer<D>>, offers_made: u32) -> bool {
         // What the mover said before it made the offer may be heard again.
         self.reply
             .as_ref()
@@ -125,12 +125,12 @@ impl<D: Copy> Dealings<D> {
     /// The mover offers its `duty`.
     pub fn make_offer(&mut self, to: NodeId, duty: D) {
         self.offers_made += 1;
-        self.offer = Some(Exchange { to, number: self.offers_made, duty });
+        self.offer = Some(Offer { to, number: self.offers_made, duty });
     }
 
     /// The parked robot answers the `offer` of `mover`: with the duty that it gives in return,
     /// or none if it refuses.
-    pub fn answer(&mut self, mover: NodeId, offer: &Exchange<D>, given: Option<D>) {
+    pub fn answer(&mut self, mover: NodeId, offer: &Offer<D>, given: Option<D>) {
         self.taking = given.map(|_| offer.duty);
         self.reply = Some(Reply { to: mover, number: offer.number, accepted: given });
     }
@@ -146,9 +146,9 @@ impl<D: Copy> Dealings<D> {
         reply.accepted
     }
 
-    /// The parked robot hears of the mover, which has this offer and has made so many: the duty
+    /// The parked robot hears of the mover, which has this offer and has made this number of offers: the duty
     /// that it has now, if it has given its own and the mover has taken that.
-    pub fn conclude(&mut self, offer: Option<&Exchange<D>>, offers_made: u32) -> Option<D> {
+    pub fn conclude(&mut self, offer: Option<&Offer<D>>, offers_made: u32) -> Option<D> {
         if !self.has_heard_reply(offer, offers_made) {
             return None;
         }

@@ -1,6 +1,6 @@
 //! The way from a post to its access point, as a path vector.
 //!
-//! Every robot tells its neighbours its lineage. A redundant robot hangs itself on the neighbour
+//! Every robot tells its neighbours its lineage. A redundant robot attaches to the neighbour
 //! with the shortest one; a lineage that already contains the robot's own post is refused, so
 //! that no cycle can close.
 
@@ -13,7 +13,7 @@ pub struct Lineage {
     root: usize,
 }
 
-/// Whether a post that hung itself on the bearer of this way would close a cycle: the way leads
+/// Whether a post that is attached to the bearer of this path would close a cycle: the way leads
 /// through it.
 ///
 /// ```
@@ -34,7 +34,7 @@ impl Lineage {
         Lineage { posts: Vec::new(), root }
     }
 
-    /// The lineage of a post that hangs on the bearer of this one; none if that would close a
+    /// The lineage of a post that is attached to the bearer of this one; none if that would close a
     /// cycle.
     pub fn extended_by(&self, post: PostId) -> Option<Self> {
         if self.contains(post) {
@@ -80,7 +80,7 @@ impl Lineage {
 mod tests {
     use super::*;
 
-    /// The lineage of the last of `posts`, each hanging on the one before it.
+    /// The lineage of the last of `posts`, each attached to the one before it.
     fn lineage(root: usize, posts: &[u32]) -> Lineage {
         posts.iter().fold(Lineage::of_access_point(root), |lineage, &post| {
             lineage.extended_by(PostId(post)).expect("the posts differ")

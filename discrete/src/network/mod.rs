@@ -22,7 +22,7 @@ pub use bulletin::Bulletin;
 pub use control::{CONTROL, ROUNDS, Round, RoundEvent, Stage, StageEvent};
 pub use dealing::{DEALINGS, Dealing, DealingEvent};
 pub use election::{Bid, Election};
-pub use exchange::{Dealings, Exchange, Reply};
+pub use exchange::{Dealings, Offer, Reply};
 pub use id_set::IdSet;
 pub use lineage::Lineage;
 pub use path::{Hop, Path, Subgroup};

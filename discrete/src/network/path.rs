@@ -46,7 +46,7 @@ pub struct Ties {
     pub bears_others: bool,
 }
 
-/// The last break point of a path with so many places: the leader's when L_b = 1, else the one
+/// The last break point of a path with this many places: the leader's when L_b = 1, else the one
 /// before p₁.
 pub const fn last_break_point(places: usize, releases_leader: bool) -> usize {
     places.saturating_sub(if releases_leader { 1 } else { 2 })
@@ -57,7 +57,7 @@ pub const fn last_break_point(places: usize, releases_leader: bool) -> usize {
 /// The paper names junctions and leaves. A robot is one in effect if it services a task, if
 /// it has a tree neighbour off Σ, if Σ crosses an access point just before or behind it, or
 /// if it is the last that Σ relieves; and b₁ = s₁. A crossing is thus walked by one robot
-/// alone, which hangs on the access point: two in a chain would hold each other back.
+/// alone, which is attached to the access point: two in a chain would hold each other back.
 pub const fn is_break_point(place: usize, last: usize, ties: Ties, at_crossing: bool) -> bool {
     place == 0
         || place == last
@@ -93,10 +93,10 @@ impl<P> Path<P> {
         self.hops.iter().position(|hop| hop.post.id == post)
     }
 
-    /// Whether the path descends from `place` to the next: the next post hangs on this one.
+    /// Whether the path descends from `place` to the next: the next post is attached to this one.
     pub fn descends(&self, place: usize) -> bool {
         match (self.hops.get(place), self.hops.get(place + 1)) {
-            (Some(hop), Some(next)) => next.post.hangs_on(hop.post.id),
+            (Some(hop), Some(next)) => next.post.is_child_of(hop.post.id),
             _ => false,
         }
     }
@@ -127,7 +127,7 @@ mod tests {
     use super::super::PostId;
     use super::*;
 
-    /// A path of so many places that crosses an access point behind `before`.
+    /// A path of this many places that crosses an access point behind `before`.
     fn path(places: usize, before: usize) -> Path<()> {
         let hop = |place| Hop {
             robot: place,
@@ -161,7 +161,7 @@ mod tests {
         assert!(!released.is_empty() && path(0, 9).is_empty());
     }
 
-    /// Up from the recruit and down again: 0 and 4 hang on 1 and 3, these on 2 and access point 0.
+    /// Up from the recruit and down again: 0 and 4 are attached to 1 and 3, these on 2 and access point 0.
     #[test]
     fn a_path_knows_its_places_and_where_it_descends() {
         let mut path = path(5, 2);

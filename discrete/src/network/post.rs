@@ -9,7 +9,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PostId(pub u32);
 
-/// What a post hangs on.
+/// What a post is attached to: its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Anchor {
     /// The access point with this number, from 0.
@@ -35,18 +35,18 @@ pub enum PostKind {
 /// A post of the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Post {
-    /// Who it is.
+    /// Its identity.
     pub id: PostId,
     /// What it is.
     pub kind: PostKind,
-    /// What it hangs on; none for a redundant robot that is not attached yet.
+    /// Its parent; none for a redundant robot that is not attached yet.
     pub parent: Option<Anchor>,
     /// The task serviced from it.
     pub task: Option<usize>,
 }
 
 impl Post {
-    /// The post of a redundant robot that hangs on nothing yet.
+    /// The post of a redundant robot that is not attached yet.
     pub const fn redundant(id: PostId) -> Self {
         Post { id, kind: PostKind::Redundant, parent: None, task: None }
     }
@@ -71,12 +71,12 @@ impl Post {
         matches!(self.kind, PostKind::Primary { follows: None })
     }
 
-    /// Whether it hangs on `post`.
-    pub fn hangs_on(&self, post: PostId) -> bool {
+    /// Whether it is a child of `post`.
+    pub fn is_child_of(&self, post: PostId) -> bool {
         self.parent == Some(Anchor::Post(post))
     }
 
-    /// Whether others may hang on it: posts that move with the primary team bear only the next
+    /// Whether others may attach to it: posts that move with the primary team bear only the next
     /// post of the team.
     pub const fn bears_redundant(&self) -> bool {
         !self.is_primary()
@@ -87,7 +87,7 @@ impl Post {
 mod tests {
     use super::*;
 
-    /// Redundant, fixed, primary, leading, and whether others may hang on it.
+    /// Redundant, fixed, primary, leading, and whether others may attach to it.
     #[test]
     fn posts_are_what_their_kind_says() {
         let follower = PostKind::Primary { follows: Some(PostId(2)) };
@@ -108,9 +108,9 @@ mod tests {
     #[test]
     fn a_post_hangs_on_its_parent_alone() {
         let free = Post::redundant(PostId(1));
-        let hanging = Post { parent: Some(Anchor::Post(PostId(2))), ..free };
+        let child = Post { parent: Some(Anchor::Post(PostId(2))), ..free };
         let rooted = Post { parent: Some(Anchor::Access(2)), ..free };
-        assert!(hanging.hangs_on(PostId(2)) && !hanging.hangs_on(PostId(3)));
-        assert!(!free.hangs_on(PostId(2)) && !rooted.hangs_on(PostId(2)));
+        assert!(child.is_child_of(PostId(2)) && !child.is_child_of(PostId(3)));
+        assert!(!free.is_child_of(PostId(2)) && !rooted.is_child_of(PostId(2)));
     }
 }

@@ -119,7 +119,7 @@ struct Digit {
 
 impl Odometer {
     /// The next draw: the ordinal of the first value from the present one on that is admitted,
-    /// of so many; none if no such value is left.
+    /// of this many; none if no such value is left.
     pub(crate) fn draw(&mut self, choices: u32, admits: impl Fn(u32) -> bool) -> Option<u32> {
         if self.read == self.digits.len() {
             self.digits.push(Digit { ordinal: 0, choices });

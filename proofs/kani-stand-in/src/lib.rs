@@ -10,8 +10,8 @@
 //! - [`assume`] drops a case, and a failed assertion names the harness and the drawn values;
 //! - a harness fails if a [`cover!`] of its body is never satisfied: it would hold vacuously.
 //!
-//! Under the real tool this library is not built: packages depend on it for their tests, and
-//! under `cfg(kani_stub)`, by which harnesses are type-checked as the tool sees them.
+//! Under the real tool this library is not built: packages depend on it for their tests only, and
+//! `proofs/check types` hands it to the compiler to type-check harnesses as the tool sees them.
 //!
 //! ```
 //! kani::run("small numbers have small squares", 1, || {

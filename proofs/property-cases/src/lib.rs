@@ -9,7 +9,7 @@ use proptest::test_runner::Config;
 /// The number of cases that a test usually draws which says nothing of it; proptest's own.
 pub const USUAL: u32 = 256;
 
-/// The configuration of a test that usually draws so many cases: in proportion more if
+/// The configuration of a test that usually draws `cases` cases: in proportion more if
 /// `PROPTEST_CASES` asks for more than [`USUAL`], and never fewer.
 ///
 /// ```

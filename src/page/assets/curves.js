@@ -2,9 +2,9 @@
 
 const CHART_HEIGHT = 190;
 const CHART_MARGIN = { left: 58, right: 12, top: 18, bottom: 24 };
-/** Up to so many curves all are read out, and named below the panel. */
+/** Up to this many curves all are read out, and named below the panel. */
 const FEW_CURVES = 3;
-/** Up to so many curves each has a colour of its own. */
+/** Up to this many curves each has a colour of its own. */
 const DISTINCT_CURVES = 24;
 
 /** What is selected, and what the pointer is on: a number, or null. */

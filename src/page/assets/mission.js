@@ -48,6 +48,19 @@ class Mission {
     return robots.concat(this.scenario.access_point.map(point => point.position));
   }
 
+  /** Where a robot goes, or null; old traces do not tell. */
+  targetOf(robot, step) {
+    const { columns } = this.numbers.target;
+    if (!columns.length) return null;
+    const target = [0, 1].map(axis => columns[2 * robot + axis].at(Math.floor(step)));
+    return target.some(Number.isNaN) ? null : target;
+  }
+
+  /** A name for a robot at a control period, or null where the trace has none. */
+  named(field, robot, step) {
+    return this.values[field]?.at(Math.floor(step), robot) ?? null;
+  }
+
   residual(robot, step) { return this.numbers.residual.at(robot, Math.floor(step)); }
   multiplier(robot, step) { return this.numbers.multiplier.at(robot, Math.floor(step)); }
 
@@ -139,16 +152,19 @@ class Facts {
     const load = out.reduce((sum, link) => sum + link.share, 0);
     return [`Robot ${robot}`, [
       ["role", mission.role(robot, step)],
-      ["position", `(${written(x)}, ${written(y)})`],
-      ["state", mission.value("active", step).includes(robot) ? "may move" : "stands still"],
+      ["location", this.location(robot, step)],
       ["target", this.target(robot, step)],
-      ["parent", parent === undefined ? "none" : mission.nodeName(parent)],
-      ["children", children.length ? children.join(", ") : "none"],
-      ["rate rᵢ", written(mission.scenario.robot[robot].rate)],
       ["residual cᵢ", written(mission.residual(robot, step))],
       ["multiplier λᵢ", written(mission.multiplier(robot, step))],
       ["load ΣTᵢⱼ", written(load, 4)],
+      this.messages(robot, step),
       ["hears", this.heard(robot, step)],
+      this.knowledge(robot, step),
+      ["parent", parent === undefined ? "none" : mission.nodeName(parent)],
+      ["children", children.length ? children.join(", ") : "none"],
+      ["position", `(${written(x)}, ${written(y)})`],
+      ["state", mission.value("active", step).includes(robot) ? "may move" : "stands still"],
+      ["rate rᵢ", written(mission.scenario.robot[robot].rate)],
       ...this.further(robot, step),
     ], linkTable(mission, out, into)];
   }
@@ -166,8 +182,34 @@ class Facts {
     ], linkTable(mission, [], into)];
   }
 
-  /** Where a robot goes or stays, as far as a trace tells. */
+  /** Where a robot is in its automata: its duty, and an exchange of duties if it is in one. */
+  location(robot, step) {
+    const { mission } = this, exchange = mission.named("exchange", robot, step);
+    const duty = mission.named("location", robot, step) ?? "not recorded";
+    return exchange === null || exchange === "free" ? duty : `${duty}; ${exchange} an exchange of duties`;
+  }
+
+  /** The messages of a control period. */
+  messages(robot, step) {
+    const [sent, heard] = ["sent", "heard"].map(name => this.mission.numbers[name].columns[robot]?.at(step));
+    return sent === undefined ? null : ["messages", `${sent} sent, ${heard} heard in this period`];
+  }
+
+  /** Where the mission stands as far as a robot knows. */
+  knowledge(robot, step) {
+    const phase = this.mission.named("known_phase", robot, step);
+    return phase === null ? null : ["knows of", phase];
+  }
+
+  /** Where a robot goes or stays, and why. */
   target(robot, step) {
+    const place = this.mission.targetOf(robot, step), reason = this.purpose(robot, step);
+    if (place === null) return reason;
+    const spot = `(${written(place[0])}, ${written(place[1])})`;
+    return reason === "none" ? spot : `${reason}, at ${spot}`;
+  }
+
+  purpose(robot, step) {
     const { mission } = this;
     const post = mission.value("post", step).find(post => post.holder === robot);
     const [task, path] = [mission.value("task", step), mission.value("path", step)];
@@ -199,7 +241,7 @@ class Facts {
   }
 }
 
-const KNOWN_FIELDS = new Set(["role", "mark", "active", "tree", "task", "phase", "active_team", "primary_team",
+const KNOWN_FIELDS = new Set(["role", "mark", "location", "exchange", "known_phase", "active", "tree", "task", "phase", "active_team", "primary_team",
   "path", "serviced", "post", "task_state", "geodesic"]);
 
 Mission.prototype.nodeName = function (node) {
@@ -245,7 +287,8 @@ function layerPanel(parent, mission, plan) {
   });
   parent.append(
     element("details", { open: true }, element("summary", {}, "Marks"), element("div", { class: "boxes" }, ...marks)),
-    element("details", { open: true }, element("summary", {}, "Layers"), element("div", { class: "boxes" }, ...boxes)));
+    element("details", { open: true }, element("summary", {}, "Layers"), element("div", { class: "boxes" }, ...boxes),
+      element("p", { class: "quiet" }, "Links reach through walls; robots do not.")));
 }
 
 /** The strokes of a moment as a small picture. */

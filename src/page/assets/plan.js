@@ -5,7 +5,7 @@ const TRAIL_STEPS = 60;
 /** White around the workspace, in pixels. */
 const PLAN_MARGIN = 14;
 const LAYERS = [
-  { key: "links", name: "links", about: "communication links in use, thickness ∝ T·R", on: true },
+  { key: "links", name: "links", about: "communication links in use, thickness ∝ T·R; they reach through walls", on: true },
   { key: "tree", name: "tree", about: "edges of the tree network", on: true },
   { key: "path", name: "path Σ", about: "the robots that shift when a recruit is called", on: true },
   { key: "geodesic", name: "way to the task", about: "the leader's shortest way to its task", on: true },
@@ -88,6 +88,7 @@ class Plan {
     if (has("tree")) this.drawTree(scene);
     if (has("geodesic")) this.drawGeodesic(scene);
     if (has("range")) this.drawRange(scene);
+    this.drawTarget(scene);
     this.drawTasks(scene);
     this.drawPosts(scene);
     this.drawNodes(scene, has("discs"));
@@ -234,6 +235,23 @@ class Plan {
       context.arc(...spots[node], range * view.scale, 0, 2 * Math.PI);
       context.stroke();
     }
+    context.restore();
+  }
+
+  /** Joins the robot that is shown with the place where it goes. */
+  drawTarget({ context, view, step, spots, radius }) {
+    const robot = this.selection.shown;
+    const target = robot === null || robot >= this.mission.robots ? null : this.mission.targetOf(robot, step);
+    if (target === null) return;
+    const [x, y] = view.spot(target);
+    context.save();
+    context.strokeStyle = colours.get("task");
+    context.lineWidth = 1.2;
+    context.setLineDash([2, 3]);
+    strokeThrough(context, [spots[robot], [x, y]]);
+    context.setLineDash([]);
+    strokeThrough(context, [[x - radius, y], [x + radius, y]]);
+    strokeThrough(context, [[x, y - radius], [x, y + radius]]);
     context.restore();
   }
 

@@ -13,7 +13,7 @@ const KEYS = [
 
 /** The share of the time line that the mark of an event takes. */
 const MARK_SHARE = 0.016;
-/** From so many events on, marks on top of each other are left out; the story has them all. */
+/** From this many events on, marks on top of each other are left out; the story has them all. */
 const MOST_MARKS = 200;
 
 /** The signs of the buttons, in a box of 16 by 16. */

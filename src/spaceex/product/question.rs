@@ -1,6 +1,7 @@
 //! Where runs begin, where they must not come, and for how long.
 
-use super::{Product, Result, fixed, location_name, predicate};
+use super::clause::{fixed, predicate};
+use super::{Product, Result, location_name};
 use crate::guards::{Interval, Predicate, Substitution, constant};
 use crate::spaceex::configuration::Options;
 use crate::spaceex::formula::Clause;

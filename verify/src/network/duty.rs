@@ -3,7 +3,7 @@
 use pleach_discrete::network::Role;
 
 /// Whether a hand-over conserves the multiset of duties: each occurs as often before as after,
-/// whoever holds it.
+/// regardless of the holder.
 ///
 /// ```
 /// use pleach_verify::network::duty::are_conserved;

@@ -2,7 +2,7 @@
 
 use pleach_discrete::network::{Bid, Election, NodeId};
 
-/// Validity: the winner placed the bid that it is said to have placed, and nobody placed a better
+/// Validity: the winner placed the bid that it is said to have placed, and none placed a better
 /// one; of equal bids that of the highest index wins. Without a bid there is no winner.
 ///
 /// `bids` has one place for each robot that took part.

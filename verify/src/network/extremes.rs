@@ -2,7 +2,7 @@
 
 use super::violation::Instant;
 
-/// An extreme value, when it occurred and whom it concerns.
+/// An extreme value, when it occurred and which robots it concerns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extreme {
     /// The value.

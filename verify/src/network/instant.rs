@@ -8,14 +8,14 @@ use pleach_continuous::Point;
 
 use super::extremes::Extreme;
 use super::limits::{Limits, SLACK};
-use super::link::{self, Places};
+use super::link::{self, NodePositions};
 use super::property::Property;
 use super::violation::{Instant, Violation};
 use super::{team, tree};
 
 /// The nodes' places in a snapshot.
-fn places<'a>(snapshot: &'a Snapshot, limits: &'a Limits) -> Places<'a> {
-    Places { robots: &snapshot.positions, access_points: limits.access_points() }
+fn places<'a>(snapshot: &'a Snapshot, limits: &'a Limits) -> NodePositions<'a> {
+    NodePositions { robots: &snapshot.positions, access_points: limits.access_points() }
 }
 
 /// [`Property::Record`]: everything else may rely on numbers being finite and identities
@@ -204,6 +204,7 @@ pub fn residual(snapshot: &Snapshot, limits: &Limits) -> Result<Option<Extreme>,
     let Some((robot, &value)) = smallest else { return Ok(None) };
     let (instant, bound) = (Instant::of(snapshot), limits.least_residual());
     if value < bound - SLACK {
+        let bound = bound + 0.0; // no negative zero in what people read
         let sentence = format!("the residual of robot {robot} is {value:.6}, less than {bound:.6}");
         return Err(instant.violation(Property::Residual, &[robot], (value, bound), sentence));
     }

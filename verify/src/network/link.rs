@@ -81,14 +81,14 @@ pub fn load(flows: &[HeldFlow], reliability: impl Fn(f64) -> f64) -> f64 {
 
 /// The places of the nodes: robots first, then access points.
 #[derive(Clone, Copy, Debug)]
-pub struct Places<'a> {
+pub struct NodePositions<'a> {
     /// x_1 … x_N.
     pub robots: &'a [Point],
     /// Where the access points stand.
     pub access_points: &'a [Point],
 }
 
-impl Places<'_> {
+impl NodePositions<'_> {
     /// Where a node is, if there is one of that number.
     pub fn of(&self, node: usize) -> Option<Point> {
         let fixed = || self.access_points.get(node - self.robots.len());

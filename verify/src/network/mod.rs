@@ -58,6 +58,7 @@
 //!     task: None,
 //!     serviced: Vec::new(),
 //!     posts: Vec::new(),
+//!     robots: Vec::new(),
 //! };
 //! let any_role_change = |_, _| true;
 //! let mut monitor = Monitor::new(&scenario, any_role_change);
@@ -74,7 +75,6 @@
 
 pub mod duty;
 pub mod election;
-pub mod exploration;
 pub mod instant;
 pub mod link;
 pub mod motion;

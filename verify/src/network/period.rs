@@ -10,7 +10,7 @@ use pleach_continuous::geometry::Segment;
 use super::duty::{self, RoleRelation};
 use super::extremes::Extreme;
 use super::limits::{Limits, SLACK};
-use super::link::{self, HeldFlow, Places};
+use super::link::{self, HeldFlow, NodePositions};
 use super::motion::{farthest_distance, first_gap, interval_within};
 use super::property::Property;
 use super::separation::closest_pair;
@@ -192,7 +192,8 @@ pub fn load(period: &Period, limits: &Limits) -> Result<Option<Extreme>, Violati
 
 /// The load of the sender of these routes with the positions of a snapshot.
 fn load_in(snapshot: &Snapshot, routes: &[&Route], limits: &Limits) -> f64 {
-    let places = Places { robots: &snapshot.positions, access_points: limits.access_points() };
+    let places =
+        NodePositions { robots: &snapshot.positions, access_points: limits.access_points() };
     let held: Vec<_> = routes
         .iter()
         .map(|route| HeldFlow {

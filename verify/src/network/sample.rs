@@ -11,7 +11,7 @@ use pleach_automaton::network::scenario::{
 };
 use pleach_discrete::network::{Phase, Role};
 
-use super::link::{Places, reliability, residuals};
+use super::link::{NodePositions, reliability, residuals};
 
 pub(super) const RATE: f64 = 0.075;
 
@@ -81,6 +81,7 @@ pub(super) fn snapshot(step: usize) -> Snapshot {
             PostView { reference: point![0.3, 0.01], holder: 0, task: Some(0), junction: true },
             PostView { reference: point![0.2, 0.2], holder: 3, task: None, junction: false },
         ],
+        robots: Vec::new(),
     };
     route(&mut snapshot, &[(0, 4, 0.3), (1, 0, 0.15), (2, 4, 0.1), (3, 4, 0.1)]);
     snapshot
@@ -89,7 +90,7 @@ pub(super) fn snapshot(step: usize) -> Snapshot {
 /// Replaces the routes (from, to, share), with reliabilities and residuals that agree.
 pub(super) fn route(snapshot: &mut Snapshot, shares: &[(usize, usize, f64)]) {
     let access_points = [point![0.0, 0.0]];
-    let places = Places { robots: &snapshot.positions, access_points: &access_points };
+    let places = NodePositions { robots: &snapshot.positions, access_points: &access_points };
     let routes = shares.iter().map(|&(from, to, share)| {
         let reliability = reliability(places.distance(from, to), 0.4, 0.5);
         Route { from, to, share, reliability }

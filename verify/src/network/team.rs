@@ -32,7 +32,7 @@ fn are_same(one: &[usize], other: &[usize]) -> bool {
     one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one == other)
 }
 
-/// Whether the active team 𝒜 is one team: nobody, the primary team, or a subgroup of Σ
+/// Whether the active team 𝒜 is one team: empty, the primary team, or a subgroup of Σ
 /// (Sec. V-C, Algorithm 3).
 ///
 /// ```
@@ -51,7 +51,7 @@ pub fn is_one_team(active_team: &[usize], primary_team: &[usize], path: &[usize]
 }
 
 /// Whether one team is active: everyone who moves is in it, be it the primary team or a subgroup
-/// of Σ, and nobody of the other teams moves. Where nobody moves, no two teams do.
+/// of Σ, and no robot of the other teams moves. Where no robot moves, no two teams do.
 ///
 /// ```
 /// use pleach_verify::network::team::exactly_one_is_active;

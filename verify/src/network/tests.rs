@@ -404,7 +404,7 @@ fn a_junction_or_task_whose_holder_leaves() {
     keeps(|before, _| before.posts[0].reference.y = 0.029);
     // The same for who takes over: the new holder must have arrived.
     breaks(Property::Occupancy, |_, after| after.posts[0].holder = 3);
-    // Who held a junction when the period began stays until its end, handed over or not.
+    // The robot that held a junction when the period began stays until its end, handed over or not.
     breaks(Property::Occupancy, |before, _| {
         before.posts[1].junction = true;
         before.posts[1].reference = point![0.2, -0.22];

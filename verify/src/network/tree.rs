@@ -8,7 +8,7 @@ use pleach_discrete::network::Role;
 
 /// Writes the parent of every robot, from edges (child, parent).
 ///
-/// `parents` has one place a robot. Edges of children that are no robots are skipped.
+/// `parents` has one element per robot. Edges of children that are no robots are skipped.
 ///
 /// # Errors
 ///
@@ -84,7 +84,7 @@ pub fn is_member_unless_redundant(role: Role, parent: Option<usize>) -> bool {
 
 /// Marks every robot from which directed links lead to an access point.
 ///
-/// `connected` has one place a robot; links go from sender to receiver, and a receiver that is
+/// `connected` has one element per robot; links go from sender to receiver, and a receiver that is
 /// no robot is an access point. The links are swept until nothing changes: at most N + 1
 /// times, in practice as often as the network is deep.
 ///
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn hanging_a_robot_elsewhere_keeps_the_tree_unless_below_itself() {
+    fn attaching_a_robot_elsewhere_keeps_the_tree_unless_below_itself() {
         for parents in every_forest().filter(|parents| is_rooted(parents)) {
             for robot in (0..3).filter(|&robot| parents[robot].is_some()) {
                 for parent in (0..=3).filter(|&node| node == 3 || parents[node].is_some()) {

@@ -149,12 +149,10 @@ enum Outcome {
 impl Search<'_> {
     /// Whether an earlier visit began with all of this, at a time that leaves it as long.
     fn is_known(&self, entry: &Entry) -> bool {
-        let bounds = |start: &StateSet| self.bounds(entry.location, start);
-        let new = bounds(&entry.start);
         self.visits.iter().filter(|visit| visit.location == entry.location).any(|visit| {
             let in_time = self.settings.horizon.is_infinite()
                 || entry.elapsed.lower() >= visit.elapsed.lower();
-            in_time && visit.start.is_its_template() && bounds(&visit.start).contains(&new)
+            in_time && visit.start.contains(&entry.start)
         })
     }
 
@@ -234,8 +232,7 @@ impl Search<'_> {
             exit,
         );
         let mut at_horizon = false;
-        let is_at_rest = self.settings.horizon.is_infinite() && flowing.is_its_template();
-        let origin = self.bounds(location, &flowing);
+        let is_endless = self.settings.horizon.is_infinite();
         'flow: loop {
             let Some(stretches) = pipe.advance() else {
                 return Outcome::Broken(Completion::Diverged);
@@ -262,7 +259,9 @@ impl Search<'_> {
                 }
                 self.visits[number].segments.push(segment);
                 // All states are back where they began: what follows is what there was.
-                if is_at_rest && origin.contains(&Polytope::new(template.clone(), after)) {
+                if is_endless
+                    && flowing.contains_polytope(&Polytope::new(template.clone(), after))
+                {
                     break 'flow;
                 }
             }

@@ -235,7 +235,7 @@ pub type TimedState = (f64, Vec<f64>);
 pub fn followed(trajectory: &Trajectory) -> Vec<(usize, Vec<TimedState>)> {
     /// How many states there are from one sample to the next.
     const PARTS: u32 = 8;
-    let between = |phase: pleach_automaton::trajectory::Phase| {
+    let between = |phase: pleach_automaton::trajectory::FlowInterval| {
         let mut states: Vec<TimedState> = Vec::new();
         for pair in phase.samples.windows(2) {
             states.push((pair[0].t, pair[0].values.clone()));
@@ -250,7 +250,7 @@ pub fn followed(trajectory: &Trajectory) -> Vec<(usize, Vec<TimedState>)> {
         states.extend(phase.samples.last().map(|last| (last.t, last.values.clone())));
         (phase.locations.first().copied().unwrap_or(0), states)
     };
-    trajectory.phases().map(between).collect()
+    trajectory.intervals().map(between).collect()
 }
 
 /// The number at a share from −1 to 1 of the way.

@@ -1,6 +1,6 @@
 //! What is enclosed: locations with their flows, invariants and jumps, over numbered variables.
 
-use pleach_automaton::{Automaton, Coordinates};
+use pleach_automaton::{Automaton, Coordinates, NewValue};
 use pleach_discrete::{Event, Location};
 use pleach_guards::{Expression, Interval, Predicate, Substitution, constant};
 use thiserror::Error;
@@ -62,8 +62,8 @@ pub struct Jump {
 pub enum Assignments {
     /// x⁺ = M x⁻ + w with w in a box.
     Affine(IntervalMatrix, Vec<Interval>),
-    /// A formula for each variable.
-    Formulas(Vec<Expression>),
+    /// The new value of each variable, over x⁻.
+    Formulas(Vec<NewValue>),
 }
 
 /// What is only known to lie in an interval.
@@ -277,8 +277,8 @@ impl<L: Location, E: Event, S: Coordinates> Reader<'_, L, E, S> {
                 location: name.to_owned(),
                 event: event.clone(),
             })?;
-            let mut values: Vec<Expression> =
-                self.variables.iter().map(|name| pleach_guards::variable(name)).collect();
+            let unchanged = |name: &String| NewValue::Exactly(pleach_guards::variable(name));
+            let mut values: Vec<NewValue> = self.variables.iter().map(unchanged).collect();
             for assignment in assignments {
                 if let Some(place) = self.place_of(assignment.coordinate()) {
                     values[place] = assignment.value().substitute(&self.numbers);
@@ -312,6 +312,23 @@ fn coefficients(
     let row = variables.iter().map(|name| entry(name)).collect();
     let column = inputs.iter().map(|(name, _)| entry(name)).collect();
     Some((row, column, *form.constant()))
+}
+
+/// The coefficients of a new value: those between its two formulas, if it has two.
+fn new_coefficients(
+    value: &NewValue,
+    variables: &[String],
+    inputs: &[(&str, Interval)],
+) -> Option<Coefficients> {
+    let hulls = |one: Vec<Interval>, other: Vec<Interval>| {
+        one.into_iter().zip(other).map(|(one, other)| one.hull(other)).collect()
+    };
+    let mut forms = value.formulas().map(|formula| coefficients(formula, variables, inputs));
+    let first = forms.next()??;
+    forms.try_fold(first, |(row, column, constant), other| {
+        let (other_row, other_column, other_constant) = other?;
+        Some((hulls(row, other_row), hulls(column, other_column), constant.hull(other_constant)))
+    })
 }
 
 /// The first variable of a formula that is none of these.
@@ -383,27 +400,35 @@ impl Dynamics {
 impl Assignments {
     /// The reset with these values of the variables, in which inputs can be any of their values.
     ///
+    /// A value between two affine ones is a row of coefficients between theirs.
+    ///
     /// # Errors
     ///
-    /// [`ModelError::Variable`] if a formula reads what is no variable or input.
+    /// [`ModelError`] if a formula reads what is no variable or input, or an input stands in one that
+    /// is not affine.
     pub fn of(
         location: &str,
-        values: Vec<Expression>,
+        values: Vec<NewValue>,
         variables: &[String],
         inputs: &[(&str, Interval)],
     ) -> Result<Self, ModelError> {
-        if let Some(variable) = values.iter().find_map(|value| stranger(value, variables, inputs)) {
-            return Err(ModelError::Variable { location: location.to_owned(), variable });
+        let location = || location.to_owned();
+        let unknown = |value: &NewValue| {
+            value.formulas().find_map(|formula| stranger(formula, variables, inputs))
+        };
+        if let Some(variable) = values.iter().find_map(unknown) {
+            return Err(ModelError::Variable { location: location(), variable });
         }
-        let forms: Option<Vec<_>> =
-            values.iter().map(|value| coefficients(value, variables, inputs)).collect();
+        let forms: Option<Vec<Coefficients>> =
+            values.iter().map(|value| new_coefficients(value, variables, inputs)).collect();
         let Some(forms) = forms else {
-            let read = |name: &str| values.iter().any(|value| value.variables().contains(name));
-            return match inputs.iter().find(|(name, _)| read(name)) {
-                Some((input, _)) => Err(ModelError::Input {
-                    input: (*input).to_owned(),
-                    location: location.to_owned(),
-                }),
+            let read = |name: &&str| {
+                values.iter().flat_map(NewValue::formulas).any(|it| it.variables().contains(*name))
+            };
+            return match inputs.iter().map(|(name, _)| *name).find(read) {
+                Some(input) => {
+                    Err(ModelError::Input { input: input.to_owned(), location: location() })
+                }
                 None => Ok(Assignments::Formulas(values)),
             };
         };

@@ -115,6 +115,11 @@ impl Polytope {
         &self.bounds
     }
 
+    /// The bound in a direction of the template.
+    pub fn bound(&self, direction: &[f64]) -> Option<f64> {
+        self.template.position(direction).map(|place| self.bounds[place])
+    }
+
     /// The box that the first directions bound; `None` if it has no points.
     pub fn hull(&self) -> Option<Vec<Interval>> {
         let side =
@@ -138,12 +143,6 @@ impl Polytope {
     pub fn is_seen_empty(&self) -> bool {
         (0..self.template.dimension())
             .any(|axis| self.bounds[2 * axis] < -self.bounds[2 * axis + 1])
-    }
-
-    /// Whether every point of `other`, over the same template, is in this one.
-    pub fn contains(&self, other: &Polytope) -> bool {
-        self.template == other.template
-            && self.bounds.iter().zip(&other.bounds).all(|(bound, inner)| inner <= bound)
     }
 
     /// Whether a point is in it, up to rounding.

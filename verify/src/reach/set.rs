@@ -2,7 +2,7 @@
 
 use pleach_guards::Interval;
 
-use super::polytope::{Bound, Polytope};
+use super::polytope::{Bound, Polytope, over_box};
 use super::vector::dot;
 use super::zonotope::Zonotope;
 
@@ -56,9 +56,33 @@ impl StateSet {
         Some(self)
     }
 
-    /// Whether it is all that its bounds in a template that knows its directions allow.
-    pub(super) fn is_its_template(&self) -> bool {
-        self.zonotope.is_none()
+    /// Whether every point of `other` is seen to be in this set.
+    pub fn contains(&self, other: &StateSet) -> bool {
+        let known = |direction: &[f64]| other.polytope.as_ref()?.bound(direction);
+        self.holds_bounds(&other.hull, |direction| {
+            known(direction).unwrap_or_else(|| other.support(&points(direction)))
+        })
+    }
+
+    /// Whether every point of a polytope is seen to be in this set.
+    pub fn contains_polytope(&self, other: &Polytope) -> bool {
+        let Some(sides) = other.hull() else { return true };
+        self.holds_bounds(&sides, |direction| {
+            other.bound(direction).unwrap_or_else(|| over_box(direction, &sides))
+        })
+    }
+
+    /// Whether what is in a box and has these bounds in directions is in this set.
+    fn holds_bounds(&self, sides: &[Interval], bound: impl Fn(&[f64]) -> f64) -> bool {
+        let in_hull = self.hull.iter().zip(sides).all(|(outer, inner)| {
+            outer.lower() <= inner.lower() && inner.upper() <= outer.upper()
+        });
+        let in_polytope = |polytope: &Polytope| {
+            let directions = polytope.template().directions().iter();
+            directions.zip(polytope.bounds()).all(|(direction, most)| bound(direction) <= *most)
+        };
+        // No list of bounds is known that says what is in a zonotope.
+        self.zonotope.is_none() && in_hull && self.polytope.iter().all(in_polytope)
     }
 
     /// A point of it; `draw` gives numbers from −1 to 1.
@@ -111,4 +135,9 @@ impl StateSet {
         });
         by_zonotope.chain(by_polytope).fold(boxed, f64::min)
     }
+}
+
+/// A direction as intervals.
+fn points(direction: &[f64]) -> Vec<Interval> {
+    direction.iter().map(|entry| Interval::point(*entry)).collect()
 }

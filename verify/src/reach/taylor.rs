@@ -121,7 +121,7 @@ impl Integration {
     /// Finds a step of at most `most` seconds.
     fn enclosed(&mut self, most: f64) -> Option<Step> {
         /// The shortest step, as a share of the longest.
-        const SHORTEST: f64 = 1e-9;
+        const SHORTEST: f64 = 1e-7;
         let program = self.program.as_ref()?;
         let limits = self.state.first()?.limits();
         let coefficients = program.solve(&self.state, self.order - 1, limits)?;

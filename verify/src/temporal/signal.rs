@@ -155,7 +155,7 @@ impl Flow {
     }
 }
 
-/// Sums and differences of a time and the bounds of windows agree to within so many parts of the
+/// Sums and differences of a time and the bounds of windows agree to within this many parts of the
 /// larger of the two: some roundings of 2⁻⁵³ each.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 

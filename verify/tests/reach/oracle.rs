@@ -15,7 +15,9 @@ const RECORDED: &str = include_str!("oracle/recorded.txt");
 fn lines(kind: &str) -> Vec<Vec<&'static str>> {
     let fields = RECORDED.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
     let mut lines: Vec<Vec<&str>> = fields.filter(|fields| fields.first() == Some(&kind)).collect();
-    lines.iter_mut().for_each(|fields| drop(fields.remove(0)));
+    for fields in &mut lines {
+        fields.remove(0);
+    }
     assert!(!lines.is_empty(), "nothing is recorded of {kind}");
     lines
 }

@@ -43,9 +43,10 @@ fn numbers(count: usize, size: f64) -> impl Strategy<Value = Vec<f64>> {
     proptest::collection::vec(-size..size, count)
 }
 
-fn squares(
-    dimension: usize,
-) -> impl Strategy<Value = (Vec<Vec<f64>>, Vec<f64>, Vec<f64>, Vec<Vec<f64>>)> {
+type Rows = Vec<Vec<f64>>;
+
+/// A matrix, an offset, the center of a set, and points in it.
+fn squares(dimension: usize) -> impl Strategy<Value = (Rows, Vec<f64>, Vec<f64>, Rows)> {
     (
         proptest::collection::vec(numbers(dimension, 3.0), dimension),
         numbers(dimension, 1.0),
@@ -106,7 +107,7 @@ proptest! {
             .build()
             .unwrap();
         let start = boxed(&center.iter().map(|c| (c - width, c + width)).collect::<Vec<_>>());
-        let settings = Settings { horizon: 1.0, step: 0.2, tolerance: 1e-6, order: 6, degree, ..Settings::default() };
+        let settings = Settings { horizon: 1.0, step: 0.2, tolerance: 1e-6, order: 6, degree, segment_limit: 200, ..Settings::default() };
         let (model, enclosure) = enclosed(&automaton, &[], &start, &settings);
         // A flow may grow beyond all bounds; up to there it is enclosed.
         let end = enclosure.visits[0].segments.last().map_or(0.0, |segment| segment.time.lower());

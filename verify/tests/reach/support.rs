@@ -60,7 +60,7 @@ pub fn escape(
     error: f64,
 ) -> Option<String> {
     let names = &run.components()[0].locations;
-    for phase in run.phases() {
+    for phase in run.intervals() {
         let name = &names[phase.locations[0]];
         let location = model.locations().iter().position(|place| place.name == *name).unwrap();
         for sample in &phase.samples {

@@ -1,4 +1,4 @@
-//! Phase portraits: one variable over another.
+//! FlowInterval portraits: one variable over another.
 
 use thiserror::Error;
 
@@ -6,7 +6,7 @@ use super::axis::{Axis, power_of_ten};
 use super::curve::{self, Quantity};
 use super::sheet::{Sheet, WIDTH, line_colour, text_width};
 use super::{LEFT, RIGHT, draw_dots, outcome};
-use crate::trajectory::{Phase, Sample, Trajectory};
+use crate::trajectory::{FlowInterval, Sample, Trajectory};
 
 /// The height of the panel, in pixels.
 const PANEL: f64 = 560.0;
@@ -64,7 +64,7 @@ fn variable(trajectory: &Trajectory, name: &str) -> Result<Quantity, UnknownVari
 }
 
 fn axis(trajectory: &Trajectory, quantity: Quantity, [from, to]: [f64; 2]) -> Axis {
-    let phases = trajectory.phases();
+    let phases = trajectory.intervals();
     Axis::roomy(phases.flat_map(|phase| quantity.values(&phase.samples)), from, to)
 }
 
@@ -105,7 +105,7 @@ impl Portrait<'_> {
     }
 
     fn draw_curves(&self, sheet: &mut Sheet) {
-        let phases: Vec<Phase> = self.trajectory.phases().collect();
+        let phases: Vec<FlowInterval> = self.trajectory.intervals().collect();
         let mut jumps = Vec::new();
         for pair in phases.windows(2) {
             if let (Some(before), Some(after)) = (pair[0].samples.last(), pair[1].samples.first()) {
@@ -135,7 +135,7 @@ impl Portrait<'_> {
     fn draw_legend(&self, sheet: &mut Sheet) {
         let Some(participant) = self.trajectory.components().get(self.component) else { return };
         let mut present: Vec<usize> =
-            self.trajectory.phases().map(|phase| self.location(&phase)).collect();
+            self.trajectory.intervals().map(|phase| self.location(&phase)).collect();
         present.sort_unstable();
         present.dedup();
         let (mut x, y) = (LEFT, TOP + PANEL + FOOT - 22.0);
@@ -147,7 +147,7 @@ impl Portrait<'_> {
         }
     }
 
-    fn location(&self, phase: &Phase) -> usize {
+    fn location(&self, phase: &FlowInterval) -> usize {
         phase.locations.get(self.component).copied().unwrap_or(0)
     }
 

@@ -3,6 +3,9 @@
 //! An access point passes on what it hears like a robot does. The first of them also serves the
 //! user: it announces the tasks one after another, each when the one before is serviced.
 
+#[cfg(feature = "abstraction")]
+mod abstraction;
+
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -110,11 +113,6 @@ impl AccessPoint {
         beacon
     }
 
-    /// What the access point would tell its neighbours now.
-    pub fn beacon(&self) -> Beacon {
-        self.public_state()
-    }
-
     fn public_state(&self) -> Beacon {
         Beacon {
             sender: self.id(),
@@ -142,7 +140,7 @@ impl AccessPoint {
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
-    pub fn think(&mut self) -> Result<(), TransitionError> {
+    fn think(&mut self) -> Result<(), TransitionError> {
         self.hear_notices()?;
         self.find_route();
         self.call_roll();
@@ -204,7 +202,7 @@ impl AccessPoint {
         self.bulletin = bulletin;
     }
 
-    /// The way to the robot that calls: through a robot that hangs here, or through another
+    /// The way to the robot that calls: through a robot that is attached here, or through another
     /// access point so near that a robot can change over from one to the other.
     fn find_route(&mut self) {
         let number = self.bulletin.sequence();
@@ -216,12 +214,12 @@ impl AccessPoint {
             let Some((_, onward)) = beacon.route.as_ref().filter(|(at, _)| *at == number) else {
                 continue;
             };
-            let hangs_here = beacon
+            let is_child = beacon
                 .duty
                 .as_ref()
                 .is_some_and(|duty| duty.post().is_some_and(|post| post.parent == Some(own)));
             let changeover = beacon.duty.is_none() && self.is_within_changeover(beacon.position);
-            if hangs_here || changeover {
+            if is_child || changeover {
                 self.route = Some((number, onward.clone()));
                 self.crossing = vec![self.number];
                 self.crossing.extend(&beacon.crossing);
@@ -234,7 +232,7 @@ impl AccessPoint {
         self.site.distance(self.position, other) <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
     }
 
-    /// Which robots hang on the access points.
+    /// Which robots are attached to the access points.
     fn call_roll(&mut self) {
         let own = Anchor::Access(self.number);
         let mut roster = IdSet::new();
@@ -260,7 +258,7 @@ impl AccessPoint {
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
-    pub fn serve(&mut self) -> Result<(), TransitionError> {
+    fn serve(&mut self) -> Result<(), TransitionError> {
         if self.requested.is_some() && self.announced().is_some() && self.is_electing() {
             self.election_rounds += 1;
         }
@@ -276,27 +274,9 @@ impl AccessPoint {
         self.site.robots + self.site.access_points.len()
     }
 
-    /// The newest word on the mission that it knows.
+    /// The newest notice on the mission that it knows.
     pub fn notice(&self) -> &Notice {
         self.bulletin.notice()
-    }
-
-    /// Everything, apart from what it hears, that decides what the access point says from now on;
-    /// for explorers. Waits that are over are over, however long.
-    pub fn account(&self) -> String {
-        let settled = match self.bulletin.notice() {
-            Notice::Quiet => self.settled_rounds.min(ROUNDS_UNTIL_ROSTER_SETTLES),
-            _ => 0,
-        };
-        let patience = PATIENCE_WITH_ELECTIONS * self.longest_wait() + 1;
-        let rounds = if self.is_electing() { self.election_rounds.min(patience) } else { 0 };
-        format!(
-            "{:?}",
-            (
-                (self.number, &self.bulletin, &*self.service, &self.election, rounds),
-                (&self.agreement, &self.route, &self.crossing, &self.roster, settled),
-            )
-        )
     }
 }
 

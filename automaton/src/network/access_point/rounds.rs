@@ -9,6 +9,7 @@ use crate::located::{Current, DataOf, Holds};
 use crate::node::Outputs;
 use crate::{Automaton, BuildError, Flow, Transfer};
 
+use super::super::act::{Act, acting};
 use super::super::message::Message;
 use super::super::record::MissionEvent;
 use super::super::robot::RobotError;
@@ -34,8 +35,8 @@ pub enum RoundAct {
 /// What an access point does when it takes a row, in this order.
 pub type RoundActs = &'static [RoundAct];
 
-impl RoundAct {
-    const fn name(self) -> &'static str {
+impl Act for RoundAct {
+    fn name(self) -> &'static str {
         match self {
             RoundAct::RestartClock => "τ := 0",
             RoundAct::Think => "deliberate, serve",
@@ -103,12 +104,7 @@ fn row<A: DataOf<Rounds>, B: DataOf<Rounds>>(
     acts: RoundActs,
     next: fn(&A) -> B,
 ) -> Transfer<Round, RoundEvent, AccessPoint> {
-    let names: Vec<&str> = acts.iter().map(|act| act.name()).collect();
-    let name = names.join(", ");
-    Transfer::new(event, guard, &name, move |data: &A, _: &AccessPoint, effects: &mut RoundActs| {
-        *effects = acts;
-        next(data)
-    })
+    acting(event, guard, acts, next)
 }
 
 /// The automaton of an access point's control period.

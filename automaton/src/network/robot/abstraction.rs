@@ -5,34 +5,65 @@
 //! stands, and for how long it has not got on. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
-use std::collections::VecDeque;
-
-use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Election, NodeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Path};
 use super::facts::STATIONARY_WINDOW;
-use super::{Robot, RobotError};
+use super::{Robot, RobotError, RobotView};
+
+/// What an explorer reads off a robot beside what observers see.
+impl<'a> RobotView<'a> {
+    /// What the robot would tell its neighbours now.
+    pub fn beacon(self) -> Beacon {
+        self.robot().public_state()
+    }
+
+    /// The duty that it takes over once the mover that offered it has taken its own.
+    pub fn taking(self) -> Option<&'a Duty> {
+        self.robot().dealings().taking()
+    }
+
+    /// The path Σ that it was told of last.
+    pub fn path(self) -> Option<&'a Path> {
+        self.robot().mission.path().map(|path| &**path)
+    }
+
+    /// The subgroups that it has computed from the break points.
+    pub fn subgroups(self) -> &'a [Subgroup] {
+        self.robot().mission.shift().map_or(&[], |shift| &shift.subgroups)
+    }
+
+    /// The number of the election that it knows to be over, and the winner with its bid.
+    pub fn concluded_election(self) -> Option<(u32, Option<(Bid, NodeId)>)> {
+        let election = self.robot().election.as_ref()?;
+        let over = election.is_complete(&self.robot().roster);
+        over.then(|| (election.number(), election.best()))
+    }
+
+    /// The number of the election that it takes part in, or took part in last.
+    pub fn election_number(self) -> Option<u32> {
+        self.robot().election.as_ref().map(Election::number)
+    }
+
+    /// What it has bid itself in the election with this number, if it has taken part in it and
+    /// in none since.
+    pub fn own_bid(self, number: u32) -> Option<Bid> {
+        self.robot().bid.filter(|_| self.election_number() == Some(number))
+    }
+
+    /// For how many control periods the robot has not got on.
+    pub fn still_periods(self) -> u32 {
+        self.robot().still_periods
+    }
+
+    /// The numbers of control periods without progress at which its guards change, ascending.
+    pub fn still_thresholds(self) -> [u32; 3] {
+        [STATIONARY_WINDOW, super::exchange::LAST_RESORT, self.robot().patience().ceil() as u32]
+    }
+}
 
 impl Robot {
-    /// In place of the flow: the robot stands at `position`, and has not got on for
-    /// `still_periods` control periods.
-    pub fn stand_at(&mut self, position: Point, still_periods: u32) {
-        (self.position, self.arrival) = (position, position);
-        self.resting_places = VecDeque::from([position]);
-        self.still_periods = still_periods;
-        self.stir();
-    }
-
-    /// The robot finds that it stands at `position`, and how far its neighbours are from there.
-    pub(super) fn find_itself_at(&mut self, position: Point) {
-        self.stand_at(position, 0);
-        for known in &mut self.neighbours {
-            *known = known.seen_from(position, &self.site);
-        }
-    }
-
     /// In place of a round of messages: thinks over what it has heard, without counting a round.
     ///
     /// # Errors
@@ -55,54 +86,6 @@ impl Robot {
         self.begin_period()?;
         self.deliberate()?;
         self.jump()
-    }
-
-    /// What the robot would tell its neighbours now.
-    pub fn beacon(&self) -> Beacon {
-        self.public_state()
-    }
-
-    /// The duty that it takes over once the mover that offered it has taken its own.
-    pub fn taking(&self) -> Option<&Duty> {
-        self.dealings().taking()
-    }
-
-    /// The path Σ that it was told of last.
-    pub fn path(&self) -> Option<&Path> {
-        self.mission.path().map(|path| &**path)
-    }
-
-    /// The subgroups that it has computed from the break points.
-    pub fn subgroups(&self) -> &[Subgroup] {
-        self.mission.shift().map_or(&[], |shift| &shift.subgroups)
-    }
-
-    /// The number of the election that it knows to be over, and the winner with its bid.
-    pub fn concluded_election(&self) -> Option<(u32, Option<(Bid, NodeId)>)> {
-        let election = self.election.as_ref()?;
-        let over = election.is_complete(&self.roster);
-        over.then(|| (election.number(), election.best()))
-    }
-
-    /// The number of the election that it takes part in, or took part in last.
-    pub fn election_number(&self) -> Option<u32> {
-        self.election.as_ref().map(Election::number)
-    }
-
-    /// What it has bid itself in the election with this number, if it has taken part in it and
-    /// in none since.
-    pub fn own_bid(&self, number: u32) -> Option<Bid> {
-        self.bid.filter(|_| self.election_number() == Some(number))
-    }
-
-    /// For how many control periods the robot has not got on.
-    pub const fn still_periods(&self) -> u32 {
-        self.still_periods
-    }
-
-    /// The numbers of control periods without progress at which its guards change, ascending.
-    pub fn still_thresholds(&self) -> [u32; 3] {
-        [STATIONARY_WINDOW, super::exchange::LAST_RESORT, self.patience().ceil() as u32]
     }
 
     /// Everything, apart from the beacons that it goes by, that decides what the robot says and does

@@ -1,6 +1,6 @@
-//! The robot's place in the tree: what it hangs on and what hangs on it (Definition 5.2).
+//! The robot's place in the tree: its parent and its children (Definition 5.2).
 //!
-//! Redundant robots belong to the tree too. Each hangs itself on the node that is fewest links
+//! Redundant robots belong to the tree too. Each attaches to the node that is fewest links
 //! from an access point and, among those, most reliable, over links no longer than d_build. It
 //! chooses from the lineages that its neighbours tell it. Fixed and primary posts keep their
 //! parents; only p₁ may change its own (Remark 5.6).
@@ -24,7 +24,7 @@ pub(super) const PATIENCE_WITH_BARREN_POSTS: u32 = 2;
 
 impl Robot {
     /// Renews the robot's place in the tree from what it has heard.
-    pub fn keep_place(&mut self) {
+    pub(super) fn keep_place(&mut self) {
         (self.desired_parent, self.reattaches_to) = (None, None);
         if self.is_engaged() {
             // The place goes with the duty that is being handed over.
@@ -62,18 +62,18 @@ impl Robot {
         self.is_quiet &= self.barren_periods < PATIENCE_WITH_BARREN_POSTS;
     }
 
-    /// While a path Σ is being sought or walked, nobody changes its parent.
+    /// While a path Σ is being sought or walked, no robot changes its parent.
     pub(super) fn tree_is_frozen(&self) -> bool {
         matches!(self.phase(), Phase::RecruitElection | Phase::PathAgreement | Phase::Shift)
     }
 
-    /// Whether a fixed post or one of the primary team hangs on this robot's post.
+    /// Whether a fixed post or one of the primary team is attached to this robot's post.
     pub(super) fn bears_branch(&self) -> bool {
         self.branches() > 0
     }
 
-    /// The number of branches that hang on this robot's post. A member of the primary team that
-    /// is about to hang itself on the newcomer behind it counts with the newcomer.
+    /// The number of branches that are attached to this robot's post. A member of the primary team that
+    /// is about to attach to the newcomer behind it counts with the newcomer.
     pub(super) fn branches(&self) -> usize {
         self.duty.post().map_or(0, |post| self.branches_of(post.id))
     }
@@ -119,7 +119,7 @@ impl Robot {
         })
     }
 
-    /// The best node to hang on, with its number of links to the access point; ways through
+    /// The best node to attach to, with its number of links to the access point; ways through
     /// `avoided` do not count.
     fn best_parent(&self, own: PostId, avoided: Option<PostId>) -> Option<(usize, Anchor)> {
         let mut best: Option<(usize, f64, Anchor)> = None;
@@ -145,7 +145,7 @@ impl Robot {
 
     /// Whether no robot on the way says otherwise, by its own way or by bearing redundant robots no
     /// more: what it says itself is newer than what others tell of it, so that robots that lose
-    /// their parent at once do not hang on one another.
+    /// their parent at once do not attach to one another.
     fn confirms(&self, lineage: &Lineage) -> bool {
         self.neighbours.iter().all(|neighbour| {
             let place = neighbour
@@ -214,7 +214,7 @@ impl Robot {
         }
     }
 
-    /// Remark 5.6: p₁ hangs itself on a fixed or redundant robot or an access point that is
+    /// Remark 5.6: p₁ attaches to a fixed or redundant robot or an access point that is
     /// nearer to its target, if there is one within d_build.
     fn reattach(&mut self) -> Option<Option<Anchor>> {
         if self.phase() != Phase::Advance || !self.is_first() && self.awaited_parent().is_none() {
@@ -234,12 +234,12 @@ impl Robot {
         let mut better = None;
         for neighbour in self.neighbours.iter().filter(|n| Self::accepts_redundant(n)) {
             let candidate = self.anchor_of(neighbour);
-            let hangs_here = neighbour.beacon.parent == Some(self.id)
+            let is_child = neighbour.beacon.parent == Some(self.id)
                 || neighbour.beacon.lineage.as_ref().is_none_or(|lineage| {
                     own.is_some_and(|own| lineage.contains(own)) || !self.confirms(lineage)
                 });
             if candidate == anchor
-                || hangs_here
+                || is_child
                 || neighbour.distance > self.site.build_length
                 || (goal - neighbour.position()).norm() >= nearest
                 || self.walk_to(neighbour) > self.site.build_length

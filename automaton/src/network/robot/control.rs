@@ -12,6 +12,7 @@ use crate::located::{Current, DataOf, Holds};
 use crate::node::Outputs;
 use crate::{Automaton, BuildError, Flow, Transfer};
 
+use super::super::act::{self, acting};
 use super::super::control::{
     Beacons, Control, Demands, Flows, Moving, Multipliers, Objections, OldFlows, Planning,
     Proposals, Reliefs, Shortages, SweptFlows,
@@ -31,9 +32,8 @@ macro_rules! acts {
             $($(#[$note])+ $act),+
         }
 
-        impl Act {
-            /// What drawings call it.
-            pub const fn name(self) -> &'static str {
+        impl act::Act for Act {
+            fn name(self) -> &'static str {
                 match self {
                     $(Act::$act => $name),+
                 }
@@ -159,24 +159,13 @@ impl Robot {
     }
 }
 
-type Row = Transfer<Stage, StageEvent, Robot>;
-
 fn row<A: DataOf<Control>, B: DataOf<Control>>(
     event: StageEvent,
     guard: Guard,
     acts: Acts,
     next: fn(&A) -> B,
-) -> Row {
-    let names: Vec<&str> = acts.iter().map(|act| act.name()).collect();
-    Transfer::new(
-        event,
-        guard,
-        &names.join(", "),
-        move |data: &A, _: &Robot, effects: &mut Acts| {
-            *effects = acts;
-            next(data)
-        },
-    )
+) -> Transfer<Stage, StageEvent, Robot> {
+    acting(event, guard, acts, next)
 }
 
 /// The automaton of the control period (Algorithm 5).

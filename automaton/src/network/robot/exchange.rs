@@ -10,7 +10,7 @@
 //!
 //! [`Dealings`]: pleach_discrete::network::Dealings
 
-use pleach_discrete::network::{Exchange, NodeId, Phase, PostKind, Reply};
+use pleach_discrete::network::{NodeId, Offer, Phase, PostKind, Reply};
 
 use super::super::duty::{Duty, Shifting};
 use super::Robot;
@@ -29,7 +29,7 @@ pub(super) const LAST_RESORT: u32 = 10;
 const CONCESSION: f64 = 4.0;
 
 impl Robot {
-    /// Once a period: a mover that does not get on looks for a partner among the robots in its way.
+    /// Once a period: a mover that makes no progress looks for a partner among the robots in its way.
     pub(super) fn consider_exchange(&mut self) {
         self.partner = None;
         if self.is_engaged() || self.still_periods < PATIENCE || !self.may_hand_over() {
@@ -85,7 +85,7 @@ impl Robot {
         let children_hold = self
             .neighbours
             .iter()
-            .filter(|n| n.post().is_some_and(|post| post.hangs_on(station.post.id)))
+            .filter(|n| n.post().is_some_and(|post| post.is_child_of(station.post.id)))
             .all(|child| self.walk_to(child) <= self.site.hard_length);
         parked.beacon.parked
             && parked.beacon.offer.is_none()
@@ -119,7 +119,7 @@ impl Robot {
     }
 
     /// The first offer to this robot that it has not answered, with the mover.
-    pub(super) fn offer_to_answer(&self) -> Option<(NodeId, &Exchange<Duty>)> {
+    pub(super) fn offer_to_answer(&self) -> Option<(NodeId, &Offer<Duty>)> {
         self.neighbours.iter().find_map(|neighbour| {
             let offer = neighbour.beacon.offer.as_ref()?;
             let answered = self.answered.get(&neighbour.id()).copied();

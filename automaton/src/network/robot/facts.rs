@@ -224,7 +224,7 @@ facts! {
 
 impl Robot {
     /// Measures the facts; says whether a guard may hold that did not hold before.
-    pub fn measure(&mut self) -> bool {
+    pub(super) fn measure(&mut self) -> bool {
         if !std::mem::take(&mut self.is_unmeasured) {
             return false;
         }
@@ -319,8 +319,8 @@ impl Robot {
         facts.first = self.is_first();
         facts.pending = self.is_pending();
         if facts.first && (facts.slack || facts.pending) {
-            // Who has joined from afar hears nothing of the team until it is there; if it never
-            // comes there, nobody else notices.
+            // A robot that has joined from afar hears nothing of the team until it is there; if it
+            // never arrives, no other robot notices.
             facts.stalled = match self.team {
                 Some(_) => facts.still,
                 None => f64::from(self.still_periods),
@@ -333,7 +333,7 @@ impl Robot {
         }
     }
 
-    /// Whether this robot has joined the team but the robot that it follows cannot hang on it
+    /// Whether this robot has joined the team but the robot that it follows cannot attach to it
     /// yet.
     fn is_pending(&self) -> bool {
         let Some(own) = self.duty.post() else { return false };
@@ -341,7 +341,7 @@ impl Robot {
             Notice::Advance { joined: Some((newcomer, followed)) } if newcomer == own.id => self
                 .holder(followed)
                 .and_then(|neighbour| neighbour.post())
-                .is_none_or(|post| !post.hangs_on(newcomer)),
+                .is_none_or(|post| !post.is_child_of(newcomer)),
             _ => false,
         }
     }

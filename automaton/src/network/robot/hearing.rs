@@ -150,13 +150,13 @@ impl Robot {
         at + 1
     }
 
-    /// Whom the robot hears, and for how many rounds it has not.
-    pub fn audible(&self) -> impl Iterator<Item = (NodeId, u8)> {
+    /// The nodes that the robot hears, and for how many rounds each has been silent.
+    pub(super) fn audible(&self) -> impl Iterator<Item = (NodeId, u8)> {
         self.neighbours.iter().map(|neighbour| (neighbour.id(), neighbour.silent_rounds))
     }
 
     /// The beacon that the robot goes by of each of its neighbours, ascending.
-    pub fn held_beacons(&self) -> impl Iterator<Item = &Arc<Beacon>> {
+    pub(super) fn held_beacons(&self) -> impl Iterator<Item = &Arc<Beacon>> {
         self.neighbours.iter().map(|neighbour| &neighbour.beacon)
     }
 
@@ -178,7 +178,7 @@ impl Robot {
     /// The neighbour that holds `post`.
     ///
     /// At the end of an exchange of duties two robots hold it, and the one whose reply stands is
-    /// about to take the other's: who still hung on it then could come to hang below itself.
+    /// about to take the other's: who was still attached to it could end up below itself.
     pub(super) fn holder(&self, post: PostId) -> Option<&Neighbour> {
         let holds = |neighbour: &&Neighbour| neighbour.post().is_some_and(|held| held.id == post);
         let holders = self.neighbours.iter().filter(holds);
@@ -193,7 +193,7 @@ impl Robot {
         }
     }
 
-    /// The neighbours whose posts hang on the post that this robot holds.
+    /// The neighbours whose posts are attached to the post that this robot holds.
     pub(super) fn children(&self) -> impl Iterator<Item = &Neighbour> {
         let own = self.duty.post().map(|post| post.id);
         own.into_iter().flat_map(|own| self.children_of(own))
@@ -201,7 +201,7 @@ impl Robot {
 
     /// The neighbours whose posts are attached to `post`.
     pub(super) fn children_of(&self, post: PostId) -> impl Iterator<Item = &Neighbour> {
-        let is_child = move |held: &Post| held.hangs_on(post);
+        let is_child = move |held: &Post| held.is_child_of(post);
         self.neighbours.iter().filter(move |neighbour| neighbour.post().is_some_and(is_child))
     }
 }

@@ -75,7 +75,7 @@ impl Robot {
         })
     }
 
-    /// Who won the election that this robot takes part in, as far as it knows.
+    /// The winner of the election that this robot takes part in, as far as it knows.
     pub(super) fn winner(&self) -> Option<NodeId> {
         self.election.as_ref()?.best().map(|(_, robot)| robot)
     }

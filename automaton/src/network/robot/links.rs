@@ -1,7 +1,7 @@
 //! The links of the tree that the robot must not lose.
 //!
 //! While a subgroup of Σ is on its way, the posts that it left have no holder. The chain of its
-//! robots then stands for them: going up the tree each hangs on the next, going down each hangs
+//! robots then stands for them: going up the tree each is attached to the next, going down each hangs
 //! on the one before, and the break points at both ends hold the chain.
 
 use pleach_discrete::network::{Anchor, NodeId};
@@ -20,21 +20,21 @@ pub struct TreeLink {
 }
 
 impl Robot {
-    /// The node that this robot hangs on: the one that its duty names or, while that is not
-    /// heard of, the one that it hung on before.
-    pub fn tree_parent(&self) -> Option<NodeId> {
+    /// Its parent in the tree: the node that its duty names or, while that is not
+    /// heard, the one before.
+    pub(super) fn tree_parent(&self) -> Option<NodeId> {
         self.named_parent()
             .filter(|&parent| parent != self.id)
             .or_else(|| self.parent.filter(|&parent| self.neighbour(parent).is_some()))
     }
 
-    /// Keeps in mind whom it hangs on.
+    /// Keeps its parent in mind.
     pub(super) fn remember_parent(&mut self) {
         self.parent = self.tree_parent();
     }
 
     /// The links of the tree at this robot: to its parent first, then to its children.
-    pub fn tree_links(&self) -> Vec<TreeLink> {
+    pub(super) fn tree_links(&self) -> Vec<TreeLink> {
         let mut links = Vec::new();
         links.extend(self.parent_link());
         links.extend(self.tree_children().map(|child| TreeLink {
@@ -49,7 +49,7 @@ impl Robot {
         Some(TreeLink { to, limit: self.limit_of(Some(&*self.duty)) })
     }
 
-    /// The robots that say that they hang on this one.
+    /// The robots that say that they are attached to this one.
     fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
         self.neighbours.iter().filter(|neighbour| neighbour.beacon.parent == Some(self.id))
     }

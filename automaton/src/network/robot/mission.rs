@@ -35,7 +35,7 @@ pub enum MissionEffect {
     Report(MissionEvent),
     /// It issues the next notice.
     Issue(Notice),
-    /// It keeps in mind the task announced, who elects its leader, and whose robots compete.
+    /// It keeps in mind the task announced, the electors of its leader, and the access points whose robots compete.
     Learn(TaskNotice, Arc<IdSet>, Arc<IdSet>),
     /// It takes part in this election, with its own bid, from the way to the caller that it knows.
     Elect(Election, Option<Bid>, Option<(u32, Shared<Vec<Hop>>)>),
@@ -99,13 +99,8 @@ impl Robot {
     }
 
     /// The phase of the mission as the robot knows it.
-    pub fn phase(&self) -> Phase {
+    pub(super) fn phase(&self) -> Phase {
         self.mission.location()
-    }
-
-    /// The mission as the robot knows it.
-    pub fn mission(&self) -> &Mission {
-        &self.mission
     }
 
     /// Takes the maximum of what it knows of the mission and what its neighbours say.

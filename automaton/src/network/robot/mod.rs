@@ -9,6 +9,7 @@
 //! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
 //! what its guards see of all this are `facts`.
 
+#[cfg(feature = "abstraction")]
 mod abstraction;
 mod attachment;
 mod control;
@@ -27,6 +28,7 @@ mod routing;
 mod step;
 mod target;
 mod team;
+mod view;
 mod yielding;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -50,6 +52,7 @@ pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
 pub use routing::RouteLink;
 pub use step::RobotError;
 pub use target::{Targets, targets};
+pub use view::RobotView;
 
 use crate::automaton::TransitionError;
 use crate::located::Current;
@@ -286,39 +289,24 @@ impl Robot {
         }
     }
 
-    /// x_i.
-    pub const fn position(&self) -> Point {
-        self.position
-    }
-
     /// The role that its duty gives it.
-    pub fn role(&self) -> Role {
+    pub(super) fn role(&self) -> Role {
         self.duty.role()
     }
 
-    /// What it does.
-    pub fn duty(&self) -> &Duty {
-        &self.duty
-    }
-
-    /// The newest word on the mission that it knows.
-    pub fn notice(&self) -> &Notice {
+    /// The newest notice on the mission that it knows.
+    pub(super) fn notice(&self) -> &Notice {
         self.bulletin.notice()
     }
 
-    /// The number of the newest word on the mission that it knows.
-    pub fn word_number(&self) -> u32 {
+    /// The number of the newest notice on the mission that it knows.
+    pub(super) fn notice_number(&self) -> u32 {
         self.bulletin.sequence()
     }
 
     /// The task announced last, as far as it knows.
-    pub fn current_task(&self) -> Option<usize> {
+    pub(super) fn current_task(&self) -> Option<usize> {
         self.tasks.last().map(|task| task.number)
-    }
-
-    /// c_i at the last sample.
-    pub const fn residual(&self) -> f64 {
-        self.residual
     }
 
     /// A control period begins: what is looked at once a period.

@@ -1,7 +1,7 @@
 //! Motion: where the robot goes, what it proposes, what it objects to (Sec. IV, Algorithm 5).
 //!
-//! The robot solves the motion problem (21)–(22) with everybody else fixed, and proposes the
-//! solution. Whoever hears a proposal that could overload it or overstretch its link to the tree,
+//! The robot solves the motion problem (21)–(22) with all other robots fixed, and proposes the
+//! solution. A robot that hears a proposal that could overload it or overstretch its link to the tree,
 //! whichever of the proposed moves are carried out, objects; a mover that hears an objection
 //! halves its move. Shrinking moves never creates a new objection, so that what is left after the
 //! last round is safe, and every robot that moves knows it from its own neighbours.
@@ -31,7 +31,7 @@ const MARGIN: f64 = 1e-4;
 /// Parked robots are kept at this many ρ when there is a way round.
 const KEEP_OUT: f64 = 2.1;
 /// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
-/// goes straight on and exchanges duties with whoever is in its way.
+/// goes straight on and exchanges duties with the robot in its way.
 const DETOUR_ALLOWANCE: f64 = 8.0;
 /// A robot this many ρ behind another stands in a queue.
 const QUEUE: f64 = 2.2;
@@ -55,7 +55,7 @@ const FULL_LOAD: f64 = 1.0 - 1e-9;
 impl Robot {
     /// Whether the robot stands still unless it is asked for; robots that settle on their post
     /// count as parked.
-    pub fn is_parked(&self) -> bool {
+    pub(super) fn is_parked(&self) -> bool {
         match *self.duty {
             Duty::Shifting(_) => self.active_subgroup().is_none(),
             Duty::Following(_) | Duty::Leading(_) => self.phase() != Phase::Advance,
@@ -63,20 +63,20 @@ impl Robot {
         }
     }
 
-    /// Whether somebody that hangs on the post that this robot has left has not heard of it, and
-    /// still hangs on the robot: it would keep to the one that goes, and not to the one that came.
-    /// Where nobody came, the robot stands for its post on the way.
+    /// Whether a robot that is attached to the post that this one has left has not heard of it, and
+    /// is still attached to this one: it would keep to the one that goes, and not to the one that came.
+    /// Where none came, the robot stands for its post on the way.
     pub(super) fn is_held_by_old_news(&self) -> bool {
         self.duty.left().is_some_and(|left| {
             self.holder(left).is_some()
                 && self.neighbours.iter().any(|neighbour| {
                     neighbour.beacon.parent == Some(self.id)
-                        && neighbour.post().is_some_and(|post| post.hangs_on(left))
+                        && neighbour.post().is_some_and(|post| post.is_child_of(left))
                 })
         })
     }
 
-    /// Redundant robots still hang on the new leader: they need a moment to hang elsewhere.
+    /// Redundant robots are still attached to the new leader: they need a moment to attach elsewhere.
     pub(super) fn bears_redundant(&self) -> bool {
         self.children().any(|child| child.post().is_some_and(|post| post.is_redundant()))
     }
@@ -86,7 +86,7 @@ impl Robot {
     }
 
     /// Whether the robot may move in this period.
-    pub fn is_active(&self) -> bool {
+    pub(super) fn is_active(&self) -> bool {
         self.goal().is_some()
     }
 

@@ -97,12 +97,12 @@ impl Robot {
     }
 
     /// How many subgroups of the path have arrived, as far as it knows.
-    pub fn subgroups_done(&self) -> usize {
+    pub(super) fn subgroups_done(&self) -> usize {
         self.mission.shift().map_or(0, |shift| shift.arrived)
     }
 
     /// The subgroup that is the active team, while one is.
-    pub fn active_subgroup(&self) -> Option<Subgroup> {
+    pub(super) fn active_subgroup(&self) -> Option<Subgroup> {
         self.mission.shift()?.active()
     }
 
@@ -124,13 +124,13 @@ impl Robot {
         hops.into_iter().flatten().map(|hop| hop.robot).collect()
     }
 
-    /// Whether another robot holds `post` and knows its parent: it does not hang on this one any
+    /// Whether another robot holds `post` and knows its parent: it does not attach to this one any
     /// more, unless that is the parent.
     pub(super) fn is_relieved_of(&self, post: PostId) -> bool {
         let own = self.duty.post().map(|held| held.id);
         self.holder(post).is_some_and(|holder| {
-            let hangs_here = |held: &Post| own.is_some_and(|own| held.hangs_on(own));
-            holder.beacon.parent != Some(self.id) || holder.post().is_some_and(hangs_here)
+            let is_child = |held: &Post| own.is_some_and(|own| held.is_child_of(own));
+            holder.beacon.parent != Some(self.id) || holder.post().is_some_and(is_child)
         })
     }
 

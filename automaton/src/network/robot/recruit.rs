@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pleach_discrete::network::{Anchor, Bid, Election, IdSet, Phase};
 
 use super::super::beacon::{Beacon, Notice};
-use super::super::duty::{Hop, Path, Place};
+use super::super::duty::{Hop, Path, PathPlace};
 use super::super::mission::{Advance, PathAgreement, RecruitElection};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::shared::Shared;
@@ -101,7 +101,7 @@ pub(super) fn end_unaided(
 impl Robot {
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
         let station = self.duty.station()?;
-        let place = Place { reference: station.reference, position: self.position };
+        let place = PathPlace { reference: station.reference, position: self.position };
         Some(Hop { robot: self.id, post: station.post, place, crossing })
     }
 
@@ -117,7 +117,7 @@ impl Robot {
     }
 
     /// Finds the way over the tree to the caller (footnote 10) and places a token: redundant
-    /// robots on which nobody hangs with a bid, once they know the way.
+    /// robots without children with a bid, once they know the way.
     pub(super) fn answer_call(&mut self) {
         let number = self.bulletin.sequence();
         let Some(election) = &self.election else { return };
@@ -167,8 +167,8 @@ impl Robot {
         let joins = |neighbour: &Neighbour| match neighbour.post() {
             None => own.parent == Some(Anchor::Access(neighbour.id() - self.site.robots)),
             Some(post) => {
-                post.hangs_on(own.id)
-                    || own.hangs_on(post.id)
+                post.is_child_of(own.id)
+                    || own.is_child_of(post.id)
                     || may_cross && !post.is_primary() && self.may_build(self.walk_to(neighbour))
             }
         };

@@ -56,7 +56,7 @@ impl RoutingState {
 /// A link over which the robot may send.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RouteLink {
-    /// To whom.
+    /// The receiver.
     pub to: NodeId,
     /// R_ij.
     pub reliability: f64,
@@ -112,7 +112,7 @@ impl Robot {
     }
 
     /// λ_i.
-    pub fn multiplier(&self) -> f64 {
+    pub(super) fn multiplier(&self) -> f64 {
         match &self.routing {
             RoutingState::Dual(state) => state.multiplier(),
             RoutingState::Adal(state) => state.multiplier(),
@@ -219,7 +219,7 @@ impl Robot {
     }
 
     /// The links in use.
-    pub fn routes(&self) -> impl Iterator<Item = &RouteLink> {
+    pub(super) fn routes(&self) -> impl Iterator<Item = &RouteLink> {
         self.links.iter().filter(|link| link.share > 0.0)
     }
 
@@ -365,7 +365,7 @@ impl Robot {
 
     /// Sends what c_i = η takes. What is missing goes over the tree link; in the first sweep, what
     /// is too much, because the iteration has not converged, is taken off all links alike, so that
-    /// nobody is asked to pass on what is not there. Returns by how much the flow to the parent
+    /// no robot is asked to pass on what is not there. Returns by how much the flow to the parent
     /// has changed.
     fn meet_demand(&mut self, is_first: bool) -> f64 {
         let Some(parent) = self.tree_parent() else { return 0.0 };
@@ -436,7 +436,7 @@ impl Robot {
     }
 
     /// Whether the routes cannot carry the rates: c_i < −c_min.
-    pub fn is_infeasible(&self) -> bool {
+    pub(super) fn is_infeasible(&self) -> bool {
         self.residual < -self.site.settings.residual_tolerance - RESIDUAL_ROUNDING
     }
 

@@ -5,6 +5,8 @@
 //! for what the others say, up to the next tick. When it has set off, its clock calls again at
 //! τ = Δt.
 
+use std::collections::VecDeque;
+
 use pleach_continuous::Point;
 use std::sync::Arc;
 
@@ -33,6 +35,7 @@ type Out = Outputs<Message, MissionEvent>;
 
 /// Why a robot cannot go on.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RobotError {
     /// A guard speaks of something that robots do not measure.
     #[error(transparent)]
@@ -104,8 +107,24 @@ impl Node for Robot {
 }
 
 impl Robot {
+    /// The robot stands at `position`, and has not got on for `still_periods` control periods.
+    pub(super) fn stand_at(&mut self, position: Point, still_periods: u32) {
+        (self.position, self.arrival) = (position, position);
+        self.resting_places = VecDeque::from([position]);
+        self.still_periods = still_periods;
+        self.stir();
+    }
+
+    /// The robot finds that it stands at `position`, and how far its neighbours are from there.
+    fn find_itself_at(&mut self, position: Point) {
+        self.stand_at(position, 0);
+        for known in &mut self.neighbours {
+            *known = known.seen_from(position, &self.site);
+        }
+    }
+
     /// Where it stands in its control period.
-    pub fn stage(&self) -> Stage {
+    pub(super) fn stage(&self) -> Stage {
         self.control.location()
     }
 

@@ -36,7 +36,7 @@ pub fn targets() -> Targets {
 
 impl Robot {
     /// ψ_i: where the robot goes now, if it goes anywhere; nowhere if a guard has no value.
-    pub fn goal(&self) -> Option<Point> {
+    pub(super) fn goal(&self) -> Option<Point> {
         self.target().ok().flatten()
     }
 

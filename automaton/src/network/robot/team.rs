@@ -1,4 +1,4 @@
-//! The primary team (Sec. V-A): who leads, who follows whom, and when it is stuck.
+//! The primary team (Sec. V-A): its leader, its order, and when it is stuck.
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{Phase, PostId, PostKind};
@@ -54,11 +54,11 @@ pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
 
 impl Robot {
     /// Whether this robot is the elected leader, released or not.
-    pub fn leads(&self) -> bool {
+    pub(super) fn leads(&self) -> bool {
         self.duty.leads()
     }
 
-    /// Whether this robot is p₁: nobody of the team follows it.
+    /// Whether this robot is p₁: no robot of the team follows it.
     ///
     /// In an exchange of duties there is an instant in which the mover has taken its new duty and
     /// the parked robot still holds its own: the duty of the mover has no holder. A robot that hears
@@ -77,12 +77,12 @@ impl Robot {
             })
     }
 
-    /// The post of a newcomer that this robot should hang on but does not yet reach.
+    /// The post of a newcomer that this robot should attach to but does not yet reach.
     pub(super) fn awaited_parent(&self) -> Option<PostId> {
         let post = self.duty.post()?;
         match *self.bulletin.notice() {
             Notice::Advance { joined: Some((newcomer, followed)) }
-                if followed == post.id && !post.hangs_on(newcomer) =>
+                if followed == post.id && !post.is_child_of(newcomer) =>
             {
                 Some(newcomer)
             }

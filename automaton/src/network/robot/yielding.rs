@@ -19,7 +19,7 @@ const WAY_AHEAD: f64 = 4.0;
 const PASSING: f64 = 2.2;
 /// Robots within this many ρ of a mover do not settle: they would close the way again.
 const COURTESY: f64 = 4.0;
-/// Places considered when stepping aside: so many directions, at so many multiples of ρ.
+/// Places considered when stepping aside: directions, and multiples of ρ.
 const DIRECTIONS: u32 = 16;
 const PACES: u32 = 3;
 /// A place is better only if it is farther from the way by this share of ρ.

@@ -122,7 +122,7 @@ pub enum Problem {
     /// Nowhere to send information to.
     #[error("there is none: information needs at least one [[access_point]] to go to")]
     NoAccessPoint,
-    /// Nobody to do anything.
+    /// There is no robot.
     #[error("there is none: a mission needs at least one [[robot]]")]
     NoRobot,
     /// Places for another number of robots than there are.

@@ -11,7 +11,7 @@ use crate::network::Site;
 
 /// A scenario that a mission can start from, with the [`Site`] that its robots know.
 ///
-/// It reads as the [`Scenario`] that it holds, and cannot be changed: whoever wants another one
+/// It reads as the [`Scenario`] that it holds, and cannot be changed: to get another one
 /// takes the scenario out with [`into_scenario`](Self::into_scenario), changes it and makes a
 /// valid one of it again. The geometry is prepared once, here, for the checks and for whatever
 /// uses the site afterwards.

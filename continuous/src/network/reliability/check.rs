@@ -18,6 +18,7 @@ const SLOPE_TOLERANCE: f64 = 1e-2;
 
 /// A requirement of [`LinkReliability`] that a model breaks, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum BrokenRequirement {
     /// The two ranges are not 0 ≤ l ≤ u, with a finite u > 0.
     #[error("the ranges are {full_range} and {range}: they must be 0 ≤ l ≤ u, u positive, finite")]

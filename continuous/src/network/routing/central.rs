@@ -22,6 +22,7 @@ pub struct CentralRouting {
 
 /// Why there is no central solution.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum CentralError {
     /// No routing meets the reserve: the problem has no solution.
     #[error("no routing gives every robot a residual of {reserve}")]

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_dearer_than_nobody_sends_nothing() {
+    fn a_robot_dearer_than_no_other_sends_nothing() {
         let link = LinkOffer { reliability: 1.0, weight: 1.0, neighbour_multiplier: 0.5 };
         let mut shares = vec![9.0; 4];
         local_minimiser(0.5, &[link], 1.0, &mut shares);

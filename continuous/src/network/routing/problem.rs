@@ -29,6 +29,7 @@ pub struct RoutingProblem {
 
 /// Why numbers do not make a routing problem.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ProblemError {
     /// A rate is negative or not a number.
     #[error("robot {robot} has the rate {rate}: it must be finite and at least 0")]

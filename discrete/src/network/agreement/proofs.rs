@@ -1,11 +1,11 @@
-//! Whoever has heard every vote knows the same break points, in whatever order it heard them.
+//! Every robot that has heard all votes knows the same break points, in whatever order it heard them.
 
 use super::*;
 
 /// Places of the path.
 const PLACES: usize = 4;
 
-/// What somebody knows who has heard any of the votes, and of any of the arrivals.
+/// What a robot knows that has heard any of the votes, and of any of the arrivals.
 fn any_view(votes: [bool; PLACES]) -> Agreement {
     let mut view = Agreement::new(1);
     for (place, vote) in votes.into_iter().enumerate() {

@@ -1,8 +1,8 @@
-//! The newest word wins, in whatever order words are heard.
+//! The newest notice wins, in whatever order notices are heard.
 
 use super::*;
 
-/// The notice of so many steps: at each step exactly one is issued.
+/// The notice after this many steps: at each step exactly one is issued.
 fn bulletin(steps: u8) -> Bulletin<u8> {
     let mut bulletin = Bulletin::first(100);
     for step in 0..3 {
@@ -13,13 +13,13 @@ fn bulletin(steps: u8) -> Bulletin<u8> {
     bulletin
 }
 
-/// Any three words of the first four steps of a mission, the first of them known: hearing the
+/// Any three notices of the first four steps of a mission, the first of them known: hearing the
 /// others in either order, or twice, leaves the newest of the three, and says whether it was news.
 ///
 /// Assumes that each step has one notice, which the sole right to issue it gives.
 #[kani::proof]
 #[kani::unwind(5)]
-fn the_newest_word_wins_in_any_order() {
+fn the_newest_notice_wins_in_any_order() {
     let step = || kani::any_where(|step: &u8| *step < 4);
     let (known, one, other) = (step(), step(), step());
     let (mut forth, mut back) = (bulletin(known), bulletin(known));

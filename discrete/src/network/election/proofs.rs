@@ -11,7 +11,7 @@ fn any_bid() -> Option<Bid> {
     (code > 0).then(|| Bid { rank: (code - 1) / 2, merit: i64::from((code - 1) % 2), economy: 0 })
 }
 
-/// What somebody knows who has heard the tokens of any of the robots.
+/// What a robot knows that has heard the tokens of any of the robots.
 fn any_view(bids: &[Option<Bid>; ROBOTS]) -> Election {
     let mut view = Election::new(1);
     for (robot, bid) in bids.iter().enumerate() {

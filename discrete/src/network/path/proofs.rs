@@ -6,7 +6,7 @@ use super::*;
 const PLACES: usize = 6;
 
 /// Any ties, any crossings, paths of 2 to 6 places with and without a leader to be released: the
-/// first and the last that Σ relieves are break points, nobody behind them is, and a crossing
+/// first and the last that Σ relieves are break points, none behind them is, and a crossing
 /// has one on each side, so that one robot alone walks it.
 #[kani::proof]
 #[kani::unwind(8)]

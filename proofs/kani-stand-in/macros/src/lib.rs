@@ -30,7 +30,7 @@ pub fn proof(_arguments: TokenStream, harness: TokenStream) -> TokenStream {
     let mut call: TokenStream = path("kani", "run");
     call.extend([TokenTree::Group(Group::new(Delimiter::Parenthesis, arguments))]);
     tokens.push(TokenTree::Group(Group::new(Delimiter::Brace, call)));
-    // Outside of tests a harness is only type-checked, and nobody calls it.
+    // Outside of tests a harness is only type-checked, and never called.
     let mut test: TokenStream = attribute("cfg_attr", "(test, test)");
     test.extend(attribute("cfg_attr", "(not(test), allow(dead_code))"));
     test.extend(tokens);

@@ -54,7 +54,7 @@ fn a_shift_along_the_path_keeps_break_points_held() {
         }
     }
     let points = &points[..count];
-    // Who holds the post of each place, and which post each robot holds in the end.
+    // The holder of the post of each place, and which post each robot holds in the end.
     let mut holders = [1_u8; PLACES];
     let mut held = [0, 1, 2, 3, 4];
     for subgroup in subgroups(points) {

@@ -54,7 +54,7 @@ fn round(views: &mut [Election; ROBOTS], hears: &[[bool; ROBOTS]; ROBOTS]) {
 fn after_each_round_a_robot_knows_one_link_more() {
     let hears = any_graph();
     let mut views = begin(&[None; ROBOTS]);
-    // knows[i]: who is within so many links of i, as bits.
+    // knows[i]: the robots within this many links of i, as bits.
     let mut knows = [1_u8, 2, 4, 8];
     for _ in 0..ROUNDS {
         round(&mut views, &hears);

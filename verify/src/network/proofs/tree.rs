@@ -45,14 +45,14 @@ fn lineage(parents: &[Option<usize>; ROBOTS], node: usize) -> ([PostId; ROBOTS],
     (way, hops)
 }
 
-/// Any tree of four robots; a robot, in the tree or not, hangs itself on a member whose lineage
+/// Any tree of four robots; a robot, in the tree or not, attaches to a member whose lineage
 /// does not contain it: the tree stays a tree, and everyone stays in it. If the lineage contains
 /// the robot, the step would close a cycle.
 ///
 /// Assumes that the lineage is the way as it is; late ones are explored in `exploration`.
 #[kani::proof]
 #[kani::unwind(7)]
-fn whoever_avoids_its_own_lineage_keeps_the_tree() {
+fn a_robot_that_avoids_its_own_lineage_keeps_the_tree() {
     let parents = any_tree();
     let (robot, parent) = (below(ROBOTS), below(ROBOTS + 1));
     kani::assume(is_member(&parents, parent));
@@ -67,11 +67,11 @@ fn whoever_avoids_its_own_lineage_keeps_the_tree() {
     assert!(closes || is_acyclic(&changed));
 }
 
-/// Any tree of four robots: one on which nobody hangs may leave, and everyone else still comes to
+/// Any tree of four robots: one without children may leave, and all others still come to
 /// an access point.
 #[kani::proof]
 #[kani::unwind(7)]
-fn a_robot_on_which_nobody_hangs_may_leave() {
+fn a_robot_without_children_may_leave() {
     let parents = any_tree();
     let (leaver, other) = (below(ROBOTS), below(ROBOTS));
     for parent in parents {

@@ -1,5 +1,6 @@
 //! Where jumps are taken from, and where they lead.
 
+use pleach_automaton::NewValue;
 use pleach_guards::Interval;
 
 use super::{Entry, Search};
@@ -97,8 +98,12 @@ impl Search<'_> {
             Assignments::Formulas(values) => {
                 let sides = part.hull()?;
                 let named = Named { names: self.model.variables(), sides: &sides };
-                let value = |formula: &pleach_guards::Expression| {
+                let range = |formula: &pleach_guards::Expression| {
                     formula.range(&named).unwrap_or(Interval::WHOLE)
+                };
+                let value = |value: &NewValue| {
+                    let ranges = value.formulas().map(range);
+                    ranges.reduce(Interval::hull).unwrap_or(Interval::WHOLE)
                 };
                 let values: Vec<Interval> = values.iter().map(value).collect();
                 template.directions().iter().map(|d| over_box(d, &values)).collect()

@@ -1,0 +1,313 @@
+//! Channels: messages between components.
+//!
+//! A message is sent in one jump and arrives in another. In between it is in a [`Channel`], which
+//! is a component like any other: it has locations (how many messages it holds), a clock and a
+//! content for each of them, and takes part in both jumps by labels. So the medium of a
+//! composition is data like the rest, and whatever is asked of components is asked of it: checks,
+//! diagrams, exploration, temporal logic.
+//!
+//! In the terms of Lynch, Segala and Vaandrager
+//! ([doi:10.1016/S0890-5401(03)00067-1](https://doi.org/10.1016/S0890-5401(03)00067-1)) a send is
+//! an output action of the sender and an input action of the channel, an arrival is an output
+//! action of the channel and an input action of the receiver. A channel never keeps its sender from
+//! sending; and where arrivals have a deadline, the receiver has to take a message in every
+//! location.
+//!
+//! A sensor reports every second, and a logger hears of it a quarter of a second later:
+//!
+//! ```
+//! use pleach_automaton::composition::Channel;
+//! use pleach_automaton::{coordinates, from, Automaton, Composition};
+//! use pleach_discrete::vocabulary;
+//! use pleach_guards::always;
+//!
+//! vocabulary! {
+//!     enum Sensor: Location { Measuring = "measuring" }
+//!     enum Logger: Location { Listening = "listening" }
+//!     enum Report: Event { Send = "report" }
+//!     enum Hear: Event { Hear = "hear" }
+//! }
+//! coordinates! {
+//!     struct Level { level = "x", clock = "τ" }
+//!     struct Log { heard = "heard", last = "last" }
+//! }
+//! use {Logger::Listening, Sensor::Measuring};
+//!
+//! let Level { level, clock } = Level::coordinates();
+//! let sensor = Automaton::starting_in(Measuring)
+//!     .initially(Level { level: 0.0, clock: 0.0 })
+//!     .flow(Measuring, [level.rate(3.0), clock.rate(1.0)])
+//!     .transition(
+//!         from(Measuring).on(Report::Send).to(Measuring)
+//!             .must(clock.at_least(1.0))
+//!             .then(clock.becomes(0.0)),
+//!     )
+//!     .build()?;
+//!
+//! let Log { heard, last } = Log::coordinates();
+//! let logger = Automaton::starting_in(Listening)
+//!     .initially(Log { heard: 0.0, last: 0.0 })
+//!     .transition(
+//!         from(Listening).on(Hear::Hear).to(Listening).may(always()).then(last.becomes(&heard)),
+//!     )
+//!     .build()?;
+//!
+//! let both = Composition::builder()
+//!     .add("sensor", &sensor)
+//!     .add("logger", &logger)
+//!     .channel(
+//!         Channel::new("sensor.report", "logger.hear")
+//!             .carrying("sensor.x", "logger.heard")
+//!             .taking(0.25, 0.25),
+//!     )
+//!     .build()?;
+//! let trajectory = both.run(2.0)?;
+//! let jumps: Vec<_> = trajectory.jumps().iter().map(|jump| (jump.at.t, &*jump.label)).collect();
+//! assert_eq!(jumps, [(1.0, "sensor.report"), (1.25, "logger.hear"), (2.0, "sensor.report")]);
+//! assert_eq!(trajectory.value("logger.last", 1.5), Some(3.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use pleach_guards::always;
+
+use super::builder::{CompositionBuilder, CompositionError};
+use crate::automaton::Automaton;
+use crate::coordinates::Coordinate;
+use crate::edge::from;
+use crate::named::{Name, Record};
+use crate::reset::Assignment;
+
+/// Carries the messages of one component to another, in the order in which they are sent; see the
+/// [module](self).
+#[derive(Clone, Debug, PartialEq)]
+#[must_use = "give it to a composition"]
+pub struct Channel {
+    pub(super) output: String,
+    pub(super) inputs: Vec<String>,
+    pub(super) name: String,
+    /// From a coordinate of the sender to an input of the receiver.
+    contents: Vec<(String, String)>,
+    /// The shortest and the longest time that a message takes, in seconds; none if any time.
+    delay: Option<(f64, f64)>,
+    capacity: usize,
+    is_lossy: bool,
+    is_lasting: bool,
+}
+
+impl Channel {
+    /// From the event `output` of a component to the event `input` of a component, both written
+    /// `component.event`. It holds one message at a time, which takes any time: in a run as long as
+    /// the policy says.
+    ///
+    /// Several channels may have one output, which is then sent on all of them. An input belongs to
+    /// one channel.
+    pub fn new(output: &str, input: &str) -> Self {
+        Channel {
+            output: output.to_owned(),
+            inputs: vec![input.to_owned()],
+            name: format!("{output} → {input}"),
+            contents: Vec::new(),
+            delay: None,
+            capacity: 1,
+            is_lossy: false,
+            is_lasting: false,
+        }
+    }
+
+    /// The messages arrive at the event `input` of a component, too, in the same jump. Then the
+    /// arrival has the name of the channel.
+    pub fn and_to(mut self, input: &str) -> Self {
+        self.inputs.push(input.to_owned());
+        self
+    }
+
+    /// The channel as a component is called `name`, instead of `output → input` with
+    /// its first input.
+    pub fn called(mut self, name: &str) -> Self {
+        name.clone_into(&mut self.name);
+        self
+    }
+
+    /// A message carries the value that the sender's coordinate `output` has when it is sent, x⁻;
+    /// the receiver reads it as its coordinate `input` when the message arrives. Both are written
+    /// `component.coordinate`.
+    pub fn carrying(mut self, output: &str, input: &str) -> Self {
+        self.contents.push((output.to_owned(), input.to_owned()));
+        self
+    }
+
+    /// A message takes at least `shortest` ≥ 0 and at most `longest` seconds.
+    pub fn taking(mut self, shortest: f64, longest: f64) -> Self {
+        self.delay = Some((shortest, longest));
+        self
+    }
+
+    /// The channel holds up to `capacity` ≥ 1 messages; what is sent when it is full is lost.
+    pub fn holding(mut self, capacity: usize) -> Self {
+        self.capacity = capacity;
+        self
+    }
+
+    /// The oldest message may be lost at any time.
+    pub fn losing(mut self) -> Self {
+        self.is_lossy = true;
+        self
+    }
+
+    /// A message stays and may arrive any number of times, until another one takes its place. Such
+    /// a channel holds one message, which takes any time.
+    pub fn lasting(mut self) -> Self {
+        self.is_lasting = true;
+        self
+    }
+
+    /// Whether its messages have to arrive in time.
+    pub(super) const fn has_deadline(&self) -> bool {
+        self.delay.is_some() && !self.is_lasting
+    }
+
+    /// The channel as a component, with its labels and connections.
+    pub(super) fn join(
+        &self,
+        builder: CompositionBuilder,
+        send: &str,
+        arrive: &str,
+    ) -> Result<CompositionBuilder, CompositionError> {
+        let refuse = |reason| CompositionError::Channel { channel: self.name.clone(), reason };
+        if let Some((shortest, longest)) = self.delay
+            && !(0.0 <= shortest && shortest <= longest && longest.is_finite())
+        {
+            return Err(refuse("its messages take from a shortest time ≥ 0 to a longest one"));
+        }
+        if self.capacity == 0 {
+            return Err(refuse("it has to hold at least one message"));
+        }
+        if self.is_lasting && (self.delay.is_some() || self.capacity > 1) {
+            return Err(refuse("one message that stays takes any time"));
+        }
+        let automaton = Machine::of(self, send, arrive)
+            .build()
+            .map_err(|_| refuse("a coordinate is carried twice"))?;
+        let mut builder = builder.add(&self.name, &automaton).label(send).label(arrive);
+        for (number, (output, input)) in self.contents.iter().enumerate() {
+            builder = builder
+                .connect(output, &format!("{}.{}", self.name, sent(number)))
+                .connect(&format!("{}.{}", self.name, content(number, 0)), input);
+        }
+        Ok(builder)
+    }
+}
+
+/// The input by which a channel reads what is sent.
+fn sent(number: usize) -> String {
+    format!("sent {}", number + 1)
+}
+
+/// The content of a message, the oldest at place 0.
+fn content(number: usize, place: usize) -> String {
+    format!("content {} of {}", number + 1, place + 1)
+}
+
+/// The time for which a message has been under way.
+fn age(place: usize) -> String {
+    format!("age of {}", place + 1)
+}
+
+/// The automaton of a channel: in the location `n` it holds n messages, the oldest first.
+struct Machine<'a> {
+    channel: &'a Channel,
+    send: Name,
+    arrive: Name,
+    state: Vec<(String, f64)>,
+}
+
+impl<'a> Machine<'a> {
+    fn of(channel: &'a Channel, send: &str, arrive: &str) -> Self {
+        let contents = 0..channel.contents.len();
+        let mut state: Vec<String> = contents.clone().map(sent).collect();
+        for place in 0..channel.capacity {
+            state.extend(contents.clone().map(|number| content(number, place)));
+            state.extend(channel.delay.map(|_| age(place)));
+        }
+        let state = state.into_iter().map(|name| (name, 0.0)).collect();
+        Machine { channel, send: Name::new(send), arrive: Name::new(arrive), state }
+    }
+
+    fn build(&self) -> Result<Automaton<Name, Name, Record>, Box<dyn std::error::Error>> {
+        let Machine { channel, send, arrive, .. } = *self;
+        let holding = |messages: usize| Name::new(&messages.to_string());
+        let mut automaton = Automaton::<Name, Name, Record>::starting_in(holding(0))
+            .initially(Record::new(self.state.iter().map(|(name, value)| (name, *value)))?);
+        for held in 0..=channel.capacity {
+            let here = holding(held);
+            if channel.delay.is_some() {
+                let ages = (0..held).map(|place| self.variable(&age(place)).rate(1.0));
+                automaton = automaton.flow(here, ages.collect::<Vec<_>>());
+            }
+            let sending = match held < channel.capacity {
+                true => {
+                    from(here).on(send).to(holding(held + 1)).may(always()).then(self.put(held))
+                }
+                false if channel.is_lasting => {
+                    from(here).on(send).to(here).may(always()).then(self.put(0))
+                }
+                false => from(here).on(send).to(here).may(always()),
+            };
+            automaton = automaton.transition(sending);
+            if held == 0 {
+                continue;
+            }
+            let arrival = from(here).on(arrive);
+            automaton = match channel.delay {
+                None if channel.is_lasting => automaton.transition(arrival.to(here).may(always())),
+                None => {
+                    let arrival = arrival.to(holding(held - 1)).may(always());
+                    automaton.transition(arrival.then(self.take(held)))
+                }
+                Some((shortest, longest)) => {
+                    let (age, arrival) = (self.variable(&age(0)), arrival.to(holding(held - 1)));
+                    let late = arrival.must(age.at_least(longest)).then(self.take(held));
+                    let early = age.at_least(shortest) & age.less_than(longest);
+                    let early = arrival.may(early).then(self.take(held)).priority(1);
+                    let automaton = automaton.transition(late);
+                    if shortest < longest { automaton.transition(early) } else { automaton }
+                }
+            };
+            if channel.is_lossy {
+                let lost = from(here).on(Name::new("lose")).to(holding(held - 1)).may(always());
+                automaton = automaton.transition(lost.then(self.take(held)));
+            }
+        }
+        Ok(automaton.build()?)
+    }
+
+    fn variable(&self, name: &str) -> Coordinate<Record> {
+        Coordinate::new(crate::named::kept(name))
+    }
+
+    /// A message is put at `place`.
+    fn put(&self, place: usize) -> Vec<Assignment<Record>> {
+        let contents = 0..self.channel.contents.len();
+        contents
+            .map(|number| {
+                self.variable(&content(number, place)).becomes(self.variable(&sent(number)))
+            })
+            .chain(self.channel.delay.map(|_| self.variable(&age(place)).becomes(0.0)))
+            .collect()
+    }
+
+    /// The oldest of `held` messages is taken away, and the others move up.
+    fn take(&self, held: usize) -> Vec<Assignment<Record>> {
+        let contents = self.channel.contents.len();
+        let names = |place: usize| {
+            let ages = self.channel.delay.map(|_| age(place));
+            (0..contents).map(move |number| content(number, place)).chain(ages)
+        };
+        let moved = (1..held).flat_map(|place| {
+            let pairs = names(place - 1).zip(names(place));
+            pairs.map(|(to, from)| self.variable(&to).becomes(self.variable(&from)))
+        });
+        let emptied = names(held - 1).map(|name| self.variable(&name).becomes(0.0));
+        moved.chain(emptied).collect()
+    }
+}

@@ -1,0 +1,74 @@
+//! Why a simulation cannot begin, cannot go on, or stops.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::composition::CompositionError;
+use crate::executor::{InvalidLimit, Limit, Reason};
+use crate::zeno::Zeno;
+
+/// Why a simulation cannot begin.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// The automaton makes no component.
+    #[error(transparent)]
+    Composition(#[from] CompositionError),
+    /// The horizon or the limit of rounds makes no sense.
+    #[error(transparent)]
+    Limit(#[from] InvalidLimit),
+    /// A tolerance or the resolution makes no sense.
+    #[error("the settings cannot be used: {0}")]
+    Settings(String),
+}
+
+/// What keeps a run from going on.
+#[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Failure {
+    /// A guard, an invariant or a reset has no value.
+    #[error("component `{component}` in location `{location}`, {part}: {reason}")]
+    Formula {
+        /// The component.
+        component: String,
+        /// Its location.
+        location: String,
+        /// What has no value.
+        part: String,
+        /// Why.
+        reason: String,
+    },
+    /// The flow cannot be followed any farther.
+    #[error("the flow in {locations} fails: {reason}")]
+    Flow {
+        /// The locations of the components.
+        locations: String,
+        /// Where and why.
+        reason: String,
+    },
+}
+
+/// Why a simulation stops by itself.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Halt {
+    /// A formula has no value, or a flow cannot be followed.
+    #[error(transparent)]
+    Failure(#[from] Failure),
+    /// It has used up what it may.
+    #[error(transparent)]
+    Limit(#[from] Limit),
+    /// Jumps accumulate.
+    #[error("jumps accumulate at {} s", .0.accumulation)]
+    Zeno(Zeno),
+}
+
+impl From<Halt> for Reason<Failure> {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Failure(failure) => Reason::Finished(failure),
+            Halt::Limit(limit) => Reason::Limit(limit),
+            Halt::Zeno(zeno) => Reason::Zeno(zeno),
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Flights of groups: planned, ended, and what comes of them.
+
+use pleach_continuous::flow::VectorField;
+use pleach_guards::{Enclosure, Interval};
+
+use super::{Due, Failure, Halt, Simulation};
+use crate::composition::field::Field;
+use crate::composition::flight::{Flight, Plan};
+use crate::composition::jumps::Standing;
+use crate::composition::tension::Readiness;
+use crate::composition::{Accumulation, Policy};
+use crate::executor::Sliding;
+use crate::moment::Moment;
+use crate::zeno::{Zeno, ZenoDetector};
+
+/// The largest part of the state by which a landing may be outside an invariant. Margins of smooth
+/// guards stay far below it; those that are only signs are not believed.
+const LARGEST_ALLOWANCE: f64 = 1e-9;
+
+impl<'a> Simulation<'a> {
+    /// Plans the flow of a group from here on, unless that is done.
+    pub(super) fn plan(&mut self, group: usize) -> Result<(), Halt> {
+        if self.groups[group].flight.is_some() {
+            return Ok(());
+        }
+        let policy = self.policy_of(group);
+        let mut flight = self.fly(group, policy)?;
+        let draws = matches!(self.settings.policy, Policy::Random { .. });
+        if draws && policy == Policy::Late && flight.halt.is_none() {
+            let first = self.fly(group, Policy::Early)?.duration.seconds();
+            let last = flight.duration.seconds();
+            if first < last {
+                let share = self.groups[group].chance.share();
+                flight = flight.cut(first + share * (last - first));
+                self.groups[group].is_eager = true;
+            }
+        }
+        self.queue.insert(Due { at: flight.due(), group });
+        self.groups[group].flight = Some(flight);
+        Ok(())
+    }
+
+    /// The flow of a group from here on.
+    fn fly(&mut self, group: usize, policy: Policy) -> Result<Flight, Halt> {
+        let parts = &self.composition.groups[group];
+        let left = Moment::from(self.horizon) - self.now;
+        let plan = Plan {
+            group: parts,
+            standing: Standing { is_local: true, ..self.standing() },
+            settings: &self.settings,
+            policy,
+            allowance: self.groups[group].allowance,
+            since: self.now,
+            start: parts.slots.iter().map(|&slot| self.values[slot]).collect(),
+            // A little more, for what happens at the instant nearest to the horizon.
+            limit: left.seconds() + f64::EPSILON * self.horizon,
+        };
+        let mut steps = self.steps;
+        let flight = plan.fly(&mut steps);
+        self.steps = steps;
+        flight
+    }
+
+    /// Forgets the flight that is planned.
+    pub(super) fn ground(&mut self, group: usize) {
+        if let Some(flight) = self.groups[group].flight.take() {
+            self.queue.remove(&Due { at: flight.due(), group });
+        }
+    }
+
+    /// Ends the flight of a group now.
+    pub(super) fn land(&mut self, group: usize) -> Result<(), Halt> {
+        let Some(flight) = self.groups[group].flight.take() else { return Ok(()) };
+        let parts = &self.composition.groups[group];
+        for (&slot, &value) in parts.slots.iter().zip(&flight.landing) {
+            self.values[slot] = value;
+        }
+        self.groups[group].allowance = self.allowance_of(group, &flight.landing)?;
+        self.awake.insert(group);
+        let duration = flight.duration.seconds();
+        let halt = flight.halt.clone();
+        if let Some(record) = &mut self.record {
+            record.flown(group, flight);
+        }
+        if let Some(halt) = halt {
+            return Err(halt);
+        }
+        match self.groups[group].zeno.after_flow(self.now.seconds(), duration) {
+            Some(zeno) => self.accumulate(group, zeno),
+            None => Ok(()),
+        }
+    }
+
+    /// Does what the model or the settings say where jumps of a group accumulate.
+    fn accumulate(&mut self, group: usize, zeno: Zeno) -> Result<(), Halt> {
+        let components = &self.composition.components;
+        let members = || self.composition.groups[group].components.iter();
+        let going_on = members().find_map(|&one| Some((one, components[one].continuation?)));
+        let own = members().find_map(|&one| components[one].accumulation);
+        match (going_on, own.unwrap_or(self.settings.accumulation)) {
+            (Some(continuation), _) => self.pass_limit(group, zeno, continuation),
+            (None, Accumulation::End) => return Err(Halt::Zeno(zeno)),
+            (None, Accumulation::Off) => {}
+        }
+        Ok(())
+    }
+
+    /// Lets time go on to the limit point of the group's jumps, where it takes what it is made to.
+    fn pass_limit(&mut self, group: usize, zeno: Zeno, continuation: (usize, usize)) {
+        let field = self.field(group, &self.locations);
+        let rest = zeno.accumulation - self.now.seconds();
+        self.groups[group].zeno = ZenoDetector::new(self.horizon);
+        self.groups[group].compelled = Some(continuation);
+        if rest > 0.0 {
+            let flight = Flight::of_lines(self.now, rest, &field);
+            self.awake.remove(&group);
+            self.queue.insert(Due { at: flight.due(), group });
+            self.groups[group].flight = Some(flight);
+        }
+    }
+
+    /// The flows of a group in these locations, from the present state on.
+    pub(super) fn field(&self, group: usize, locations: &[usize]) -> Field<'a> {
+        let parts = &self.composition.groups[group];
+        let start = parts.slots.iter().map(|&slot| self.values[slot]).collect();
+        Field::of(self.composition, parts, locations, start)
+    }
+
+    /// Whether the last two jumps go back and forth over a boundary to which the flows of both
+    /// sides lead.
+    pub(super) fn sliding(&self) -> Option<Sliding> {
+        let [Some(there), Some(back)] = self.latest else { return None };
+        let returns = (there.source, there.target) == (back.target, back.source);
+        if there.component != back.component || !returns || there.source == there.target {
+            return None;
+        }
+        let component = &self.composition.components[there.component];
+        let guard = &component.place(there.source).leaving[there.transition].guard;
+        let margins = |location: usize| -> Vec<f64> {
+            let mut locations = self.locations.clone();
+            locations[there.component] = location;
+            let field = self.field(component.group, &locations);
+            let mut rates = vec![0.0; field.start.len()];
+            field.rates(0.0, &field.start, &mut rates);
+            let point = |(value, rate): (&f64, &f64)| {
+                let value = Interval::point(*value);
+                Enclosure { middle: value, range: value, rate: Interval::point(*rate) }
+            };
+            let states: Vec<Enclosure> = field.start.iter().zip(&rates).map(point).collect();
+            let comparisons = guard.tracker.comparisons().iter();
+            comparisons
+                .map(|one| one.margin(&states, &component.places, 0.0).rate.midpoint())
+                .collect()
+        };
+        let sides = margins(there.source).into_iter().zip(margins(there.target));
+        let (here, beyond) =
+            sides.into_iter().find(|(here, beyond)| *here > 0.0 && *beyond < 0.0)?;
+        Some(Sliding {
+            component: there.component,
+            locations: [there.source, there.target],
+            share: here / (here - beyond),
+        })
+    }
+
+    /// How far beyond the boundary of its guard a flow has landed, as far as that is rounding.
+    fn allowance_of(&self, group: usize, landing: &[f64]) -> Result<f64, Failure> {
+        let forced = self.conditions(group).any_transition(&self.values, Readiness::Forced)?;
+        let beyond = forced.margin.max(0.0);
+        let largest = landing.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
+        Ok(if beyond.is_finite() { beyond.min(LARGEST_ALLOWANCE * largest) } else { 0.0 })
+    }
+}

@@ -1,0 +1,82 @@
+//! Whole runs, from the initial state to the end, with a record.
+
+use pleach_discrete::{Event, Location};
+
+use super::{Simulation, SimulationError};
+use crate::automaton::Automaton;
+use crate::composition::record::Record;
+use crate::composition::{Composition, Settings};
+use crate::coordinates::Coordinates;
+use crate::executor::{Ending, Executor, Reason};
+use crate::trajectory::Trajectory;
+
+impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
+    /// Runs the automaton by itself, from its initial state, for `horizon` seconds.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulationError`] if it has no initial state, or the horizon is negative or not finite.
+    /// What happens on the way is told by the [ending](Trajectory::ending) of the trajectory.
+    pub fn run(&self, horizon: f64) -> Result<Trajectory, SimulationError> {
+        Composition::builder().add("automaton", self).build()?.run(horizon)
+    }
+
+    /// Runs the automaton by itself with the given settings.
+    ///
+    /// # Errors
+    ///
+    /// As for [`run`](Self::run), and if the settings make no sense.
+    pub fn run_with(
+        &self,
+        settings: Settings,
+        horizon: f64,
+    ) -> Result<Trajectory, SimulationError> {
+        Composition::builder().add("automaton", self).build()?.run_with(settings, horizon)
+    }
+
+    /// Runs the automaton by itself, from `state`, for `horizon` seconds.
+    ///
+    /// # Errors
+    ///
+    /// As for [`run`](Self::run).
+    pub fn run_from(&self, state: S, horizon: f64) -> Result<Trajectory, SimulationError> {
+        Composition::builder().add_in("automaton", self, state).build()?.run(horizon)
+    }
+}
+
+impl Composition {
+    /// Runs the composition from its initial state for `horizon` seconds.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulationError`] if the horizon is negative or not finite.
+    pub fn run(&self, horizon: f64) -> Result<Trajectory, SimulationError> {
+        self.run_with(Settings::default(), horizon)
+    }
+
+    /// Runs the composition with the given settings.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulationError`] if the horizon or the settings make no sense.
+    pub fn run_with(
+        &self,
+        settings: Settings,
+        horizon: f64,
+    ) -> Result<Trajectory, SimulationError> {
+        let executor = Executor::new(horizon, settings.round_limit)?.without_zeno_detection();
+        let mut simulation = Simulation::new(self, settings, horizon)?;
+        simulation.record = Some(Record::of(self));
+        let ending = match executor.run(&mut simulation, &mut ()) {
+            Ok(Ending { at, reason }) => {
+                let reason = match (reason.without_finish(), simulation.sliding()) {
+                    (Reason::JumpLimit, Some(sliding)) => Reason::Sliding(sliding),
+                    (reason, _) => reason,
+                };
+                Ending { at, reason }
+            }
+            Err(halt) => Ending { at: simulation.hybrid_time(), reason: halt.into() },
+        };
+        Ok(simulation.into_trajectory(ending))
+    }
+}

@@ -1,0 +1,263 @@
+//! What is to hold in every state of the protocol, and where every mission is to lead.
+//!
+//! The algebra is that of [`tree`], [`team`], [`duty`] and [`election`]; here it is read
+//! off a state. While two robots exchange duties there is a moment at which one has taken over
+//! and the other does not know yet: what counts is the [duty in effect](duties).
+
+use pleach_automaton::network::RobotView;
+use pleach_automaton::network::beacon::Notice;
+use pleach_automaton::network::duty::Duty;
+use pleach_discrete::network::{Anchor, Phase, Post, PostId, PostKind, Role};
+
+use super::protocol::{Protocol, State};
+use crate::Property;
+use pleach_verify::network::{duty, election, team, tree};
+
+/// The properties that hold in every state.
+pub const ALWAYS: &[Property<Protocol>] = &[
+    Property { name: "the tree is rooted", holds: tree_is_rooted },
+    Property { name: "robots with a duty are in the tree", holds: workers_are_in_the_tree },
+    Property { name: "at most one robot leads", holds: at_most_one_leads },
+    Property { name: "the primary team is one chain", holds: primary_team_is_a_chain },
+    Property { name: "posts with children are held", holds: bearing_posts_are_held },
+    Property { name: "serviced tasks are held", holds: serviced_tasks_are_held },
+    Property { name: "no task is held twice", holds: no_task_is_held_twice },
+    Property {
+        name: "junctions and serviced tasks are occupied",
+        holds: junctions_and_tasks_are_occupied,
+    },
+    Property { name: "elections agree", holds: elections_agree },
+    Property { name: "the best bidder is elected", holds: the_best_bidder_is_elected },
+    Property { name: "exactly one team is active", holds: exactly_one_team_is_active },
+    Property { name: "subgroups agree", holds: subgroups_agree },
+    Property { name: "subgroups partition the path", holds: subgroups_partition_the_path },
+    Property { name: "teams are disjoint", holds: teams_are_disjoint },
+];
+
+/// The property with this name.
+pub fn property(name: &str) -> Option<&'static Property<Protocol>> {
+    ALWAYS.iter().find(|property| property.name == name)
+}
+
+/// Whether a robot has given its duty away and does not know it yet: the mover has taken it.
+pub fn has_handed_over(protocol: &Protocol, state: &State, robot: RobotView<'_>) -> bool {
+    let Some(reply) = robot.beacon().reply.filter(|reply| reply.accepted.is_some()) else {
+        return false;
+    };
+    let mover = protocol.robots(state).nth(reply.to);
+    mover.is_some_and(|mover| reply.is_heard(mover.beacon().offer.as_ref()))
+}
+
+/// The duty in effect of every robot: the one that it has or, if that is given away, the one
+/// that it gets in return.
+pub fn duties(protocol: &Protocol, state: &State) -> Vec<Duty> {
+    protocol
+        .robots(state)
+        .map(|robot| match robot.taking() {
+            Some(&taking) if has_handed_over(protocol, state, robot) => taking,
+            _ => *robot.duty(),
+        })
+        .collect()
+}
+
+fn posts(protocol: &Protocol, state: &State) -> Vec<Post> {
+    duties(protocol, state).iter().filter_map(|duty| duty.post().copied()).collect()
+}
+
+fn parents(protocol: &Protocol, state: &State) -> Vec<Option<usize>> {
+    protocol.robots(state).map(RobotView::tree_parent).collect()
+}
+
+/// From parent to parent, every robot that has one comes to an access point.
+pub fn tree_is_rooted(protocol: &Protocol, state: &State) -> bool {
+    tree::is_rooted(&parents(protocol, state))
+}
+
+/// Every robot that is not redundant has a parent.
+pub fn workers_are_in_the_tree(protocol: &Protocol, state: &State) -> bool {
+    let parents = parents(protocol, state);
+    let mut robots = protocol.robots(state).zip(&parents);
+    robots.all(|(robot, &parent)| tree::is_member_unless_redundant(robot.role(), parent))
+}
+
+/// At most one robot is the leader.
+pub fn at_most_one_leads(protocol: &Protocol, state: &State) -> bool {
+    let roles: Vec<Role> = protocol
+        .robots(state)
+        .filter(|robot| !has_handed_over(protocol, state, *robot))
+        .map(RobotView::role)
+        .collect();
+    team::has_at_most_one_leader(&roles)
+}
+
+/// Every post of the primary team but the leader's follows another one of it, no two follow the
+/// same, and each has one holder.
+pub fn primary_team_is_a_chain(protocol: &Protocol, state: &State) -> bool {
+    let team: Vec<Post> =
+        posts(protocol, state).into_iter().filter(|post| post.is_primary()).collect();
+    let count = |id: PostId| team.iter().filter(|post| post.id == id).count();
+    team.iter().all(|post| {
+        let rivals = team.iter().filter(|other| other.kind == post.kind).count();
+        count(post.id) == 1
+            && rivals == 1
+            && match post.kind {
+                // The team may have been dissolved where the notice has arrived already.
+                PostKind::Primary { follows: Some(ahead) } => {
+                    posts(protocol, state).iter().any(|other| other.id == ahead)
+                }
+                _ => true,
+            }
+    })
+}
+
+/// A post with the post of a robot with a duty as a child is held, unless a subgroup of Σ is on its
+/// way: then its robots stand for the posts that they have left.
+pub fn bearing_posts_are_held(protocol: &Protocol, state: &State) -> bool {
+    let is_on_its_way = |duty: &Duty| matches!(duty, Duty::Shifting(_));
+    if duties(protocol, state).iter().any(is_on_its_way) {
+        return true;
+    }
+    let posts = posts(protocol, state);
+    posts.iter().filter(|post| !post.is_redundant()).all(|post| match post.parent {
+        Some(Anchor::Post(parent)) => posts.iter().any(|other| other.id == parent),
+        _ => true,
+    })
+}
+
+/// How many tasks are serviced, as the node knows that has heard most.
+fn serviced(protocol: &Protocol, state: &State) -> usize {
+    protocol
+        .locals(state)
+        .map(|local| match local.notice() {
+            Notice::Task { task, .. } => *task,
+            Notice::Serviced { task } => task + 1,
+            _ => local.robot().and_then(RobotView::current_task).unwrap_or_default(),
+        })
+        .max()
+        .unwrap_or_default()
+}
+
+fn holders(protocol: &Protocol, state: &State, task: usize) -> usize {
+    posts(protocol, state).iter().filter(|post| post.task == Some(task)).count()
+}
+
+/// Every task that has been serviced is the duty of a robot.
+pub fn serviced_tasks_are_held(protocol: &Protocol, state: &State) -> bool {
+    (0..serviced(protocol, state)).all(|task| holders(protocol, state, task) > 0)
+}
+
+/// No task is the duty of two robots, but while one relieves the other on Σ.
+pub fn no_task_is_held_twice(protocol: &Protocol, state: &State) -> bool {
+    let relieves =
+        |robot: RobotView<'_>| robot.duty().place().is_some() && robot.phase() == Phase::Shift;
+    protocol.robots(state).any(relieves)
+        || (0..serviced(protocol, state)).all(|task| holders(protocol, state, task) < 2)
+}
+
+/// A robot stands at every serviced task, and at the place of every post, fixed or waiting on Σ,
+/// on which two branches hang: also while one robot relieves another of it.
+pub fn junctions_and_tasks_are_occupied(protocol: &Protocol, state: &State) -> bool {
+    let places = &protocol.configuration().places;
+    let duties = duties(protocol, state);
+    let bears_branches = |own: PostId| {
+        let children = duties.iter().filter_map(Duty::post).filter(|post| post.is_child_of(own));
+        children.filter(|post| !post.is_redundant()).count() > 1
+    };
+    let junctions = duties
+        .iter()
+        .filter_map(Duty::station)
+        .filter(|station| station.post.is_fixed() && bears_branches(station.post.id))
+        .map(|station| places.place_at(station.reference));
+    let tasks = places.task_positions().into_iter().take(serviced(protocol, state));
+    let needed: Vec<usize> =
+        junctions.chain(tasks.map(|position| places.place_at(position))).collect();
+    let robots: Vec<usize> =
+        (0..places.robots()).map(|robot| protocol.place_of(state, robot)).collect();
+    duty::are_occupied(&needed, &robots)
+}
+
+/// Robots that know an election to be over know the same winner.
+pub fn elections_agree(protocol: &Protocol, state: &State) -> bool {
+    let over: Vec<_> = protocol.robots(state).filter_map(RobotView::concluded_election).collect();
+    over.iter().all(|(number, best)| over.iter().all(|(n, b)| n != number || b == best))
+}
+
+/// The elected robot has bid best of all that took part, ties going to the higher index.
+///
+/// Robots that have begun a later election remember no older bid of theirs: then the word has
+/// gone on, and the election was looked at before.
+pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
+    protocol.robots(state).filter_map(RobotView::concluded_election).all(|(number, winner)| {
+        let took_part = |robot: RobotView<'_>| robot.election_number() == Some(number);
+        let bids: Vec<_> = protocol.robots(state).map(|robot| robot.own_bid(number)).collect();
+        !protocol.robots(state).all(took_part) || election::is_won_by_best(&bids, winner)
+    })
+}
+
+/// While Σ is walked one team is active: who moves for a task is in the primary team or in a
+/// subgroup, all in the same one.
+pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
+    let of = |is_member: &dyn Fn(RobotView<'_>) -> bool| -> Vec<usize> {
+        let robots = protocol.robots(state).enumerate();
+        robots.filter(|(_, robot)| is_member(*robot)).map(|(id, _)| id).collect()
+    };
+    let is_shifting = |robot: RobotView<'_>| matches!(robot.duty(), Duty::Shifting(_));
+    let moving =
+        of(&|robot| robot.is_active() && (is_shifting(robot) || robot.duty().is_primary()));
+    let primary_team = of(&|robot| robot.duty().is_primary());
+    let known = protocol.robots(state).filter_map(agreed).max_by_key(|&(number, _)| number);
+    let subgroups: Vec<Vec<usize>> = known.map_or_else(Vec::new, |(_, groups)| {
+        let has_left = |robot: RobotView<'_>, places: std::ops::Range<usize>| {
+            is_shifting(robot) && robot.duty().place().is_some_and(|place| places.contains(&place))
+        };
+        groups.iter().map(|group| of(&|robot| has_left(robot, group.places()))).collect()
+    });
+    let subgroups: Vec<&[usize]> = subgroups.iter().map(Vec::as_slice).collect();
+    team::exactly_one_is_active(&moving, &primary_team, &subgroups)
+}
+
+/// The path that a robot has agreed on, by its number, and its subgroups.
+fn agreed(robot: RobotView<'_>) -> Option<(u32, &[pleach_discrete::network::Subgroup])> {
+    let number = robot.beacon().agreement?.number();
+    (robot.phase() == Phase::Shift).then(|| (number, robot.subgroups()))
+}
+
+/// The subgroups of a path that the robots compute, each alone, are the same.
+pub fn subgroups_agree(protocol: &Protocol, state: &State) -> bool {
+    let known: Vec<_> = protocol.robots(state).filter_map(agreed).collect();
+    known
+        .iter()
+        .all(|(number, groups)| known.iter().all(|(n, others)| n != number || groups == others))
+}
+
+/// The subgroups partition Σ before its last break point.
+pub fn subgroups_partition_the_path(protocol: &Protocol, state: &State) -> bool {
+    protocol.robots(state).filter(|robot| robot.phase() == Phase::Shift).all(|robot| {
+        let (Some(path), groups) = (robot.path(), robot.subgroups()) else { return true };
+        let places: Vec<usize> = (0..path.len()).collect();
+        let points: Vec<usize> = groups
+            .iter()
+            .map(|group| group.first)
+            .chain(groups.last().map(|group| group.end))
+            .collect();
+        let formed: Vec<&[usize]> = groups.iter().map(|group| &places[group.places()]).collect();
+        groups.is_empty()
+            || team::subgroups_partition(&places, &points, &formed)
+                && team::break_points_divide(&places, &points)
+    })
+}
+
+/// No robot that waits on Σ before its last place, or is on its way along it, is in the primary
+/// team.
+pub fn teams_are_disjoint(protocol: &Protocol, state: &State) -> bool {
+    protocol.robots(state).all(|robot| {
+        let Some(path) = robot.path() else { return true };
+        let before_last = robot.duty().place().is_some_and(|place| place + 1 < path.len());
+        !(before_last && robot.duty().is_primary())
+    })
+}
+
+/// Whether the mission has ended, every task serviced or with a reason, and every robot knows.
+pub fn has_ended(protocol: &Protocol, state: &State) -> bool {
+    protocol.robots(state).all(|robot| robot.phase() == Phase::Ended)
+}

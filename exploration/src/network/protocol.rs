@@ -1,0 +1,428 @@
+//! The protocol of the network as a model: robots on a graph of places, and a medium.
+
+use std::fmt;
+use std::sync::Arc;
+
+use pleach_automaton::network::beacon::Notice;
+use pleach_automaton::network::robot::RobotError;
+use pleach_automaton::network::{AccessPoint, Message, Robot, RobotView, Site, SiteError};
+use pleach_automaton::node::Input;
+use pleach_discrete::network::NodeId;
+
+use super::medium::{Copied, Faults, Medium};
+use super::node::{BeaconId, Local, LocalId, Node, Nodes, Stimulus};
+use super::places::{PlaceGraph, PlaceId};
+use crate::Model;
+
+/// What is explored: who stands where, how messages go, and how often a robot is in another's way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Configuration {
+    /// The graph.
+    pub places: PlaceGraph,
+    /// The medium.
+    pub medium: Medium,
+    /// How many times a parked robot is in the way of a mover at the same place.
+    pub contacts: u32,
+}
+
+/// Something that happens in the network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Action {
+    /// All nodes send, then all receive.
+    Round,
+    /// The same, but `to` does not hear `from`.
+    Lose {
+        /// The sender.
+        from: NodeId,
+        /// The receiver.
+        to: NodeId,
+    },
+    /// The same, but `to` hears of `from` what it heard last.
+    Delay {
+        /// The sender.
+        from: NodeId,
+        /// The receiver.
+        to: NodeId,
+    },
+    /// The same, and a copy of what `to` hears of `from` will arrive later.
+    Copy {
+        /// The sender.
+        from: NodeId,
+        /// The receiver.
+        to: NodeId,
+    },
+    /// The same, but the copy arrives in place of what `from` says.
+    Echo {
+        /// The sender.
+        from: NodeId,
+        /// The receiver.
+        to: NodeId,
+    },
+    /// A node hears all nodes in range.
+    Listen(NodeId),
+    /// `to` hears what `from` says now or, if it is out of range, nothing of it any more.
+    Hear {
+        /// The sender.
+        from: NodeId,
+        /// The receiver.
+        to: NodeId,
+    },
+    /// A node thinks over what it knows.
+    Think(NodeId),
+    /// A robot comes to the next place on its way.
+    Move(NodeId),
+    /// A parked robot at the same place does not let a mover pass.
+    Touch(NodeId),
+    /// No node has news: a control period begins.
+    Period,
+    /// The user announces a task, or learns that there is none left.
+    Announce,
+}
+
+impl fmt::Display for Action {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Action::Round => write!(f, "all nodes hear all nodes in range"),
+            Action::Lose { from, to } => write!(f, "in a round {to} does not hear {from}"),
+            Action::Delay { from, to } => {
+                write!(f, "in a round {to} hears of {from} what it heard before")
+            }
+            Action::Copy { from, to } => {
+                write!(f, "in a round what {to} hears of {from} is copied on the way")
+            }
+            Action::Echo { from, to } => {
+                write!(f, "in a round {to} hears the copy of what {from} said")
+            }
+            Action::Listen(node) => write!(f, "{node} hears all nodes in range"),
+            Action::Hear { from, to } => write!(f, "{to} hears {from}"),
+            Action::Think(node) => write!(f, "{node} thinks"),
+            Action::Move(robot) => write!(f, "{robot} moves on"),
+            Action::Touch(robot) => write!(f, "{robot} cannot pass a robot at its place"),
+            Action::Period => write!(f, "a control period begins"),
+            Action::Announce => write!(f, "the user speaks"),
+        }
+    }
+}
+
+/// The state of the network: the state of every node, and what the medium and the bodies may
+/// still do. Its nodes are those of the [`Protocol`] that made it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct State {
+    /// Robots first, then access points.
+    pub locals: Arc<[LocalId]>,
+    /// Contacts left.
+    contacts: u32,
+    /// Faults of the medium left.
+    pub(super) faults: Faults,
+    /// Copies of messages that are on their way.
+    pub(super) copies: Vec<Copied>,
+    /// How many rounds of its period have passed, where there are periods.
+    pub(super) round: u32,
+    /// The robots that have moved in this period, as bits, where there are periods.
+    pub(super) moved: u32,
+}
+
+/// Why a configuration cannot be explored.
+#[derive(Debug, thiserror::Error)]
+pub enum ProtocolError {
+    /// The scenario of the places is not valid.
+    #[error(transparent)]
+    Site(#[from] SiteError),
+    /// A node cannot go on.
+    #[error(transparent)]
+    Node(#[from] RobotError),
+}
+
+/// The composed protocol as a model to explore.
+#[derive(Debug)]
+pub struct Protocol {
+    configuration: Configuration,
+    nodes: Nodes,
+    initial: State,
+}
+
+impl Protocol {
+    /// The network of a configuration when the tree stands and the first task is about to be
+    /// announced.
+    ///
+    /// # Errors
+    /// When the network cannot be made, or a robot cannot go on.
+    pub fn new(configuration: Configuration) -> Result<Self, ProtocolError> {
+        let places = configuration.places.clone();
+        let scenario = places.scenario();
+        let site = Arc::new(Site::new(&scenario)?.measured_by(places.clone()));
+        let positions = (0..places.count()).map(|place| places.position(place)).collect();
+        let mut nodes = Nodes::new(positions);
+        let robots = scenario.robot.iter().enumerate().map(|(id, start)| {
+            let robot = Robot::new(id, start.position.into(), start.rate, Arc::clone(&site));
+            Node::Robot(Box::new(robot))
+        });
+        let access_points = (0..scenario.access_point.len())
+            .map(|number| AccessPoint::new(number, Arc::clone(&site)))
+            .map(|access_point| Node::AccessPoint(Box::new(access_point)));
+        let user = scenario.robot.len() + scenario.access_point.len();
+        let request = Message::Request(places.task_positions().into());
+        let mut locals = Vec::with_capacity(user);
+        for mut node in robots.chain(access_points) {
+            // The first control period begins, and has no end until the explorer says so.
+            node.step(Input::Tick)?;
+            if locals.len() == scenario.robot.len() {
+                node.step(Input::Heard { from: user, message: &request })?;
+            }
+            locals.push(nodes.take_up(node, Vec::new()));
+        }
+        let locals = locals.into();
+        let Configuration { medium, contacts, .. } = configuration;
+        let round = medium.period().unwrap_or(0);
+        let faults = medium.faults();
+        let initial = State { locals, contacts, faults, copies: Vec::new(), round, moved: 0 };
+        let mut protocol = Protocol { configuration, nodes, initial };
+        protocol.settle()?;
+        Ok(protocol)
+    }
+
+    /// Rounds until no node has news.
+    fn settle(&mut self) -> Result<(), RobotError> {
+        loop {
+            let mut next = self.initial.clone();
+            let heard = self.all_heard(&next);
+            next.locals = self.each(&next, |node| Stimulus::Hear(heard[node].clone()))?;
+            if next == self.initial {
+                return Ok(());
+            }
+            self.initial = next;
+        }
+    }
+
+    /// What is explored.
+    pub const fn configuration(&self) -> &Configuration {
+        &self.configuration
+    }
+
+    /// The nodes of a state, robots first.
+    pub fn locals<'a>(&'a self, state: &'a State) -> impl Iterator<Item = &'a Local> {
+        state.locals.iter().map(|&id| self.nodes.local(id))
+    }
+
+    /// The robots of a state.
+    pub fn robots<'a>(&'a self, state: &'a State) -> impl Iterator<Item = RobotView<'a>> {
+        self.locals(state).filter_map(Local::robot)
+    }
+
+    /// All states of single nodes.
+    pub const fn nodes(&self) -> &Nodes {
+        &self.nodes
+    }
+
+    /// Where a node is.
+    pub fn place_of(&self, state: &State, node: NodeId) -> PlaceId {
+        match self.nodes.local(state.locals[node]).robot() {
+            Some(robot) => self.configuration.places.place_at(robot.position()),
+            None => node,
+        }
+    }
+
+    // ---- Messages ----------------------------------------------------------------------------
+
+    pub(super) fn is_in_range(&self, state: &State, one: NodeId, other: NodeId) -> bool {
+        let (places, robots) = (&self.configuration.places, self.configuration.places.robots());
+        let is_wire = one >= robots && other >= robots;
+        let linked = || places.are_linked(self.place_of(state, one), self.place_of(state, other));
+        one != other && (is_wire || linked())
+    }
+
+    /// What a node hears if it hears all nodes in range.
+    pub(super) fn all_heard_by(&self, state: &State, receiver: NodeId) -> Vec<BeaconId> {
+        (0..state.locals.len())
+            .filter(|&sender| self.is_in_range(state, sender, receiver))
+            .map(|sender| self.nodes.local(state.locals[sender]).beacon)
+            .collect()
+    }
+
+    pub(super) fn all_heard(&self, state: &State) -> Vec<Vec<BeaconId>> {
+        (0..state.locals.len()).map(|receiver| self.all_heard_by(state, receiver)).collect()
+    }
+
+    /// What `to` knows if it now hears `from`; none if there is nothing new.
+    pub(super) fn heard_from(
+        &self,
+        state: &State,
+        from: NodeId,
+        to: NodeId,
+    ) -> Option<Vec<BeaconId>> {
+        let sender_of = |&id: &BeaconId| self.nodes.beacon(id).sender;
+        let mut heard = self.still_heard_by(state, to);
+        let said = self.nodes.local(state.locals[from]).beacon;
+        let known = heard.binary_search_by_key(&from, sender_of);
+        match (known, self.is_in_range(state, from, to)) {
+            (Ok(at), true) if heard[at] != said => heard[at] = said,
+            (Err(at), true) => heard.insert(at, said),
+            (Ok(at), false) => {
+                heard.remove(at);
+            }
+            _ => return None,
+        }
+        Some(heard)
+    }
+
+    // ---- Steps of nodes ----------------------------------------------------------------------
+
+    pub(super) fn each(
+        &mut self,
+        state: &State,
+        stimulus: impl Fn(NodeId) -> Stimulus,
+    ) -> Result<Arc<[LocalId]>, RobotError> {
+        state
+            .locals
+            .iter()
+            .enumerate()
+            .map(|(node, &local)| self.nodes.after(local, stimulus(node)))
+            .collect()
+    }
+
+    pub(super) fn one(
+        &mut self,
+        state: &State,
+        node: NodeId,
+        stimulus: Stimulus,
+    ) -> Result<State, RobotError> {
+        let mut next = state.clone();
+        let local = self.nodes.after(state.locals[node], stimulus)?;
+        if local != state.locals[node] {
+            let mut locals = state.locals.to_vec();
+            locals[node] = local;
+            next.locals = locals.into();
+        }
+        Ok(next)
+    }
+
+    // ---- Bodies ------------------------------------------------------------------------------
+
+    /// The next place on the way of a robot that no link of the tree keeps from going there.
+    pub fn next_place(&self, state: &State, robot: NodeId) -> Option<PlaceId> {
+        let places = &self.configuration.places;
+        let body = self.nodes.local(state.locals[robot]).robot()?;
+        let (here, goal) = (self.place_of(state, robot), places.place_at(body.goal()?));
+        let mut held: Vec<NodeId> = body.tree_links().iter().map(|link| link.to).collect();
+        held.extend((0..places.robots()).filter(|&other| {
+            let other = self.nodes.local(state.locals[other]).robot();
+            other.is_some_and(|other| other.tree_parent() == Some(robot))
+        }));
+        let holds = |place: &PlaceId| {
+            held.iter().all(|&other| places.are_linked(*place, self.place_of(state, other)))
+        };
+        places.next_steps(here, goal).find(holds)
+    }
+
+    /// Whether a robot that is on its way shares its place with a parked one.
+    fn is_in_contact(&self, state: &State, robot: NodeId) -> bool {
+        let body = |node: NodeId| self.nodes.local(state.locals[node]).robot();
+        let here = self.place_of(state, robot);
+        body(robot).is_some_and(|mover| !mover.is_parked() && mover.goal().is_some())
+            && (0..self.configuration.places.robots()).any(|other| {
+                other != robot
+                    && self.place_of(state, other) == here
+                    && body(other).is_some_and(RobotView::is_parked)
+            })
+    }
+
+    /// For how long a robot has not got on when another period is over.
+    fn stillness(&self, state: &State, robot: NodeId) -> u32 {
+        let Some(body) = self.nodes.local(state.locals[robot]).robot() else { return 0 };
+        let still = body.still_periods();
+        if body.is_parked() || self.next_place(state, robot).is_some() {
+            return 0;
+        }
+        let thresholds = body.still_thresholds();
+        thresholds.into_iter().find(|&next| next > still).unwrap_or(still)
+    }
+
+    // ---- What may happen ---------------------------------------------------------------------
+
+    fn bodies(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
+        let mut found = Vec::new();
+        let period = self.configuration.medium.period();
+        if period.is_some_and(|rounds| state.round < rounds) {
+            return Ok(found);
+        }
+        for robot in 0..self.configuration.places.robots() {
+            let may_move = state.moved >> robot & 1 == 0;
+            if let Some(place) = self.next_place(state, robot).filter(|_| may_move) {
+                let mut next = self.one(state, robot, Stimulus::Move(place))?;
+                if period.is_some() {
+                    next.moved |= 1 << robot;
+                }
+                found.push((Action::Move(robot), next));
+            }
+            if state.contacts > 0 && self.is_in_contact(state, robot) {
+                let body = self.nodes.local(state.locals[robot]).robot();
+                let still = body.map_or(0, |body| body.still_thresholds()[1]);
+                let mut next = self.one(state, robot, Stimulus::Period(still))?;
+                next.contacts -= 1;
+                found.push((Action::Touch(robot), next));
+            }
+        }
+        Ok(found)
+    }
+
+    /// A control period: long enough for all news to be heard.
+    fn period(&mut self, state: &State) -> Result<State, RobotError> {
+        let robots = self.configuration.places.robots();
+        let still: Vec<u32> = (0..robots).map(|robot| self.stillness(state, robot)).collect();
+        let mut next = state.clone();
+        next.locals = self.each(state, |node| match still.get(node) {
+            Some(&still) => Stimulus::Period(still),
+            None => Stimulus::Announce,
+        })?;
+        Ok(next)
+    }
+
+    /// The user speaks when nothing is under way.
+    fn announcement(&mut self, state: &State) -> Result<Option<State>, RobotError> {
+        let first = self.configuration.places.robots();
+        let is_due = matches!(
+            self.nodes.local(state.locals[first]).notice(),
+            Notice::Quiet | Notice::Serviced { .. }
+        );
+        match is_due {
+            true => self.one(state, first, Stimulus::Announce).map(Some),
+            false => Ok(None),
+        }
+    }
+
+    /// Everything that may happen while no message fails.
+    ///
+    /// # Errors
+    /// When a node cannot go on.
+    pub fn faultless_steps(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
+        let mut found = self.messages(state)?;
+        let everything_is_known = found.is_empty();
+        found.extend(self.bodies(state)?);
+        if let Some(next) = self.announcement(state)?.filter(|next| next != state) {
+            found.push((Action::Announce, next));
+        }
+        if everything_is_known {
+            let next = self.period(state)?;
+            if next != *state {
+                found.push((Action::Period, next));
+            }
+        }
+        Ok(found)
+    }
+}
+
+impl Model for Protocol {
+    type State = State;
+    type Action = Action;
+    type Error = RobotError;
+
+    fn initial(&mut self) -> Result<Vec<State>, RobotError> {
+        Ok(vec![self.initial.clone()])
+    }
+
+    fn successors(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
+        let mut found = self.faultless_steps(state)?;
+        found.extend(self.faulty_rounds(state)?);
+        Ok(found)
+    }
+}

@@ -1,0 +1,6 @@
+//! The tests of the package, in one program.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod campaigns;
+mod protocol;
