@@ -281,7 +281,8 @@ impl Instance<'_> {
                 }
             }
         }
-        let is_open = |one: &Assigned| matches!(one, Assigned::Within(None, _) | Assigned::Within(_, None));
+        let is_open =
+            |one: &Assigned| matches!(one, Assigned::Within(None, _) | Assigned::Within(_, None));
         match assigned.iter().find(|(_, one)| is_open(one)) {
             Some((name, _)) => {
                 Err(wrong(format!("what `{name}'` may be is not bounded from both sides")))

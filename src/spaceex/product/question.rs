@@ -156,6 +156,7 @@ pub(super) fn settings(options: &Options) -> Result<Settings> {
         step: options.step.unwrap_or(defaults.step),
         jump_limit: options.jumps.unwrap_or(defaults.jump_limit),
         directions,
+        enters_invariants: true,
         ..defaults
     })
 }

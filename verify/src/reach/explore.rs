@@ -64,7 +64,8 @@ pub struct Visit {
 /// The states of one stretch of time of a flow.
 #[derive(Clone, Debug)]
 pub struct Segment {
-    /// How long runs have lasted, in seconds.
+    /// How long runs have lasted, in seconds. Without a horizon, where flows and visits that were seen
+    /// before are not followed again, it is how long the first ones have.
     pub time: Interval,
     /// Where they are.
     pub set: Polytope,
@@ -104,7 +105,7 @@ pub fn explore(
         model.initial().iter().flat_map(|at| starts.iter().map(move |s| (at, s)))
     {
         let elapsed = Interval::point(0.0);
-        if let Some(start) = search.inside_invariant(location, start.clone()) {
+        if let Some(start) = search.entering(location, start.clone()) {
             open.push_back(Entry { location, from: None, depth: 0, elapsed, start });
         }
     }
@@ -147,11 +148,13 @@ enum Outcome {
 }
 
 impl Search<'_> {
-    /// Whether an earlier visit began with all of this, at a time that leaves it as long.
+    /// Whether an earlier visit began with all of this; up to a horizon also at the same time, so that
+    /// segments say when their states are reached.
     fn is_known(&self, entry: &Entry) -> bool {
         self.visits.iter().filter(|visit| visit.location == entry.location).any(|visit| {
             let in_time = self.settings.horizon.is_infinite()
-                || entry.elapsed.lower() >= visit.elapsed.lower();
+                || visit.elapsed.lower() <= entry.elapsed.lower()
+                    && entry.elapsed.upper() <= visit.elapsed.upper();
             in_time && visit.start.contains(&entry.start)
         })
     }
@@ -164,6 +167,15 @@ impl Search<'_> {
             set.support(&direction)
         };
         Polytope::new(template.clone(), template.directions().iter().map(bound).collect())
+    }
+
+    /// The part of a set that can enter a location.
+    fn entering(&self, location: usize, set: StateSet) -> Option<StateSet> {
+        if self.settings.enters_invariants {
+            self.inside_invariant(location, set)
+        } else {
+            Some(set)
+        }
     }
 
     /// The part of a set that is in the invariant of a location, and cut only where need be.
@@ -202,13 +214,14 @@ impl Search<'_> {
         });
         let mut next = Vec::new();
 
-        // What enters where a jump has to be taken takes it at once.
+        // What enters outside the invariant, or where a jump has to be taken, does not flow.
         let first = Segment { time: elapsed, set: entering.clone() };
         if (self.watch)(&self.visits[number], &first).is_break() {
             return Outcome::Broken(Completion::Stopped);
         }
         self.visits[number].segments.push(first);
-        let Some(flowing) = self.kept_waiting(location, start) else {
+        let within = self.inside_invariant(location, start);
+        let Some(flowing) = within.and_then(|set| self.kept_waiting(location, set)) else {
             for (jump, crossing) in place.jumps.iter().zip(&mut crossings) {
                 self.cross(jump, elapsed, &entering, crossing);
             }
@@ -259,8 +272,7 @@ impl Search<'_> {
                 }
                 self.visits[number].segments.push(segment);
                 // All states are back where they began: what follows is what there was.
-                if is_endless
-                    && flowing.contains_polytope(&Polytope::new(template.clone(), after))
+                if is_endless && flowing.contains_polytope(&Polytope::new(template.clone(), after))
                 {
                     break 'flow;
                 }

@@ -74,9 +74,10 @@ impl StateSet {
 
     /// Whether what is in a box and has these bounds in directions is in this set.
     fn holds_bounds(&self, sides: &[Interval], bound: impl Fn(&[f64]) -> f64) -> bool {
-        let in_hull = self.hull.iter().zip(sides).all(|(outer, inner)| {
-            outer.lower() <= inner.lower() && inner.upper() <= outer.upper()
-        });
+        let in_hull =
+            self.hull.iter().zip(sides).all(|(outer, inner)| {
+                outer.lower() <= inner.lower() && inner.upper() <= outer.upper()
+            });
         let in_polytope = |polytope: &Polytope| {
             let directions = polytope.template().directions().iter();
             directions.zip(polytope.bounds()).all(|(direction, most)| bound(direction) <= *most)

@@ -24,6 +24,9 @@ pub struct Settings {
     pub step: f64,
     /// The directions in which sets are bounded.
     pub directions: Directions,
+    /// Whether a jump is possible only into the invariant of its target, as SpaceEx has it. Otherwise a
+    /// jump can also lead outside, where no time passes, as `docs/semantics.md` has it.
+    pub enters_invariants: bool,
     /// How many sets are made of the states of one flow in which a guard may hold.
     pub clusters: usize,
     /// How many jumps may follow each other.
@@ -58,6 +61,7 @@ impl Default for Settings {
             horizon: 10.0,
             step: 0.01,
             directions: Directions::Boxes,
+            enters_invariants: false,
             clusters: 1,
             jump_limit: 100,
             segment_limit: 1_000_000,

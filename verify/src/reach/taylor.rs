@@ -66,9 +66,14 @@ impl Integration {
         start: &StateSet,
         settings: &Settings,
     ) -> Self {
-        let limits = Limits { degree: settings.degree, least: settings.tolerance * 1e-3 };
         let dimension = variables.len();
         let zonotope = start.to_zonotope().reduced((SYMBOLS / 2).saturating_sub(dimension));
+        let slack = zonotope.slack().iter().filter(|slack| **slack > 0.0).count();
+        let limits = Limits {
+            degree: settings.degree,
+            first_error: zonotope.generators().len() + slack,
+            least: settings.tolerance * 1e-3,
+        };
         let mut symbols = zonotope.generators().len();
         let mut state = Vec::new();
         for axis in 0..dimension {
@@ -250,9 +255,12 @@ fn share_of_error(state: &[TaylorModel], last: &[Interval], length: f64, order: 
     state.iter().zip(last).map(share).fold(0.0, f64::max)
 }
 
+/// Of no components.
+const NONE: Limits = Limits { degree: 1, first_error: 0, least: 0.0 };
+
 /// d · x
 fn combined(direction: &[f64], components: &[TaylorModel]) -> TaylorModel {
-    let limits = components.first().map_or(Limits { degree: 1, least: 0.0 }, TaylorModel::limits);
+    let limits = components.first().map_or(NONE, TaylorModel::limits);
     let zero = TaylorModel::constant(Interval::point(0.0), limits);
     let terms = direction.iter().zip(components).filter(|(entry, _)| **entry != 0.0);
     terms.fold(zero, |sum, (entry, component)| match *entry {

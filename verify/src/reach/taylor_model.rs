@@ -13,8 +13,11 @@ use super::vector::{around_zero, magnitude, sum_up};
 /// Which terms are kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
-    /// The largest degree, at most 6.
+    /// The largest degree, at most 6. Beyond 2, a symbol of an error counts as all but one of it: errors
+    /// are small, and a product with one keeps one other factor at most.
     pub degree: usize,
+    /// The number of the first symbol that is an error.
+    pub first_error: usize,
     /// Smaller coefficients of products go into the remainder.
     pub least: f64,
 }
@@ -33,6 +36,14 @@ impl Monomial {
 
     pub fn degree(self) -> usize {
         8 - self.0.leading_zeros() as usize / 8
+    }
+
+    /// Its degree, as the limits count it.
+    fn counted(self, limits: Limits) -> usize {
+        // The lowest byte is the symbol with the largest number.
+        let has_error = (self.0 & 0xFF) as usize > limits.first_error;
+        let more = if has_error { limits.degree.saturating_sub(2) } else { 0 };
+        self.degree() + more
     }
 
     /// The numbers of its symbols, each as often as it is a factor.
@@ -192,7 +203,8 @@ impl TaylorModel {
 
     /// Adds to the remainder what rounding each coefficient once or twice may have changed.
     fn rounded(mut self) -> Self {
-        let error = (self.norm() * f64::EPSILON).next_up();
+        let tiny = (self.terms.len() + 1) as f64 * f64::MIN_POSITIVE;
+        let error = (self.norm() * f64::EPSILON + tiny).next_up();
         self.rest = self.rest + around_zero(error);
         self
     }
@@ -259,16 +271,16 @@ impl TaylorModel {
     }
 
     pub fn times(&self, other: &TaylorModel) -> Self {
-        let Limits { degree, least } = self.limits;
+        let Limits { degree, least, .. } = self.limits;
         let mut kept = 0.0;
         let mut products: Vec<(Monomial, f64)> = Vec::new();
         // The largest first: from the first that is too small on, all are.
         let mut ranked = other.terms.clone();
         ranked.sort_by(|(_, one), (_, another)| another.abs().total_cmp(&one.abs()));
         for (left, a) in &self.terms {
-            let room = degree - left.degree().min(degree);
+            let room = degree.saturating_sub(left.counted(self.limits));
             let large = ranked.iter().take_while(|(_, b)| (a * b).abs() >= least);
-            for (right, b) in large.filter(|(right, _)| right.degree() <= room) {
+            for (right, b) in large.filter(|(right, _)| right.counted(self.limits) <= room) {
                 let product = a * b;
                 kept += product.abs();
                 products.push((left.times(*right), product));

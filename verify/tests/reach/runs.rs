@@ -107,7 +107,7 @@ proptest! {
             .build()
             .unwrap();
         let start = boxed(&center.iter().map(|c| (c - width, c + width)).collect::<Vec<_>>());
-        let settings = Settings { horizon: 1.0, step: 0.2, tolerance: 1e-6, order: 6, degree, segment_limit: 200, ..Settings::default() };
+        let settings = Settings { horizon: 1.0, step: 0.2, tolerance: 1e-6, order: 6, degree, segment_limit: 100, generators: 3, ..Settings::default() };
         let (model, enclosure) = enclosed(&automaton, &[], &start, &settings);
         // A flow may grow beyond all bounds; up to there it is enclosed.
         let end = enclosure.visits[0].segments.last().map_or(0.0, |segment| segment.time.lower());

@@ -77,7 +77,7 @@ impl Search<'_> {
         entries
     }
 
-    /// What a reset makes of a set, bounded in the directions of the target and cut to its invariant.
+    /// What a reset makes of a set, bounded in the directions of the target, as far as it can enter.
     pub(super) fn landed(&self, jump: &Jump, part: &Polytope) -> Option<Polytope> {
         let template = self.prepared[jump.target].template.clone();
         let bounds: Vec<f64> = match &jump.reset {
@@ -110,6 +110,9 @@ impl Search<'_> {
             }
         };
         let landed = Polytope::new(template, bounds);
+        if !self.settings.enters_invariants {
+            return Some(landed);
+        }
         self.union_of_cuts(&self.model.locations()[jump.target].invariant, &landed)
     }
 

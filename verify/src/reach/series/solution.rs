@@ -135,9 +135,8 @@ impl<'a, C: Coefficient> Series<'a, C> {
                 self.at(inner, 0).function(Function::Power(exponent))?
             }
             Operation::Power(inner, exponent) => {
-                let weight = |place: usize| {
-                    Interval::point(exponent) * whole(place) - whole(order - place)
-                };
+                let weight =
+                    |place: usize| Interval::point(exponent) * whole(place) - whole(order - place);
                 let sum = self.convolution((inner, number), order, 1..=order, weight);
                 sum.times(&self.inverse(number, inner)?).scaled(share())
             }
