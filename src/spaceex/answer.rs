@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use crate::automaton::diagram::{FlowpipePicture, Patch};
 use crate::guards::Interval;
 use crate::verify::reach::{
-    Counterexample, Effort, Model, Polytope, Proof, ReachError, TimedState, falsify, followed,
-    prove,
+    Counterexample, Effort, Model, Polytope, Proof, ReachError, Run, TimedState, falsify, followed,
+    prove, runs,
 };
 
 use super::Problem;
@@ -80,29 +80,18 @@ impl Problem {
     }
 
     /// Runs to be drawn into a picture, `count` for each alternative of the initial states.
-    pub fn runs(&self, count: usize) -> Vec<Counterexample> {
-        let forbidden = [crate::verify::reach::Forbidden::anywhere(crate::guards::always())];
-        let mut runs = Vec::new();
+    pub fn runs(&self, count: usize) -> Vec<Run> {
+        let horizon = self.settings.horizon;
+        let horizon = if horizon.is_finite() { horizon } else { Effort::default().longest };
+        let mut drawn = Vec::new();
         for initial in &self.initial {
             let begins = |name: &str| initial.locations.iter().any(|location| location == name);
             for automaton in self.automata.iter().filter(|it| begins(it.initial().as_str())) {
-                for seed in 0..count as u64 {
-                    let effort =
-                        Effort { random: 1, rounds: 0, variations: 0, seed, ..Effort::default() };
-                    let starts = std::slice::from_ref(&initial.states);
-                    let horizon = self.settings.horizon;
-                    runs.extend(falsify(
-                        automaton,
-                        &self.uncertain,
-                        starts,
-                        &forbidden,
-                        horizon,
-                        &effort,
-                    ));
-                }
+                let starts = std::slice::from_ref(&initial.states);
+                drawn.extend(runs(automaton, &self.uncertain, starts, horizon, count, 1));
             }
         }
-        runs
+        drawn
     }
 }
 
@@ -126,7 +115,7 @@ impl Solution {
         &self,
         title: &str,
         names: [&str; 2],
-        runs: &[Counterexample],
+        runs: &[Run],
     ) -> Result<FlowpipePicture, String> {
         let variables = self.model.variables();
         let quantity = |name: &str| match variables.iter().position(|variable| variable == name) {
@@ -153,7 +142,7 @@ impl Solution {
                 Some(Patch { location: visit.location, across, up })
             })
         });
-        let curve = |run: &Counterexample| -> Vec<Vec<[f64; 2]>> {
+        let curve = |run: &Run| -> Vec<Vec<[f64; 2]>> {
             let point = |(t, values): &TimedState| {
                 let value = |quantity: Option<usize>| {
                     quantity.map_or(Some(*t), |place| values.get(place).copied())

@@ -22,7 +22,7 @@ impl Product<'_> {
                     || instance.name.is_empty() && instance.component.id == *component
                     || self.network.instances.len() == 1 && component.is_empty()
             };
-            let at = self.network.instances.iter().position(|instance| matching(instance));
+            let at = self.network.instances.iter().position(matching);
             let at = at.ok_or_else(|| {
                 let known: Vec<&str> = self
                     .network

@@ -110,6 +110,7 @@ pub fn shift(spread: (f64, f64), mut settings: Settings) -> TestResult<Instance>
         uncertain: Vec::new(),
         forbidden: vec![Forbidden::anywhere(impulse.at_least(20.0))],
         settings,
+        parts: Vec::new(),
         measured: None,
     })
 }

@@ -6,7 +6,8 @@
 //! cargo run --release -p pleach-verify --example competition -- docs/reachability.md  # writes it there
 //! ```
 //!
-//! Times are of one thread. A name instead of a file runs the instances whose names begin with it.
+//! Times are of one thread. A name instead of a file runs the instances whose names begin with it. A
+//! number at the end draws as many simulated runs of each instance and fails if one leaves its enclosure.
 
 mod gearbox;
 mod nonlinear;
@@ -19,7 +20,7 @@ use std::time::Instant;
 
 use pleach_automaton::{Automaton, Name, Record};
 use pleach_verify::reach::{
-    Directions, Forbidden, Model, Proof, Settings, StateSet, Uncertain, prove,
+    Completion, Directions, Forbidden, Model, Proof, Settings, StateSet, Uncertain, prove, runs,
 };
 
 type TestResult<T> = Result<T, Box<dyn std::error::Error>>;
@@ -31,7 +32,17 @@ pub struct Instance {
     uncertain: Vec<Uncertain>,
     forbidden: Vec<Forbidden>,
     settings: Settings,
+    /// Into how many parts the initial set is cut along each axis.
+    parts: Vec<usize>,
     measured: Option<Measure>,
+}
+
+impl Instance {
+    /// The instance with its initial set cut into parts.
+    fn cut(mut self, parts: &[usize]) -> Self {
+        self.parts = parts.to_vec();
+        self
+    }
 }
 
 /// What the list asks to be measured of the states during the last step.
@@ -51,11 +62,13 @@ const MARKS: [&str; 2] = ["<!-- begin of the table -->", "<!-- end of the table 
 fn main() -> TestResult<()> {
     let argument = std::env::args().nth(1);
     let document = argument.as_ref().filter(|argument| argument.ends_with(".md"));
-    let prefix = argument.as_ref().filter(|_| document.is_none());
+    let is_name = |argument: &&String| document.is_none() && argument.parse::<usize>().is_err();
+    let prefix = argument.as_ref().filter(is_name);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let mut table = String::from(
         "| instance | answer | time | sets | stays away by | at the end |\n| --- | --- | --- | --- | --- | --- |\n",
     );
+    let count: Option<usize> = std::env::args().last().and_then(|argument| argument.parse().ok());
     for (name, instance) in instances()? {
         if prefix.is_some_and(|prefix| !name.starts_with(prefix.as_str())) {
             continue;
@@ -66,6 +79,9 @@ fn main() -> TestResult<()> {
         let seconds = begin.elapsed().as_secs_f64();
         let line = line(name, &instance, &model, &proof, seconds);
         eprint!("{line}");
+        if let Some(count) = count {
+            simulated(name, &instance, &model, &proof, count)?;
+        }
         table.push_str(&line);
     }
     match document {
@@ -82,10 +98,37 @@ fn main() -> TestResult<()> {
 
 fn solved(instance: &Instance) -> TestResult<(Model, Proof)> {
     let model = Model::with_uncertain(&instance.automaton, &instance.uncertain)?;
-    let starts = std::slice::from_ref(&instance.start);
+    let starts = instance.start.parts(&instance.parts);
     let go_on = &mut |_| ControlFlow::Continue(());
-    let proof = prove(&model, starts, &instance.forbidden, &instance.settings, go_on)?;
+    let proof = prove(&model, &starts, &instance.forbidden, &instance.settings, go_on)?;
     Ok((model, proof))
+}
+
+/// Fails if one of `count` simulated runs leaves the enclosure of all runs.
+fn simulated(
+    name: &str,
+    instance: &Instance,
+    model: &Model,
+    proof: &Proof,
+    count: usize,
+) -> TestResult<()> {
+    /// The simulator's tolerances of 1e-9 add up to less.
+    const ERROR: f64 = 1e-6;
+    if !matches!(proof.enclosure.ending, Completion::Horizon | Completion::Everything) {
+        return Ok(());
+    }
+    let Instance { automaton, uncertain, start, settings, .. } = instance;
+    let starts = std::slice::from_ref(start);
+    let drawn = runs(automaton, uncertain, starts, settings.horizon, count, 1);
+    let own = automaton.names().len();
+    for run in &drawn {
+        let constants = &run.start[own..];
+        if let Some(escape) = proof.enclosure.escape(model, &run.trajectory, constants, ERROR) {
+            return Err(format!("{name}: a run from {:?} escapes: {escape}", run.start).into());
+        }
+    }
+    eprintln!("    {} simulated runs are inside", drawn.len());
+    Ok(())
 }
 
 /// A line of the table.
@@ -138,8 +181,10 @@ fn instances() -> TestResult<Vec<(&'static str, Instance)>> {
         step: 0.5,
         ..Settings::default()
     };
-    let gears = |step| Settings { clusters: 4, ..affine(0.2, step) };
-    let aborted = |clusters| Settings { clusters, ..affine(300.0, 0.04) };
+    // The reports take jumps as SpaceEx does.
+    let jumping = |horizon, step| Settings { enters_invariants: true, ..affine(horizon, step) };
+    let gears = |step| Settings { clusters: 4, ..jumping(0.2, step) };
+    let approach = |clusters| Settings { clusters, ..jumping(300.0, 0.04) };
     let stiff = |order| Settings {
         directions: Directions::Listed(vec![vec![1.0; 3]]),
         ..smooth(40.0, 1e-9, order, 1, 4)
@@ -150,9 +195,28 @@ fn instances() -> TestResult<Vec<(&'static str, Instance)>> {
         ("PLAD01-BND30", platoon::deterministic(30.0, affine(20.0, 0.02))?),
         ("GRBX01", gearbox::shift((0.0001, 0.0001), gears(0.0005))?),
         ("GRBX02", gearbox::shift((0.00005, 0.00015), gears(0.0005))?),
-        ("SRNA01", rendezvous::mission(None, affine(300.0, 0.04))?),
-        ("SRA01", rendezvous::mission(Some((120.0, 120.0)), aborted(1))?),
-        ("SRA02", rendezvous::mission(Some((120.0, 125.0)), aborted(4))?),
+        ("SRNA01", rendezvous::mission(None, approach(1))?),
+        ("SRA01", rendezvous::mission(Some((120.0, 120.0)), approach(1))?),
+        ("SRA02", rendezvous::mission(Some((120.0, 125.0)), approach(4))?),
+        ("X VDP d4", nonlinear::oscillator(smooth(7.0, 1e-7, 10, 4, 4))?),
+        ("X VDP d5", nonlinear::oscillator(smooth(7.0, 1e-8, 10, 5, 4))?),
+        ("X VDP d4p2", nonlinear::oscillator(smooth(7.0, 1e-7, 10, 4, 4))?.cut(&[2, 1])),
+        ("X VDP d2p4", nonlinear::oscillator(smooth(7.0, 1e-7, 10, 2, 4))?.cut(&[4, 1])),
+        ("X VDP d3p8", nonlinear::oscillator(smooth(7.0, 1e-7, 10, 3, 4))?.cut(&[8, 2])),
+        (
+            "X CVDP20 d3",
+            nonlinear::van_der_pol(alike, (1.0, 1.0), 2.75, smooth(7.0, 1e-6, 8, 3, 4))?,
+        ),
+        (
+            "X CVDP20 d3p22",
+            nonlinear::van_der_pol(alike, (1.0, 1.0), 2.75, smooth(7.0, 1e-6, 8, 3, 4))?
+                .cut(&[2, 1, 2, 1]),
+        ),
+        (
+            "X CVDP20 d2p44",
+            nonlinear::van_der_pol(alike, (1.0, 1.0), 2.75, smooth(7.0, 1e-6, 8, 2, 4))?
+                .cut(&[4, 1, 4, 1]),
+        ),
         ("VDP", nonlinear::oscillator(smooth(7.0, 1e-7, 8, 3, 10))?),
         ("CVDP23", nonlinear::van_der_pol(alike, (1.0, 3.0), 2.75, smooth(7.0, 1e-5, 8, 3, 4))?),
         ("LALO20, W = 0.01", nonlinear::laub_loomis(0.01, 4.5, smooth(20.0, 1e-7, 6, 2, 4))?),

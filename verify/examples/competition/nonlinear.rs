@@ -32,6 +32,7 @@ fn single(
         uncertain: Vec::new(),
         forbidden,
         settings,
+        parts: Vec::new(),
         measured: None,
     })
 }

@@ -55,6 +55,7 @@ pub fn mission(abort: Option<(f64, f64)>, settings: Settings) -> TestResult<Inst
         uncertain: Vec::new(),
         forbidden: specification(abort.is_some()),
         settings,
+        parts: Vec::new(),
         measured: None,
     })
 }

@@ -15,6 +15,8 @@
 //!    one snapshot, [`period`] for two;
 //! 3. the [`Monitor`] that runs every check over a mission, and [`audit`] over a recorded one.
 //!
+//! [`cell`] asks the same of all proposals and errors at once, by reachability.
+//!
 //! The [`Limits`] come from the scenario; the only numerical slack is [`SLACK`].
 //!
 //! A robot that stands alone in a square and sends to an access point, and then leaps:
@@ -73,6 +75,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod cell;
 pub mod duty;
 pub mod election;
 pub mod instant;

@@ -318,7 +318,12 @@ impl<'a> Simplex<'a> {
     }
 }
 
-/// At least the largest d · x over a box.
+/// At least the largest d · x over a box; along an axis exactly that.
 pub fn over_box(direction: &[f64], sides: &[Interval]) -> f64 {
-    dot_numbers(sides, direction).upper()
+    let mut entries = direction.iter().zip(sides).filter(|(entry, _)| **entry != 0.0);
+    match (entries.next(), entries.next()) {
+        (Some((1.0, side)), None) => side.upper(),
+        (Some((-1.0, side)), None) => -side.lower(),
+        _ => dot_numbers(sides, direction).upper(),
+    }
 }

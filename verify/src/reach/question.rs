@@ -8,9 +8,10 @@ use pleach_guards::{Comparison, Expression, Interval, Predicate, Relation, const
 use thiserror::Error;
 
 use super::explore::{Completion, Enclosure, Segment, explore};
-use super::falsify::{Counterexample, Effort, falsify};
+use super::falsify::{Counterexample, falsify};
 use super::model::{Model, ModelError, Uncertain};
 use super::region::{Region, RegionError};
+use super::search::Effort;
 use super::set::StateSet;
 use super::settings::{InvalidSetting, Settings};
 
@@ -79,6 +80,12 @@ pub enum ReachError {
         location: String,
         /// Those that there are.
         known: String,
+    },
+    /// A formula has windows without an end.
+    #[error("`{formula}` speaks of all times: give its windows ends, or ask what is never reached")]
+    Endless {
+        /// The formula.
+        formula: String,
     },
     /// A set of initial states has another number of coordinates than the model.
     #[error("the initial set has {found} coordinates, and the model {expected}: {variables}")]
@@ -150,10 +157,7 @@ pub fn prove(
     progress: &mut dyn FnMut(Interval) -> ControlFlow<()>,
 ) -> Result<Proof, ReachError> {
     let variables = model.variables();
-    if let Some(start) = starts.iter().find(|start| start.hull().len() != variables.len()) {
-        let (found, expected) = (start.hull().len(), variables.len());
-        return Err(ReachError::Dimension { found, expected, variables: variables.join(", ") });
-    }
+    check_dimensions(model, starts)?;
     let region = |one: &Forbidden| -> Result<(Option<usize>, Region), ReachError> {
         let place = |name: &String| {
             let mut locations = model.locations().iter();
@@ -201,6 +205,19 @@ pub fn prove(
     };
     let enclosure = explore(model, starts, settings, &extra, &mut watch)?;
     Ok(Proof { enclosure, doubts, clearances })
+}
+
+/// Whether sets of initial states are sets of states of a model.
+pub(super) fn check_dimensions(model: &Model, starts: &[StateSet]) -> Result<(), ReachError> {
+    let variables = model.variables();
+    match starts.iter().find(|start| start.hull().len() != variables.len()) {
+        Some(start) => Err(ReachError::Dimension {
+            found: start.hull().len(),
+            expected: variables.len(),
+            variables: variables.join(", "),
+        }),
+        None => Ok(()),
+    }
 }
 
 /// Whether a run of `automaton` that begins in one of `starts` comes to a forbidden state.

@@ -3,8 +3,8 @@
 use pleach_guards::{Comparison, Expression, Interval, Predicate, Ranges, Relation, Truth};
 use thiserror::Error;
 
-use super::polytope::{Polytope, Template};
-use super::vector::{magnitude, radius, sum_up};
+use super::polytope::{Polytope, Template, over_box};
+use super::vector::{around_zero, magnitude, radius, sum_up};
 
 /// How many alternatives the disjunctive form of a predicate may have.
 const ALTERNATIVES: usize = 256;
@@ -135,8 +135,7 @@ impl Conjunction {
             let opposite: Vec<f64> = half_space.direction.iter().map(|entry| -entry).collect();
             let most =
                 polytope.template().position(&opposite).map(|place| polytope.bounds()[place]);
-            let most =
-                most.unwrap_or(f64::INFINITY).min(super::polytope::over_box(&opposite, &sides));
+            let most = most.unwrap_or(f64::INFINITY).min(over_box(&opposite, &sides));
             (Interval::point(-most) - Interval::point(half_space.bound_over(&sides))).lower()
         });
         let others = self.others.iter().map(|other| {
@@ -161,7 +160,7 @@ impl Conjunction {
             {
                 return None;
             }
-            if misses(super::polytope::over_box(&opposite, &sides)) {
+            if misses(over_box(&opposite, &sides)) {
                 return None;
             }
             if let Some(place) = cut.template().position(&half_space.direction)
@@ -220,9 +219,62 @@ impl HalfSpace {
         }
     }
 
+    /// b − d · x for the points x of a set.
+    fn distance(&self, set: &Polytope, sides: &[Interval]) -> Interval {
+        let most = |direction: &[f64]| {
+            set.bound(direction).unwrap_or(f64::INFINITY).min(over_box(direction, sides))
+        };
+        let opposite: Vec<f64> = self.direction.iter().map(|entry| -entry).collect();
+        let along = Interval::new(-most(&opposite), most(&self.direction));
+        let spread = self.spread.iter().zip(sides).filter(|(spread, _)| **spread > 0.0);
+        let spread = spread.map(|(spread, side)| (spread * magnitude(*side)).next_up());
+        self.bound - along.unwrap_or(Interval::WHOLE) + around_zero(sum_up(spread))
+    }
+
     /// Adds its direction and the opposite one to a template.
     pub fn add_to(&self, template: &mut Template) {
         template.add_both(&self.direction);
+    }
+}
+
+/// The directions of the affine comparisons of a predicate.
+pub(super) fn directions(predicate: &Predicate, variables: &[String]) -> Vec<Vec<f64>> {
+    match predicate {
+        Predicate::Comparison(comparison) => {
+            let half_space = HalfSpace::of(comparison, variables);
+            half_space.into_iter().map(|half_space| half_space.direction).collect()
+        }
+        Predicate::Not(inner) => directions(inner, variables),
+        Predicate::All(parts) | Predicate::Any(parts) => {
+            parts.iter().flat_map(|part| directions(part, variables)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Between which numbers the margin of a predicate in negation normal form is, in a set.
+pub(super) fn margin_over(predicate: &Predicate, set: &Polytope, variables: &[String]) -> Interval {
+    let joined = |parts: &[Predicate], none: f64, take: fn(f64, f64) -> f64| {
+        let ranges = parts.iter().map(|part| margin_over(part, set, variables));
+        let ends = ranges.fold((none, none), |(lower, upper), range| {
+            (take(lower, range.lower()), take(upper, range.upper()))
+        });
+        Interval::new(ends.0, ends.1).unwrap_or(Interval::WHOLE)
+    };
+    match predicate {
+        Predicate::Comparison(comparison) => {
+            let Some(sides) = set.hull() else { return Interval::WHOLE };
+            match HalfSpace::of(comparison, variables) {
+                Some(half_space) => half_space.distance(set, &sides),
+                None => {
+                    let named = Named { names: variables, sides: &sides };
+                    margin(comparison).range(&named).unwrap_or(Interval::WHOLE)
+                }
+            }
+        }
+        Predicate::All(parts) => joined(parts, f64::INFINITY, f64::min),
+        Predicate::Any(parts) => joined(parts, f64::NEG_INFINITY, f64::max),
+        _ => Interval::WHOLE,
     }
 }
 

@@ -20,6 +20,31 @@ impl StateSet {
         StateSet { hull: sides, zonotope: None, polytope: None }
     }
 
+    /// The boxes that a box is cut into, `counts` of them along each axis (1 where a count is missing);
+    /// any other set stays whole.
+    pub fn parts(&self, counts: &[usize]) -> Vec<StateSet> {
+        if self.zonotope.is_some() || self.polytope.is_some() {
+            return vec![self.clone()];
+        }
+        let mut boxes = vec![Vec::new()];
+        for (axis, side) in self.hull.iter().enumerate() {
+            let count = counts.get(axis).copied().unwrap_or(1).max(1);
+            let place = |number: usize| match number {
+                0 => side.lower(),
+                _ if number == count => side.upper(),
+                _ => side.lower() + number as f64 / count as f64 * side.width(),
+            };
+            let part =
+                |number: usize| Interval::new(place(number), place(number + 1)).unwrap_or(*side);
+            let extended = |sides: &Vec<Interval>| {
+                let sides = sides.clone();
+                (0..count).map(move |number| [&sides[..], &[part(number)]].concat())
+            };
+            boxes = boxes.iter().flat_map(extended).collect();
+        }
+        boxes.into_iter().map(StateSet::from_box).collect()
+    }
+
     /// A zonotope.
     pub fn from_zonotope(zonotope: Zonotope) -> Self {
         StateSet { hull: zonotope.hull(), zonotope: Some(zonotope), polytope: None }

@@ -3,5 +3,7 @@
 mod answers;
 mod exact;
 mod oracle;
+mod robot;
 mod runs;
 mod support;
+mod temporal;

@@ -49,36 +49,13 @@ pub fn run(
     composition.run_with(settings, horizon).unwrap()
 }
 
-/// The first sample of a run that is in no segment of its location at its time, as text.
-///
-/// `error` is how far a sample of the simulator may be from the exact solution: 0 for flows that it
-/// solves exactly would be wrong by rounding only.
+/// The first sample of a run that is in no set of its location at its time, as text; `error` is how far
+/// a sample of the simulator may be from the exact solution.
 pub fn escape(
     model: &Model,
     enclosure: &Enclosure,
     run: &Trajectory,
     error: f64,
 ) -> Option<String> {
-    let names = &run.components()[0].locations;
-    for phase in run.intervals() {
-        let name = &names[phase.locations[0]];
-        let location = model.locations().iter().position(|place| place.name == *name).unwrap();
-        for sample in &phase.samples {
-            let visits = enclosure.visits.iter().filter(|visit| visit.location == location);
-            let segments = visits.flat_map(|visit| &visit.segments);
-            let near = |side: &Interval, value: f64| {
-                let slack = error * (1.0 + value.abs());
-                side.lower() - slack <= value && value <= side.upper() + slack
-            };
-            let mut in_time = segments.filter(|segment| near(&segment.time, sample.t));
-            let holds = in_time.any(|segment| {
-                let sides = segment.set.hull().unwrap_or_default();
-                sides.iter().zip(&sample.values).all(|(side, value)| near(side, *value))
-            });
-            if !holds {
-                return Some(format!("{name} at {} s: {:?}", sample.t, sample.values));
-            }
-        }
-    }
-    None
+    enclosure.escape(model, run, &[], error).map(|escape| escape.to_string())
 }
