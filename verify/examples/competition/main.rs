@@ -68,7 +68,7 @@ fn main() -> TestResult<()> {
     let mut table = String::from(
         "| instance | answer | time | sets | stays away by | at the end |\n| --- | --- | --- | --- | --- | --- |\n",
     );
-    let count: Option<usize> = std::env::args().last().and_then(|argument| argument.parse().ok());
+    let count: Option<usize> = std::env::args().next_back().and_then(|argument| argument.parse().ok());
     for (name, instance) in instances()? {
         if prefix.is_some_and(|prefix| !name.starts_with(prefix.as_str())) {
             continue;
