@@ -11,6 +11,7 @@ mod oracle;
 mod book;
 mod browser;
 mod command_line;
+mod coverage;
 mod determinism;
 mod documents;
 mod found_missions;

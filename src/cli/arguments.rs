@@ -246,6 +246,8 @@ pub enum Automaton {
     Exchange,
     /// Where the mission stands: elections, advance, shifts of the secondary team
     Mission,
+    /// Whether a robot's post belongs to a tree, by what its parent tells
+    Place,
     /// The control period of a robot: beacons, routes, the move, and the flow between samples
     Control,
     /// What an access point does for the user: announcements, elections, the end of the mission

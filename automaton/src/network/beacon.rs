@@ -83,7 +83,7 @@ pub struct Beacon {
     /// The newest notice on the mission that it knows.
     pub bulletin: Shared<Bulletin<Notice>>,
     /// Its view of the current election.
-    pub election: Option<Election>,
+    pub election: Option<Arc<Election>>,
     /// Its view of the agreement about the current path.
     pub agreement: Option<Agreement>,
     /// Its way over the tree to the robot that calls for a recruit; the number is the call's.

@@ -19,9 +19,9 @@ use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
-use super::robot::RobotError;
+use super::robot::{RobotError, RobotFault};
 use super::service::{Gathering, Resting, Rounds, Serving};
-use super::shared::Shared;
+use super::shared::{Shared, merge_election};
 use super::site::Site;
 use crate::automaton::TransitionError;
 use crate::located::{Current, Place as _};
@@ -48,7 +48,7 @@ pub struct AccessPoint {
     bulletin: Shared<Bulletin<Notice>>,
     /// The newest bulletin that it has heard and not taken up.
     newest: Option<Shared<Bulletin<Notice>>>,
-    election: Option<Election>,
+    election: Option<Arc<Election>>,
     election_rounds: usize,
     agreement: Option<Agreement>,
     route: Option<(u32, Shared<Vec<Hop>>)>,
@@ -171,7 +171,7 @@ impl AccessPoint {
         }
         for beacon in &self.heard {
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
-                own.merge(heard);
+                merge_election(own, heard);
             }
             if let (Some(own), Some(heard)) = (&mut self.agreement, &beacon.agreement) {
                 own.merge(heard);
@@ -191,7 +191,7 @@ impl AccessPoint {
         let number = bulletin.sequence();
         match bulletin.notice() {
             Notice::Task { .. } | Notice::Call { .. } => {
-                self.election = Some(Election::new(number));
+                self.election = Some(Arc::new(Election::new(number)));
                 self.election_rounds = 0;
                 self.route = None;
                 self.crossing.clear();
@@ -303,7 +303,7 @@ impl Node for AccessPoint {
             Input::Heard { message: Message::Request(tasks), .. } => {
                 self.requested = Some(Arc::clone(tasks));
             }
-            Input::Tick => self.tick(outputs)?,
+            Input::Tick { .. } => self.tick(outputs)?,
             Input::Heard { .. } | Input::Sensed(_) => {}
         }
         self.log.drain(..).for_each(|event| outputs.report(event));
@@ -324,7 +324,7 @@ impl Node for AccessPoint {
 
     fn check_invariant(&self) -> Result<(), RobotError> {
         let holds = self.site.automata.rounds.check_invariant(self.rounds.location(), self);
-        holds.map_err(|source| RobotError::Invariant { node: self.id(), source })
+        holds.map_err(|source| RobotFault::Invariant { node: self.id(), source }.into())
     }
 
     fn body(&self) -> Point {

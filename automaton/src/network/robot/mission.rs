@@ -21,7 +21,7 @@ use super::super::mission::{
     Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
 };
 use super::super::record::MissionEvent;
-use super::super::shared::Shared;
+use super::super::shared::{Shared, merge_election};
 use super::duties::Label;
 use super::{Robot, TaskNotice, leader, path, recruit, team};
 
@@ -72,7 +72,7 @@ impl Holds<Mission> for Robot {
                     }
                 }
                 MissionEffect::Elect(election, bid, route) => {
-                    (self.election, self.bid, self.route) = (Some(election), bid, route);
+                    (self.election, self.bid, self.route) = (Some(Arc::new(election)), bid, route);
                     self.waited_rounds = 1;
                     if self.phase() == Phase::RecruitElection {
                         self.answer_call();
@@ -110,7 +110,7 @@ impl Robot {
                 self.bulletin = neighbour.beacon.bulletin.clone();
             }
             if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {
-                own.merge(heard);
+                merge_election(own, heard);
             }
             if let (Some(own), Some(heard)) = (&mut self.agreement, &neighbour.beacon.agreement) {
                 own.merge(heard);
