@@ -139,6 +139,15 @@ impl Polytope {
         }
     }
 
+    /// What is in this polytope and in another of the same template.
+    #[must_use]
+    pub fn intersection(mut self, other: &Polytope) -> Self {
+        for (bound, another) in self.bounds.iter_mut().zip(&other.bounds) {
+            *bound = bound.min(*another);
+        }
+        self
+    }
+
     /// Whether opposite bounds contradict each other: then there are no points.
     pub fn is_seen_empty(&self) -> bool {
         (0..self.template.dimension())

@@ -164,13 +164,12 @@ impl<L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'_, L, E, S> {
         let mut parameters: Vec<(String, f64)> = varying
             .map(|one| (one.parameter.clone(), at(one.values, shares.next().unwrap_or(0.0))))
             .collect();
+        // Where the shares are used up, further ones follow from them.
         let rest: Vec<f64> = shares.collect();
-        let mut position = 0;
-        let mut draw = || {
-            position += 1;
-            rest.get((position - 1) % rest.len().max(1)).copied().unwrap_or(0.0)
-        };
-        let start = self.starts.get(choices.start)?.point(&mut draw);
+        let seed = rest.iter().fold(0u64, |seed, share| seed.rotate_left(7) ^ share.to_bits());
+        let (mut further, mut rest) = (Draws(seed), rest.into_iter());
+        let mut draw = || rest.next().unwrap_or_else(|| further.share());
+        let start = self.starts.get(choices.start)?.point(&mut draw)?;
         let example = self.automaton.initial_state()?;
         let (coordinates, constants) = start.split_at_checked(example.names().len())?;
         let resting = self.uncertain.iter().filter(|one| !one.varies);

@@ -111,13 +111,14 @@ impl StateSet {
         self.zonotope.is_none() && in_hull && self.polytope.iter().all(in_polytope)
     }
 
-    /// A point of it; `draw` gives numbers from −1 to 1.
+    /// A point of it; `draw` gives numbers from −1 to 1. `None` if none is found.
     ///
-    /// Of a set that is cut by half-spaces it is the first of some draws that is inside, or else the
-    /// last of them.
-    pub fn point(&self, draw: &mut impl FnMut() -> f64) -> Vec<f64> {
+    /// A point that half-spaces cut off is drawn back towards one that they do not.
+    pub fn point(&self, draw: &mut impl FnMut() -> f64) -> Option<Vec<f64>> {
         /// How often a point is drawn.
-        const DRAWS: usize = 64;
+        const DRAWS: usize = 256;
+        /// How often the way between two points is halved.
+        const HALVINGS: usize = 40;
         let zonotope = self.to_zonotope();
         let mut drawn = || {
             let mut point = zonotope.center().to_vec();
@@ -130,14 +131,23 @@ impl StateSet {
         };
         let is_inside =
             |point: &[f64]| self.polytope.iter().all(|polytope| polytope.contains_point(point));
-        let mut point = drawn();
-        for _ in 0..DRAWS {
-            if is_inside(&point) {
-                break;
-            }
-            point = drawn();
+        let wanted = drawn();
+        if is_inside(&wanted) {
+            return Some(wanted);
         }
-        point
+        let mut inside = (0..DRAWS).map(|_| drawn()).find(|point| is_inside(point))?;
+        let mut outside = wanted;
+        for _ in 0..HALVINGS {
+            let middle: Vec<f64> =
+                inside.iter().zip(&outside).map(|(one, other)| one.midpoint(*other)).collect();
+            if is_inside(&middle) { inside = middle } else { outside = middle }
+        }
+        Some(inside)
+    }
+
+    /// The polytope that it is cut by, if there is one.
+    pub(super) fn polytope(&self) -> Option<&Polytope> {
+        self.polytope.as_ref()
     }
 
     /// A box around it.

@@ -36,8 +36,8 @@ pub enum TemporalAnswer {
 /// What an enclosure shows of a formula.
 #[derive(Clone, Debug)]
 pub struct RobustnessProof {
-    /// The enclosure.
-    pub enclosure: Enclosure,
+    /// The enclosures of the runs from each set of initial states.
+    pub enclosures: Vec<Enclosure>,
     /// The robustness of every run that lasts to the horizon of the formula is between these.
     pub robustness: Robustness,
     /// When it is open whether some predicate of the formula holds, in seconds: times at which its
@@ -61,7 +61,8 @@ pub struct Violation {
 /// Encloses all runs of a model and bounds how robustly they satisfy a formula.
 ///
 /// The horizon is that of the formula, whatever the settings say. What is said is about runs that last
-/// so long.
+/// so long. Runs from one set are compared at the same instant: where they do the same at different
+/// times, smaller [parts](StateSet::parts) of the set tell more.
 ///
 /// # Errors
 ///
@@ -92,13 +93,20 @@ pub fn prove_formula(
     }
     // A little farther, so that the last window ends before the enclosure does.
     let settings = Settings { horizon: horizon * (1.0 + 1e-9) + 1e-9, ..settings.clone() };
-    let go_on = &mut |_: &_, _: &_| ControlFlow::Continue(());
-    let enclosure = explore(model, starts, &settings, &directions, go_on)?;
-    let reading = Reading::of(model, &enclosure);
-    let signal = reading.signal(formula);
-    let robustness = Robustness { lower: signal[0].lower(), upper: signal[0].upper() };
-    let open = predicates.iter().flat_map(|predicate| reading.open(predicate)).collect();
-    Ok(RobustnessProof { robustness, open, enclosure })
+    let mut robustness = Robustness { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+    let (mut open, mut enclosures) = (Vec::new(), Vec::new());
+    for start in starts {
+        let go_on = &mut |_: &_, _: &_| ControlFlow::Continue(());
+        let alone = std::slice::from_ref(start);
+        let enclosure = explore(model, alone, &settings, &directions, go_on)?;
+        let reading = Reading::of(model, &enclosure);
+        let now = reading.signal(formula)[0];
+        robustness.lower = robustness.lower.min(now.lower());
+        robustness.upper = robustness.upper.max(now.upper());
+        open.extend(predicates.iter().flat_map(|predicate| reading.open(predicate)));
+        enclosures.push(enclosure);
+    }
+    Ok(RobustnessProof { robustness, open, enclosures })
 }
 
 /// Whether every run of `automaton` that begins in one of `starts` satisfies a formula.

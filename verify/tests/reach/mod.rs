@@ -1,6 +1,7 @@
 //! Enclosures of all runs.
 
 mod answers;
+mod confirmed;
 mod exact;
 mod oracle;
 mod robot;

@@ -1,6 +1,5 @@
 //! No simulated run leaves the enclosure of all runs: random systems.
 
-use cases::usually;
 use pleach_automaton::composition::Policy;
 use pleach_automaton::{Automaton, Name, Record, from};
 use pleach_guards::{Expression, constant};
@@ -56,7 +55,7 @@ fn squares(dimension: usize) -> impl Strategy<Value = (Rows, Vec<f64>, Vec<f64>,
 }
 
 proptest! {
-    #![proptest_config(usually(200))]
+    #![proptest_config(cases::usually(200))]
 
     #[test]
     fn affine_flows_with_inputs(

@@ -30,7 +30,7 @@ fn thermostat() -> Named {
 
 fn asked(formula: &Formula) -> TemporalAnswer {
     let settings = Settings { step: 0.02, ..Settings::default() };
-    let start = [boxed(&[(19.0, 21.0)])];
+    let start = boxed(&[(19.0, 21.0)]).parts(&[32]);
     verify_formula(&thermostat(), &[], &start, formula, &settings, &Effort::default()).unwrap()
 }
 

@@ -5,6 +5,7 @@ use pleach_guards::Interval;
 
 use super::{Entry, Search};
 use crate::reach::affine::AffineFlow;
+use crate::reach::exponential::exponential;
 use crate::reach::flow::Exit;
 use crate::reach::model::{Assignments, Dynamics, Jump};
 use crate::reach::polytope::{Bound, Polytope, over_box};
@@ -154,6 +155,30 @@ impl Search<'_> {
         !jump.guard.alternatives.is_empty() && jump.guard.alternatives.iter().all(begins)
     }
 
+    /// The states at an instant, bounded in the directions of a location by those of a polytope that the
+    /// flow brings there: sharper than its zonotope.
+    fn moved_bounds(
+        &self,
+        location: usize,
+        flow: &AffineFlow,
+        start: &StateSet,
+        exit: Exit,
+    ) -> Option<Polytope> {
+        start.polytope()?;
+        let nothing = vec![Interval::point(0.0); start.hull().len()];
+        let generators = self.settings.generators * nothing.len();
+        let added = flow.after(&Zonotope::from_box(&nothing), exit.until, generators);
+        let moved = exponential(&flow.matrix().map(|entry| entry * exit.until)).transposed();
+        let template = self.prepared[location].template.clone();
+        let bound = |direction: &Vec<f64>| {
+            let direction: Vec<Interval> = direction.iter().map(|d| Interval::point(*d)).collect();
+            let brought = start.support(&moved.apply(&direction));
+            (Interval::point(brought) + Interval::point(added.support(&direction))).upper()
+        };
+        let bounds = template.directions().iter().map(bound).collect();
+        Some(Polytope::new(template, bounds))
+    }
+
     /// The entries that jumps at an instant lead to: the sets are carried there as zonotopes.
     pub(super) fn timed_landings(
         &self,
@@ -179,7 +204,10 @@ impl Search<'_> {
             let arrived = arrived.get_or_insert_with(|| {
                 StateSet::from_zonotope(flow.after(&start.to_zonotope(), exit.until, generators))
             });
-            let bounds = self.bounds(location, arrived);
+            let mut bounds = self.bounds(location, arrived);
+            if let Some(moved) = self.moved_bounds(location, flow, start, exit) {
+                bounds = bounds.intersection(&moved);
+            }
             let staying = self.staying(location, &bounds);
             let cut = staying.and_then(|staying| self.union_of_cuts(&jump.guard, &staying));
             let Some(cut) = cut else { continue };
