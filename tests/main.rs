@@ -4,6 +4,8 @@
 
 mod common;
 mod floor_plans;
+mod fuzz;
+mod fuzzing;
 mod generated;
 mod missions;
 mod oracle;
@@ -22,9 +24,11 @@ mod outcomes;
 mod proofs;
 mod public_api;
 mod random_missions;
+mod records;
 mod scenario_faults;
 mod spaceex;
 mod story;
+mod stressed;
 mod studies;
 mod summary;
 mod trace;

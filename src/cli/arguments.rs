@@ -53,6 +53,14 @@ pub enum Command {
     /// through a wall by it. What was simplified or left out, and passages too narrow for robots,
     /// are told on the error output.
     Import(ImportArguments),
+    /// Judge a finished run from its trace alone
+    ///
+    /// Everything that the trace says is held against the definitions: motion, communication and
+    /// the tree at every instant, each event against the world and the events before it, and
+    /// teams, posts and phases against what follows from these. Exit status 0: it is sound; 4: the
+    /// first thing that is not is told, with the property, the step and the time; 2: the trace
+    /// cannot be read.
+    Judge(JudgeArguments),
     /// Turn a trace into an MCAP recording, which Foxglove plays
     #[cfg(feature = "mcap")]
     Export {
@@ -225,6 +233,13 @@ pub struct PageArguments {
     /// Write the page to FILE [default: the trace with the ending .html]
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
+}
+
+/// The arguments of `pleach judge`.
+#[derive(Debug, Args)]
+pub struct JudgeArguments {
+    /// The trace, as `pleach run --trace FILE` writes it
+    pub trace: PathBuf,
 }
 
 /// The arguments of `pleach diagram`.

@@ -13,7 +13,8 @@
 //!    [`link`];
 //! 2. checks that apply them to what observers record and name the offenders: [`instant`] for
 //!    one snapshot, [`period`] for two;
-//! 3. the [`Monitor`] that runs every check over a mission, and [`audit`] over a recorded one.
+//! 3. the [`Monitor`] that runs every check over a mission, and the [`Judge`], which holds events
+//!    and what observers conclude against the definitions as well: over a run, and over a trace.
 //!
 //! [`cell`] asks the same of all proposals and errors at once, by reachability.
 //!
@@ -79,6 +80,7 @@ pub mod cell;
 pub mod duty;
 pub mod election;
 pub mod instant;
+pub mod judge;
 pub mod link;
 pub mod motion;
 pub mod period;
@@ -99,6 +101,7 @@ mod tests;
 mod violation;
 
 pub use extremes::{Extreme, Extremes};
+pub use judge::Judge;
 pub use limits::{Limits, SLACK};
 pub use monitor::{Monitor, RoleTable, audit};
 pub use property::Property;

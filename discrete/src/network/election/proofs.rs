@@ -48,8 +48,9 @@ fn a_view_of_another_election_changes_nothing() {
     let bids = [any_bid(), any_bid(), any_bid()];
     let view = any_view(&bids);
     let mut old = Election::new(kani::any_where(|number: &u8| *number != 1).into());
-    for (robot, bid) in bids.into_iter().enumerate() {
-        old.place(robot, bid);
+    // By reference: see the proofs of agreements.
+    for (robot, bid) in bids.iter().enumerate() {
+        old.place(robot, *bid);
     }
     kani::cover!(old.best() > view.best());
     assert!(merged(view.clone(), &old) == view);
