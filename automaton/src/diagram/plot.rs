@@ -1,6 +1,7 @@
 //! Plots of a trajectory: variables and locations over time.
 
 mod curve;
+mod flowpipe;
 mod portrait;
 mod sheet;
 
@@ -12,6 +13,7 @@ use crate::trajectory::{FlowInterval, Trajectory};
 use curve::Quantity;
 use sheet::{Sheet, WIDTH, area_colour, text_width};
 
+pub use flowpipe::{FlowpipePicture, Patch};
 pub use portrait::{UnknownVariable, phase_portrait};
 
 /// Left of the panels, for the numbers of their axes, in pixels.
