@@ -1,7 +1,7 @@
 //! `docs/proofs.md` names every harness, every property and every lemma, and nothing else.
 
 #[path = "../examples/planted_faults/catalogue.rs"]
-mod catalogue;
+pub mod catalogue;
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -24,6 +24,7 @@ pub enum Member {
 
 /// What a node senses, or is asked for.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Sense {
     /// A robot finds itself here.
     Position(Point),
@@ -33,6 +34,7 @@ pub enum Sense {
 
 /// A node as observers see it.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub enum MemberView<'a> {
     /// A robot.
     Robot(RobotView<'a>),

@@ -28,6 +28,8 @@ mod proofs;
 
 /// A mover's standing offer to a parked robot.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Offer<D> {
     /// The receiver.
     pub to: NodeId,
@@ -39,6 +41,8 @@ pub struct Offer<D> {
 
 /// The parked robot's answer, repeated until the mover has heard it.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Reply<D> {
     /// The receiver.
     pub to: NodeId,

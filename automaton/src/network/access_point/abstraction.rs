@@ -27,19 +27,48 @@ impl AccessPoint {
     }
 
     /// Everything, apart from what it hears, that decides what the access point says from now on.
-    /// Waits that are over are over, however long.
+    ///
+    /// Left out is what the explorer stands for and what follows from the rest; how long a wait has
+    /// been over does not matter. A field that is neither told nor left out does not compile.
     pub fn account(&self) -> String {
-        let settled = match self.bulletin.notice() {
-            Notice::Quiet => self.settled_rounds.min(ROUNDS_UNTIL_ROSTER_SETTLES),
+        let AccessPoint {
+            // Told.
+            number,
+            bulletin,
+            election,
+            election_rounds,
+            agreement,
+            route,
+            crossing,
+            roster,
+            settled_rounds,
+            service,
+            // Constant: the request comes before the first state, and does not change.
+            site: _,
+            position: _,
+            requested: _,
+            // Between two stimuli an access point has nothing left to do.
+            heard: _,
+            newest: _,
+            rounds: _,
+            acts: _,
+            is_new: _,
+            voice: _,
+            log: _,
+            // The explorer stands for time.
+            clock: _,
+        } = self;
+        let settled = match self.notice() {
+            Notice::Quiet => (*settled_rounds).min(ROUNDS_UNTIL_ROSTER_SETTLES),
             _ => 0,
         };
         let patience = PATIENCE_WITH_ELECTIONS * self.longest_wait() + 1;
-        let rounds = if self.is_electing() { self.election_rounds.min(patience) } else { 0 };
+        let rounds = if self.is_electing() { (*election_rounds).min(patience) } else { 0 };
         format!(
             "{:?}",
             (
-                (self.number, &self.bulletin, &*self.service, &self.election, rounds),
-                (&self.agreement, &self.route, &self.crossing, &self.roster, settled),
+                (number, bulletin, &**service, election, rounds),
+                (agreement, route, crossing, roster, settled),
             )
         )
     }

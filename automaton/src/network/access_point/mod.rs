@@ -9,12 +9,12 @@ mod abstraction;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Agreement, Anchor, Bulletin, Election, IdSet, Lineage, NodeId};
+use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId, NoticeId};
 
 mod rounds;
 mod service;
 
-use super::beacon::{Beacon, Notice, Voice};
+use super::beacon::{Beacon, Bulletin, Notice, Voice};
 use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
@@ -45,13 +45,13 @@ pub struct AccessPoint {
     site: Arc<Site>,
     position: Point,
     heard: Vec<Arc<Beacon>>,
-    bulletin: Shared<Bulletin<Notice>>,
+    bulletin: Bulletin,
     /// The newest bulletin that it has heard and not taken up.
-    newest: Option<Shared<Bulletin<Notice>>>,
+    newest: Option<Bulletin>,
     election: Option<Election>,
     election_rounds: usize,
     agreement: Option<Agreement>,
-    route: Option<(u32, Shared<Vec<Hop>>)>,
+    route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     crossing: Vec<usize>,
     roster: Arc<IdSet>,
     settled_rounds: usize,
@@ -77,7 +77,7 @@ impl AccessPoint {
             position: site.access_points[number],
             site,
             heard: Vec::new(),
-            bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
+            bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             newest: None,
             election: None,
             election_rounds: 0,
@@ -163,9 +163,10 @@ impl AccessPoint {
     }
 
     fn hear_notices(&mut self) -> Result<(), TransitionError> {
-        let newest = self.heard.iter().map(|b| &b.bulletin).max_by_key(|b| b.sequence());
-        self.newest = newest.filter(|heard| heard.is_newer_than(&self.bulletin)).cloned();
-        if self.newest.is_some() {
+        let mut newest = self.bulletin.clone();
+        let hear = |has_news, beacon: &Arc<Beacon>| newest.merge(&beacon.bulletin) || has_news;
+        if self.heard.iter().fold(false, hear) {
+            self.newest = Some(newest);
             self.jump()?;
             self.newest = None;
         }
@@ -187,16 +188,16 @@ impl AccessPoint {
         Ok(())
     }
 
-    fn take_up(&mut self, bulletin: Shared<Bulletin<Notice>>) {
-        let number = bulletin.sequence();
-        match bulletin.notice() {
+    fn take_up(&mut self, bulletin: Bulletin) {
+        let id = bulletin.id();
+        match **bulletin.notice() {
             Notice::Task { .. } | Notice::Call { .. } => {
-                self.election = Some(Election::new(number));
+                self.election = Some(Election::new(id));
                 self.election_rounds = 0;
                 self.route = None;
                 self.crossing.clear();
             }
-            Notice::Path(_) => self.agreement = Some(Agreement::new(number)),
+            Notice::Path(_) => self.agreement = Some(Agreement::new(id)),
             _ => {}
         }
         self.bulletin = bulletin;
@@ -205,13 +206,13 @@ impl AccessPoint {
     /// The way to the robot that calls: through a robot that is attached here, or through another
     /// access point so near that a robot can change over from one to the other.
     fn find_route(&mut self) {
-        let number = self.bulletin.sequence();
-        if !matches!(self.bulletin.notice(), Notice::Call { .. }) || self.route.is_some() {
+        let id = self.bulletin.id();
+        if !matches!(self.notice(), Notice::Call { .. }) || self.route.is_some() {
             return;
         }
         let own = Anchor::Access(self.number);
         for beacon in &self.heard {
-            let Some((_, onward)) = beacon.route.as_ref().filter(|(at, _)| *at == number) else {
+            let Some((_, onward)) = beacon.route.as_ref().filter(|(call, _)| *call == id) else {
                 continue;
             };
             let is_child = beacon
@@ -220,7 +221,7 @@ impl AccessPoint {
                 .is_some_and(|duty| duty.post().is_some_and(|post| post.parent == Some(own)));
             let changeover = beacon.duty.is_none() && self.is_within_changeover(beacon.position);
             if is_child || changeover {
-                self.route = Some((number, onward.clone()));
+                self.route = Some((id, onward.clone()));
                 self.crossing = vec![self.number];
                 self.crossing.extend(&beacon.crossing);
                 return;

@@ -21,6 +21,7 @@ pub type RoundAutomaton = Automaton<Round, RoundEvent, AccessPoint>;
 
 /// A part of the work of a control period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RoundAct {
     /// τ := 0.
     RestartClock,
@@ -82,10 +83,10 @@ impl AccessPoint {
             match act {
                 RoundAct::RestartClock => self.clock = 0.0,
                 RoundAct::Think => {
-                    let known = self.bulletin.clone();
+                    let known = self.bulletin.id();
                     self.think()?;
                     self.serve()?;
-                    if self.bulletin != known {
+                    if self.bulletin.id() != known {
                         self.tell_user(outputs);
                     }
                 }

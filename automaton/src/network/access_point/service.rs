@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Bulletin, NodeId, SERVICE, Service, ServiceEvent};
+use pleach_discrete::network::{NodeId, SERVICE, Service, ServiceEvent};
 use pleach_guards::{Guard, network::service as guards};
 
 use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Transfer};
 
-use super::super::beacon::Notice;
+use super::super::beacon::{Bulletin, Notice};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::service::{Announced, Electing, Gathering, Over, Serviced, Serving, UnderWay};
 use super::super::shared::Shared;
@@ -67,9 +67,10 @@ crate::observed! {
 
 /// What a transition does beside.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum ServiceEffect {
     /// It takes up this bulletin.
-    TakeUp(Shared<Bulletin<Notice>>),
+    TakeUp(Bulletin),
     /// It issues the next notice.
     Issue(Notice),
     /// It tells observers.
@@ -94,7 +95,7 @@ impl Holds<Serving> for AccessPoint {
             match effect {
                 ServiceEffect::TakeUp(bulletin) => self.take_up(bulletin),
                 ServiceEffect::Issue(notice) => {
-                    self.take_up(Shared::new(self.bulletin.next(notice)));
+                    self.take_up(self.bulletin.next(self.id(), Shared::new(notice)));
                 }
                 ServiceEffect::Report(event) => self.log.push(event),
             }
@@ -114,7 +115,7 @@ impl AccessPoint {
 
     /// The notice that it has heard and not taken up.
     fn heard_notice(&self) -> Option<&Notice> {
-        self.newest.as_ref().map(|bulletin| bulletin.notice())
+        self.newest.as_ref().map(|bulletin| &**bulletin.notice())
     }
 
     /// The number of the task after the one serviced last, if the user has asked for one.
@@ -160,7 +161,7 @@ knows! {
 /// It takes up the notice that it has heard.
 fn take_up(point: &AccessPoint, effects: &mut Effects) -> Option<Notice> {
     let newest = point.newest.clone()?;
-    let notice = newest.notice().clone();
+    let notice = Notice::clone(newest.notice());
     effects.push(ServiceEffect::TakeUp(newest));
     Some(notice)
 }

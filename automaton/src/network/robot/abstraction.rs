@@ -5,7 +5,7 @@
 //! stands, and for how long it has not got on. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
-use pleach_discrete::network::{Bid, Election, NodeId, Phase, Subgroup};
+use pleach_discrete::network::{Bid, Election, NodeId, NoticeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Path};
@@ -34,22 +34,21 @@ impl<'a> RobotView<'a> {
         self.robot().mission.shift().map_or(&[], |shift| &shift.subgroups)
     }
 
-    /// The number of the election that it knows to be over, and the winner with its bid.
-    pub fn concluded_election(self) -> Option<(u32, Option<(Bid, NodeId)>)> {
+    /// The election that it knows to be over, and the winner with its bid.
+    pub fn concluded_election(self) -> Option<(NoticeId, Option<(Bid, NodeId)>)> {
         let election = self.robot().election.as_ref()?;
         let over = election.is_complete(&self.robot().roster);
-        over.then(|| (election.number(), election.best()))
+        over.then(|| (election.id(), election.best()))
     }
 
-    /// The number of the election that it takes part in, or took part in last.
-    pub fn election_number(self) -> Option<u32> {
-        self.robot().election.as_ref().map(Election::number)
+    /// The election that it takes part in, or took part in last.
+    pub fn election(self) -> Option<NoticeId> {
+        self.robot().election.as_ref().map(Election::id)
     }
 
-    /// What it has bid itself in the election with this number, if it has taken part in it and
-    /// in none since.
-    pub fn own_bid(self, number: u32) -> Option<Bid> {
-        self.robot().bid.filter(|_| self.election_number() == Some(number))
+    /// What it has bid itself in this election, if it has taken part in it and in none since.
+    pub fn own_bid(self, election: NoticeId) -> Option<Bid> {
+        self.robot().bid.filter(|_| self.election() == Some(election))
     }
 
     /// For how many control periods the robot has not got on.

@@ -71,6 +71,7 @@ deals! {
 
 /// What a transition does beside.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum DealingEffect {
     /// It has answered the offer with this number of this mover.
     Answered(NodeId, u32),

@@ -42,6 +42,7 @@ pub(super) enum Label {
 
 /// What a transition does beside giving the robot another duty.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum DutyEffect {
     /// The robot tells observers.
     Report(MissionEvent),
@@ -159,7 +160,7 @@ impl Robot {
         match self.label {
             Label::Mission(MissionStep::Recruited) => Some(0),
             Label::Mission(MissionStep::PathHeard) => {
-                let Notice::Path(path) = self.bulletin.notice() else { return None };
+                let Notice::Path(path) = self.notice() else { return None };
                 let place = path.place_of(own)?;
                 (place <= path.last_break_point()).then_some(place)
             }
@@ -298,7 +299,7 @@ fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
     let joins_at_once = robot.mission.shift().is_none_or(|shift| shift.subgroups.is_empty());
     let before = held.station.post;
     let parent = if joins_at_once { before.parent } else { Some(Anchor::Post(before.id)) };
-    let id = PostId((robot.site.robots as u32) + robot.bulletin.sequence());
+    let id = PostId((robot.site.robots as u32) + robot.bulletin.number());
     let post = Post { id, kind: PostKind::Primary { follows }, parent, task: None };
     let station = Station { post, reference: robot.position };
     Held { station, left: (!joins_at_once).then_some(before.id) }

@@ -269,13 +269,13 @@ impl Robot {
 
     /// What the newest notice asks of this robot.
     fn measure_word(&self, facts: &mut Facts) {
-        let number = self.bulletin.sequence();
-        let election = self.election.as_ref().map(|election| election.number());
-        let path = self.agreement.as_ref().map(|agreement| agreement.number());
-        match self.bulletin.notice() {
-            Notice::Task { .. } if election != Some(number) => facts.announced = true,
-            Notice::Call { .. } if election != Some(number) => facts.called = true,
-            Notice::Path(_) if path != Some(number) => facts.path_announced = true,
+        let id = self.bulletin.id();
+        let election = self.election.as_ref().map(|election| election.id());
+        let path = self.agreement.as_ref().map(|agreement| agreement.id());
+        match self.notice() {
+            Notice::Task { .. } if election != Some(id) => facts.announced = true,
+            Notice::Call { .. } if election != Some(id) => facts.called = true,
+            Notice::Path(_) if path != Some(id) => facts.path_announced = true,
             Notice::Advance { .. } => facts.resumed = true,
             Notice::Serviced { .. } => facts.service_announced = true,
             Notice::Ended { .. } => facts.end_announced = true,
@@ -284,7 +284,7 @@ impl Robot {
     }
 
     fn is_caller(&self) -> bool {
-        matches!(*self.bulletin.notice(), Notice::Call { caller, .. } if caller == self.id)
+        matches!(*self.notice(), Notice::Call { caller, .. } if caller == self.id)
     }
 
     fn measure_shift(&self, facts: &mut Facts) {
@@ -337,7 +337,7 @@ impl Robot {
     /// yet.
     fn is_pending(&self) -> bool {
         let Some(own) = self.duty.post() else { return false };
-        match *self.bulletin.notice() {
+        match *self.notice() {
             Notice::Advance { joined: Some((newcomer, followed)) } if newcomer == own.id => self
                 .holder(followed)
                 .and_then(|neighbour| neighbour.post())

@@ -9,7 +9,9 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Agreement, Bid, Election, IdSet, MISSION, MissionStep, Phase};
+use pleach_discrete::network::{
+    Agreement, Bid, Election, IdSet, MISSION, MissionStep, NoticeId, Phase,
+};
 use pleach_guards::network::mission as guards;
 
 use crate::located::{Current, DataOf, Holds, Place as _};
@@ -30,6 +32,7 @@ pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
 
 /// What a step of the mission does beside entering another phase.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum MissionEffect {
     /// The robot tells observers.
     Report(MissionEvent),
@@ -38,7 +41,7 @@ pub enum MissionEffect {
     /// It keeps in mind the task announced, the electors of its leader, and the access points whose robots compete.
     Learn(TaskNotice, Arc<IdSet>, Arc<IdSet>),
     /// It takes part in this election, with its own bid, from the way to the caller that it knows.
-    Elect(Election, Option<Bid>, Option<(u32, Shared<Vec<Hop>>)>),
+    Elect(Election, Option<Bid>, Option<(NoticeId, Shared<Vec<Hop>>)>),
     /// It forgets the way to the caller.
     ForgetRoute,
     /// It takes part in this agreement about Σ.
@@ -106,9 +109,7 @@ impl Robot {
     /// Takes the maximum of what it knows of the mission and what its neighbours say.
     pub(super) fn hear_notices(&mut self) {
         for neighbour in &self.neighbours {
-            if neighbour.beacon.bulletin.is_newer_than(&self.bulletin) {
-                self.bulletin = neighbour.beacon.bulletin.clone();
-            }
+            self.bulletin.merge(&neighbour.beacon.bulletin);
             if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {
                 own.merge(heard);
             }
@@ -126,7 +127,12 @@ impl Robot {
 
     /// The next notice on the mission, which this robot is the one to issue.
     fn issue(&mut self, notice: Notice) {
-        self.bulletin = Shared::new(self.bulletin.next(notice));
+        self.bulletin = self.bulletin.next(self.id, Shared::new(notice));
+    }
+
+    /// The identity of the next notice on the mission if this robot issues it.
+    pub(super) fn next_notice_id(&self) -> NoticeId {
+        self.notice_id().next(self.id)
     }
 }
 

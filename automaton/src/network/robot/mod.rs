@@ -39,7 +39,7 @@ use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, Lineage, NodeId, Post, PostId,
+    Agreement, Anchor, Bid, Dealings, Election, IdSet, Lineage, NodeId, NoticeId, Post, PostId,
     Role,
 };
 
@@ -57,7 +57,7 @@ pub use view::RobotView;
 use crate::automaton::TransitionError;
 use crate::located::Current;
 
-use super::beacon::{Beacon, Notice, TeamReport, Voice};
+use super::beacon::{Beacon, Bulletin, Notice, TeamReport, Voice};
 use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::mission::{Idle, Mission};
@@ -123,7 +123,7 @@ pub struct Robot {
     barren_periods: u32,
 
     // What it was told of the mission.
-    bulletin: Shared<Bulletin<Notice>>,
+    bulletin: Bulletin,
     tasks: Vec<TaskNotice>,
     roster: Arc<IdSet>,
     eligible: Arc<IdSet>,
@@ -131,7 +131,7 @@ pub struct Robot {
     /// What it has bid in this election itself.
     bid: Option<Bid>,
     waited_rounds: usize,
-    route: Option<(u32, Shared<Vec<Hop>>)>,
+    route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     agreement: Option<Agreement>,
     team: Option<TeamReport>,
 
@@ -217,7 +217,7 @@ impl Robot {
             reattaches_to: None,
             can_detach: false,
             barren_periods: 0,
-            bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
+            bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             tasks: Vec::new(),
             roster: Arc::default(),
             eligible: Arc::default(),
@@ -299,9 +299,9 @@ impl Robot {
         self.bulletin.notice()
     }
 
-    /// The number of the newest notice on the mission that it knows.
-    pub(super) fn notice_number(&self) -> u32 {
-        self.bulletin.sequence()
+    /// The identity of the newest notice on the mission that it knows.
+    pub(super) fn notice_id(&self) -> NoticeId {
+        self.bulletin.id()
     }
 
     /// The task announced last, as far as it knows.

@@ -1,7 +1,7 @@
 //! From ties to teams: what the robots of Σ vote, agree on and form.
 
-use pleach_discrete::network::Agreement;
 use pleach_discrete::network::path::{Ties, is_break_point, last_break_point, subgroups};
+use pleach_discrete::network::{Agreement, NoticeId};
 
 use super::below;
 use crate::network::team::{
@@ -40,7 +40,7 @@ fn break_points(view: &Agreement) -> ([usize; PLACES], usize) {
 /// Any break points that robots may agree on: their places, and how many there are.
 fn any_break_points() -> ([usize; PLACES], usize) {
     let votes = any_votes(last_break_point(PLACES, kani::any()));
-    let mut view = Agreement::new(1);
+    let mut view = Agreement::new(NoticeId::new(1, 0));
     for (place, vote) in votes.into_iter().enumerate() {
         view.vote(place, vote);
     }
@@ -54,13 +54,14 @@ fn any_break_points() -> ([usize; PLACES], usize) {
 #[kani::unwind(6)]
 fn robots_that_have_heard_every_vote_form_the_same_subgroups() {
     let votes = any_votes(last_break_point(PLACES, kani::any()));
-    let (mut one, mut other) = (Agreement::new(1), Agreement::new(1));
+    let (mut one, mut other) =
+        (Agreement::new(NoticeId::new(1, 0)), Agreement::new(NoticeId::new(1, 0)));
     for (place, vote) in votes.into_iter().enumerate() {
         one.vote(place, vote);
     }
     // The other hears the votes from the end of the path on, and of some twice.
     for place in [3, 2, 1, 0] {
-        let mut voter = Agreement::new(1);
+        let mut voter = Agreement::new(NoticeId::new(1, 0));
         voter.vote(place, votes[place]);
         other.merge(&voter);
         assert!(other.is_settled(PLACES) == (place == 0));
