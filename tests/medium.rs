@@ -1,8 +1,8 @@
 //! Distributed means distributed: what robots do is decided by the messages that reach them.
 
 use crate::missions::{
-    Arrival, AskedTwice, Filtered, Mission, Period, Written, network_over, run, run_over, run_unmonitored,
-    shipped,
+    Arrival, AskedTwice, Filtered, Mission, Period, Written, network_over, run, run_over,
+    run_unmonitored, shipped,
 };
 use pleach::automaton::network::Radio;
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};

@@ -133,7 +133,7 @@ pub trait System {
     fn flow(&mut self, duration: f64) -> Result<(), Self::Error>;
 }
 
-/// Someone who looks on while a system runs.
+/// Observes a run of a system.
 pub trait Observer<S: System + ?Sized> {
     /// A jump has been taken.
     ///

@@ -1,8 +1,8 @@
-//! What nodes tell their neighbours.
+//! What nodes send to their neighbours.
 //!
 //! A beacon is a copy of its sender's public state. Every agreement of the network works by
-//! repeating such copies and taking maxima: a message that is doubled or late does no harm to it,
-//! and after one that is lost the next says the same or better.
+//! repeating such copies and taking maxima: a message that is copied or late does no harm,
+//! and the message after a lost one contains the same or newer information.
 
 use std::sync::Arc;
 

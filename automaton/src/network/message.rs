@@ -1,4 +1,4 @@
-//! Everything that nodes of the network tell each other.
+//! The messages that nodes of the network exchange.
 //!
 //! Messages are data: in memory they share what they carry, and between processes they are written
 //! and read in any format of [serde](https://serde.rs). A message that is read is checked. Unknown

@@ -133,7 +133,7 @@ pub enum MissionEvent {
 pub struct End {
     /// The kind of end.
     pub outcome: Outcome,
-    /// A sentence that a person understands.
+    /// The reason, as a sentence for people.
     pub reason: String,
     /// The task concerned.
     pub task: Option<usize>,

@@ -21,15 +21,15 @@ use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::node::{Input, Node, Outputs};
 use crate::{Automaton, BuildError, Flow, Transfer};
 
-/// A user tells the first access point what there is to do, and hears from it what comes of it.
+/// A user sends its tasks to the first access point and receives notices from it.
 ///
-/// The network is given one control period to connect. Then the user repeats its request in every
+/// The network is given one control period to connect. The user then repeats its request in every
 /// period until it has heard an answer.
 #[derive(Clone, Debug)]
 pub struct User {
     site: Arc<Site>,
     request: Current<Asked>,
-    /// What is left to do of the row that was taken last.
+    /// The remaining acts of the row that was taken last.
     acts: UserActs,
     tasks: Arc<[Point]>,
     news: Bulletin,
@@ -54,7 +54,7 @@ pub type RequestAutomaton = Automaton<Request, RequestEvent, User>;
 
 crate::observed! {
     impl Observed for User as user;
-    /// What the guards of the user speak of.
+    /// What the guards of the user read.
     pub const USER_GLOSSARY;
     quantities {
         /// τ: seconds since the last sample.
@@ -63,9 +63,9 @@ crate::observed! {
         period: user.site.settings.period,
     }
     propositions {
-        /// The first access point has told what becomes of its request.
+        /// The first access point has answered its request.
         hears_answer: user.news.number() > 0,
-        /// The mission is said to have ended.
+        /// The newest notice says that the mission has ended.
         hears_end: matches!(user.notice(), Notice::Ended { .. }),
     }
 }

@@ -78,7 +78,7 @@ impl<N: Clone> Bulletin<N> {
         Bulletin { id: self.id.next(issuer), notice }
     }
 
-    /// Takes over `heard` if it is newer; says whether it was.
+    /// Takes over `heard` if it is newer; returns whether it was.
     pub fn merge(&mut self, heard: &Self) -> bool {
         let newer = heard.id.is_newer_than(self.id);
         if newer {

@@ -3,8 +3,8 @@
 //! Robots are alike: where a mover would have to pass a parked robot, the two exchange duties
 //! instead, which is Algorithm 4's "adopts the role" without the walk. The mover offers its duty;
 //! the parked robot answers with its own and goes on doing it; the mover takes that and gives its
-//! offer up; then the parked robot takes what was offered. Each step is seen in the beacon of the
-//! one who took it, so that messages may be repeated or come late.
+//! offer up; then the parked robot takes what was offered. Each step is visible in the beacon of the
+//! robot that took it, so that messages may be repeated or come late.
 //!
 //! ```
 //! use pleach_discrete::network::Dealings;

@@ -194,7 +194,7 @@ pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
     })
 }
 
-/// While Σ is walked one team is active: who moves for a task is in the primary team or in a
+/// While Σ is walked one team is active: a robot that moves for a task is in the primary team or in a
 /// subgroup, all in the same one.
 pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
     let of = |is_member: &dyn Fn(RobotView<'_>) -> bool| -> Vec<usize> {

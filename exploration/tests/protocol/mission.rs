@@ -16,7 +16,7 @@ use pleach_discrete::network::NodeId;
 use pleach_exploration::network::properties::duties;
 use pleach_exploration::network::{Protocol, State};
 
-/// What is said of the mission, without who says it and where.
+/// The content of a notice on the mission, without issuer and place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Word {
     Quiet,
@@ -181,7 +181,7 @@ impl Mission {
         }
     }
 
-    /// Counts the tasks; says whether it is time for this notice.
+    /// Counts the tasks; returns whether it is time for this notice.
     fn count(&mut self, notice: &Notice, before: Word) -> bool {
         match notice {
             Notice::Task { task, .. } => {

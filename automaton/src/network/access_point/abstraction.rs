@@ -1,16 +1,16 @@
-//! The access point as an explorer drives it.
+//! The access point, driven by an explorer.
 
 use super::super::beacon::{Beacon, Notice};
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
 use crate::automaton::TransitionError;
 
 impl AccessPoint {
-    /// What the access point would tell its neighbours now.
+    /// The beacon that the access point would send now.
     pub fn beacon(&self) -> Beacon {
         self.public_state()
     }
 
-    /// In place of a round of messages: thinks over what it has heard, without counting a round.
+    /// In place of a round of messages: processes what it has received, without counting a round.
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
@@ -18,7 +18,7 @@ impl AccessPoint {
         self.think()
     }
 
-    /// In place of what it does for the user at the end of each round.
+    /// In place of serving the user at the end of each round.
     ///
     /// # Errors
     /// When a guard cannot be evaluated.

@@ -30,12 +30,12 @@ use crate::node::{Input, Node, Outputs};
 pub use rounds::{RoundAct, RoundActs, RoundAutomaton, round_automaton};
 pub use service::{ACCESS_POINT_GLOSSARY, ServiceAutomaton, ServiceEffect, service_automaton};
 
-/// The first task is announced when the roster has not changed for this many rounds: between two
-/// robots whose links to an access point differ by one, news of them come two rounds apart.
+/// The first task is announced when the roster has not changed for this many rounds: news of two
+/// robots whose numbers of links to an access point differ by one arrive two rounds apart.
 const ROUNDS_UNTIL_ROSTER_SETTLES: usize = 8;
 
-/// An election takes at most this many times the rounds that news can be under way: redundant
-/// robots wait twice that long for the way to the caller before they place their token.
+/// An election takes at most this many times the rounds that a message can travel: redundant
+/// robots wait twice that long for the path to the caller before they place their token.
 const PATIENCE_WITH_ELECTIONS: usize = 4;
 
 /// An access point.
@@ -60,7 +60,7 @@ pub struct AccessPoint {
     /// Where it stands in the service of the tasks, and in its control period.
     service: Current<Serving>,
     rounds: Current<Rounds>,
-    /// What is left to do of the row that was taken last.
+    /// The remaining acts of the row that was taken last.
     acts: RoundActs,
     is_new: bool,
     clock: f64,
@@ -106,7 +106,7 @@ impl AccessPoint {
         self.site.robots + self.number
     }
 
-    /// What it tells its neighbours and, over the wire, the other access points: the very same
+    /// The beacon for its neighbours and, over the wire, the other access points: the very same
     /// beacon as before unless something in it has changed.
     fn speak(&mut self) -> Arc<Beacon> {
         let (beacon, _) = self.voice.say(self.public_state());
@@ -136,7 +136,7 @@ impl AccessPoint {
         }
     }
 
-    /// Puts together what it has heard in one round.
+    /// Processes the messages of one round.
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
@@ -148,7 +148,7 @@ impl AccessPoint {
         Ok(())
     }
 
-    /// The first access point tells the user what there is to know.
+    /// The first access point sends the user the newest notice.
     fn tell_user(&self, outputs: &mut Outputs<Message, MissionEvent>) {
         if self.number == 0 {
             let user = self.site.robots + self.site.access_points.len();
@@ -270,7 +270,7 @@ impl AccessPoint {
         matches!(*self.service, Serving::Electing(_))
     }
 
-    /// No message is longer under way than there are nodes to pass it on.
+    /// A message travels for at most as many rounds as there are nodes.
     fn longest_wait(&self) -> usize {
         self.site.robots + self.site.access_points.len()
     }

@@ -25,11 +25,11 @@ pub type RoundAutomaton = Automaton<Round, RoundEvent, AccessPoint>;
 pub enum RoundAct {
     /// τ := 0.
     RestartClock,
-    /// It puts together what it has heard, and serves the user.
+    /// It processes the messages received, and serves the user.
     Think,
-    /// The first access point tells the user the newest notice.
+    /// The first access point sends the user the newest notice.
     TellUser,
-    /// It tells its public state.
+    /// It sends its public state.
     TellBeacon,
 }
 
@@ -72,7 +72,7 @@ impl AccessPoint {
         }
     }
 
-    /// The clock calls: the access point takes the next row of its control period.
+    /// The clock is due: the access point takes the next row of its control period.
     pub(super) fn tick(
         &mut self,
         outputs: &mut Outputs<Message, MissionEvent>,

@@ -19,7 +19,7 @@ pub type ServiceAutomaton = Automaton<Service, ServiceEvent, AccessPoint>;
 
 crate::observed! {
     impl Observed for AccessPoint as point;
-    /// What the guards of access points speak of.
+    /// What the guards of access points read.
     pub const ACCESS_POINT_GLOSSARY;
     quantities {
         /// τ: seconds since the last sample.
@@ -42,19 +42,19 @@ crate::observed! {
         longest_wait: (PATIENCE_WITH_ELECTIONS * point.longest_wait()) as f64,
     }
     propositions {
-        /// The newest notice that it hears tells of a task, or of a call for a recruit.
+        /// The newest notice received announces a task, or calls for a recruit.
         hears_election: matches!(point.heard_notice(), Some(Notice::Task { .. } | Notice::Call { .. })),
-        /// The newest notice that it hears tells of a path Σ, or that the team advances.
+        /// The newest notice received announces a path Σ, or that the team advances.
         hears_progress: matches!(point.heard_notice(), Some(Notice::Path(_) | Notice::Advance { .. })),
-        /// The newest notice that it hears tells that the task is serviced.
+        /// The newest notice received says that the task is serviced.
         hears_service: matches!(point.heard_notice(), Some(Notice::Serviced { .. })),
-        /// The newest notice that it hears tells that the mission has ended.
+        /// The newest notice received says that the mission has ended.
         hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
         /// The user has asked it for tasks.
         asked: point.requested.is_some(),
         /// There is a task after the one announced last.
         task_left: point.next_task().is_some(),
-        /// It has heard who takes part in the election.
+        /// It knows the roster of the election.
         knows_electors: point.announced().is_some(),
         /// The token of every robot that takes part is known.
         election_over: point.is_election_over(),
@@ -65,7 +65,7 @@ crate::observed! {
     }
 }
 
-/// What a transition does beside.
+/// What a transition does beside changing the location.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum ServiceEffect {
@@ -73,7 +73,7 @@ pub enum ServiceEffect {
     TakeUp(Bulletin),
     /// It issues the next notice.
     Issue(Notice),
-    /// It tells observers.
+    /// It reports to observers.
     Report(MissionEvent),
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Between two jumps of the discrete protocol the flow carries a robot somewhere, and time
 //! passes. An explorer does not follow the flow. It chooses what may come of it: where the robot
-//! stands, and for how long it has not got on. Everything else is the robot itself.
+//! stands, and for how long it has made no progress. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
 use pleach_discrete::network::{Bid, Election, NodeId, NoticeId, Phase, Subgroup};
@@ -14,7 +14,7 @@ use super::{Robot, RobotError, RobotView};
 
 /// What an explorer reads off a robot beside what observers see.
 impl<'a> RobotView<'a> {
-    /// What the robot would tell its neighbours now.
+    /// The beacon that the robot would send now.
     pub fn beacon(self) -> Beacon {
         self.robot().public_state()
     }
@@ -24,7 +24,7 @@ impl<'a> RobotView<'a> {
         self.robot().dealings().taking()
     }
 
-    /// The path Σ that it was told of last.
+    /// The path Σ that was announced last.
     pub fn path(self) -> Option<&'a Path> {
         self.robot().mission.path().map(|path| &**path)
     }
@@ -51,7 +51,7 @@ impl<'a> RobotView<'a> {
         self.robot().bid.filter(|_| self.election() == Some(election))
     }
 
-    /// For how many control periods the robot has not got on.
+    /// The number of control periods without progress.
     pub fn still_periods(self) -> u32 {
         self.robot().still_periods
     }
@@ -63,7 +63,7 @@ impl<'a> RobotView<'a> {
 }
 
 impl Robot {
-    /// In place of a round of messages: thinks over what it has heard, without counting a round.
+    /// In place of a round of messages: processes what it has received, without counting a round.
     ///
     /// # Errors
     /// When a guard cannot be evaluated, or transitions do not come to an end.
@@ -76,7 +76,7 @@ impl Robot {
     }
 
     /// In place of the last stages of a control period and the beginning of the next: the robot
-    /// has not got on for `still_periods` control periods.
+    /// has made no progress for `still_periods` control periods.
     ///
     /// # Errors
     /// When a guard cannot be evaluated, or transitions do not come to an end.

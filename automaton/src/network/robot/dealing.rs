@@ -69,13 +69,13 @@ deals! {
     Giving,
 }
 
-/// What a transition does beside.
+/// What a transition does beside changing the location.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DealingEffect {
     /// It has answered the offer with this number of this mover.
     Answered(NodeId, u32),
-    /// It looks for a partner no more.
+    /// It no longer looks for a partner.
     PartnerAsked,
     /// It takes this duty over from this robot.
     Takes(Duty, NodeId),

@@ -2,7 +2,7 @@
 //! and 4, Remark 5.6).
 //!
 //! Resets are functions from the data of one duty to that of the next. They read the robot as it
-//! was before the jump and change nothing; what a jump does beside is a [`DutyEffect`].
+//! was before the jump and change nothing; any other effect of a jump is a [`DutyEffect`].
 
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ pub(super) enum Label {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DutyEffect {
-    /// The robot tells observers.
+    /// The robot reports to observers.
     Report(MissionEvent),
     /// Its stillness is counted anew: it begins another way.
     Restart,
@@ -121,7 +121,7 @@ impl Robot {
         }
     }
 
-    /// Tells observers if the role is not `before` any more.
+    /// Reports to observers if the role is no longer `before`.
     pub(super) fn report_role_after(&mut self, before: Role) {
         let now = self.role();
         if now != before {
@@ -168,7 +168,7 @@ impl Robot {
         }
     }
 
-    /// Whether Σ is of no use any more.
+    /// Whether Σ is no longer of use.
     pub(super) fn is_called_off(&self) -> bool {
         use MissionStep::{Announced, Ended, Resumed, Serviced};
         [Announced, Ended, Resumed, Serviced].into_iter().any(|step| self.takes_step(step))

@@ -2,8 +2,8 @@
 //! and 5).
 //!
 //! Resets are functions from the data of one phase to that of the next. They read the robot as it
-//! was before the jump, with the duty that it has taken in the same jump, and change nothing; what
-//! a step does beside is a [`MissionEffect`]. The steps themselves stand in the chapters on the
+//! was before the jump, with the duty that it has taken in the same jump, and change nothing; any
+//! other effect of a step is a [`MissionEffect`]. The steps themselves are in the chapters on the
 //! election of a leader (`leader`) and of a recruit (`recruit`), on the path Σ and its subgroups
 //! (`path`), and on the primary team (`team`).
 
@@ -34,11 +34,12 @@ pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum MissionEffect {
-    /// The robot tells observers.
+    /// The robot reports to observers.
     Report(MissionEvent),
     /// It issues the next notice.
     Issue(Notice),
-    /// It keeps in mind the task announced, the electors of its leader, and the access points whose robots compete.
+    /// It stores the task announced, the electors of its leader, and the access points whose robots
+    /// compete.
     Learn(TaskNotice, Arc<IdSet>, Arc<IdSet>),
     /// It takes part in this election, with its own bid, from the way to the caller that it knows.
     Elect(Election, Option<Bid>, Option<(NoticeId, Shared<Vec<Hop>>)>),
@@ -91,7 +92,7 @@ impl Holds<Mission> for Robot {
 
 impl Robot {
     /// Takes at most one step of the mission, together with the duty automaton if that has a
-    /// transition for it; says whether it did.
+    /// transition for it; returns whether it did.
     pub(super) fn jump_mission(&mut self) -> Result<bool, TransitionError> {
         let site = Arc::clone(&self.site);
         let mut phase = self.phase();
@@ -106,7 +107,7 @@ impl Robot {
         self.mission.location()
     }
 
-    /// Takes the maximum of what it knows of the mission and what its neighbours say.
+    /// Merges what it knows of the mission with the beacons of its neighbours.
     pub(super) fn hear_notices(&mut self) {
         for neighbour in &self.neighbours {
             self.bulletin.merge(&neighbour.beacon.bulletin);
@@ -165,7 +166,7 @@ fn resumed<A: DataOf<Mission>>() -> Row {
 /// Never with the table and guards of this crate; they are checked all the same.
 pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
-    // A notice says one thing; an election is won or in vain; a subgroup is on its way or none is.
+    // A notice has one content; an election has a winner or not; at most one subgroup is moving.
     let notices =
         ["announced", "called", "path_announced", "resumed", "service_announced", "end_announced"];
     Automaton::builder(MISSION, Phase::Idle)

@@ -67,7 +67,7 @@ pub(super) fn resume<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Advance 
 }
 
 impl Robot {
-    /// What the robot says on the break points of `path`.
+    /// The vote of the robot on the break points of `path`.
     pub(super) fn vote_on(&self, path: &Path, id: NoticeId) -> Agreement {
         let mut agreement = Agreement::new(id);
         if let Some(station) = self.duty.station()
@@ -106,7 +106,7 @@ impl Robot {
         self.mission.shift()?.active()
     }
 
-    /// Says so when it has arrived at the next place of Σ.
+    /// Reports that it has arrived at the next place of Σ.
     pub(super) fn report_arrival(&mut self) {
         if let Duty::Shifting(Shifting { place, .. }) = *self.duty
             && self.active_subgroup().is_some()

@@ -14,7 +14,7 @@ use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
 /// Residuals in bids are compared in units of this: routes aim at the same reserve everywhere,
-/// and what is left of differences is the dual iteration's noise.
+/// and remaining differences are the dual iteration's noise.
 const RESIDUAL_RESOLUTION: f64 = 1e-3;
 
 /// p₁ is stuck, or the leader has past duties: it calls for a recruit.
@@ -105,7 +105,7 @@ impl Robot {
         Some(Hop { robot: self.id, post: station.post, place, crossing })
     }
 
-    /// Counts one more round of an election of a recruit; says whether a wait is over, so that the
+    /// Counts one more round of an election of a recruit; returns whether a wait is over, so that the
     /// robot may do what it might not do before.
     pub(super) fn count_round(&mut self) -> bool {
         if self.phase() != Phase::RecruitElection {
@@ -147,13 +147,13 @@ impl Robot {
         Bid { rank: 1, merit, economy: -(hops as i64) }
     }
 
-    /// A redundant robot that no tree connects to the caller only says where it could help.
+    /// A redundant robot that no tree connects to the caller only bids to show where it could help.
     fn stranded_bid(&self) -> Option<Bid> {
         let root = self.lineage.as_ref()?.root();
         Some(Bid { rank: 0, merit: -(root as i64), economy: 0 })
     }
 
-    /// No message is longer under way than there are robots to pass it on.
+    /// A message travels for at most as many rounds as there are nodes.
     pub(super) fn longest_wait(&self) -> usize {
         self.site.robots + self.site.access_points.len()
     }

@@ -49,7 +49,7 @@ pub(super) fn faults(scenario: &Scenario, site: &Site) -> Vec<Fault> {
     }
 }
 
-/// A site and who starts in it.
+/// A site and the starts in it.
 struct Ground<'a> {
     site: &'a Site,
     robots: Vec<Point>,
