@@ -158,7 +158,7 @@ impl<S: System + ?Sized> Observer<S> for () {
 /// A round of jumps while it is under way.
 pub struct Round<'a, J> {
     now: HybridTime,
-    /// None where nobody looks at jumps.
+    /// None where no observer looks at jumps.
     report: Option<&'a mut dyn FnMut(TraceEntry<J>)>,
 }
 

@@ -67,7 +67,7 @@ impl<D> Reply<D> {
     }
 }
 
-/// Where a robot stands in its exchanges: with an offer as a mover, with a reply as the parked one.
+/// The exchanges of a robot: with an offer as a mover, with a reply as the parked one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dealings<D> {
     offer: Option<Offer<D>>,

@@ -1,6 +1,6 @@
 //! The way from a post to its access point, as a path vector.
 //!
-//! Every robot tells its neighbours its lineage. A redundant robot attaches to the neighbour
+//! Every robot sends its lineage to its neighbours. A redundant robot attaches to the neighbour
 //! with the shortest one; a lineage that already contains the robot's own post is refused, so
 //! that no cycle can close.
 

@@ -57,7 +57,7 @@ pub struct AccessPoint {
     settled_rounds: usize,
     /// What the user has asked for.
     requested: Option<Arc<[Point]>>,
-    /// Where it stands in the service of the tasks, and in its control period.
+    /// Its state in the service of the tasks, and its stage in the control period.
     service: Current<Serving>,
     rounds: Current<Rounds>,
     /// The remaining acts of the row that was taken last.
@@ -249,7 +249,7 @@ impl AccessPoint {
         let settled = self.roster.includes(&roster) && roster.includes(&self.roster);
         self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
         if !settled {
-            // What another access point told may be older than what this one has heard itself.
+            // What another access point sent may be older than what this one has received itself.
             roster.merge(&self.roster);
             self.roster = Arc::new(roster);
         }

@@ -12,7 +12,7 @@ use super::super::duty::{Duty, Path};
 use super::facts::STATIONARY_WINDOW;
 use super::{Robot, RobotError, RobotView};
 
-/// What an explorer reads off a robot beside what observers see.
+/// What an explorer reads from a robot in addition to what observers see.
 impl<'a> RobotView<'a> {
     /// The beacon that the robot would send now.
     pub fn beacon(self) -> Beacon {

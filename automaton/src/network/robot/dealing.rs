@@ -21,7 +21,7 @@ pub type DealingAutomaton = Automaton<Dealing, DealingEvent, Robot>;
 macro_rules! deals {
     ($($(#[$note:meta])* $name:ident),+ $(,)?) => {
         crate::places_of! {
-            /// Where a robot stands in the exchange of duties, with its offers and replies.
+            /// The state of a robot in the exchange of duties, with its offers and replies.
             pub enum Deal: Dealing { $($(#[$note])* $name($name)),+ }
         }
 
@@ -69,7 +69,7 @@ deals! {
     Giving,
 }
 
-/// What a transition does beside changing the location.
+/// The effects of a transition other than changing the location.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DealingEffect {

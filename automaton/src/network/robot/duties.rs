@@ -40,13 +40,13 @@ pub(super) enum Label {
     Exchange(Duty, NodeId),
 }
 
-/// What a transition does beside giving the robot another duty.
+/// The effects of a transition other than another duty.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DutyEffect {
     /// The robot reports to observers.
     Report(MissionEvent),
-    /// Its stillness is counted anew: it begins another way.
+    /// Its stillness is counted from 0: it begins another path.
     Restart,
     /// It was given its duty by this partner, and its place in the tree is another.
     Exchanged(NodeId),

@@ -30,7 +30,7 @@ use super::{Robot, TaskNotice, leader, path, recruit, team};
 /// The automaton of the mission as one robot sees it.
 pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
 
-/// What a step of the mission does beside entering another phase.
+/// The effects of a step of the mission other than another phase.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum MissionEffect {
@@ -47,7 +47,7 @@ pub enum MissionEffect {
     ForgetRoute,
     /// It takes part in this agreement about Σ.
     Agree(Option<Agreement>),
-    /// Its stillness is counted anew.
+    /// Its stillness is counted from 0.
     Restart,
 }
 

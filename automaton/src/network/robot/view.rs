@@ -62,7 +62,7 @@ impl<'a> RobotView<'a> {
         self.0.phase()
     }
 
-    /// Where it stands in its control period.
+    /// Its stage in the control period.
     pub fn stage(self) -> Stage {
         self.0.stage()
     }

@@ -219,7 +219,7 @@ impl Scenario {
     }
 }
 
-/// Where in the scenario the polygon stands that the error speaks of; of two, the later one.
+/// Where in the scenario the polygon stands that the error is about; of two, the later one.
 fn key_of_outline(error: &WorkspaceError) -> KeyPath {
     let workspace = KeyPath::root().key("workspace");
     let of = |polygon: &Polygon| match *polygon {
