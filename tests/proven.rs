@@ -169,9 +169,10 @@ fn harnessed() -> BTreeSet<(String, String)> {
             .unwrap();
         let text = code(&harness);
         let own: BTreeSet<&str> = text.lines().filter_map(function).map(|(name, _)| name).collect();
-        let names = public_functions(&code(&file));
-        let names = names.intersection(&called(&text)).filter(|name| !own.contains(name.as_str()));
-        found.extend(names.map(|name| (name.clone(), file.clone())));
+        let called = called(&text);
+        let names = public_functions(&code(&file)).into_iter();
+        let names = names.filter(|name| called.contains(name) && !own.contains(name.as_str()));
+        found.extend(names.map(|name| (name, file.clone())));
     }
     found
 }
