@@ -113,10 +113,10 @@ impl Medium<Message, Point> for AskedTwice {
         mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
     ) -> Result<(), E> {
         let AskedTwice { radio, second } = self;
-        radio.deliver(|delivery| {
-            hand_over(delivery)?;
-            match delivery.message {
-                Message::Request(_) => hand_over(Delivery { to: *second, ..delivery }),
+        radio.deliver(|Delivery { from, to, message }| {
+            hand_over(Delivery { from, to, message })?;
+            match message {
+                Message::Request(_) => hand_over(Delivery { from, to: *second, message }),
                 _ => Ok(()),
             }
         })
