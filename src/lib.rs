@@ -160,6 +160,7 @@
 pub mod figures;
 #[cfg(feature = "cli")]
 pub mod import;
+pub mod judge;
 pub mod mission;
 pub mod page;
 pub mod prelude;

@@ -18,7 +18,7 @@ use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use crate::continuous::Point;
 use crate::discrete::network::activity::may_follow;
-use crate::verify::network::{Extremes, Monitor};
+use crate::verify::network::{Extremes, Judge, Violation};
 
 /// Something that watches a mission.
 pub trait Watcher {
@@ -98,7 +98,7 @@ pub fn run_network<M: Medium<Message, Point>>(
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     let mut gallery = Gallery {
-        monitor: Monitor::new(scenario, may_follow),
+        judge: Judge::new(scenario, may_follow),
         watchers,
         failure: None,
         saturated: Vec::new(),
@@ -115,22 +115,38 @@ pub fn run_network<M: Medium<Message, Point>>(
             return Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") });
         }
     };
+    let end = gallery
+        .judge
+        .conclude(&end)
+        .map_or_else(|violation| stopped(&violation, &end), |()| end.clone());
     for watcher in gallery.watchers.iter_mut() {
         watcher.end(&end)?;
     }
-    Ok(Completed { end, extremes: gallery.monitor.extremes().clone(), times: network.times() })
+    Ok(Completed { end, extremes: gallery.judge.extremes().clone(), times: network.times() })
 }
 
 /// Far more rounds of jumps than the messages of a control period ever take: only a cycle of
 /// transitions that consumes no time can reach it.
 const JUMPS_PER_PERIOD: u32 = 1_000_000;
 
+/// The end of a mission that its record belies; one that was stopped for a violation says so.
+fn stopped(violation: &Violation, end: &End) -> End {
+    match end.outcome {
+        Outcome::InvariantViolated => end.clone(),
+        _ => End {
+            outcome: Outcome::InvariantViolated,
+            reason: violation.to_string(),
+            task: end.task,
+        },
+    }
+}
+
 /// The load from which on a robot counts as saturated: it sends all the time.
 const SATURATED: f64 = 0.999;
 
-/// The monitor and the watchers, looking on while the executor runs.
+/// The judge and the watchers, looking on while the executor runs.
 struct Gallery<'a, 'w> {
-    monitor: Monitor<'a>,
+    judge: Judge<'a>,
     watchers: &'a mut [&'w mut dyn Watcher],
     failure: Option<io::Error>,
     /// The robots that send all the time in the last period, with their loads.
@@ -184,14 +200,11 @@ impl Gallery<'_, '_> {
     }
 
     fn check(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Result<(), End> {
-        self.monitor
-            .observe(snapshot)
-            .and_then(|()| events.iter().try_for_each(|event| self.monitor.observe_event(event)))
-            .map_err(|violation| End {
-                outcome: Outcome::InvariantViolated,
-                reason: violation.to_string(),
-                task: snapshot.task,
-            })
+        self.judge.observe(snapshot, events).map_err(|violation| End {
+            outcome: Outcome::InvariantViolated,
+            reason: violation.to_string(),
+            task: snapshot.task,
+        })
     }
 }
 

@@ -75,6 +75,33 @@ fn a_quiet_run_says_nothing_but_the_summary() {
     assert!(!output.stdout.is_empty());
 }
 
+// ---- Judging -----------------------------------------------------------------------------------
+
+#[test]
+fn a_trace_is_judged_from_its_file() {
+    let trace = Path::new(env!("CARGO_TARGET_TMPDIR")).join("judged.jsonl");
+    let path = trace.to_str().unwrap();
+    pleach(&["run", "scenarios/too-few.toml", "--no-figures", "--quiet", "--trace", path]);
+    let sound = pleach(&["judge", path]);
+    assert_eq!(sound.status.code(), Some(0));
+    let verdict =
+        format!("{path}: sound, 275 control periods; the outcome is: insufficient robots");
+    assert_eq!(said(&sound.stdout).trim_end(), verdict);
+
+    let text = std::fs::read_to_string(&trace).unwrap();
+    let spoiled = text.replacen("\"event\":\"task_serviced\"", "\"event\":\"task_announced\"", 1);
+    std::fs::write(&trace, spoiled).unwrap();
+    let violated = pleach(&["judge", path]);
+    assert_eq!(violated.status.code(), Some(4));
+    assert!(said(&violated.stdout).contains("events is violated in step"), "{violated:?}");
+
+    std::fs::write(&trace, &text[..text.len() / 2]).unwrap();
+    let torn = pleach(&["judge", path]);
+    assert_eq!(torn.status.code(), Some(2));
+    assert!(said(&torn.stderr).contains("nothing was judged"), "{torn:?}");
+    assert_eq!(pleach(&["judge", "no/such/trace.jsonl"]).status.code(), Some(2));
+}
+
 // ---- Many runs ---------------------------------------------------------------------------------
 
 fn said(bytes: &[u8]) -> String {

@@ -59,6 +59,7 @@ macro_rules! for_each_automaton {
             $act("The duty of a robot", "duty", DUTY, &it.duty),
             $act("The mission as one robot sees it", "mission", MISSION, &it.mission),
             $act("The exchange of duties", "exchange", EXCHANGE, &it.dealing),
+            $act("The place of a robot in the tree", "place", PLACE, &it.attachment),
             $act("The control period of a robot", "control", CONTROL, &it.control),
             $act("The service of an access point", "service", SERVICE, &it.service),
             $act("The control period of an access point", "rounds", ROUNDS, &it.rounds),
@@ -91,7 +92,7 @@ const INTRODUCTION: &str = "\
 
 # The automata of the network
 
-Every robot runs the first four of these automata over its own state, every access point the next
+Every robot runs the first five of these automata over its own state, every access point the next
 two, and the user the last. This page is written by the library from the tables, guards, resets,
 flows, invariants and laws that the nodes run. A transition reads `event [guard] / reset (urgency,
 priority)`; all of them are taken *at once*, and where several could be, the smaller priority goes
@@ -117,11 +118,18 @@ notice that the robot has heard; those of priority 1 are what it finds out itsel
 issue the next notice. Robots are in different phases while a notice spreads.
 ";
 
+const PLACE: &str = "\
+The parent of a post belongs to the duty, whose rows change it (*attached*, and whatever gives the
+robot another post). Here the robot follows what its parent tells: the way to an access point.
+";
+
 const CONTROL: &str = "\
 Time passes in one location only, by the flow of equation (23), and while its invariant holds: the
 robot stays in the region that the motion problem (21) has given it. At the sample it goes through
 the other locations, which take no time (Algorithm 5). In each it waits for what its neighbours say,
-up to the next tick of its clock; the reset lists what it does then, in this order.
+up to the next tick of its clock; the reset lists what it does then, in this order. Rounds of sweeps
+and of the negotiation are counted from 1 (n := 0); a robot with nothing to tell or to judge does not
+tick in them.
 ";
 
 const SERVICE: &str = "\

@@ -4,6 +4,8 @@
 
 mod common;
 mod floor_plans;
+mod fuzz;
+mod fuzzing;
 mod generated;
 mod missions;
 mod oracle;
@@ -11,6 +13,7 @@ mod oracle;
 mod book;
 mod browser;
 mod command_line;
+mod coverage;
 mod determinism;
 mod documents;
 mod found_missions;
@@ -22,8 +25,10 @@ mod proofs;
 mod proven;
 mod public_api;
 mod random_missions;
+mod records;
 mod scenario_faults;
 mod story;
+mod stressed;
 mod studies;
 mod summary;
 mod trace;

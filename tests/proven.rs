@@ -49,7 +49,7 @@ const CALLS: &[Call] = &[
     ("merge", BULLETIN, ROBOT_MISSION, "self.bulletin.merge(&neighbour.beacon.bulletin)"),
     ("new", ELECTION, ROBOT_LEADER, "Election::new(robot.notice_id())"),
     ("place", ELECTION, ROBOT_LEADER, "election.place(robot.id, bid)"),
-    ("merge", ELECTION, ROBOT_MISSION, "(&mut self.election, &neighbour.beacon.election)"),
+    ("merge", ELECTION, ROBOT_MISSION, "merge_election(own, heard)"),
     ("best", ELECTION, ROBOT_LEADER, "self.election.as_ref()?.best()"),
     ("is_complete", ELECTION, ROBOT_FACTS, "election.is_complete(&self.roster)"),
     ("has_token", ELECTION, ROBOT_RECRUIT, "!election.has_token(self.id)"),

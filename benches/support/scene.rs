@@ -185,7 +185,7 @@ impl Crowd {
     pub fn exchange_beacons(&mut self) {
         let Crowd { robots, outputs, audiences } = self;
         for (robot, outputs) in robots.iter_mut().zip(outputs.iter_mut()) {
-            robot.step(Input::Tick, outputs).expect("guards that can be evaluated");
+            robot.step(Input::Tick { passed: 0 }, outputs).expect("guards that can be evaluated");
         }
         let sent: Vec<_> = outputs.iter_mut().flat_map(Outputs::drain_sent).collect();
         for envelope in &sent {

@@ -18,11 +18,10 @@ use std::{env, fmt, fs, io};
 use catalogue::{CatalogueError, Fault, faults};
 
 /// What is copied from the root of the workspace: all that the packages are built from.
-const SOURCES: [&str; 14] = [
+const SOURCES: [&str; 16] = [
     "Cargo.toml",
     "Cargo.lock",
     "rustfmt.toml",
-    "docs",
     "src",
     "guards",
     "discrete",
@@ -33,6 +32,9 @@ const SOURCES: [&str; 14] = [
     "tests",
     "examples",
     "benches",
+    "scenarios",
+    "docs",
+    "README.md",
 ];
 
 /// Seconds after which a command is ended: a fault may give the protocol endlessly many states.

@@ -53,6 +53,14 @@ pub enum Command {
     /// closed. What was simplified or left out, and passages too narrow for robots,
     /// are reported on the error output.
     Import(ImportArguments),
+    /// Judge a finished run from its trace alone
+    ///
+    /// Everything that the trace says is held against the definitions: motion, communication and
+    /// the tree at every instant, each event against the world and the events before it, and
+    /// teams, posts and phases against what follows from these. Exit status 0: it is sound; 4: the
+    /// first thing that is not is told, with the property, the step and the time; 2: the trace
+    /// cannot be read.
+    Judge(JudgeArguments),
     /// Turn a trace into an MCAP recording, which Foxglove plays
     #[cfg(feature = "mcap")]
     Export {
@@ -221,6 +229,13 @@ pub struct PageArguments {
     pub output: Option<PathBuf>,
 }
 
+/// The arguments of `pleach judge`.
+#[derive(Debug, Args)]
+pub struct JudgeArguments {
+    /// The trace, as `pleach run --trace FILE` writes it
+    pub trace: PathBuf,
+}
+
 /// The arguments of `pleach diagram`.
 #[derive(Debug, Args)]
 pub struct DiagramArguments {
@@ -240,6 +255,8 @@ pub enum Automaton {
     Exchange,
     /// Where the mission stands: elections, advance, shifts of the secondary team
     Mission,
+    /// Whether a robot's post belongs to a tree, by what its parent tells
+    Place,
     /// The control period of a robot: beacons, routes, the move, and the flow between samples
     Control,
     /// What an access point does for the user: announcements, elections, the end of the mission

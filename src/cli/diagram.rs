@@ -15,6 +15,7 @@ pub fn print(arguments: &DiagramArguments) -> Result<Status, Failure> {
         Which::Duty => draw(&automata.duty, format),
         Which::Exchange => draw(&automata.dealing, format),
         Which::Mission => draw(&automata.mission, format),
+        Which::Place => draw(&automata.attachment, format),
         Which::Control => draw(&automata.control, format),
         Which::Service => draw(&automata.service, format),
         Which::Rounds => draw(&automata.rounds, format),

@@ -9,6 +9,7 @@ mod export;
 mod import;
 mod interrupt;
 mod job;
+mod judge;
 mod manual;
 mod page;
 mod plan;
@@ -34,6 +35,7 @@ pub fn carry_out(arguments: Arguments) -> ExitCode {
         Command::Import(import) => import::import(&import),
         #[cfg(feature = "mcap")]
         Command::Export { trace, recording } => export::export(&trace, &recording),
+        Command::Judge(judge) => judge::run(&judge),
         Command::Diagram(diagram) => diagram::print(&diagram),
         Command::Completions { shell } => manual::print_completions(shell),
         Command::Man { folder } => manual::write_manual(folder.as_deref()),

@@ -122,6 +122,9 @@ pub enum Failure {
         /// What the system says.
         source: io::Error,
     },
+    /// A trace cannot be read, and nothing was judged.
+    #[error("{0}")]
+    Judge(String),
     /// The trace, the progress or a figure cannot be written.
     #[error("cannot write what the mission shows: {0}")]
     Output(#[from] io::Error),
@@ -156,6 +159,7 @@ impl Failure {
             | Failure::Import(_)
             | Failure::Skeleton(_)
             | Failure::Trace { .. }
+            | Failure::Judge(_)
             | Failure::Creation { .. } => Status::BadInput,
             #[cfg(feature = "mcap")]
             Failure::Recording { .. } => Status::BadInput,

@@ -1,12 +1,17 @@
 //! The automata that nodes run, each over the state of its node: the tables of the discrete layer
 //! with guards and resets, flows, invariants and laws.
 
+use std::fmt;
+
+use pleach_discrete::{Event, Location, Row};
+
 use crate::BuildError;
 
 use super::access_point::{RoundAutomaton, ServiceAutomaton, round_automaton, service_automaton};
 use super::robot::{
-    ControlAutomaton, DealingAutomaton, DutyAutomaton, MissionAutomaton, Targets,
-    control_automaton, dealing_automaton, duty_automaton, mission_automaton, targets,
+    AttachmentAutomaton, ControlAutomaton, DealingAutomaton, DutyAutomaton, MissionAutomaton,
+    Targets, attachment_automaton, control_automaton, dealing_automaton, duty_automaton,
+    mission_automaton, targets,
 };
 use super::user::{RequestAutomaton, request_automaton};
 
@@ -21,7 +26,9 @@ pub struct Automata {
     pub mission: MissionAutomaton,
     /// The state of the robot in the exchange of duties.
     pub dealing: DealingAutomaton,
-    /// The stage of the robot in its control period.
+    /// The robot's place in the tree.
+    pub attachment: AttachmentAutomaton,
+    /// Where the robot stands in its control period.
     pub control: ControlAutomaton,
     /// The service of the tasks, for an access point.
     pub service: ServiceAutomaton,
@@ -42,6 +49,7 @@ impl Automata {
             targets: targets(),
             mission: mission_automaton()?,
             dealing: dealing_automaton()?,
+            attachment: attachment_automaton()?,
             control: control_automaton()?,
             service: service_automaton()?,
             rounds: round_automaton()?,
@@ -57,10 +65,54 @@ impl Automata {
             targets: self.targets,
             mission: self.mission.counted(),
             dealing: self.dealing.counted(),
+            attachment: self.attachment.counted(),
             control: self.control.counted(),
             service: self.service.counted(),
             rounds: self.rounds.counted(),
             request: self.request.counted(),
         }
+    }
+
+    /// How often each row of each table has been taken, table by table; nothing unless it is
+    /// [counted](Self::counted).
+    pub fn taken(&self) -> Vec<(NamedRow, u64)> {
+        fn named<L: Location, E: Event>(
+            table: &'static str,
+            taken: impl Iterator<Item = (Row<L, E>, u64)>,
+        ) -> impl Iterator<Item = (NamedRow, u64)> {
+            taken.map(move |(row, times)| {
+                let [source, target] = [row.source, row.target].map(|location| location.name());
+                (NamedRow { table, source, event: row.event.name(), target }, times)
+            })
+        }
+        named("duty", self.duty.taken())
+            .chain(named("mission", self.mission.taken()))
+            .chain(named("exchange of duties", self.dealing.taken()))
+            .chain(named("place in the tree", self.attachment.taken()))
+            .chain(named("control period", self.control.taken()))
+            .chain(named("service of the tasks", self.service.taken()))
+            .chain(named("control period of an access point", self.rounds.taken()))
+            .chain(named("user", self.request.taken()))
+            .collect()
+    }
+}
+
+/// A row of one of the tables, by its names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct NamedRow {
+    /// The table.
+    pub table: &'static str,
+    /// The location that it leaves.
+    pub source: &'static str,
+    /// Its event.
+    pub event: &'static str,
+    /// The location that it enters.
+    pub target: &'static str,
+}
+
+impl fmt::Display for NamedRow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let NamedRow { table, source, event, target } = self;
+        write!(f, "{table}: {source} on {event} to {target}")
     }
 }

@@ -98,7 +98,8 @@ pub struct Beacon {
     /// The newest notice on the mission that it knows.
     pub bulletin: Bulletin,
     /// Its view of the current election.
-    pub election: Option<Election>,
+    #[serde(with = "wire")]
+    pub election: Option<Arc<Election>>,
     /// Its view of the agreement about the current path.
     pub agreement: Option<Agreement>,
     /// Its way over the tree to the robot that calls for a recruit, and the call.

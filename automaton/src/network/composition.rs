@@ -54,7 +54,7 @@ impl KernelTimes {
         match stage {
             Stage::Moving | Stage::Beacons => &mut self.coordination,
             Stage::Planning => &mut self.motion,
-            Stage::Proposals | Stage::Objections => &mut self.acceptance,
+            Stage::Negotiation => &mut self.acceptance,
             _ => &mut self.routing,
         }
     }

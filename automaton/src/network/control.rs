@@ -16,7 +16,7 @@ macro_rules! stages {
         pub struct $name { $($(#[$what])* pub $count: usize)? })+
 
         impl Control {
-            /// Which round, iteration, sweep or attempt this is; 0 in stages that are taken once.
+            /// Which round or iteration this is; 0 in other stages.
             pub const fn count(&self) -> usize {
                 match self {
                     $(Control::$name($name { $($count)? }) => stages!(@ $($count)?)),+
@@ -42,24 +42,10 @@ stages! {
     /// It waits for flows.
     Flows(iteration: /// The iteration, from 1.
     ),
-    /// It waits for demands.
-    Demands(sweep: /// The sweep, from 1.
-    ),
-    /// It waits for the flows of a sweep.
-    SweptFlows(sweep: /// The sweep, from 1.
-    ),
-    /// It waits for news of shortages.
-    Shortages(sweep: /// The sweep, from 1.
-    ),
-    /// It waits for the flows that others take back.
-    Reliefs(sweep: /// The sweep, from 1.
-    ),
+    /// It waits for demands, flows, shortages and reliefs, in turn.
+    Sweeps,
     /// It is about to propose a move.
     Planning,
-    /// It waits for proposals.
-    Proposals(attempt: /// How often moves have been judged.
-    ),
-    /// It waits for objections.
-    Objections(attempt: /// How often moves have been judged before this time.
-    ),
+    /// It waits for proposals and objections, in turn.
+    Negotiation,
 }

@@ -69,6 +69,7 @@ impl Node for Member {
     type Body = Point;
     type Error = RobotError;
 
+    #[inline]
     fn step(
         &mut self,
         input: Input<'_, Message, Sense>,
@@ -86,6 +87,13 @@ impl Node for Member {
             Member::Robot(robot) => robot.time_to_tick(),
             Member::AccessPoint(access_point) => access_point.time_to_tick(),
             Member::User(user) => user.time_to_tick(),
+        }
+    }
+
+    fn rounds_to_pass(&self) -> usize {
+        match self {
+            Member::Robot(robot) => robot.rounds_to_pass(),
+            Member::AccessPoint(_) | Member::User(_) => 0,
         }
     }
 

@@ -23,14 +23,15 @@ pub mod user;
 mod wire;
 
 pub use access_point::{AccessPoint, round_automaton, service_automaton};
-pub use automata::Automata;
+pub use automata::{Automata, NamedRow};
 pub use composition::{KernelTimes, Network, NetworkError};
 pub use link::Link;
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
 pub use robot::{
-    Robot, RobotView, control_automaton, dealing_automaton, duty_automaton, mission_automaton,
+    Robot, RobotView, attachment_automaton, control_automaton, dealing_automaton, duty_automaton,
+    mission_automaton,
 };
 pub use site::{Site, SiteError};
 pub use user::{User, request_automaton};

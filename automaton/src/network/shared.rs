@@ -3,6 +3,8 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
+use pleach_discrete::network::Election;
+
 /// A value shared between nodes: a node with a newer value shares another one.
 ///
 /// Two of them are equal if their values are. To find this out costs nothing where they are one and
@@ -36,5 +38,17 @@ impl<T> Deref for Shared<T> {
 
     fn deref(&self) -> &T {
         &self.0
+    }
+}
+
+/// Takes in what a neighbour knows of an election. Nodes that know the same share one value.
+pub(super) fn merge_election(own: &mut Arc<Election>, heard: &Arc<Election>) {
+    if Arc::ptr_eq(own, heard) {
+        return;
+    }
+    if !own.knows(heard) {
+        Arc::make_mut(own).merge(heard);
+    } else if own == heard {
+        *own = Arc::clone(heard);
     }
 }

@@ -13,7 +13,7 @@ use super::beacon::{Bulletin, Notice};
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
-use super::robot::RobotError;
+use super::robot::{RobotError, RobotFault};
 use super::service::{Asked, Asking, Informed, Preparing, Waiting};
 use super::shared::Shared;
 use super::site::Site;
@@ -191,7 +191,7 @@ impl Node for User {
                 self.news.merge(news);
                 self.jump(outputs)?;
             }
-            Input::Tick => self.jump(outputs)?,
+            Input::Tick { .. } => self.jump(outputs)?,
             Input::Sensed(Sense::Position(_)) | Input::Heard { .. } => {}
         }
         Ok(())
@@ -209,7 +209,7 @@ impl Node for User {
     fn check_invariant(&self) -> Result<(), RobotError> {
         let node = self.site.robots + self.site.access_points.len();
         let holds = self.site.automata.request.check_invariant(self.request.location(), self);
-        holds.map_err(|source| RobotError::Invariant { node, source })
+        holds.map_err(|source| RobotFault::Invariant { node, source }.into())
     }
 
     /// It stands at the first access point.

@@ -4,7 +4,9 @@
 //!
 //! A round of jumps is the delivery of all messages that arrive now; if none does, because none is
 //! on its way or the medium has lost them, it is the tick
-//! of every node whose clock is due, in ascending order. Messages that are sent in a round are
+//! of every node whose clock is due, in ascending order. A node may let rounds of ticks pass
+//! ([`rounds_to_pass`](Node::rounds_to_pass)); one in which no node ticks does not take place, and
+//! is counted all the same. Messages that are sent in a round are
 //! given to the medium at its end. So a message that takes no time is heard, and all that is said
 //! in answer, before any clock ticks again. Steps of different nodes in one round do not see each
 //! other: the ticks of a round are one joint jump, and so are its deliveries.
@@ -44,23 +46,45 @@ pub struct Ensemble<N: Node, M> {
     outputs: Outputs<N::Message, N::Report>,
     bodies: Vec<N::Body>,
     has_moved: bool,
-    traffic: Vec<Traffic>,
-    /// The nodes that take part in the current jump.
-    takes_part: Vec<bool>,
+    seats: Vec<Seat>,
+    /// The round of ticks at this instant that comes next, from 1.
+    round: usize,
+}
+
+/// What the ensemble keeps of each node.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seat {
+    traffic: Traffic,
+    /// Whether the node takes part in the current jump.
+    takes_part: bool,
+    /// The round at this instant in which it has ticked last; 0 if in none.
+    ticked: usize,
+    /// The round at this instant in which it ticks next, if it hears nothing until then.
+    ticks: Option<usize>,
+}
+
+impl Seat {
+    /// The node has changed: asks it when it ticks next.
+    fn ask<N: Node>(&mut self, node: &N) {
+        let is_due = node.time_to_tick().is_some_and(|wait| wait <= 0.0);
+        self.ticks = is_due.then(|| self.ticked + 1 + node.rounds_to_pass());
+    }
 }
 
 impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     /// These nodes, numbered from 0, over this medium.
     pub fn new(nodes: Vec<N>, medium: M) -> Self {
-        Ensemble {
+        let mut ensemble = Ensemble {
             bodies: Vec::with_capacity(nodes.len()),
-            takes_part: vec![false; nodes.len()],
-            traffic: vec![Traffic::default(); nodes.len()],
+            seats: vec![Seat::default(); nodes.len()],
             outputs: Outputs::of(0),
             has_moved: true,
+            round: 1,
             nodes,
             medium,
-        }
+        };
+        ensemble.begin_instant();
+        ensemble
     }
 
     /// The number of nodes.
@@ -88,6 +112,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         self.look_round();
         if let Some(known) = self.nodes.get_mut(node) {
             known.step(Input::Sensed(sensed), self.outputs.now_of(node))?;
+            self.seats[node].ask(known);
             self.send();
         }
         Ok(())
@@ -109,45 +134,66 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
 
     fn send(&mut self) {
         for envelope in self.outputs.drain_sent() {
-            self.traffic[envelope.from].sent += 1;
+            self.seats[envelope.from].traffic.sent += 1;
             self.medium.send(envelope);
         }
     }
 
     /// Says whether anything was heard.
     fn deliver(&mut self) -> Result<bool, N::Error> {
-        let Ensemble { nodes, medium, outputs, takes_part, traffic, .. } = self;
+        let Ensemble { nodes, medium, outputs, seats, .. } = self;
         let mut is_heard = false;
         medium.deliver(|delivery| {
-            let Some(node) = nodes.get_mut(delivery.to) else { return Ok(()) };
-            is_heard = true;
-            takes_part[delivery.to] = true;
-            traffic[delivery.to].heard += 1;
+            let known = nodes.get_mut(delivery.to).zip(seats.get_mut(delivery.to));
+            let Some((node, seat)) = known else { return Ok(()) };
+            (is_heard, seat.takes_part) = (true, true);
+            seat.traffic.heard += 1;
             let input = Input::Heard { from: delivery.from, message: delivery.message };
             node.step(input, outputs.now_of(delivery.to))
         })?;
+        if is_heard {
+            let hearers =
+                self.seats.iter_mut().zip(&self.nodes).filter(|(seat, _)| seat.takes_part);
+            hearers.for_each(|(seat, node)| seat.ask(node));
+        }
         Ok(is_heard)
     }
 
     /// Says whether any clock was due.
     fn tick(&mut self) -> Result<bool, N::Error> {
-        let mut was_due = false;
-        for (id, node) in self.nodes.iter_mut().enumerate() {
-            if node.time_to_tick().is_some_and(|wait| wait <= 0.0) {
-                node.step(Input::Tick, self.outputs.now_of(id))?;
-                (was_due, self.takes_part[id]) = (true, true);
+        let Some(next) = self.seats.iter().filter_map(|seat| seat.ticks).min() else {
+            return Ok(false);
+        };
+        // What a node has heard may make it tick earlier than it has said, and not in the past.
+        let round = next.max(self.round);
+        for (id, (seat, node)) in self.seats.iter_mut().zip(&mut self.nodes).enumerate() {
+            if seat.ticks.is_some_and(|ticks| ticks <= round) {
+                let passed = round - seat.ticked - 1;
+                node.step(Input::Tick { passed }, self.outputs.now_of(id))?;
+                (seat.takes_part, seat.ticked) = (true, round);
+                seat.ask(node);
             }
         }
-        Ok(was_due)
+        self.round = round + 1;
+        Ok(true)
+    }
+
+    /// Time has passed, or begins.
+    fn begin_instant(&mut self) {
+        self.round = 1;
+        for (seat, node) in self.seats.iter_mut().zip(&self.nodes) {
+            seat.ticked = 0;
+            seat.ask(node);
+        }
     }
 
     fn record(&mut self, round: &mut Round<'_, NodeJump>, jump: NodeJump) {
-        let count = self.nodes.len();
         round.jumped_by(jump, || {
-            let who: Box<[NodeId]> = (0..count).filter(|&id| self.takes_part[id]).collect();
+            let count = self.seats.len();
+            let who: Box<[NodeId]> = (0..count).filter(|&id| self.seats[id].takes_part).collect();
             if who.len() == count { Participants::All } else { Participants::Some(who) }
         });
-        self.takes_part.fill(false);
+        self.seats.iter_mut().for_each(|seat| seat.takes_part = false);
     }
 }
 
@@ -155,12 +201,12 @@ impl<N: Node, M> Ensemble<N, M> {
     /// How much a node has sent and heard since the messages were last counted anew; observers
     /// ask for it, and nothing if there is no such node.
     pub fn traffic(&self, node: NodeId) -> Traffic {
-        self.traffic.get(node).copied().unwrap_or_default()
+        self.seats.get(node).map_or_else(Traffic::default, |seat| seat.traffic)
     }
 
     /// Counts messages anew.
     pub fn forget_traffic(&mut self) {
-        self.traffic.fill(Traffic::default());
+        self.seats.iter_mut().for_each(|seat| seat.traffic = Traffic::default());
     }
 }
 
@@ -207,6 +253,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
         self.nodes.iter_mut().for_each(|node| node.flow(duration));
         self.medium.flow(duration);
         self.has_moved = true;
+        self.begin_instant();
         self.nodes.iter().try_for_each(Node::check_invariant)
     }
 }
@@ -248,7 +295,7 @@ mod tests {
                     }
                 }
                 Input::Sensed(number) => outputs.broadcast(number),
-                Input::Tick => {
+                Input::Tick { .. } => {
                     self.clock = 0.0;
                     outputs.send(self.next, 1);
                 }
@@ -306,6 +353,75 @@ mod tests {
         assert_eq!(counted, [traffic(4, 2), traffic(2, 4), traffic(2, 2), traffic(0, 0)]);
         ensemble.forget_traffic();
         assert_eq!(ensemble.traffic(1), Traffic::default());
+    }
+
+    /// Ticks once a round for a few rounds of one instant. A patient one lets rounds pass, and has to
+    /// be told of how many; news make it tick at once.
+    struct Clerk {
+        is_patient: bool,
+        rounds: usize,
+        has_news: bool,
+        ticks: Vec<usize>,
+    }
+
+    const ROUNDS: usize = 6;
+
+    impl Node for Clerk {
+        type Message = ();
+        type Sense = ();
+        type Report = ();
+        type Body = ();
+        type Error = Infallible;
+
+        fn step(
+            &mut self,
+            input: Input<'_, (), ()>,
+            outputs: &mut Outputs<(), ()>,
+        ) -> Result<(), Infallible> {
+            match input {
+                Input::Tick { passed } => {
+                    self.rounds += passed + 1;
+                    self.has_news = false;
+                    self.ticks.push(self.rounds);
+                    if !self.is_patient && self.rounds == 3 {
+                        outputs.broadcast(());
+                    }
+                }
+                _ => self.has_news = true,
+            }
+            Ok(())
+        }
+
+        fn time_to_tick(&self) -> Option<f64> {
+            (self.rounds < ROUNDS).then_some(0.0)
+        }
+
+        fn rounds_to_pass(&self) -> usize {
+            if self.is_patient && !self.has_news { ROUNDS - 1 - self.rounds } else { 0 }
+        }
+
+        fn flow(&mut self, _: f64) {}
+
+        fn body(&self) {}
+    }
+
+    #[test]
+    fn a_node_lets_rounds_pass_until_it_hears_something() {
+        let clerk =
+            |is_patient| Clerk { is_patient, rounds: 0, has_news: false, ticks: Vec::new() };
+        let mut ensemble = Ensemble::new(vec![clerk(true), clerk(false)], FullMesh::new());
+        Executor::new(1.0, 100).unwrap().run(&mut ensemble, &mut ()).unwrap();
+        let ticks: Vec<_> = ensemble.nodes.iter().map(|clerk| clerk.ticks.clone()).collect();
+        assert_eq!(ticks, [vec![4, 6], vec![1, 2, 3, 4, 5, 6]]);
+    }
+
+    #[test]
+    fn a_round_in_which_no_node_ticks_does_not_take_place() {
+        let patient = Clerk { is_patient: true, rounds: 0, has_news: false, ticks: Vec::new() };
+        let (mut ensemble, mut trace) =
+            (Ensemble::new(vec![patient], FullMesh::new()), Trace::new());
+        Executor::new(1.0, 100).unwrap().run(&mut ensemble, &mut trace).unwrap();
+        assert_eq!((trace.entries().len(), &ensemble.nodes[0].ticks[..]), (1, &[6][..]));
     }
 
     /// What a person asks of a node is told to every other, and observers hear of it in order.

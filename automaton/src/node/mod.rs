@@ -39,7 +39,10 @@ pub enum Input<'a, M, S> {
     /// The node senses something, or a person asks it for something.
     Sensed(S),
     /// The node's own clock calls: [`time_to_tick`](Node::time_to_tick) is 0.
-    Tick,
+    Tick {
+        /// Rounds of ticks at this instant that the node has let pass since its last one.
+        passed: usize,
+    },
 }
 
 /// A component of an [`Ensemble`].
@@ -69,6 +72,13 @@ pub trait Node {
     /// Seconds until the node's clock calls for the next [tick](Input::Tick): 0 if it is due now,
     /// `None` if no tick will come by itself.
     fn time_to_tick(&self) -> Option<f64>;
+
+    /// Where several rounds of ticks follow at one instant: how many the node lets pass before its
+    /// next tick, counted from its last one; none unless the node says otherwise. What it hears in
+    /// the meantime may change its answer.
+    fn rounds_to_pass(&self) -> usize {
+        0
+    }
 
     /// Lets `duration` > 0 seconds pass, at most [`time_to_tick`](Self::time_to_tick). If it is
     /// exactly that, the tick is due afterwards, whatever rounding does.

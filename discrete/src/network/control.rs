@@ -2,7 +2,8 @@
 //!
 //! Control is sampled. Time passes in one location only, [`Stage::Moving`]; at the sample the robot
 //! goes through the others, which take no time. In each it waits for what its neighbours say, up to
-//! the next tick of its clock; then it processes what it has received, and sends.
+//! the next tick of its clock; then it works on what it has heard, and speaks. Sweeps and negotiation
+//! have a fixed number of rounds, in which a robot with nothing to do does not tick.
 
 use crate::{Row, TransitionTable, Urgency, vocabulary};
 
@@ -19,20 +20,12 @@ vocabulary! {
         Multipliers = "multipliers",
         /// Flows.
         Flows = "flows",
-        /// The demands of its children in the tree.
-        Demands = "demands",
-        /// The flows after a sweep.
-        SweptFlows = "swept flows",
-        /// Whether a neighbour cannot pass on what it is sent after a sweep.
-        Shortages = "shortages",
-        /// The flows that were taken off overloaded robots after a sweep.
-        Reliefs = "reliefs",
+        /// In turn, demands of its children in the tree, flows, shortages and flows taken back.
+        Sweeps = "sweeps",
         /// Nothing: it is about to propose a move.
         Planning = "planning",
-        /// Proposals of moves.
-        Proposals = "proposals",
-        /// Objections to its move.
-        Objections = "objections",
+        /// In turn, proposals of moves and objections to its own.
+        Negotiation = "negotiation",
     }
 
     /// What takes a robot from one stage of its control period to another.
@@ -108,16 +101,16 @@ pub const CONTROL: TransitionTable<Stage, StageEvent> = {
         row(OldFlows, On::OldFlowsHeard, Multipliers),
         row(Multipliers, On::MultipliersHeard, Flows),
         row(Flows, On::NextIteration, Multipliers),
-        row(Flows, On::SweepDue, Demands),
-        row(Demands, On::DemandsHeard, SweptFlows),
-        row(SweptFlows, On::SweepOver, Shortages),
-        row(SweptFlows, On::RoutesDone, Planning),
-        row(Shortages, On::ShortagesHeard, Reliefs),
-        row(Reliefs, On::ReliefsHeard, Demands),
-        row(Planning, On::MoveDue, Proposals),
-        row(Proposals, On::ProposalsHeard, Objections),
-        row(Objections, On::NextAttempt, Proposals),
-        row(Objections, On::MoveCertified, Moving),
+        row(Flows, On::SweepDue, Sweeps),
+        row(Sweeps, On::DemandsHeard, Sweeps),
+        row(Sweeps, On::SweepOver, Sweeps),
+        row(Sweeps, On::RoutesDone, Planning),
+        row(Sweeps, On::ShortagesHeard, Sweeps),
+        row(Sweeps, On::ReliefsHeard, Sweeps),
+        row(Planning, On::MoveDue, Negotiation),
+        row(Negotiation, On::ProposalsHeard, Negotiation),
+        row(Negotiation, On::NextAttempt, Negotiation),
+        row(Negotiation, On::MoveCertified, Moving),
     ])
 };
 

@@ -79,6 +79,12 @@ impl Election {
         }
     }
 
+    /// Whether what a neighbour sent says nothing new: [`merge`](Self::merge) would change nothing.
+    pub fn knows(&self, heard: &Election) -> bool {
+        heard.id != self.id
+            || self.tokens.includes(&heard.tokens) && self.best >= heard.best
+    }
+
     /// Whether the token of every robot in `roster` is known (line 1).
     pub fn is_complete(&self, roster: &IdSet) -> bool {
         self.tokens.includes(roster)
@@ -108,5 +114,30 @@ mod tests {
         election.place(5, None);
         assert!(election.is_complete(&roster));
         assert_eq!(election.best(), Some((bid, 2)));
+    }
+
+    #[test]
+    fn what_is_known_changes_nothing_and_what_is_new_does() {
+        let bid = |merit| Some(Bid { rank: 1, merit, economy: 0 });
+        let election = |number, placed: &[(NodeId, Option<Bid>)]| {
+            let mut election = Election::new(NoticeId::new(number, 1));
+            placed.iter().for_each(|&(robot, bid)| election.place(robot, bid));
+            election
+        };
+        let own = election(7, &[(1, bid(2)), (3, None)]);
+        let heard = [
+            election(7, &[]),
+            election(7, &[(3, None)]),
+            election(7, &[(1, bid(2))]),
+            election(8, &[(4, bid(9))]),
+            election(7, &[(4, None)]),
+            election(7, &[(3, bid(5))]),
+        ];
+        for (place, heard) in heard.iter().enumerate() {
+            let mut merged = own.clone();
+            merged.merge(heard);
+            assert_eq!(own.knows(heard), merged == own, "{place}");
+            assert_eq!(own.knows(heard), place < 4, "{place}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod activity;
 pub mod agreement;
+pub mod attachment;
 pub mod bulletin;
 pub mod control;
 pub mod dealing;
@@ -20,6 +21,7 @@ pub mod tables;
 
 pub use activity::{Activity, DUTIES, DutyEvent};
 pub use agreement::Agreement;
+pub use attachment::{ATTACHMENT, Attachment, AttachmentEvent};
 pub use bulletin::{Bulletin, NoticeId};
 pub use control::{CONTROL, ROUNDS, Round, RoundEvent, Stage, StageEvent};
 pub use dealing::{DEALINGS, Dealing, DealingEvent};

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use pleach_automaton::network::NamedRow;
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::robot::RobotError;
 use rayon::prelude::*;
@@ -73,6 +74,8 @@ pub struct Findings {
     pub largest: usize,
     /// In how many configurations a mission may end so.
     pub outcomes: BTreeMap<&'static str, usize>,
+    /// In how many configurations some node takes each row of its tables.
+    pub rows: BTreeMap<NamedRow, usize>,
     /// What fails.
     pub failures: Vec<Failure>,
 }
@@ -125,14 +128,23 @@ impl Campaign {
     /// # Errors
     /// When one of them has no end.
     pub fn run(&self) -> Result<Findings, CampaignError> {
-        let (graphs, branches) = (self.all_graphs(), self.branches());
-        let configurations: Vec<_> =
-            graphs.iter().flat_map(|graph| branches.iter().map(move |b| (graph, b))).collect();
+        let configurations: Vec<_> = self.configurations().collect::<Result<_, _>>()?;
         let found: Vec<Findings> = configurations
-            .par_iter()
-            .map(|(graph, branches)| self.visit(graph, branches))
+            .into_par_iter()
+            .map(|(name, configuration)| Findings::of(&name, configuration, MOST_STATES))
             .collect::<Result<_, _>>()?;
         Ok(found.into_iter().fold(Findings::default(), Findings::and))
+    }
+
+    /// The configurations, each with a name: every graph with every choice of branches.
+    pub fn configurations(
+        &self,
+    ) -> impl Iterator<Item = Result<(String, Configuration), PlaceGraphError>> + '_ {
+        let branches = self.branches();
+        self.all_graphs().into_iter().flat_map(move |graph| {
+            let branches = branches.clone();
+            branches.into_iter().map(move |branches| self.configuration(&graph, &branches))
+        })
     }
 
     fn all_graphs(&self) -> Vec<Graph> {
@@ -161,16 +173,15 @@ impl Campaign {
         if self.in_a_row && !chosen.is_empty() { places - 1..places } else { 0..nodes }
     }
 
-    /// Explores one configuration.
-    fn visit(
+    fn configuration(
         &self,
         graph: &Graph,
         branches: &[(PlaceId, usize)],
-    ) -> Result<Findings, CampaignError> {
+    ) -> Result<(String, Configuration), PlaceGraphError> {
         let name = format!("graph {graph:?} with branches {branches:?}");
         let places = PlaceGraph::with_branches(self.robots, self.access_points, graph, branches)?;
         let (medium, contacts) = (self.medium, self.contacts);
-        Findings::of(&name, Configuration { places, medium, contacts }, MOST_STATES)
+        Ok((name, Configuration { places, medium, contacts }))
     }
 
     /// Whether there are as many configurations, states and transitions as expected, and nothing
@@ -212,6 +223,12 @@ impl Findings {
             counts: Counts { configurations: 1, states, transitions },
             largest: states,
             outcomes: outcomes(protocol, exploration).map(|outcome| (outcome, 1)).collect(),
+            rows: protocol
+                .automata()
+                .taken()
+                .into_iter()
+                .map(|(row, times)| (row, usize::from(times > 0)))
+                .collect(),
             failures: violations
                 .map(|violation| fail(violation.property, violation.state))
                 .chain(trap.map(|state| fail(ENDS, state)))
@@ -220,13 +237,16 @@ impl Findings {
     }
 
     /// Both together.
-    fn and(mut self, other: Findings) -> Self {
+    pub fn and(mut self, other: Findings) -> Self {
         self.counts.configurations += other.counts.configurations;
         self.counts.states += other.counts.states;
         self.counts.transitions += other.counts.transitions;
         self.largest = self.largest.max(other.largest);
         for (outcome, configurations) in other.outcomes {
             *self.outcomes.entry(outcome).or_default() += configurations;
+        }
+        for (row, configurations) in other.rows {
+            *self.rows.entry(row).or_default() += configurations;
         }
         self.failures.extend(other.failures);
         self

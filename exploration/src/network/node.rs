@@ -199,7 +199,7 @@ impl Nodes {
             (Node::AccessPoint(access_point), Stimulus::Period(_) | Stimulus::Announce) => {
                 Ok(access_point.attend_to_user()?)
             }
-            (node, Stimulus::Round(_)) => node.step(Input::Tick),
+            (node, Stimulus::Round(_)) => node.step(Input::Tick { passed: 0 }),
             _ => Ok(()),
         }
     }

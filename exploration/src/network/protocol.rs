@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::robot::RobotError;
-use pleach_automaton::network::{AccessPoint, Message, Robot, RobotView, Site, SiteError};
+use pleach_automaton::network::{
+    AccessPoint, Automata, Message, Robot, RobotView, Site, SiteError,
+};
 use pleach_automaton::node::Input;
 use pleach_discrete::network::NodeId;
 
@@ -139,6 +141,7 @@ pub struct Protocol {
     configuration: Configuration,
     nodes: Nodes,
     initial: State,
+    site: Arc<Site>,
 }
 
 impl Protocol {
@@ -150,7 +153,9 @@ impl Protocol {
     pub fn new(configuration: Configuration) -> Result<Self, ProtocolError> {
         let places = configuration.places.clone();
         let scenario = places.scenario();
-        let site = Arc::new(Site::new(&scenario)?.measured_by(places.clone()));
+        let mut site = Site::new(&scenario)?.measured_by(places.clone());
+        site.automata = site.automata.counted();
+        let site = Arc::new(site);
         let positions = (0..places.count()).map(|place| places.position(place)).collect();
         let mut nodes = Nodes::new(positions);
         let robots = scenario.robot.iter().enumerate().map(|(id, start)| {
@@ -165,7 +170,7 @@ impl Protocol {
         let mut locals = Vec::with_capacity(user);
         for mut node in robots.chain(access_points) {
             // The first control period begins, and does not end until the explorer ends it.
-            node.step(Input::Tick)?;
+            node.step(Input::Tick { passed: 0 })?;
             if locals.len() == scenario.robot.len() {
                 node.step(Input::Heard { from: user, message: &request })?;
             }
@@ -176,7 +181,7 @@ impl Protocol {
         let round = medium.period().unwrap_or(0);
         let faults = medium.faults();
         let initial = State { locals, contacts, faults, copies: Vec::new(), round, moved: 0 };
-        let mut protocol = Protocol { configuration, nodes, initial };
+        let mut protocol = Protocol { configuration, nodes, initial, site };
         protocol.settle()?;
         Ok(protocol)
     }
@@ -192,6 +197,11 @@ impl Protocol {
             }
             self.initial = next;
         }
+    }
+
+    /// The automata that the nodes run, which count the rows that are taken.
+    pub fn automata(&self) -> &Automata {
+        &self.site.automata
     }
 
     /// What is explored.

@@ -41,24 +41,49 @@ pub fn sweep_due() -> Guard {
     Guard::new("sweep due", variable("iteration").at_least(variable("iterations")))
 }
 
-/// Another sweep may follow.
+/// Demands have gone up the tree.
+pub fn demands_heard() -> Guard {
+    Guard::new("demands heard", proposition("hears_demands"))
+}
+
+/// A sweep is over, and another one may follow.
 pub fn sweep_over() -> Guard {
-    Guard::new("sweep over", variable("sweep").less_than(variable("sweeps")))
+    Guard::new("sweep over", proposition("hears_flows").and(!proposition("last_sweep")))
 }
 
 /// The last sweep is over.
 pub fn routes_done() -> Guard {
-    Guard::new("routes done", variable("sweep").at_least(variable("sweeps")))
+    Guard::new("routes done", proposition("hears_flows").and(proposition("last_sweep")))
 }
 
-/// Moves are judged once more.
+/// Shortages have been told from robot to robot.
+pub fn shortages_heard() -> Guard {
+    Guard::new("shortages heard", proposition("hears_shortages"))
+}
+
+/// Flows have been taken back from robots that cannot pass them on.
+pub fn reliefs_heard() -> Guard {
+    let others =
+        ["hears_demands", "hears_flows", "hears_shortages"].map(|round| !proposition(round));
+    let [demands, flows, shortages] = others;
+    Guard::new("reliefs heard", demands.and(flows).and(shortages))
+}
+
+/// Proposals are judged.
+pub fn proposals_heard() -> Guard {
+    Guard::new("proposals heard", proposition("hears_proposals"))
+}
+
+/// Objections are heard, and moves are judged once more.
 pub fn next_attempt() -> Guard {
-    Guard::new("next attempt", variable("attempt").less_than(variable("attempts")))
+    let last = proposition("last_attempt");
+    Guard::new("next attempt", (!proposition("hears_proposals")).and(!last))
 }
 
 /// Moves have been judged as often as they are.
 pub fn move_certified() -> Guard {
-    Guard::new("move certified", variable("attempt").at_least(variable("attempts")))
+    let last = proposition("last_attempt");
+    Guard::new("move certified", (!proposition("hears_proposals")).and(last))
 }
 
 /// Every neighbour has spoken: the clock calls.

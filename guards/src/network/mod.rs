@@ -4,6 +4,7 @@
 //! Real quantities have margins in their unit; propositions are true or false. The guards of one
 //! activity or phase exclude one another or are ordered by its table.
 
+pub mod attachment;
 pub mod control;
 pub mod dealing;
 pub mod duty;

@@ -36,7 +36,8 @@ impl Limits {
         }
     }
 
-    fn settings(&self) -> &Settings {
+    /// Every setting, defaults filled in.
+    pub fn settings(&self) -> &Settings {
         &self.site.settings
     }
 

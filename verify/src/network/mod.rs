@@ -13,7 +13,8 @@
 //!    [`link`];
 //! 2. checks that apply them to what observers record and name the offenders: [`instant`] for
 //!    one snapshot, [`period`] for two;
-//! 3. the [`Monitor`] that runs every check over a mission, and [`audit`] over a recorded one.
+//! 3. the [`Monitor`] that runs every check over a mission, and the [`Judge`], which holds events
+//!    and what observers conclude against the definitions as well: over a run, and over a trace.
 //!
 //! The [`Limits`] come from the scenario; the only numerical slack is [`SLACK`].
 //!
@@ -76,6 +77,7 @@
 pub mod duty;
 pub mod election;
 pub mod instant;
+pub mod judge;
 pub mod link;
 pub mod motion;
 pub mod period;
@@ -96,6 +98,7 @@ mod tests;
 mod violation;
 
 pub use extremes::{Extreme, Extremes};
+pub use judge::Judge;
 pub use limits::{Limits, SLACK};
 pub use monitor::{Monitor, RoleTable, audit};
 pub use property::Property;

@@ -1,6 +1,7 @@
 //! The monitor: every property, over every snapshot of a mission.
 
 use std::fmt;
+use std::sync::Arc;
 
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
@@ -15,12 +16,13 @@ use super::violation::{Instant, Violation};
 use super::{instant, period, team};
 
 /// Whether a role may turn into another in one transition.
-pub type RoleTable<'a> = Box<dyn Fn(Role, Role) -> bool + 'a>;
+pub type RoleTable<'a> = Arc<dyn Fn(Role, Role) -> bool + 'a>;
 
 /// Observes a mission snapshot by snapshot and stops it at the first violation.
 ///
 /// It reads what observers see and nothing else, and decides nothing for the robots. A period
 /// costs O(N log N) for bounded neighbours, path lengths and depth of the tree.
+#[derive(Clone)]
 pub struct Monitor<'a> {
     limits: Limits,
     role_table: RoleTable<'a>,
@@ -36,7 +38,7 @@ impl<'a> Monitor<'a> {
         Monitor {
             limits: Limits::of(scenario),
             role_relation: duty::closure(&role_table),
-            role_table: Box::new(role_table),
+            role_table: Arc::new(role_table),
             previous: None,
             extremes: Extremes::default(),
         }

@@ -58,11 +58,25 @@ pub enum Property {
     Service,
     /// See [`period::occupancy`](super::period::occupancy).
     Occupancy,
+    /// See [`judge`](super::judge).
+    Posts,
+    /// See [`judge`](super::judge).
+    Leash,
+    /// See [`judge`](super::judge).
+    Multipliers,
+    /// See [`judge`](super::judge).
+    Events,
+    /// See [`judge`](super::judge).
+    Stage,
+    /// See [`judge`](super::judge).
+    Teams,
+    /// See [`judge`](super::judge).
+    Outcome,
 }
 
 impl Property {
     /// Every property, in the order of declaration.
-    pub const ALL: [Property; 24] = [
+    pub const ALL: [Property; 31] = [
         Property::Record,
         Property::Separation,
         Property::Clearance,
@@ -87,6 +101,13 @@ impl Property {
         Property::Duties,
         Property::Service,
         Property::Occupancy,
+        Property::Posts,
+        Property::Leash,
+        Property::Multipliers,
+        Property::Events,
+        Property::Stage,
+        Property::Teams,
+        Property::Outcome,
     ];
 
     /// The name used in messages and documents.
@@ -116,6 +137,13 @@ impl Property {
             Property::Duties => "duties",
             Property::Service => "service",
             Property::Occupancy => "occupancy",
+            Property::Posts => "posts",
+            Property::Leash => "leash",
+            Property::Multipliers => "multipliers",
+            Property::Events => "events",
+            Property::Stage => "stage",
+            Property::Teams => "teams",
+            Property::Outcome => "outcome",
         }
     }
 
@@ -191,6 +219,26 @@ impl Property {
                 "At every instant the place of a junction, and one from which a task is serviced, \
                  has its holder within δ."
             }
+            Property::Posts => {
+                "A node, junction or leaf that neither moves with a team nor walks holds one post; \
+                 a leaf services a task from it, and at a junction several branches part."
+            }
+            Property::Leash => {
+                "A robot that is not of the active team stays within δ of the place of its post, \
+                 or comes no farther from it than it is."
+            }
+            Property::Multipliers => "No multiplier λ_i of a dual method is negative, eq. (9).",
+            Property::Events => {
+                "Every event is true at its instant, and follows from those before it by \
+                 Algorithms 1, 3 and 4."
+            }
+            Property::Stage => {
+                "The task and the phase of the mission are those to which its events have led."
+            }
+            Property::Teams => {
+                "Leader, primary team and path Σ are those that elections and arrivals have made."
+            }
+            Property::Outcome => "The mission ended as its record shows.",
         }
     }
 }

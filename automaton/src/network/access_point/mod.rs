@@ -19,9 +19,9 @@ use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
-use super::robot::RobotError;
+use super::robot::{RobotError, RobotFault};
 use super::service::{Gathering, Resting, Rounds, Serving};
-use super::shared::Shared;
+use super::shared::{Shared, merge_election};
 use super::site::Site;
 use crate::automaton::TransitionError;
 use crate::located::{Current, Place as _};
@@ -48,7 +48,7 @@ pub struct AccessPoint {
     bulletin: Bulletin,
     /// The newest bulletin that it has heard and not taken up.
     newest: Option<Bulletin>,
-    election: Option<Election>,
+    election: Option<Arc<Election>>,
     election_rounds: usize,
     agreement: Option<Agreement>,
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
@@ -172,7 +172,7 @@ impl AccessPoint {
         }
         for beacon in &self.heard {
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
-                own.merge(heard);
+                merge_election(own, heard);
             }
             if let (Some(own), Some(heard)) = (&mut self.agreement, &beacon.agreement) {
                 own.merge(heard);
@@ -192,7 +192,7 @@ impl AccessPoint {
         let id = bulletin.id();
         match **bulletin.notice() {
             Notice::Task { .. } | Notice::Call { .. } => {
-                self.election = Some(Election::new(id));
+                self.election = Some(Arc::new(Election::new(id)));
                 self.election_rounds = 0;
                 self.route = None;
                 self.crossing.clear();
@@ -304,7 +304,7 @@ impl Node for AccessPoint {
             Input::Heard { message: Message::Request(tasks), .. } => {
                 self.requested = Some(Arc::clone(tasks));
             }
-            Input::Tick => self.tick(outputs)?,
+            Input::Tick { .. } => self.tick(outputs)?,
             Input::Heard { .. } | Input::Sensed(_) => {}
         }
         self.log.drain(..).for_each(|event| outputs.report(event));
@@ -325,7 +325,7 @@ impl Node for AccessPoint {
 
     fn check_invariant(&self) -> Result<(), RobotError> {
         let holds = self.site.automata.rounds.check_invariant(self.rounds.location(), self);
-        holds.map_err(|source| RobotError::Invariant { node: self.id(), source })
+        holds.map_err(|source| RobotFault::Invariant { node: self.id(), source }.into())
     }
 
     fn body(&self) -> Point {

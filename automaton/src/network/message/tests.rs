@@ -111,7 +111,7 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
     agreement.arrive(0);
     Beacon {
         bulletin: Bulletin::first(Shared::new(Notice::Quiet)).next(4, Shared::new(notice)),
-        election: Some(election),
+        election: Some(Arc::new(election)),
         agreement: Some(agreement),
         route: Some((CALL, Shared::new(hops()))),
         crossing: vec![1],

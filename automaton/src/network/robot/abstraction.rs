@@ -5,7 +5,7 @@
 //! stands, and for how long it has made no progress. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
-use pleach_discrete::network::{Bid, Election, NodeId, NoticeId, Phase, Subgroup};
+use pleach_discrete::network::{Bid, NodeId, NoticeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Path};
@@ -43,7 +43,7 @@ impl<'a> RobotView<'a> {
 
     /// The election that it takes part in, or took part in last.
     pub fn election(self) -> Option<NoticeId> {
-        self.robot().election.as_ref().map(Election::id)
+        self.robot().election.as_ref().map(|election| election.id())
     }
 
     /// What it has bid itself in this election, if it has taken part in it and in none since.
@@ -106,7 +106,7 @@ impl Robot {
             last_partner,
             answered,
             parent,
-            lineage,
+            place,
             below,
             can_detach,
             barren_periods,
@@ -126,8 +126,11 @@ impl Robot {
             site: _,
             // Between two stimuli a robot is at rest and has nothing left to do.
             control: _,
+            round_count: _,
             acts: _,
             is_new: _,
+            heard_way: _,
+            is_displaced: _,
             label: _,
             facts: _,
             is_quiet: _,
@@ -146,6 +149,7 @@ impl Robot {
             clock: _,
             routing: _,
             links: _,
+            upstream: _,
             expected_link: _,
             inflow: _,
             inflows: _,
@@ -174,7 +178,7 @@ impl Robot {
             "{:?}",
             (
                 (id, position, still_periods, &**duty, &**mission, barren_periods),
-                (&**deal, answered, last_partner, parent, lineage, below, can_detach),
+                (&**deal, answered, last_partner, parent, &**place, below, can_detach),
                 (bulletin, tasks, roster, eligible, election, bid, waited, route),
                 (agreement, team, silences),
             )

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, Phase, PostId, PostKind};
 
+use crate::automaton::TransitionError;
 use crate::located::Place as _;
 
 use super::Robot;
@@ -24,12 +25,13 @@ pub(super) const PATIENCE_WITH_BARREN_POSTS: u32 = 2;
 
 impl Robot {
     /// Renews the robot's place in the tree from what it has heard.
-    pub(super) fn keep_place(&mut self) {
+    pub(super) fn keep_place(&mut self) -> Result<(), TransitionError> {
         (self.desired_parent, self.reattaches_to) = (None, None);
         if self.is_engaged() {
             // The place goes with the duty that is being handed over.
-            self.trace_lineage();
-            return self.collect_below();
+            self.trace_lineage()?;
+            self.collect_below();
+            return Ok(());
         }
         self.desired_parent = match self.duty.location() {
             Activity::Standby if !self.tree_is_frozen() || self.anchor().is_none() => {
@@ -38,17 +40,18 @@ impl Robot {
             Activity::Following | Activity::Leading => self.reattach(),
             _ => None,
         };
-        self.look_after_place();
+        self.look_after_place()
     }
 
     /// What follows from its duty and what it hears: its way to the access point, what is attached
     /// to it, and its parent.
-    pub(super) fn look_after_place(&mut self) {
-        self.trace_lineage();
+    pub(super) fn look_after_place(&mut self) -> Result<(), TransitionError> {
+        self.trace_lineage()?;
         self.can_detach =
             !self.is_engaged() && self.duty.is_redundant() && self.finds_other_parent();
         self.collect_below();
         self.remember_parent();
+        Ok(())
     }
 
     /// Once a period: for how long no branch has depended on the post, Remark 5.6 (ii).
@@ -177,30 +180,6 @@ impl Robot {
                 self.best_parent(post.id, Some(parent)).is_some()
             }
             _ => true,
-        }
-    }
-
-    fn trace_lineage(&mut self) {
-        let Some(post) = self.duty.post() else {
-            self.lineage = None;
-            return;
-        };
-        let Some(anchor) = post.parent else {
-            self.lineage = None;
-            return;
-        };
-        let root;
-        let parent = match anchor {
-            Anchor::Access(access) => {
-                root = Lineage::of_access_point(access);
-                Some(&root)
-            }
-            Anchor::Post(parent) => self.holder(parent).and_then(|n| n.beacon.lineage.as_deref()),
-        };
-        // A parent that is itself on its way along Σ is heard again when it has arrived.
-        let Some(parent) = parent else { return };
-        if self.lineage.as_ref().is_none_or(|own| !own.extends(parent, post.id)) {
-            self.lineage = parent.extended_by(post.id).map(Arc::new);
         }
     }
 

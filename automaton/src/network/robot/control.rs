@@ -14,8 +14,7 @@ use crate::{Automaton, BuildError, Flow, Transfer};
 
 use super::super::act::{self, acting};
 use super::super::control::{
-    Beacons, Control, Demands, Flows, Moving, Multipliers, Objections, OldFlows, Planning,
-    Proposals, Reliefs, Shortages, SweptFlows,
+    Beacons, Control, Flows, Moving, Multipliers, Negotiation, OldFlows, Planning, Sweeps,
 };
 use super::super::message::Message;
 use super::super::record::MissionEvent;
@@ -66,6 +65,8 @@ acts! {
     StepPrimal = "primal step",
     /// λ_i from the flows (line 2).
     StepDual = "dual step",
+    /// n := 0: rounds are counted anew.
+    CountRounds = "n := 0",
     /// It begins a sweep: what is not carried goes to the parent in the tree.
     BeginSweep = "begin sweep",
     /// It takes what its children have told into its flow to the parent.
@@ -108,12 +109,15 @@ impl Holds<Control> for Robot {
 }
 
 impl Robot {
-    /// The clock calls: the robot takes the next row of its control period.
+    /// The clock calls, after `passed` rounds without a tick: the robot takes the next row of its
+    /// control period.
     #[inline(never)]
     pub(super) fn tick(
         &mut self,
+        passed: usize,
         outputs: &mut Outputs<Message, MissionEvent>,
     ) -> Result<(), RobotError> {
+        self.round_count.pass(passed + 1);
         let site = Arc::clone(&self.site);
         site.automata.control.step_in_place::<Control>(self)?;
         for act in std::mem::take(&mut self.acts) {
@@ -145,6 +149,7 @@ impl Robot {
             Act::TellMultiplier => self.tell_multiplier(outputs),
             Act::StepPrimal => self.primal_step(),
             Act::StepDual => self.dual_step(),
+            Act::CountRounds => self.round_count.restart(),
             Act::BeginSweep => self.begin_sweep(outputs),
             Act::EndSweep => self.end_sweep(),
             Act::SettleResidual => self.settle_residual(),
@@ -180,6 +185,7 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .observing()
         .flow(Stage::Moving, Flow::exact("ẋ = u, τ̇ = 1", Robot::advance))
         .invariant(Stage::Moving, guards::moving())
+        .at_most_one(&["hears_demands", "hears_flows", "hears_shortages"])
         .carried_out(row(
             On::SampleDue,
             guards::sample_due(),
@@ -225,56 +231,59 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(
             On::SweepDue,
             guards::sweep_due(),
-            &[StepDual, BeginSweep],
-            |_: &Flows| Demands { sweep: 1 },
+            &[StepDual, BeginSweep, CountRounds],
+            |_: &Flows| Sweeps {},
         ))
         .carried_out(row(
             On::DemandsHeard,
-            guards::heard(),
+            guards::demands_heard(),
             &[EndSweep, TellFlows],
-            |demands: &Demands| SweptFlows { sweep: demands.sweep },
+            |_: &Sweeps| Sweeps {},
         ))
         .carried_out(row(
             On::SweepOver,
             guards::sweep_over(),
             &[SettleResidual, AdmitShortage],
-            |flows: &SweptFlows| Shortages { sweep: flows.sweep },
+            |_: &Sweeps| Sweeps {},
         ))
         .carried_out(row(
             On::RoutesDone,
             guards::routes_done(),
             &[SettleResidual, EndRoutes],
-            |_: &SweptFlows| Planning {},
+            |_: &Sweeps| Planning {},
         ))
         .carried_out(row(
             On::ShortagesHeard,
-            guards::heard(),
+            guards::shortages_heard(),
             &[TellFlows],
-            |shortages: &Shortages| Reliefs { sweep: shortages.sweep },
+            |_: &Sweeps| Sweeps {},
         ))
-        .carried_out(row(On::ReliefsHeard, guards::heard(), &[SweepAgain], |reliefs: &Reliefs| {
-            Demands { sweep: reliefs.sweep + 1 }
-        }))
-        .carried_out(row(On::MoveDue, guards::heard(), &[Propose, TellProposal], |_: &Planning| {
-            Proposals { attempt: 0 }
+        .carried_out(row(On::ReliefsHeard, guards::reliefs_heard(), &[SweepAgain], |_: &Sweeps| {
+            Sweeps {}
         }))
         .carried_out(row(
-            On::ProposalsHeard,
+            On::MoveDue,
             guards::heard(),
+            &[Propose, TellProposal, CountRounds],
+            |_: &Planning| Negotiation {},
+        ))
+        .carried_out(row(
+            On::ProposalsHeard,
+            guards::proposals_heard(),
             &[Object],
-            |proposals: &Proposals| Objections { attempt: proposals.attempt },
+            |_: &Negotiation| Negotiation {},
         ))
         .carried_out(row(
             On::NextAttempt,
             guards::next_attempt(),
             &[TellProposal],
-            |objections: &Objections| Proposals { attempt: objections.attempt + 1 },
+            |_: &Negotiation| Negotiation {},
         ))
         .carried_out(row(
             On::MoveCertified,
             guards::move_certified(),
             &[SetOff, Jump],
-            |_: &Objections| Moving {},
+            |_: &Negotiation| Moving {},
         ))
         .build()
 }

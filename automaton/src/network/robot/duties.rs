@@ -74,7 +74,7 @@ impl Holds<Duty> for Robot {
                 DutyEffect::Restart => self.still_periods = 0,
                 DutyEffect::Exchanged(partner) => {
                     self.last_partner = Some(partner);
-                    self.lineage = None;
+                    self.is_displaced = true;
                 }
             }
         }
@@ -94,7 +94,7 @@ impl Robot {
         if matches!(jump, Ok(Some(_))) {
             self.is_quiet = false;
             self.stir();
-            self.look_after_place();
+            self.look_after_place()?;
         }
         jump
     }

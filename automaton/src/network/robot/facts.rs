@@ -11,7 +11,8 @@ use super::super::duty::{AwaitingRelease, Duty, Waiting};
 use super::super::scenario::RoutingMethod;
 use super::Robot;
 use super::attachment::PATIENCE_WITH_BARREN_POSTS;
-use super::step::{MAX_SWEEPS, NEGOTIATION_ROUNDS};
+use super::lineage::HeardWay;
+use super::rounds::SweepRound;
 
 macro_rules! facts {
     (
@@ -124,16 +125,16 @@ facts! {
             iteration: robot.control.count() as f64,
             /// The number of iterations in a control period.
             iterations: robot.site.settings.routing_iterations as f64,
-            /// The number of this sweep of the routes.
-            sweep: robot.control.count() as f64,
-            /// The number of sweeps in a control period.
-            sweeps: MAX_SWEEPS as f64,
-            /// How often moves have been judged in this control period.
-            attempt: robot.control.count() as f64,
-            /// How often they are judged, the last time not counted.
-            attempts: NEGOTIATION_ROUNDS as f64,
         }
         propositions {
+            /// Its post has a parent.
+            names_parent: robot.heard_way != HeardWay::NoParent,
+            /// Its parent tells a way to an access point that leads through its own post.
+            hears_cycle: robot.heard_way == HeardWay::Cycle,
+            /// Its parent tells a way, not through its own post, that is not the one it tells itself.
+            hears_other_way: robot.heard_way == HeardWay::Other,
+            /// It has been given the post of another robot in this jump.
+            displaced: robot.is_displaced,
             /// It is exchanging duties with another robot.
             engaged: robot.is_engaged(),
             /// It is the elected leader.
@@ -194,6 +195,18 @@ facts! {
             advances: robot.phase() == Phase::Advance,
             /// A redundant robot is attached to its post.
             bears_redundant: robot.bears_redundant(),
+            /// This round of a sweep is for demands.
+            hears_demands: robot.round_count.of_sweep() == SweepRound::Demands,
+            /// This round of a sweep is for flows.
+            hears_flows: robot.round_count.of_sweep() == SweepRound::Flows,
+            /// This round of a sweep is for shortages.
+            hears_shortages: robot.round_count.of_sweep() == SweepRound::Shortages,
+            /// This sweep is the last of the control period.
+            last_sweep: robot.round_count.is_last_sweep(),
+            /// This round of the negotiation is for proposals.
+            hears_proposals: robot.round_count.is_for_proposals(),
+            /// Moves have been judged for the last time in this control period.
+            last_attempt: robot.round_count.is_last_attempt(),
             /// Routes are found by ADAL.
             adal: robot.site.settings.routing_method == RoutingMethod::Adal,
             /// It exchanges duties now, and takes over that of a robot on standby.

@@ -23,7 +23,7 @@ use super::super::mission::{
     Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
 };
 use super::super::record::MissionEvent;
-use super::super::shared::Shared;
+use super::super::shared::{Shared, merge_election};
 use super::duties::Label;
 use super::{Robot, TaskNotice, leader, path, recruit, team};
 
@@ -76,7 +76,7 @@ impl Holds<Mission> for Robot {
                     }
                 }
                 MissionEffect::Elect(election, bid, route) => {
-                    (self.election, self.bid, self.route) = (Some(election), bid, route);
+                    (self.election, self.bid, self.route) = (Some(Arc::new(election)), bid, route);
                     self.waited_rounds = 1;
                     if self.phase() == Phase::RecruitElection {
                         self.answer_call();
@@ -112,7 +112,7 @@ impl Robot {
         for neighbour in &self.neighbours {
             self.bulletin.merge(&neighbour.beacon.bulletin);
             if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {
-                own.merge(heard);
+                merge_election(own, heard);
             }
             if let (Some(own), Some(heard)) = (&mut self.agreement, &neighbour.beacon.agreement) {
                 own.merge(heard);

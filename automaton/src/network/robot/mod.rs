@@ -19,11 +19,13 @@ mod exchange;
 mod facts;
 mod hearing;
 mod leader;
+mod lineage;
 mod links;
 mod mission;
 mod motion;
 mod path;
 mod recruit;
+mod rounds;
 mod routing;
 mod step;
 mod target;
@@ -39,18 +41,18 @@ use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Dealings, Election, IdSet, Lineage, NodeId, NoticeId, Post, PostId,
-    Role,
+    Agreement, Anchor, Bid, Dealings, Election, IdSet, NodeId, NoticeId, Post, PostId, Role,
 };
 
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
 pub use dealing::{Deal, DealingAutomaton, DealingEffect, dealing_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
 pub use facts::{Facts, GLOSSARY};
+pub use lineage::{AttachmentAutomaton, PlaceInTree, attachment_automaton};
 pub use links::TreeLink;
 pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
 pub use routing::RouteLink;
-pub use step::RobotError;
+pub use step::{RobotError, RobotFault};
 pub use target::{Targets, targets};
 pub use view::RobotView;
 
@@ -66,6 +68,8 @@ use super::shared::Shared;
 use super::site::Site;
 use duties::Label;
 use hearing::Neighbour;
+use lineage::HeardWay;
+use rounds::Rounds;
 
 /// A robot of the network.
 #[derive(Clone, Debug)]
@@ -75,8 +79,10 @@ pub struct Robot {
     rate: f64,
     site: Arc<Site>,
 
-    // Where it stands in its control period, what it does now, and whether that is its first.
+    // Where it stands in its control period, rounds of sweeps or negotiation, what it does now, and
+    // whether that is its first period.
     control: Current<Control>,
+    round_count: Rounds,
     acts: Acts,
     is_new: bool,
 
@@ -113,7 +119,10 @@ pub struct Robot {
     /// Where in the table of neighbours the next beacon is expected.
     heard_up_to: usize,
     parent: Option<NodeId>,
-    lineage: Option<Arc<Lineage>>,
+    place: Current<PlaceInTree>,
+    heard_way: HeardWay,
+    /// It has been given the post of another robot in this jump.
+    is_displaced: bool,
     below: Arc<IdSet>,
     /// The parent in the tree that it has found to be best, none if it has looked for none.
     desired_parent: Option<Option<Anchor>>,
@@ -127,7 +136,7 @@ pub struct Robot {
     tasks: Vec<TaskNotice>,
     roster: Arc<IdSet>,
     eligible: Arc<IdSet>,
-    election: Option<Election>,
+    election: Option<Arc<Election>>,
     /// What it has bid in this election itself.
     bid: Option<Bid>,
     waited_rounds: usize,
@@ -138,6 +147,8 @@ pub struct Robot {
     // Communication variables.
     routing: routing::RoutingState,
     links: Vec<RouteLink>,
+    /// The parent to which it sends its demand in this period.
+    upstream: Option<NodeId>,
     /// The link whose other end is expected to tell its multiplier next.
     expected_link: usize,
     inflow: f64,
@@ -189,6 +200,7 @@ impl Robot {
             id,
             rate,
             control: Current::new(Control::Moving(Moving {})),
+            round_count: Rounds::default(),
             acts: &[],
             is_new: true,
             position,
@@ -211,7 +223,9 @@ impl Robot {
             neighbours: Vec::new(),
             heard_up_to: 0,
             parent: None,
-            lineage: None,
+            place: Current::new(PlaceInTree::Detached(lineage::Detached)),
+            heard_way: HeardWay::NoParent,
+            is_displaced: false,
             below: Arc::new(IdSet::singleton(id)),
             desired_parent: None,
             reattaches_to: None,
@@ -229,6 +243,7 @@ impl Robot {
             team: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
+            upstream: None,
             expected_link: 0,
             inflow: 0.0,
             inflows: Vec::new(),
@@ -275,7 +290,7 @@ impl Robot {
             agreement: self.agreement.clone(),
             route: self.route.clone(),
             crossing: Vec::new(),
-            lineage: self.lineage.clone(),
+            lineage: self.lineage().cloned(),
             parent: self.parent,
             below: Arc::clone(&self.below),
             duty: Some(*self.duty),
@@ -333,7 +348,7 @@ impl Robot {
     fn reflect(&mut self) -> Result<(), TransitionError> {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
         self.deal()?;
-        self.keep_place();
+        self.keep_place()?;
         self.hear_notices();
         self.remember_parent();
         Ok(())

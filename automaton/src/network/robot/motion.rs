@@ -12,7 +12,7 @@ use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic, HalfPlane, cell};
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
-use pleach_discrete::network::{NodeId, Phase};
+use pleach_discrete::network::{NodeId, Phase, Stage};
 
 use super::super::duty::Duty;
 use super::super::message::Message;
@@ -345,6 +345,11 @@ impl Robot {
         self.yield_to_objection();
     }
 
+    /// Whether the robot neither proposes a move nor has heard of one that it has not judged.
+    pub(super) fn has_no_moves_to_judge(&self) -> bool {
+        self.proposal.is_none() && (self.heard_moves.is_empty() || !self.must_judge_moves)
+    }
+
     fn is_overloaded(&self) -> bool {
         let load: f64 = self.routes().map(|link| link.share).sum();
         let worst = self.worst_load(self.own_move(), |node| self.move_of(node));
@@ -374,7 +379,9 @@ impl Robot {
         if self.proposal.is_some() {
             self.must_judge_moves = true;
         }
-        self.proposal = match self.is_last_chance() {
+        let is_last_chance =
+            self.stage() == Stage::Negotiation && self.round_count.is_last_chance();
+        self.proposal = match is_last_chance {
             false => self.proposal.map(|segment| segment.halved()),
             true => None,
         };

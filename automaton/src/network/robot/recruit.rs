@@ -68,8 +68,8 @@ pub(super) fn end_unaided(
     robot: &Robot,
     effects: &mut Effects,
 ) -> RecruitElection {
-    let stranded = robot.election.as_ref().and_then(Election::best).is_some();
-    let own_root = robot.lineage.as_ref().map(|lineage| lineage.root());
+    let stranded = robot.election.as_ref().is_some_and(|election| election.best().is_some());
+    let own_root = robot.lineage().map(|lineage| lineage.root());
     let others: IdSet = robot.eligible.iter().filter(|&root| Some(root) != own_root).collect();
     if let Some(task) = robot.tasks.last() {
         if stranded && !others.is_empty() {
@@ -136,7 +136,7 @@ impl Robot {
         if let Some(election) = &mut self.election
             && !election.has_token(self.id)
         {
-            election.place(self.id, bid);
+            Arc::make_mut(election).place(self.id, bid);
             self.bid = bid;
         }
     }
@@ -149,7 +149,7 @@ impl Robot {
 
     /// A redundant robot that no tree connects to the caller only bids to show where it could help.
     fn stranded_bid(&self) -> Option<Bid> {
-        let root = self.lineage.as_ref()?.root();
+        let root = self.lineage()?.root();
         Some(Bid { rank: 0, merit: -(root as i64), economy: 0 })
     }
 

@@ -106,6 +106,7 @@ impl Robot {
                 told: 0.0,
             });
         }
+        self.upstream = self.tree_parent();
         self.inflow = 0.0;
         self.inflows.clear();
         self.demands.clear();
@@ -139,7 +140,7 @@ impl Robot {
                 NeighbourReport { multiplier: state.multiplier(), mismatch: 0.0, crowding: 1.0 }
             }
         };
-        outputs.broadcast(Message::Multiplier { report, parent: self.tree_parent() });
+        outputs.broadcast(Message::Multiplier { report, parent: self.upstream });
     }
 
     /// A neighbour says how its equation stands, and where its demand will go.
@@ -335,7 +336,7 @@ impl Robot {
     fn pass_demand_on(&mut self, is_first: bool, outputs: &mut Outputs<Message, MissionEvent>) {
         self.has_swept = true;
         let more = self.meet_demand(is_first);
-        if let Some(parent) = self.tree_parent()
+        if let Some(parent) = self.upstream
             && parent < self.site.robots
             && (is_first || more != 0.0)
         {
@@ -368,7 +369,7 @@ impl Robot {
     /// no robot is asked to pass on what is not there. Returns by how much the flow to the parent
     /// has changed.
     fn meet_demand(&mut self, is_first: bool) -> f64 {
-        let Some(parent) = self.tree_parent() else { return 0.0 };
+        let Some(parent) = self.upstream else { return 0.0 };
         let Some(tree_link) = self.links.iter().position(|link| link.to == parent) else {
             return 0.0;
         };
@@ -413,7 +414,7 @@ impl Robot {
         overloaded: NodeId,
         outputs: &mut Outputs<Message, MissionEvent>,
     ) {
-        if self.tree_parent() == Some(overloaded) {
+        if self.upstream == Some(overloaded) {
             self.economise(outputs);
         } else if let Ok(at) = self.links.binary_search_by_key(&overloaded, |link| link.to) {
             let had_share = self.links[at].share > 0.0;
@@ -446,6 +447,13 @@ impl Robot {
             self.add_up_inflow();
             self.residual = self.balance();
         }
+    }
+
+    /// Whether the robot has taken part in the first sweep, and has heard nothing since that changes
+    /// its flows.
+    pub(super) fn routes_stand(&self) -> bool {
+        let has_news = self.has_shortage_news || self.has_untold_flows || self.is_unsettled;
+        self.has_swept && !has_news && (self.is_frugal || !self.is_infeasible())
     }
 
     /// The routes of the period stand.

@@ -21,22 +21,34 @@ use crate::automaton::{InvariantError, TransitionError};
 use crate::located::Place as _;
 use crate::node::{Input, Node, Outputs};
 
-/// Sweeps until the routes are feasible: with each, overloaded robots are relieved of what does
-/// not come over the tree, and a tree that can carry the rates needs few.
-pub(super) const MAX_SWEEPS: usize = 6;
-/// Rounds in which proposals are checked and halved; a mover that still meets an objection in the
-/// one after them gives its move up.
-pub(super) const NEGOTIATION_ROUNDS: usize = 8;
 /// More transitions than this at one instant are taken for endless; a mission has about ten
 /// steps, and a robot takes a few of them at a time.
 const MOST_JUMPS: usize = 32;
 
 type Out = Outputs<Message, MissionEvent>;
 
-/// Why a robot cannot go on.
+/// A node of the network cannot go on. It is small, since every step may return one.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+pub struct RobotError(Box<RobotFault>);
+
+impl RobotError {
+    /// Why it cannot go on.
+    pub fn fault(&self) -> &RobotFault {
+        &self.0
+    }
+}
+
+impl<F: Into<RobotFault>> From<F> for RobotError {
+    fn from(fault: F) -> Self {
+        RobotError(Box::new(fault.into()))
+    }
+}
+
+/// Why a node of the network cannot go on.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum RobotError {
+pub enum RobotFault {
     /// A guard speaks of something that robots do not measure.
     #[error(transparent)]
     Guard(#[from] TransitionError),
@@ -69,17 +81,18 @@ impl Node for Robot {
         outputs: &mut Out,
     ) -> Result<(), RobotError> {
         match input {
-            Input::Heard { from, message } => self.hear(from, message, outputs),
+            Input::Heard { from, message } => {
+                self.hear(from, message, outputs);
+                return Ok(());
+            }
             Input::Sensed(Sense::Position(position)) => {
                 self.find_itself_at(position);
                 self.jump()?;
             }
             Input::Sensed(Sense::Tasks(_)) => {}
-            Input::Tick => self.tick(outputs)?,
+            Input::Tick { passed } => self.tick(passed, outputs)?,
         }
-        if !self.log.is_empty() {
-            self.log.drain(..).for_each(|event| outputs.report(event));
-        }
+        self.log.drain(..).for_each(|event| outputs.report(event));
         Ok(())
     }
 
@@ -90,6 +103,10 @@ impl Node for Robot {
         })
     }
 
+    fn rounds_to_pass(&self) -> usize {
+        Robot::rounds_to_pass(self)
+    }
+
     /// By the flow of the stage.
     fn flow(&mut self, duration: f64) {
         let site = Arc::clone(&self.site);
@@ -98,7 +115,7 @@ impl Node for Robot {
 
     fn check_invariant(&self) -> Result<(), RobotError> {
         let holds = self.site.automata.control.check_invariant(self.stage(), self);
-        holds.map_err(|source| RobotError::Invariant { node: self.id, source })
+        holds.map_err(|source| RobotFault::Invariant { node: self.id, source }.into())
     }
 
     fn body(&self) -> Point {
@@ -148,12 +165,11 @@ impl Robot {
         (self.site.settings.period - self.clock).max(0.0)
     }
 
-    /// Most messages are beacons and multipliers, and say nothing new.
+    /// Most messages are beacons that say nothing new.
     #[inline]
     fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
         match message {
             Message::Beacon(beacon) => self.hear_beacon(beacon),
-            Message::Multiplier { report, parent } => self.hear_multiplier(from, *report, *parent),
             _ => self.hear_of_routes_or_moves(from, message, outputs),
         }
     }
@@ -161,6 +177,7 @@ impl Robot {
     #[inline(never)]
     fn hear_of_routes_or_moves(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
         match message {
+            Message::Multiplier { report, parent } => self.hear_multiplier(from, *report, *parent),
             Message::Flow(flow) => self.hear_flow(from, *flow),
             Message::Demand(more) => self.hear_demand(from, *more, outputs),
             Message::Shortage => self.hear_shortage(from, outputs),
@@ -168,13 +185,6 @@ impl Robot {
             Message::Objection => self.yield_to_objection(),
             _ => {}
         }
-    }
-
-    /// Whether an objection that is heard now is the last.
-    pub(super) fn is_last_chance(&self) -> bool {
-        let stage = self.control.location();
-        matches!(stage, Stage::Proposals | Stage::Objections)
-            && self.control.count() == NEGOTIATION_ROUNDS
     }
 
     /// A control period has a fixed number of rounds. In the first one there are as many as news
@@ -194,6 +204,6 @@ impl Robot {
                 return Ok(());
             }
         }
-        Err(RobotError::Zeno { robot: self.id })
+        Err(RobotFault::Zeno { robot: self.id }.into())
     }
 }

@@ -55,8 +55,9 @@ fn a_view_of_another_election_changes_nothing() {
     let (number, issuer) = (kani::any_where(below_four), kani::any_where(below_four));
     kani::assume((number, issuer) != (1, 1));
     let mut old = Election::new(NoticeId::new(number.into(), issuer.into()));
-    for (robot, bid) in bids.into_iter().enumerate() {
-        old.place(robot, bid);
+    // By reference: see the proofs of agreements.
+    for (robot, bid) in bids.iter().enumerate() {
+        old.place(robot, *bid);
     }
     kani::cover!(old.best() > view.best());
     kani::cover!(number == 1);

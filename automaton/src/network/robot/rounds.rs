@@ -1,0 +1,101 @@
+//! Rounds of sweeps and of the negotiation: the discrete clock of a robot.
+//!
+//! Both have a fixed number of rounds, which all robots count alike. Where a robot has nothing to do
+//! until it hears something, it lets rounds pass; its count goes on, as τ does while time passes.
+
+use pleach_discrete::network::Stage;
+
+use super::Robot;
+
+/// Sweeps until the routes are feasible: with each, overloaded robots are relieved of what does
+/// not come over the tree, and a tree that can carry the rates needs few.
+const SWEEPS: usize = 6;
+/// How often proposals are judged and halved; a mover that still meets an objection the time after
+/// them gives its move up.
+const ATTEMPTS: usize = 8;
+
+/// The rounds of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SweepRound {
+    /// Demands go up the tree.
+    Demands,
+    /// Flows are told to their receivers.
+    Flows,
+    /// Shortages are told from robot to robot.
+    Shortages,
+    /// Flows are taken back from robots that cannot pass them on.
+    Reliefs,
+}
+
+/// The number of the round of sweeps or of the negotiation that is over at this tick, from 1; 0
+/// before the first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Rounds(usize);
+
+impl Rounds {
+    const PER_SWEEP: usize = 4;
+    /// The flows of the last sweep are heard.
+    const LAST_OF_SWEEPS: usize = Self::PER_SWEEP * (SWEEPS - 1) + 2;
+    /// The last objections are heard: proposals and objections alternate.
+    const LAST_OF_NEGOTIATION: usize = 2 * (ATTEMPTS + 1);
+
+    /// Rounds are counted anew.
+    pub const fn restart(&mut self) {
+        *self = Rounds(0);
+    }
+
+    /// Further rounds pass.
+    pub const fn pass(&mut self, rounds: usize) {
+        self.0 += rounds;
+    }
+
+    pub const fn of_sweep(self) -> SweepRound {
+        match self.0 % Self::PER_SWEEP {
+            1 => SweepRound::Demands,
+            2 => SweepRound::Flows,
+            3 => SweepRound::Shortages,
+            _ => SweepRound::Reliefs,
+        }
+    }
+
+    pub const fn is_last_sweep(self) -> bool {
+        self.0 >= Self::LAST_OF_SWEEPS
+    }
+
+    pub const fn is_for_proposals(self) -> bool {
+        self.0 % 2 == 1
+    }
+
+    pub const fn is_last_attempt(self) -> bool {
+        self.0 >= Self::LAST_OF_NEGOTIATION
+    }
+
+    /// Whether an objection that is heard from now on is the last of this negotiation.
+    pub const fn is_last_chance(self) -> bool {
+        self.0 >= 2 * ATTEMPTS
+    }
+
+    /// Rounds of `stage` that may pass before its last one.
+    const fn before_last_of(self, stage: Stage) -> usize {
+        let last = match stage {
+            Stage::Sweeps => Self::LAST_OF_SWEEPS,
+            Stage::Negotiation => Self::LAST_OF_NEGOTIATION,
+            _ => 0,
+        };
+        last.saturating_sub(self.0 + 1)
+    }
+}
+
+impl Robot {
+    /// Rounds that the robot lets pass before its next tick, counted from its last one: up to the
+    /// last round of sweeps or of the negotiation while it has nothing to tell or to judge.
+    pub(super) fn rounds_to_pass(&self) -> usize {
+        let stage = self.stage();
+        let has_nothing_to_do = match stage {
+            Stage::Sweeps => self.routes_stand(),
+            Stage::Negotiation => self.has_no_moves_to_judge(),
+            _ => false,
+        };
+        if has_nothing_to_do { self.round_count.before_last_of(stage) } else { 0 }
+    }
+}

@@ -1,0 +1,266 @@
+//! Records of missions as somebody has changed them: the judge says what is wrong, and what it
+//! lets pass is lawful for a reason.
+//!
+//! `PLEACH_UPDATE_DOCS=1 cargo test --test it records` writes the table of `docs/proofs.md` anew.
+
+mod change;
+mod edits;
+mod events;
+mod lawful;
+mod snapshots;
+mod spoils;
+
+use crate::generated::{keep_up_to_date, read};
+use crate::missions::{Mission, Period, run, shipped};
+use change::{Change, Record};
+use pleach::automaton::network::record::{End, Outcome};
+use pleach::discrete::network::activity::may_follow;
+use pleach::judge::{JudgeError, Verdict, judge};
+use pleach::mission::Watcher;
+use pleach::trace::{TraceReader, TraceWriter};
+use pleach::verify::network::{Judge, Property, Violation};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
+
+/// At how many control periods of a mission each change is tried.
+const SITES: usize = 3;
+
+/// Missions in which every kind of event but a repeated election happens.
+const MISSIONS: [&str; 2] = ["corridor", "leaf-leader"];
+
+fn missions() -> &'static [Mission] {
+    static MISSION: OnceLock<Vec<Mission>> = OnceLock::new();
+    MISSION.get_or_init(|| MISSIONS.map(|name| run(shipped(name))).into())
+}
+
+/// The trace of a record as its file holds it.
+fn trace(scenario: &pleach::automaton::network::scenario::Scenario, record: &Record) -> Vec<u8> {
+    let mut writer = TraceWriter::new(Vec::new(), scenario).unwrap();
+    for period in &record.periods {
+        writer.observe(&period.snapshot, &period.events).unwrap();
+    }
+    writer.end(&record.end).unwrap();
+    writer.finish().unwrap()
+}
+
+/// What the judge says of a record whose periods before `site` are those of the mission;
+/// `before` has judged these.
+fn verdict(mut before: Judge, record: &Record, site: usize) -> Result<(), Violation> {
+    for Period { snapshot, events } in &record.periods[site..] {
+        before.observe(snapshot, events)?;
+    }
+    before.conclude(&record.end)
+}
+
+/// The control periods at which a change is tried: some of those at which it changes anything,
+/// always the same.
+fn sites(mission: &Mission, change: &Change) -> Vec<(usize, Record)> {
+    let count = mission.periods.len();
+    // 61 is prime to the numbers of periods: each is visited once.
+    let visited = (0..count).map(|index| (index * 61 + count / 3) % count);
+    let changed = visited.filter(|&site| changes_something(mission, change, site)).map(|site| {
+        let mut record = Record::of(mission);
+        (change.make)(&mut record, site);
+        (site, record)
+    });
+    changed.take(SITES).collect()
+}
+
+/// How far a change reads before and behind its site.
+const REACH: usize = 8;
+
+/// Whether a change differs from the record, seen in the periods around its site.
+fn changes_something(mission: &Mission, change: &Change, site: usize) -> bool {
+    let begin = site.saturating_sub(1);
+    let end = mission.periods.len().min(site + REACH);
+    let around = Record { periods: mission.periods[begin..end].to_vec(), end: mission.end.clone() };
+    let mut changed = around.clone();
+    (change.make)(&mut changed, site - begin);
+    changed != around
+}
+
+/// What became of a change: at how many sites it was tried, at how many it was noticed, and what
+/// the properties are that failed.
+#[derive(Default)]
+struct Fate {
+    tried: usize,
+    noticed: usize,
+    properties: BTreeSet<Property>,
+    unnoticed: Vec<String>,
+}
+
+/// The fate of every change, by its name.
+fn fates(changes: &[Change]) -> BTreeMap<&'static str, Fate> {
+    let mut fates = BTreeMap::<_, Fate>::new();
+    for mission in missions() {
+        let scenario = crate::missions::valid(mission.scenario.clone());
+        let mut tries: Vec<_> = changes
+            .iter()
+            .flat_map(|change| {
+                sites(mission, change).into_iter().map(|(site, record)| (site, change.name, record))
+            })
+            .collect();
+        tries.sort_by_key(|&(site, ..)| site);
+        let mut judge = Judge::new(&scenario, may_follow);
+        let mut judged = 0;
+        for (site, name, record) in tries {
+            for Period { snapshot, events } in &mission.periods[judged..site] {
+                judge.observe(snapshot, events).unwrap();
+            }
+            judged = site;
+            let fate = fates.entry(name).or_default();
+            fate.tried += 1;
+            match verdict(judge.clone(), &record, site) {
+                Ok(()) => fate.unnoticed.push(format!("{} at k = {site}", mission.scenario.name)),
+                Err(violation) => {
+                    fate.noticed += 1;
+                    fate.properties.insert(violation.property);
+                }
+            }
+        }
+    }
+    fates
+}
+
+#[test]
+fn every_changed_record_is_noticed_or_lawful() {
+    let changes: Vec<Change> = [edits::ALL, snapshots::ALL, events::ALL, events::FALSE].concat();
+    let names: BTreeSet<_> = changes.iter().map(|change| change.name).collect();
+    assert_eq!(names.len(), changes.len(), "a name stands for one change");
+    let fates = fates(&changes);
+    let mut wrong = Vec::new();
+    let mut rows = String::new();
+    for change in &changes {
+        let Some(fate) = fates.get(change.name) else {
+            wrong.push(format!("“{}” changes nothing anywhere", change.name));
+            continue;
+        };
+        let reason = lawful::reason(change.name);
+        match (fate.unnoticed.is_empty(), reason) {
+            (false, None) => {
+                wrong.push(format!("“{}” passes: {}", change.name, fate.unnoticed.join(", ")));
+            }
+            (true, Some(_)) => wrong.push(format!("“{}” is always noticed", change.name)),
+            _ => {}
+        }
+        let properties: Vec<_> = fate.properties.iter().map(|property| property.name()).collect();
+        let row = format!(
+            "| {} | {} of {} | {} | {} |\n",
+            change.name,
+            fate.noticed,
+            fate.tried,
+            properties.join(", "),
+            reason.unwrap_or_default()
+        );
+        rows.push_str(&row);
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let lawful = lawful::REASONS.iter().find(|(name, _)| !names.contains(name));
+    assert!(lawful.is_none(), "{lawful:?} is no change");
+    keep_table(&rows, changes.len());
+}
+
+const BEGIN: &str =
+    "<!-- begin of the table: PLEACH_UPDATE_DOCS=1 cargo test --test it records -->";
+const END: &str = "<!-- end of the table -->";
+
+fn keep_table(rows: &str, count: usize) {
+    let document = read("docs/proofs.md");
+    let (before, rest) = document.split_once(BEGIN).unwrap();
+    let (_, after) = rest.split_once(END).unwrap();
+    let head = "| change of the record | noticed | by | where it passes, why it is lawful |\n\
+                | --- | --- | --- | --- |\n";
+    let table = format!("{count} changes:\n\n{head}{rows}");
+    let refreshed = format!("{before}{BEGIN}\n\n{table}\n{END}{after}");
+    keep_up_to_date("docs/proofs.md", &refreshed, "records");
+}
+
+// ---- Spoiled records of Study I -----------------------------------------------------------------
+
+#[test]
+fn every_spoiled_record_is_noticed() {
+    let mission = run(shipped("study-1"));
+    let mut passed = Vec::new();
+    for (name, spoil, properties) in spoils::ALL {
+        let mut record = Record::of(&mission);
+        spoil(&mut record);
+        let text = trace(&mission.scenario, &record);
+        match judge(TraceReader::new(text.as_slice()).unwrap()).unwrap() {
+            Verdict::Sound { .. } => passed.push(format!("{name}: passes")),
+            Verdict::Violated(violation) if !properties.contains(&violation.property) => {
+                passed.push(format!("{name}: {violation}"));
+            }
+            Verdict::Violated(_) => {}
+        }
+    }
+    assert!(passed.is_empty(), "{}", passed.join("\n"));
+}
+
+// ---- Traces -------------------------------------------------------------------------------------
+
+#[test]
+fn a_trace_is_judged_alone() {
+    for mission in missions() {
+        let record = Record::of(mission);
+        let text = trace(&mission.scenario, &record);
+        let verdict = judge(TraceReader::new(text.as_slice()).unwrap()).unwrap();
+        let steps = mission.periods.len() - 1;
+        assert!(matches!(verdict, Verdict::Sound { steps: judged, .. } if judged == steps));
+    }
+}
+
+/// The lines of a trace, changed, and what the judge says of them.
+#[track_caller]
+fn expect(property: Property, sentence: &str, change: impl Fn(&mut Vec<String>)) {
+    let mission = &missions()[1];
+    let text = String::from_utf8(trace(&mission.scenario, &Record::of(mission))).unwrap();
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    change(&mut lines);
+    let text = lines.join("\n");
+    match judge(TraceReader::new(text.as_bytes()).unwrap()).unwrap() {
+        Verdict::Violated(violation) => {
+            assert_eq!(violation.property, property, "{violation}");
+            assert!(violation.sentence.contains(sentence), "{violation}");
+        }
+        Verdict::Sound { .. } => panic!("it passes"),
+    }
+}
+
+#[test]
+fn a_trace_has_one_end() {
+    expect(Property::Outcome, "breaks off", |lines| drop(lines.pop()));
+    expect(Property::Record, "goes on after its end", |lines| {
+        let step = lines[lines.len() - 2].clone();
+        lines.push(step);
+    });
+    expect(Property::Record, "before this step", |lines| {
+        let event = lines.iter().position(|line| line.contains("\"reattached\"")).unwrap();
+        let step = lines.iter().skip(event).position(|line| line.contains("\"step\"")).unwrap();
+        let line = lines.remove(event);
+        lines.insert(event + step, line);
+    });
+    expect(Property::Record, "after the last step", |lines| {
+        let event = lines.iter().find(|line| line.contains("\"reattached\"")).unwrap().clone();
+        lines.insert(lines.len() - 1, event);
+    });
+}
+
+#[test]
+fn a_trace_that_no_mission_starts_from_is_not_judged() {
+    let mission = &missions()[1];
+    let text = String::from_utf8(trace(&mission.scenario, &Record::of(mission))).unwrap();
+    let spoiled = text.replacen("\"full_range\":0.4", "\"full_range\":0.6", 1);
+    assert_ne!(spoiled, text);
+    let error = judge(TraceReader::new(spoiled.as_bytes()).unwrap()).unwrap_err();
+    assert!(matches!(error, JudgeError::Scenario(_)), "{error}");
+}
+
+#[test]
+fn an_interrupted_mission_is_sound_as_far_as_it_goes() {
+    let mission = missions()[1].up_to(100);
+    let reason = "the run was interrupted".to_owned();
+    let end = End { outcome: Outcome::Interrupted, reason, task: Some(0) };
+    let text = trace(&mission.scenario, &Record { end, ..Record::of(&mission) });
+    let verdict = judge(TraceReader::new(text.as_slice()).unwrap()).unwrap();
+    assert!(matches!(verdict, Verdict::Sound { steps: 100, .. }));
+}

@@ -1,0 +1,44 @@
+//! Missions in which the certified acceptance has work to do: rates near what links carry, long
+//! steps, links of the tree that may be weak. With the settings of the shipped scenarios loads stay
+//! far below 1, and hardly a robot ever objects to a move.
+
+use crate::missions::{Mission, run, shipped};
+
+/// Settings under which robots object: r, the least reliability of tree links, κ and σ.
+struct Stress {
+    rate: f64,
+    tree_reliability: f64,
+    slope_aversion: f64,
+    step_radius: f64,
+}
+
+const STRESSES: [Stress; 3] = [
+    Stress { rate: 0.0767, tree_reliability: 0.5, slope_aversion: 0.0, step_radius: 0.12 },
+    Stress { rate: 0.075, tree_reliability: 0.3, slope_aversion: 10.0, step_radius: 0.06 },
+    Stress { rate: 0.0767, tree_reliability: 0.3, slope_aversion: 0.0, step_radius: 0.06 },
+];
+
+fn stressed(name: &str, stress: &Stress) -> Mission {
+    // More robots than those of leaf-leader bring more traffic to the access point.
+    let share = if name == "leaf-leader" { 1.0 } else { 0.9 };
+    let mut scenario = shipped(name);
+    scenario.robot.iter_mut().for_each(|robot| robot.rate = share * stress.rate);
+    scenario.control.tree_reliability = Some(stress.tree_reliability);
+    scenario.control.slope_aversion = Some(stress.slope_aversion);
+    scenario.control.step_radius = Some(stress.step_radius);
+    run(scenario)
+}
+
+/// Tasks are serviced, and loads come close to all the time of a sender.
+#[test]
+fn missions_under_stress_keep_what_is_promised() {
+    let mut largest: f64 = 0.0;
+    for name in ["leaf-leader", "study-1", "corridor", "two-clusters", "ring"] {
+        for stress in &STRESSES {
+            let mission = stressed(name, stress);
+            mission.assert_serviced();
+            largest = largest.max(mission.extremes.load.as_ref().unwrap().value);
+        }
+    }
+    assert!(largest > 0.99, "the largest load is only {largest}");
+}

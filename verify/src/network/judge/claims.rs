@@ -1,0 +1,280 @@
+//! Whether an event is true of the world at the instant for which it is recorded.
+
+use pleach_automaton::network::record::{MissionEvent, Snapshot};
+use pleach_discrete::network::{Phase, Role};
+
+use super::ledger::Ledger;
+use super::walk::Walk;
+use super::{Dispute, Scene};
+use crate::network::limits::{Limits, SLACK};
+use crate::network::property::Property;
+use crate::network::tree;
+
+/// Robots exchange duties when they touch: at most this many ρ apart (they keep 2ρ).
+const CONTACT: f64 = 2.6;
+/// A team is at a stationary point when no member has moved by more than this share of ρ or σ,
+/// the smaller one, in the last control period.
+const STILL: f64 = 0.3;
+
+/// The robots and tasks of an event exist.
+///
+/// # Errors
+///
+/// The first that does not, as [`Property::Record`].
+pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute> {
+    let mut robots = Vec::new();
+    let mut task = None;
+    match event {
+        MissionEvent::TaskAnnounced { task: it } | MissionEvent::ElectionRepeated { task: it } => {
+            task = Some(*it);
+        }
+        MissionEvent::LeaderElected { task: it, robot, .. }
+        | MissionEvent::TaskServiced { task: it, robot } => {
+            task = Some(*it);
+            robots.push(*robot);
+        }
+        MissionEvent::Stationary { robot, team } | MissionEvent::JoinedPrimary { robot, team } => {
+            robots.push(*robot);
+            robots.extend(team);
+        }
+        MissionEvent::RecruitElected { robot, path, break_points } => {
+            robots.push(*robot);
+            robots.extend(path.iter().chain(break_points));
+        }
+        MissionEvent::SubgroupStarted { robots: members, .. }
+        | MissionEvent::SubgroupArrived { robots: members, .. } => robots.extend(members),
+        MissionEvent::Released { robot }
+        | MissionEvent::RoleChanged { robot, .. }
+        | MissionEvent::RouteInfeasible { robot } => robots.push(*robot),
+        MissionEvent::DutiesExchanged { mover, parked } => robots.extend([mover, parked]),
+        MissionEvent::Reattached { robot, parent } => {
+            robots.push(*robot);
+            if *parent >= limits.nodes() {
+                return record(format!("an event names node {parent}, of {}", limits.nodes()));
+            }
+        }
+        other => return record(format!("the judge does not know the event {other:?}")),
+    }
+    if let Some(robot) = robots.into_iter().find(|&robot| robot >= limits.robots()) {
+        return record(format!("an event names robot {robot}, of {}", limits.robots()));
+    }
+    match task.filter(|&task| task >= limits.tasks().len()) {
+        Some(task) => record(format!("an event names task {task}, of {}", limits.tasks().len())),
+        None => Ok(()),
+    }
+}
+
+fn record(sentence: String) -> Result<(), Dispute> {
+    Err(Dispute::of(Property::Record, &[], sentence))
+}
+
+/// What an event says of places, parents and motions is so. `ledger` is that before the event.
+///
+/// # Errors
+///
+/// What is not so, as [`Property::Events`] or [`Property::Subgroups`].
+pub(super) fn is_true(event: &MissionEvent, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
+    match event {
+        MissionEvent::TaskServiced { task, robot } => is_serviced(*task, *robot, scene),
+        MissionEvent::Stationary { .. } => stands_still(&ledger.primary_team, scene),
+        MissionEvent::RecruitElected { robot, path, break_points } => {
+            is_free(*robot, scene)?;
+            divides(path, break_points, ledger, scene)
+        }
+        MissionEvent::SubgroupArrived { subgroup, .. } => {
+            ledger.walk.as_ref().map_or(Ok(()), |walk| has_come(walk, *subgroup, scene))
+        }
+        MissionEvent::DutiesExchanged { mover, parked } => touch(*mover, *parked, scene),
+        MissionEvent::Reattached { robot, parent } => is_attached(*robot, *parent, ledger, scene),
+        MissionEvent::RouteInfeasible { robot } => is_infeasible(*robot, scene),
+        _ => Ok(()),
+    }
+}
+
+/// Eq. (2): the robot is within δ of the task.
+fn is_serviced(task: usize, robot: usize, scene: &Scene) -> Result<(), Dispute> {
+    let place = scene.limits.tasks()[task];
+    let distance = (scene.snapshot.positions[robot] - place).norm();
+    let bound = scene.limits.service_radius();
+    let sentence =
+        || format!("robot {robot} services task {task} from {distance:.6}, more than {bound:.6}");
+    at_most(distance, bound, &[robot], sentence)
+}
+
+/// No member has moved to speak of in the period that ends here.
+fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
+    let Some(previous) = scene.previous else { return Ok(()) };
+    let bound = STILL * scene.limits.clearance().min(scene.limits.step_radius());
+    for &robot in team {
+        let moved = (scene.snapshot.positions[robot] - previous.positions[robot]).norm();
+        at_most(moved, bound, &[robot], || {
+            format!("the team {team:?} is reported stationary, and robot {robot} moves {moved:.6}")
+        })?;
+    }
+    Ok(())
+}
+
+/// A recruit is redundant until it is elected.
+fn is_free(robot: usize, scene: &Scene) -> Result<(), Dispute> {
+    let Some(previous) = scene.previous else { return Ok(()) };
+    match previous.roles[robot] {
+        Role::Redundant | Role::Recruit => Ok(()),
+        role => {
+            let sentence = format!("robot {robot}, a {}, is elected recruit", role.name());
+            Err(Dispute::of(Property::Events, &[robot], sentence))
+        }
+    }
+}
+
+/// Sec. V-B2: the break points are those of the tree at the beginning or at the end of the period;
+/// the first subgroups may have arrived in the period in which Σ is announced.
+fn divides(
+    path: &[usize],
+    break_points: &[usize],
+    ledger: &Ledger,
+    scene: &Scene,
+) -> Result<(), Dispute> {
+    let derived = |snapshot: &Snapshot| break_points_by_tree(path, ledger, snapshot);
+    let before = scene.previous.map(derived);
+    let now = derived(scene.snapshot);
+    if now == break_points || before.as_deref() == Some(break_points) {
+        return Ok(());
+    }
+    let sentence = format!(
+        "the break points of the path {path:?} are {now:?} by the tree, and {break_points:?} are \
+         reported"
+    );
+    Err(Dispute::of(Property::Subgroups, path, sentence))
+}
+
+/// The recruit, the last robot that is relieved, and between them each robot that services a task,
+/// has a neighbour in the tree off Σ, or stands where Σ leaves the tree.
+fn break_points_by_tree(path: &[usize], ledger: &Ledger, snapshot: &Snapshot) -> Vec<usize> {
+    let robots = snapshot.positions.len();
+    let mut parents = vec![None; robots];
+    // A robot with two parents is told by another property.
+    let _ = tree::parents_of(&snapshot.tree, &mut parents);
+    let joins =
+        |one: usize, other: usize| parents[one] == Some(other) || parents[other] == Some(one);
+    let is_on = |node: usize| path.contains(&node);
+    let bears_others = |robot: usize| {
+        parents[robot].is_some_and(|parent| !is_on(parent))
+            || (0..robots).any(|child| parents[child] == Some(robot) && !is_on(child))
+    };
+    let Some(last) = path.len().checked_sub(if ledger.awaits_release { 1 } else { 2 }) else {
+        return Vec::new();
+    };
+    let is_break_point = |place: usize| {
+        let robot = path[place];
+        place == 0
+            || place == last
+            || ledger.serviced.values().any(|&holder| holder == robot)
+            || bears_others(robot)
+            || !joins(path[place - 1], robot)
+            || !joins(robot, path[place + 1])
+    };
+    (0..=last).filter(|&place| is_break_point(place)).map(|place| path[place]).collect()
+}
+
+/// Eq. (26): each member is within δ of the place of the robot ahead, or stands right behind that.
+pub(super) fn has_come(walk: &Walk, subgroup: usize, scene: &Scene) -> Result<(), Dispute> {
+    let (radius, contact) = (scene.limits.service_radius(), CONTACT * scene.limits.clearance());
+    for place in walk.subgroup(subgroup).unwrap_or_default() {
+        let (robot, ahead) = (walk.path[place], walk.path[place + 1]);
+        let position = scene.snapshot.positions[robot];
+        let Some((target, is_fixed)) = scene.places.on_path(place + 1) else { continue };
+        let radius = if is_fixed { radius } else { radius + contact };
+        let distance = (position - target).norm();
+        let queues = (position - scene.snapshot.positions[ahead]).norm() <= contact + SLACK;
+        if !queues {
+            at_most(distance, radius, &[robot, ahead], || {
+                format!(
+                    "subgroup {subgroup} is reported to have arrived, and robot {robot} is \
+                     {distance:.6} from its place, more than {radius:.6}"
+                )
+            })?;
+        }
+    }
+    Ok(())
+}
+
+fn touch(mover: usize, parked: usize, scene: &Scene) -> Result<(), Dispute> {
+    let positions = &scene.snapshot.positions;
+    let (distance, bound) =
+        ((positions[mover] - positions[parked]).norm(), CONTACT * scene.limits.clearance());
+    at_most(distance, bound, &[mover, parked], || {
+        format!(
+            "robots {mover} and {parked} exchange duties at a distance of {distance:.6}, more than \
+             {bound:.6}"
+        )
+    })
+}
+
+/// Remark 5.6: a robot of the primary team is attached to this node.
+fn is_attached(robot: usize, parent: usize, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
+    let is_edge = |parent: usize| scene.snapshot.tree.contains(&(robot, parent));
+    // It may have attached to several nodes in one period, one after the other.
+    let goes_on = scene.events.iter().any(|event| {
+        matches!(*event, MissionEvent::Reattached { robot: it, parent } if it == robot && is_edge(parent))
+    });
+    let clause = match is_edge(parent) || goes_on {
+        false => "which is not its parent",
+        true if !ledger.primary_team.contains(&robot) => "and is not of the primary team",
+        true => return Ok(()),
+    };
+    let sentence = format!("robot {robot} attaches to {parent}, {clause}");
+    Err(Dispute::of(Property::Events, &[robot, parent], sentence))
+}
+
+/// The residual of the robot is below −c_min.
+fn is_infeasible(robot: usize, scene: &Scene) -> Result<(), Dispute> {
+    let (residual, bound) = (scene.snapshot.residuals[robot], scene.limits.least_residual());
+    if residual < bound {
+        return Ok(());
+    }
+    let sentence = format!(
+        "the routes of robot {robot} are reported infeasible, and its residual is {residual:.6}, \
+         not less than {bound:.6}"
+    );
+    Err(Dispute::of(Property::Events, &[robot], sentence).measuring(residual, bound))
+}
+
+/// The teams that events name are those at the end of the period, when observers complete them.
+///
+/// # Errors
+///
+/// The first that is not, as [`Property::Events`].
+pub(super) fn teams_are_those(
+    events: &[MissionEvent],
+    ledger: &Ledger,
+    snapshot: &Snapshot,
+) -> Result<(), Dispute> {
+    for event in events {
+        let (MissionEvent::Stationary { team, .. } | MissionEvent::JoinedPrimary { team, .. }) =
+            event
+        else {
+            continue;
+        };
+        let given_up = snapshot.phase == Phase::Ended && team.is_empty();
+        if *team != ledger.primary_team && !given_up {
+            let sentence = format!(
+                "an event names the primary team {team:?}, which is {:?}",
+                ledger.primary_team
+            );
+            return Err(Dispute::of(Property::Events, team, sentence));
+        }
+    }
+    Ok(())
+}
+
+fn at_most(
+    value: f64,
+    bound: f64,
+    robots: &[usize],
+    sentence: impl FnOnce() -> String,
+) -> Result<(), Dispute> {
+    if value <= bound + SLACK {
+        return Ok(());
+    }
+    Err(Dispute::of(Property::Events, robots, sentence()).measuring(value, bound))
+}

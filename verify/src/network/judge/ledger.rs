@@ -1,0 +1,394 @@
+//! What the events of a mission amount to, by Algorithms 1, 3 and 4: identities only.
+//!
+//! The ledger is kept from the events alone. An event that cannot follow those before it is
+//! disputed; whether it is true of the world is for [`claims`](super::claims) to say.
+
+use std::collections::BTreeMap;
+
+use pleach_automaton::network::record::MissionEvent;
+use pleach_discrete::network::Role;
+
+use super::Dispute;
+use super::walk::Walk;
+use crate::network::property::Property;
+use crate::network::team;
+
+/// Roles, teams and tasks after the events so far.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ledger {
+    /// The role of every robot.
+    pub roles: Vec<Role>,
+    /// How many tasks are announced; they are numbered in this order.
+    pub announced: usize,
+    /// The tasks serviced, each with the robot that holds it.
+    pub serviced: BTreeMap<usize, usize>,
+    /// The leader, from its election until its task is serviced.
+    pub leader: Option<usize>,
+    /// L_b: whether the leader has past duties from which it is not released yet.
+    pub awaits_release: bool,
+    /// The primary team 𝒫, from p₁ to the leader.
+    pub primary_team: Vec<usize>,
+    /// Whether a recruit is called for.
+    pub calls: bool,
+    /// The way of a secondary team along Σ.
+    pub walk: Option<Walk>,
+    /// Subgroups whose arrival follows from later events and is still to be told, with their robots
+    /// as events name them.
+    pub untold: Vec<(usize, Vec<usize>)>,
+}
+
+/// What the mission is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// No task is pursued.
+    Idle,
+    /// A leader is being elected.
+    Electing,
+    /// The primary team advances.
+    Advancing,
+    /// A recruit is called for, and break points are agreed upon.
+    Calling,
+    /// The subgroups of Σ move, one after the other.
+    Shifting,
+}
+
+impl Ledger {
+    /// The ledger of a mission that begins: every robot is redundant.
+    pub fn new(robots: usize) -> Self {
+        Ledger {
+            roles: vec![Role::Redundant; robots],
+            announced: 0,
+            serviced: BTreeMap::new(),
+            leader: None,
+            awaits_release: false,
+            primary_team: Vec::new(),
+            calls: false,
+            walk: None,
+            untold: Vec::new(),
+        }
+    }
+
+    /// The task that is pursued: the last one announced, unless it is serviced.
+    pub fn task(&self) -> Option<usize> {
+        self.announced.checked_sub(1).filter(|task| !self.serviced.contains_key(task))
+    }
+
+    /// What the mission is at.
+    pub fn stage(&self) -> Stage {
+        match (self.task(), self.leader) {
+            (None, _) => Stage::Idle,
+            (Some(_), None) => Stage::Electing,
+            _ if self.walk.is_some() => Stage::Shifting,
+            _ if self.calls || self.awaits_release => Stage::Calling,
+            _ => Stage::Advancing,
+        }
+    }
+
+    /// The active team 𝒜 (Algorithm 3).
+    pub fn active_team(&self) -> &[usize] {
+        match (self.stage(), &self.walk) {
+            (Stage::Advancing, _) => &self.primary_team,
+            (Stage::Shifting, Some(walk)) => walk.next_team(),
+            _ => &[],
+        }
+    }
+
+    /// Enters an event.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot follow those before it.
+    pub fn enter(&mut self, event: &MissionEvent) -> Result<(), Dispute> {
+        match event {
+            MissionEvent::TaskAnnounced { task } => self.announce(*task),
+            MissionEvent::LeaderElected { task, robot, conflict } => {
+                self.elect(*task, *robot, *conflict)
+            }
+            MissionEvent::ElectionRepeated { task } => self.repeat_election(*task),
+            MissionEvent::Stationary { robot, .. } => self.call(*robot),
+            MissionEvent::RecruitElected { robot, path, break_points } => {
+                self.recruit(*robot, path, break_points)
+            }
+            MissionEvent::SubgroupStarted { subgroup, robots } => self.start(*subgroup, robots),
+            MissionEvent::SubgroupArrived { subgroup, robots } => self.arrive(*subgroup, robots),
+            MissionEvent::JoinedPrimary { robot, .. } => self.join(*robot),
+            MissionEvent::Released { robot } => self.release(*robot),
+            MissionEvent::RoleChanged { robot, from, to } => self.change_role(*robot, *from, *to),
+            MissionEvent::TaskServiced { task, robot } => self.service(*task, *robot),
+            MissionEvent::DutiesExchanged { mover, parked } => self.exchange(*mover, *parked),
+            MissionEvent::Reattached { .. } | MissionEvent::RouteInfeasible { .. } => Ok(()),
+            other => dispute(&[], format!("the judge does not know the event {other:?}")),
+        }
+    }
+
+    /// Tasks are announced in their order, each when the one before is serviced.
+    fn announce(&mut self, task: usize) -> Result<(), Dispute> {
+        let pursued = self.task();
+        if task != self.announced || pursued.is_some() {
+            let next = self.announced;
+            return dispute(
+                &[],
+                match pursued {
+                    Some(pursued) => {
+                        format!("task {task} is announced while task {pursued} is being pursued")
+                    }
+                    None => format!("task {task} is announced, and task {next} is the next"),
+                },
+            );
+        }
+        self.announced += 1;
+        Ok(())
+    }
+
+    /// Algorithm 1: one leader for the task that is pursued.
+    fn elect(&mut self, task: usize, robot: usize, conflict: bool) -> Result<(), Dispute> {
+        self.expect_pursued(task, "a leader is elected for")?;
+        if let Some(leader) = self.leader {
+            let sentence = format!("robot {robot} is elected while robot {leader} leads");
+            return dispute(&[robot, leader], sentence);
+        }
+        (self.leader, self.awaits_release) = (Some(robot), conflict);
+        self.primary_team = vec![robot];
+        Ok(())
+    }
+
+    /// The robot that calls finds that nobody in its tree can come: others may lead.
+    fn repeat_election(&mut self, task: usize) -> Result<(), Dispute> {
+        self.expect_pursued(task, "the election is repeated for")?;
+        if self.stage() != Stage::Calling {
+            let sentence = format!(
+                "the election for task {task} is repeated, and nobody has called for a recruit"
+            );
+            return dispute(&[], sentence);
+        }
+        (self.leader, self.awaits_release, self.calls) = (None, false, false);
+        self.primary_team.clear();
+        Ok(())
+    }
+
+    /// Sec. V-B: p₁ calls for a recruit when the primary team is at a stationary point.
+    fn call(&mut self, robot: usize) -> Result<(), Dispute> {
+        let first = self.primary_team.first();
+        if first != Some(&robot) || self.stage() != Stage::Advancing {
+            let sentence = format!(
+                "robot {robot} reports that the primary team {:?} is stationary: it is not the \
+                 first of a team that advances",
+                self.primary_team
+            );
+            return dispute(&[robot], sentence);
+        }
+        self.calls = true;
+        Ok(())
+    }
+
+    /// Remark 5.4: the path Σ leads from the recruit to p₁, or to the leader that is released.
+    fn recruit(
+        &mut self,
+        robot: usize,
+        path: &[usize],
+        break_points: &[usize],
+    ) -> Result<(), Dispute> {
+        if let Some((subgroup, robots)) = self.untold.first() {
+            let sentence = format!(
+                "robot {robot} is recruited, and the arrival of subgroup {subgroup}, {robots:?}, \
+                 was never told"
+            );
+            return Err(Dispute::of(Property::Subgroups, robots, sentence));
+        }
+        if self.stage() != Stage::Calling {
+            let sentence = format!("robot {robot} is recruited, and none is called for");
+            return dispute(&[robot], sentence);
+        }
+        if path.first() != Some(&robot) || path.last() != self.primary_team.first() {
+            let sentence = format!(
+                "the path {path:?} does not lead from recruit {robot} to the primary team {:?}",
+                self.primary_team
+            );
+            return dispute(path, sentence);
+        }
+        let places: Option<Vec<usize>> =
+            break_points.iter().map(|point| path.iter().position(|it| it == point)).collect();
+        let last = path.len().checked_sub(if self.awaits_release { 1 } else { 2 });
+        let Some(places) = places.filter(|places| {
+            team::has_no_repetition(path)
+                && places.first() == Some(&0)
+                && places.last().copied() == last
+                && places.is_sorted_by(|one, next| one < next)
+        }) else {
+            let sentence =
+                format!("the break points {break_points:?} do not divide the path {path:?}");
+            return Err(Dispute::of(Property::Subgroups, path, sentence));
+        };
+        self.walk = Some(Walk {
+            announced: path.to_vec(),
+            path: path.to_vec(),
+            break_points: places,
+            arrived: 0,
+            is_under_way: false,
+        });
+        Ok(())
+    }
+
+    /// Algorithm 3: the subgroups move one after the other.
+    fn start(&mut self, subgroup: usize, robots: &[usize]) -> Result<(), Dispute> {
+        if self.walk.as_ref().is_some_and(|walk| walk.arrived + 1 == subgroup) {
+            self.imply_arrival();
+        }
+        let walk = self.expect_subgroup(subgroup, robots, "starts", false)?;
+        walk.is_under_way = true;
+        Ok(())
+    }
+
+    /// Algorithm 4: each member of the subgroup takes the duties of the robot ahead.
+    fn arrive(&mut self, subgroup: usize, robots: &[usize]) -> Result<(), Dispute> {
+        if let Some(at) = self.untold.iter().position(|it| it.0 == subgroup && it.1 == robots) {
+            self.untold.remove(at);
+            return Ok(());
+        }
+        self.expect_subgroup(subgroup, robots, "arrives", true)?;
+        self.take_places();
+        Ok(())
+    }
+
+    fn take_places(&mut self) {
+        let Some(walk) = &mut self.walk else { return };
+        let places = walk.subgroup(walk.arrived).unwrap_or_default();
+        let takeovers: BTreeMap<usize, usize> =
+            places.map(|place| (walk.path[place + 1], walk.path[place])).collect();
+        (walk.is_under_way, walk.arrived) = (false, walk.arrived + 1);
+        for holder in self.serviced.values_mut() {
+            *holder = takeovers.get(holder).copied().unwrap_or(*holder);
+        }
+    }
+
+    /// A robot may act on an arrival before the robot that tells of it knows: the subgroup under way
+    /// has arrived, and that is still to be told.
+    fn imply_arrival(&mut self) {
+        if let Some(walk) = self.walk.as_ref().filter(|walk| walk.is_under_way) {
+            let robots = walk.subgroup(walk.arrived).map(|places| walk.announced[places].to_vec());
+            self.untold.push((walk.arrived, robots.unwrap_or_default()));
+            self.take_places();
+        }
+    }
+
+    /// The ledger as it will be when the subgroup under way has arrived.
+    pub fn after_arrival(&self) -> Self {
+        let mut after = self.clone();
+        after.take_places();
+        after
+    }
+
+    fn expect_subgroup(
+        &mut self,
+        subgroup: usize,
+        robots: &[usize],
+        does: &str,
+        is_under_way: bool,
+    ) -> Result<&mut Walk, Dispute> {
+        let is_expected = |walk: &Walk| {
+            let members = walk.subgroup(subgroup).map(|places| &walk.announced[places]);
+            walk.arrived == subgroup && walk.is_under_way == is_under_way && members == Some(robots)
+        };
+        match &mut self.walk {
+            Some(walk) if is_expected(walk) => Ok(walk),
+            _ => {
+                let sentence = format!(
+                    "subgroup {subgroup}, {robots:?}, {does}, and it is not that one's turn"
+                );
+                Err(Dispute::of(Property::Subgroups, robots, sentence))
+            }
+        }
+    }
+
+    /// L_b = 0: the last robot that Σ relieves joins the primary team behind p₁.
+    fn join(&mut self, robot: usize) -> Result<(), Dispute> {
+        self.imply_arrival();
+        let walk = self.walk.take().filter(Walk::has_arrived);
+        let relieved = walk.and_then(|walk| Some(walk.path[*walk.break_points.last()?]));
+        if self.awaits_release || relieved != Some(robot) {
+            let sentence =
+                format!("robot {robot} joins the primary team, and no subgroup has relieved it");
+            return dispute(&[robot], sentence);
+        }
+        self.primary_team.insert(0, robot);
+        self.calls = false;
+        Ok(())
+    }
+
+    /// L_b = 1: the leader is released when the last subgroup has arrived at its place.
+    fn release(&mut self, robot: usize) -> Result<(), Dispute> {
+        self.imply_arrival();
+        let is_relieved = self.walk.as_ref().is_none_or(Walk::has_arrived);
+        if !self.awaits_release || self.leader != Some(robot) || !is_relieved {
+            return dispute(&[robot], format!("robot {robot} is released, and nothing binds it"));
+        }
+        (self.awaits_release, self.calls, self.walk) = (false, false, None);
+        Ok(())
+    }
+
+    fn change_role(&mut self, robot: usize, from: Role, to: Role) -> Result<(), Dispute> {
+        let role = self.roles[robot];
+        if role != from {
+            let sentence = format!(
+                "robot {robot} turns from {} to {}, and it was {}",
+                from.name(),
+                to.name(),
+                role.name()
+            );
+            return Err(Dispute::of(Property::RoleTransition, &[robot], sentence));
+        }
+        self.roles[robot] = to;
+        Ok(())
+    }
+
+    /// Eq. (2): the leader services its task.
+    fn service(&mut self, task: usize, robot: usize) -> Result<(), Dispute> {
+        self.expect_pursued(task, "a robot services")?;
+        if self.leader != Some(robot) || self.awaits_release {
+            let sentence = format!("robot {robot} services task {task}, and does not lead to it");
+            return dispute(&[robot], sentence);
+        }
+        self.serviced.insert(task, robot);
+        (self.leader, self.calls, self.walk) = (None, false, None);
+        self.primary_team.clear();
+        Ok(())
+    }
+
+    /// Two robots take each other's place in everything.
+    fn exchange(&mut self, mover: usize, parked: usize) -> Result<(), Dispute> {
+        if mover == parked || !self.active_team().contains(&mover) {
+            let sentence = format!(
+                "robot {mover} gives its duty to robot {parked} and is not of the active team {:?}",
+                self.active_team()
+            );
+            return dispute(&[mover, parked], sentence);
+        }
+        let swap = |robot: &mut usize| match *robot {
+            it if it == mover => *robot = parked,
+            it if it == parked => *robot = mover,
+            _ => {}
+        };
+        self.primary_team.iter_mut().for_each(swap);
+        self.leader.iter_mut().for_each(swap);
+        self.serviced.values_mut().for_each(swap);
+        if let Some(walk) = &mut self.walk {
+            walk.path.iter_mut().for_each(swap);
+        }
+        Ok(())
+    }
+
+    fn expect_pursued(&self, task: usize, what: &str) -> Result<(), Dispute> {
+        if self.task() == Some(task) {
+            return Ok(());
+        }
+        let sentence = match self.task() {
+            Some(pursued) => format!("{what} task {task}, and task {pursued} is pursued"),
+            None => format!("{what} task {task}, and none is pursued"),
+        };
+        dispute(&[], sentence)
+    }
+}
+
+fn dispute<T>(robots: &[usize], sentence: String) -> Result<T, Dispute> {
+    Err(Dispute::of(Property::Events, robots, sentence))
+}

@@ -1,0 +1,288 @@
+//! The judge: a whole record of a mission, held against the definitions.
+//!
+//! What a record shows is of three kinds, and each is judged in its own way:
+//!
+//! - **the world**: positions, flows, parents. The [`Monitor`] holds them against the
+//!   [properties](Property) that speak of one instant or one control period;
+//! - **events**: each is a claim, that it is true of the world at its instant ([`claims`]) and
+//!   that it follows from the events before it ([`ledger`]);
+//! - **what observers conclude**: phase, task, teams, posts, who answers for a task. The judge
+//!   derives them from the events and the world, and they are compared ([`conclusions`]).
+//!
+//! So nothing is taken on trust but that robots are where the record shows them. A run is judged
+//! while it goes on, and a trace afterwards, by the same code.
+
+mod claims;
+mod conclusions;
+mod lately;
+mod ledger;
+mod places;
+mod posts;
+mod states;
+mod walk;
+
+use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use pleach_automaton::network::scenario::ValidScenario;
+use pleach_discrete::network::Role;
+
+use super::extremes::Extremes;
+use super::limits::{Limits, SLACK};
+use super::monitor::Monitor;
+use super::property::Property;
+use super::violation::{Instant, Violation};
+use conclusions::Conclusions;
+pub use ledger::{Ledger, Stage};
+use places::Places;
+pub use walk::Walk;
+
+/// What is wrong with an entry of the record; the instant is added where it is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dispute {
+    /// The property that fails.
+    pub property: Property,
+    /// The robots concerned.
+    pub robots: Vec<usize>,
+    /// What was measured, and what it is compared with.
+    pub measured: (f64, f64),
+    /// What is wrong, as a clause without a full stop.
+    pub sentence: String,
+}
+
+impl Dispute {
+    fn of(property: Property, robots: &[usize], sentence: String) -> Self {
+        Dispute { property, robots: robots.to_vec(), measured: (0.0, 1.0), sentence }
+    }
+
+    fn measuring(self, value: f64, bound: f64) -> Self {
+        Dispute { measured: (value, bound), ..self }
+    }
+
+    fn at(self, instant: Instant) -> Violation {
+        instant.violation(self.property, &self.robots, self.measured, self.sentence)
+    }
+}
+
+/// An instant of the record with all that the judge knows of it.
+struct Scene<'a> {
+    snapshot: &'a Snapshot,
+    /// What is told of the period that ends with the snapshot.
+    events: &'a [MissionEvent],
+    previous: Option<&'a Snapshot>,
+    limits: &'a Limits,
+    places: &'a Places,
+}
+
+/// Judges a mission, period by period, and stops at the first violation.
+///
+/// Events of one control period are told by robots that do not wait for each other: they count as
+/// happened in an order in which each can follow those before it.
+#[derive(Clone, Debug)]
+pub struct Judge<'a> {
+    monitor: Monitor<'a>,
+    period: f64,
+    max_steps: usize,
+    starts: Vec<[f64; 2]>,
+    ledger: Ledger,
+    conclusions: Conclusions,
+    places: Places,
+    previous: Option<Snapshot>,
+}
+
+impl<'a> Judge<'a> {
+    /// A judge that has seen nothing yet; `role_table` tells whether a role may turn into another
+    /// in one transition.
+    pub fn new(scenario: &ValidScenario, role_table: impl Fn(Role, Role) -> bool + 'a) -> Self {
+        let monitor = Monitor::new(scenario, role_table);
+        let (robots, nodes) = (monitor.limits().robots(), monitor.limits().nodes());
+        let settings = monitor.limits().settings();
+        Judge {
+            period: settings.period,
+            max_steps: settings.max_steps,
+            starts: scenario.robot.iter().map(|robot| robot.position).collect(),
+            ledger: Ledger::new(robots),
+            conclusions: Conclusions::new(nodes),
+            places: Places::new(robots),
+            previous: None,
+            monitor,
+        }
+    }
+
+    /// Judges the control period that ends with this snapshot, its events, and the snapshot.
+    ///
+    /// # Errors
+    ///
+    /// The first violation; what is observed after it has no meaning.
+    pub fn observe(
+        &mut self,
+        snapshot: &Snapshot,
+        events: &[MissionEvent],
+    ) -> Result<(), Violation> {
+        let now = Instant::of(snapshot);
+        self.monitor.observe(snapshot)?;
+        self.check_clock(snapshot).map_err(|dispute| dispute.at(now))?;
+        for event in events {
+            let limits = self.monitor.limits();
+            claims::names_exist(event, limits).map_err(|dispute| dispute.at(now))?;
+            self.monitor.observe_event(event)?;
+        }
+        self.enter_all(events, snapshot).map_err(|dispute| dispute.at(now))?;
+        self.conclude_period(snapshot, events).map_err(|dispute| dispute.at(now))?;
+        self.previous = Some(snapshot.clone());
+        Ok(())
+    }
+
+    /// The record begins with k = 0, when robots are where the scenario has them, and t_k = k Δt.
+    fn check_clock(&self, snapshot: &Snapshot) -> Result<(), Dispute> {
+        let record = |sentence| Dispute::of(Property::Record, &[], sentence);
+        if self.previous.is_none() && snapshot.step != 0 {
+            let sentence = format!("the record begins with step {}, not with 0", snapshot.step);
+            return Err(record(sentence));
+        }
+        let expected = snapshot.step as f64 * self.period;
+        if (snapshot.time - expected).abs() > SLACK * self.period {
+            let sentence = format!("the time is {} s, and k Δt is {expected} s", snapshot.time);
+            return Err(record(sentence).measuring(snapshot.time, expected));
+        }
+        let mut pairs = self.starts.iter().zip(&snapshot.positions).enumerate();
+        match pairs.find(|(_, (start, place))| **start != [place.x, place.y]) {
+            Some((robot, (start, _))) if self.previous.is_none() => Err(Dispute::of(
+                Property::Record,
+                &[robot],
+                format!("robot {robot} does not start at ({}, {})", start[0], start[1]),
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Enters the events of a period, each as soon as it can follow those before it.
+    fn enter_all(&mut self, events: &[MissionEvent], snapshot: &Snapshot) -> Result<(), Dispute> {
+        let mut pending: Vec<&MissionEvent> = events.iter().collect();
+        while !pending.is_empty() {
+            let mut first = None;
+            let entered =
+                pending.iter().position(|event| match self.follows(event, events, snapshot) {
+                    Ok(_) => true,
+                    Err(dispute) => {
+                        first.get_or_insert(dispute);
+                        false
+                    }
+                });
+            match (entered, first) {
+                (Some(at), _) => self.enter(pending.remove(at), events, snapshot)?,
+                (None, Some(dispute)) => return Err(dispute),
+                (None, None) => break,
+            }
+        }
+        Ok(())
+    }
+
+    fn scene<'s>(&'s self, snapshot: &'s Snapshot, events: &'s [MissionEvent]) -> Scene<'s> {
+        Scene {
+            snapshot,
+            events,
+            previous: self.previous.as_ref(),
+            limits: self.monitor.limits(),
+            places: &self.places,
+        }
+    }
+
+    /// The ledger after an event that is true and can follow those before it.
+    fn follows(
+        &self,
+        event: &MissionEvent,
+        events: &[MissionEvent],
+        snapshot: &Snapshot,
+    ) -> Result<Ledger, Dispute> {
+        let scene = self.scene(snapshot, events);
+        claims::is_true(event, &self.ledger, &scene)?;
+        let mut ledger = self.ledger.clone();
+        ledger.enter(event)?;
+        Ok(ledger)
+    }
+
+    fn enter(
+        &mut self,
+        event: &MissionEvent,
+        events: &[MissionEvent],
+        snapshot: &Snapshot,
+    ) -> Result<(), Dispute> {
+        self.ledger = self.follows(event, events, snapshot)?;
+        self.places.enter(event, snapshot);
+        self.conclusions.enter(event, &self.ledger, snapshot.step)
+    }
+
+    fn conclude_period(
+        &mut self,
+        snapshot: &Snapshot,
+        events: &[MissionEvent],
+    ) -> Result<(), Dispute> {
+        claims::teams_are_those(events, &self.ledger, snapshot)?;
+        let scene = Scene {
+            snapshot,
+            events,
+            previous: self.previous.as_ref(),
+            limits: self.monitor.limits(),
+            places: &self.places,
+        };
+        self.conclusions.compare(&self.ledger, &scene)?;
+        self.places.hold(&scene)?;
+        self.conclusions.posts_stay(&scene)?;
+        self.conclusions.moves_have_a_cause(&self.ledger, &scene)?;
+        self.places.update(&self.ledger, snapshot);
+        Ok(())
+    }
+
+    /// Judges how the mission ended.
+    ///
+    /// # Errors
+    ///
+    /// [`Property::Outcome`] if the record does not show what the outcome says.
+    pub fn conclude(&self, end: &End) -> Result<(), Violation> {
+        let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
+        let (serviced, tasks) = (self.ledger.serviced.len(), self.monitor.limits().tasks().len());
+        let complaint = match end.outcome {
+            _ if self.previous.is_none() => Some("nothing is on record".to_owned()),
+            Outcome::Serviced if serviced < tasks => {
+                Some(format!("the outcome is “serviced”, and {serviced} of {tasks} tasks are"))
+            }
+            Outcome::InvariantViolated => Some(format!("the run says: {}", end.reason)),
+            // The record ends with the sample at which the last period began.
+            Outcome::StepLimit if now.step + 1 < self.max_steps => Some(format!(
+                "the outcome is “step_limit” after {} of {} control periods",
+                now.step + 1,
+                self.max_steps
+            )),
+            _ if self.conclusions.overdue(now.step) => {
+                Some("the robots had given up, and the mission went on".to_owned())
+            }
+            Outcome::InsufficientRobots | Outcome::UnreachableTask | Outcome::Blocked
+                if end.task.is_some() && end.task != self.ledger.task() =>
+            {
+                Some(format!(
+                    "the mission ends over task {:?}, and {:?} is pursued",
+                    end.task,
+                    self.ledger.task()
+                ))
+            }
+            Outcome::Serviced | Outcome::StepLimit => None,
+            _ if serviced == tasks && tasks > 0 => {
+                Some(format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
+            }
+            _ => None,
+        };
+        match complaint {
+            None => Ok(()),
+            Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),
+        }
+    }
+
+    /// How near the mission has come to its bounds so far.
+    pub fn extremes(&self) -> &Extremes {
+        self.monitor.extremes()
+    }
+
+    /// What the events so far amount to.
+    pub fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+}

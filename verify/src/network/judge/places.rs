@@ -1,0 +1,108 @@
+//! Where each robot belongs while it is not on its way, from the posts, and how far it may go
+//! from there.
+
+use pleach_automaton::network::record::{MissionEvent, Snapshot};
+use pleach_continuous::Point;
+use pleach_discrete::network::Role;
+
+use super::ledger::Ledger;
+use super::{Dispute, Scene};
+use crate::network::limits::SLACK;
+use crate::network::property::Property;
+
+/// The place of each robot's post: the reference of a fixed post; for a redundant robot, where it
+/// was when it came to rest. Robots that move with a team have none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Places {
+    of_robots: Vec<Option<Point>>,
+    /// The places of Σ when it was announced, and whether each is that of a fixed post.
+    path: Vec<(Point, bool)>,
+    /// The robots of Σ, each at its place until it goes on to the next.
+    walkers: Vec<usize>,
+}
+
+impl Places {
+    pub fn new(robots: usize) -> Self {
+        Places { of_robots: vec![None; robots], path: Vec::new(), walkers: Vec::new() }
+    }
+
+    /// The place of a robot's post.
+    pub fn of(&self, robot: usize) -> Option<Point> {
+        self.of_robots[robot]
+    }
+
+    /// A place of Σ, and whether it is that of a fixed post; otherwise it is where its robot was, or
+    /// came to rest.
+    pub fn on_path(&self, place: usize) -> Option<(Point, bool)> {
+        self.path.get(place).copied()
+    }
+
+    /// Robots that exchange duties exchange places; a path is announced from place to place, and a
+    /// subgroup that arrives takes the places ahead.
+    pub fn enter(&mut self, event: &MissionEvent, snapshot: &Snapshot) {
+        match event {
+            MissionEvent::DutiesExchanged { mover, parked } => {
+                self.of_robots.swap(*mover, *parked);
+                for walker in &mut self.walkers {
+                    *walker = match *walker {
+                        one if one == *mover => *parked,
+                        one if one == *parked => *mover,
+                        other => other,
+                    };
+                }
+            }
+            MissionEvent::SubgroupArrived { robots, .. } => {
+                for (&walker, &(ahead, _)) in self.walkers.iter().zip(self.path.iter().skip(1)) {
+                    if robots.contains(&walker) {
+                        self.of_robots[walker] = Some(ahead);
+                    }
+                }
+            }
+            MissionEvent::RecruitElected { path, .. } => {
+                let place = |&robot: &usize| {
+                    let is_fixed = snapshot.posts.iter().any(|post| post.holder == robot);
+                    (self.of_robots[robot].unwrap_or(snapshot.positions[robot]), is_fixed)
+                };
+                self.path = path.iter().map(place).collect();
+                self.walkers.clone_from(path);
+            }
+            _ => {}
+        }
+    }
+
+    /// The places after the events of a period.
+    pub fn update(&mut self, ledger: &Ledger, snapshot: &Snapshot) {
+        for (robot, place) in self.of_robots.iter_mut().enumerate() {
+            let walks = snapshot.path.contains(&robot) && snapshot.roles[robot] != Role::Redundant;
+            if let Some(post) = snapshot.posts.iter().find(|post| post.holder == robot) {
+                *place = Some(post.reference);
+            } else if walks || ledger.primary_team.contains(&robot) {
+                *place = None;
+            } else if place.is_none() && snapshot.roles[robot] == Role::Redundant {
+                *place = Some(snapshot.positions[robot]);
+            }
+        }
+    }
+
+    /// [`Property::Leash`].
+    pub fn hold(&self, scene: &Scene) -> Result<(), Dispute> {
+        let Some(previous) = scene.previous else { return Ok(()) };
+        for (robot, place) in self.of_robots.iter().enumerate() {
+            let Some(place) = place.filter(|_| !previous.active_team.contains(&robot)) else {
+                continue;
+            };
+            let [before, now] = [previous, scene.snapshot]
+                .map(|snapshot| (snapshot.positions[robot] - place).norm());
+            let bound = scene.limits.service_radius().max(before);
+            if now > bound + SLACK {
+                let sentence = format!(
+                    "robot {robot} is not of the active team and goes to a distance of {now:.6} \
+                     from its post, more than {bound:.6}"
+                );
+                let dispute = Dispute::of(Property::Leash, &[robot], sentence);
+                return Err(dispute.measuring(now, bound));
+            }
+        }
+        Ok(())
+    }
+}
