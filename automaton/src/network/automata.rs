@@ -28,7 +28,7 @@ pub struct Automata {
     pub dealing: DealingAutomaton,
     /// The robot's place in the tree.
     pub attachment: AttachmentAutomaton,
-    /// Where the robot stands in its control period.
+    /// The stage of the robot in its control period.
     pub control: ControlAutomaton,
     /// The service of the tasks, for an access point.
     pub service: ServiceAutomaton,

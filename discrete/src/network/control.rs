@@ -2,7 +2,7 @@
 //!
 //! Control is sampled. Time passes in one location only, [`Stage::Moving`]; at the sample the robot
 //! goes through the others, which take no time. In each it waits for what its neighbours say, up to
-//! the next tick of its clock; then it works on what it has heard, and speaks. Sweeps and negotiation
+//! the next tick of its clock; then it processes what it has received, and sends. Sweeps and negotiation
 //! have a fixed number of rounds, in which a robot with nothing to do does not tick.
 
 use crate::{Row, TransitionTable, Urgency, vocabulary};

@@ -81,8 +81,7 @@ impl Election {
 
     /// Whether what a neighbour sent says nothing new: [`merge`](Self::merge) would change nothing.
     pub fn knows(&self, heard: &Election) -> bool {
-        heard.id != self.id
-            || self.tokens.includes(&heard.tokens) && self.best >= heard.best
+        heard.id != self.id || self.tokens.includes(&heard.tokens) && self.best >= heard.best
     }
 
     /// Whether the token of every robot in `roster` is known (line 1).

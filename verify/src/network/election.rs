@@ -37,6 +37,8 @@ pub fn have_agreed(views: &[Election]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use pleach_discrete::network::NoticeId;
+
     use super::*;
 
     #[test]
