@@ -149,8 +149,8 @@
 //! | [`discrete`] | locations, events, tables; [of the network](discrete::network): roles, elections, posts, agreements |
 //! | [`continuous`] | [flows](continuous::flow), [geometry](continuous::geometry); [of the network](continuous::network): links, routing, motion, certified acceptance |
 //! | [`automaton`] | automaton, composition, executor, trajectories, checks, diagrams; [the network](automaton::network): robots, medium, composition |
-//! | [`verify`] | [temporal logic](verify::temporal) over trajectories; [the properties of the network](verify::network), each stated once, and their monitor |
-//! | this crate | [scenario files](scenario_file), [missions](mission), [traces](trace), [summaries](summary), [stories](story), [figures], [pages](page) |
+//! | [`verify`] | [temporal logic](verify::temporal) over trajectories; [the properties of the network](verify::network), each stated once, and their monitor; [reachability](verify::reach) of any automaton |
+//! | this crate | [scenario files](scenario_file), [missions](mission), [traces](trace), [summaries](summary), [stories](story), [figures], [pages](page); models and questions of [SpaceEx](spaceex) |
 //!
 //! `docs/model.md` of the repository leads from each equation and algorithm of the paper to the item
 //! that holds it.
@@ -167,6 +167,8 @@ pub mod prelude;
 #[cfg(feature = "mcap")]
 pub mod recording;
 pub mod scenario_file;
+#[cfg(feature = "cli")]
+pub mod spaceex;
 pub mod starts;
 pub mod story;
 pub mod summary;
@@ -182,6 +184,11 @@ pub use pleach_verify as verify;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The example of the page on reachability compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/reachability.md")]
+struct Reachability;
 
 /// The examples of the how-tos compile and run.
 #[cfg(doctest)]

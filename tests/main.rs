@@ -27,6 +27,7 @@ mod public_api;
 mod random_missions;
 mod records;
 mod scenario_faults;
+mod spaceex;
 mod story;
 mod stressed;
 mod studies;

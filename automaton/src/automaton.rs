@@ -13,7 +13,7 @@ use crate::coverage::tally::Tally;
 use crate::flow::Flow;
 use crate::law::Command;
 use crate::located::{Holds, Place};
-use crate::observed::Watch;
+use crate::observed::{self, Watch};
 use crate::reset::Reset;
 
 /// A hybrid automaton over locations `L`, events `E` and a state `S`.
@@ -256,11 +256,10 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     pub fn check_invariant(&self, location: L, state: &S) -> Result<(), InvariantError> {
         let Some(mode) = self.mode(location) else { return Ok(()) };
         let Some(invariant) = &mode.invariant else { return Ok(()) };
-        let known = mode.watch.as_ref().and_then(|watch| watch.holds(state));
-        if known.is_some_and(|holds| holds) || invariant.holds(state).is_ok_and(|holds| holds) {
-            return Ok(());
+        match observed::holds(invariant, mode.watch.as_ref(), state) {
+            Ok(true) => Ok(()),
+            _ => Err(InvariantError::new(location.name(), invariant, state)),
         }
-        Err(InvariantError::new(location.name(), invariant, state))
     }
 
     /// Lets `duration` ≥ 0 seconds pass in the place where `state` stands, by its
@@ -427,11 +426,9 @@ pub struct UnknownParameter {
 
 impl<E: Event, S: Valuation> Transition<E, S> {
     fn allows<L: Location>(&self, location: L, state: &S) -> Result<bool, TransitionError> {
-        if let Some(holds) = self.watch.as_ref().and_then(|watch| watch.holds(state)) {
-            return Ok(holds);
-        }
         let part = || format!("guard `{}`", self.guard.name());
-        self.guard.holds(state).map_err(|source| self.error(location, part(), source))
+        observed::holds(self.guard.predicate(), self.watch.as_ref(), state)
+            .map_err(|source| self.error(location, part(), source))
     }
 
     fn error<L: Location>(

@@ -57,7 +57,7 @@ use pleach_discrete::Location;
 use pleach_guards::Predicate;
 
 use crate::automaton::TransitionError;
-use crate::observed::{Observed, Watch};
+use crate::observed::{self, Observed, Watch};
 
 /// What the locations `L` of a component with state `S` command: values of type `T`.
 #[derive(Clone, Debug)]
@@ -142,10 +142,7 @@ impl<L: Location, S: Observed, T> Laws<L, S, T> {
 impl<L: Location, S: Observed, T> Case<L, S, T> {
     fn holds(&self, state: &S) -> Result<bool, TransitionError> {
         let Command { commanded, name, guard } = &self.command;
-        if let Some(holds) = self.watch.as_ref().and_then(|watch| watch.holds(state)) {
-            return Ok(holds);
-        }
-        guard.holds(state).map_err(|source| TransitionError {
+        observed::holds(guard, self.watch.as_ref(), state).map_err(|source| TransitionError {
             location: self.location.name(),
             event: "sample",
             part: format!("guard of the law `{commanded} := {name}`"),

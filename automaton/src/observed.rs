@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use pleach_guards::{Comparison, Expression, Predicate, Relation, Valuation};
+use pleach_guards::{Comparison, EvaluationError, Expression, Predicate, Relation, Valuation};
 
 /// A state with quantities and propositions that have names and numbers.
 pub trait Observed: Valuation {
@@ -111,6 +111,20 @@ pub(crate) struct Watch<S> {
     test: Test,
     quantity: fn(&S, usize) -> f64,
     proposition: fn(&S, usize) -> bool,
+}
+
+/// Whether `predicate` holds in `state`: by numbers where there is a watch of it and it has a
+/// verdict, by names otherwise, so that what is wrong is told by name.
+#[inline]
+pub(crate) fn holds<S: Valuation>(
+    predicate: &Predicate,
+    watch: Option<&Watch<S>>,
+    state: &S,
+) -> Result<bool, EvaluationError> {
+    match watch.and_then(|watch| watch.holds(state)) {
+        Some(holds) => Ok(holds),
+        None => predicate.holds(state),
+    }
 }
 
 #[derive(Clone, Debug)]

@@ -87,7 +87,8 @@ impl NewValue {
     }
 
     /// The same of formulas with expressions in the place of variables.
-    fn substitute(&self, substitution: &Substitution) -> Self {
+    #[must_use]
+    pub fn substitute(&self, substitution: &Substitution) -> Self {
         match self {
             NewValue::Exactly(value) => NewValue::Exactly(value.substitute(substitution)),
             NewValue::Within(lower, upper) => {

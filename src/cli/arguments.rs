@@ -79,6 +79,12 @@ pub enum Command {
     /// control period, curves, the story and a summary. It shows as much as there is of a trace
     /// that was cut off.
     Page(PageArguments),
+    /// Say whether any run of a SpaceEx model comes to forbidden states
+    ///
+    /// All runs are enclosed at once, from all initial states and for all inputs, with every rounding
+    /// error. Exit status: 0 if none comes there, 4 if one does, which is shown, and 3 if neither was
+    /// found.
+    Reach(super::reach::ReachArguments),
     /// Print a script that completes the arguments of pleach in a shell
     Completions {
         /// The shell

@@ -14,6 +14,7 @@ mod manual;
 mod page;
 mod plan;
 mod progress;
+mod reach;
 mod record;
 mod run;
 mod source;
@@ -40,6 +41,7 @@ pub fn carry_out(arguments: Arguments) -> ExitCode {
         Command::Completions { shell } => manual::print_completions(shell),
         Command::Man { folder } => manual::write_manual(folder.as_deref()),
         Command::Page(page) => page::write(&page),
+        Command::Reach(reach) => reach::reach(&reach),
     };
     let status = result.unwrap_or_else(|failure| {
         eprintln!("error: {failure}");

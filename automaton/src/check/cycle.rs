@@ -15,8 +15,7 @@ use pleach_guards::{Predicate, Substitution, not, variable};
 
 use super::inquiry::{Inquiry, closed, open};
 use super::reachability::Reach;
-use super::report::{FindingPlace, Kind};
-use crate::decision::State;
+use super::report::{FindingPlace, Kind, Shown};
 
 /// The most cycles that are looked at, and the longest.
 const MOST_CYCLES: usize = 500;
@@ -76,7 +75,7 @@ impl Inquiry<'_> {
 
     /// A state from which the cycle is gone round without end: wherever its guards hold and nothing
     /// else goes first, that is so again after a round.
-    fn for_ever(&self, cycle: &[usize], round: &Round, strict: &Predicate) -> Option<State> {
+    fn for_ever(&self, cycle: &[usize], round: &Round, strict: &Predicate) -> Option<Shown> {
         let alone = Predicate::all([round.guards.clone(), self.unhindered(cycle)?]);
         let witness = self.robust_example(&(strict.clone() & alone.clone()))?;
         let ends = alone.clone() & not(alone.substitute(&round.reset));

@@ -4,7 +4,7 @@ use pleach_discrete::Urgency;
 use pleach_guards::{Comparison, Predicate, Relation, always};
 
 use super::model::Model;
-use super::report::{Finding, FindingPlace, Kind, Report, Severity};
+use super::report::{Finding, FindingPlace, Kind, Report, Severity, Shown};
 use super::robustness::{is_robust, ordinary, with_room};
 use crate::decision::{Decision, Doubt, Effort, State, decide};
 
@@ -27,7 +27,7 @@ impl<'a> Inquiry<'a> {
         kind: Kind,
         place: &FindingPlace,
         fault: &Predicate,
-    ) -> Option<State> {
+    ) -> Option<Shown> {
         match self.decide(fault) {
             Decision::Witness(state) => {
                 let known = self.robust(fault, state);
@@ -37,7 +37,7 @@ impl<'a> Inquiry<'a> {
                     );
                     self.note(kind, place.clone(), message);
                 }
-                known
+                known.map(|state| self.shown(state, fault))
             }
             Decision::Impossible(proof) => {
                 self.report.exclude(kind, place.clone(), proof);
@@ -66,16 +66,21 @@ impl<'a> Inquiry<'a> {
     }
 
     /// A state in which `predicate` holds, if one is found.
-    pub(super) fn example(&self, predicate: &Predicate) -> Option<State> {
+    pub(super) fn example(&self, predicate: &Predicate) -> Option<Shown> {
         match self.decide(predicate) {
-            Decision::Witness(state) => Some(state),
+            Decision::Witness(state) => Some(self.shown(state, predicate)),
             Decision::Impossible(_) | Decision::Undecided(_) => None,
         }
     }
 
     /// A state in which `predicate` holds and does not just by rounding, if one is found.
-    pub(super) fn robust_example(&self, predicate: &Predicate) -> Option<State> {
-        self.example(predicate).and_then(|state| self.robust(predicate, state))
+    pub(super) fn robust_example(&self, predicate: &Predicate) -> Option<Shown> {
+        let known = self.example(predicate)?.state;
+        self.robust(predicate, known).map(|state| self.shown(state, predicate))
+    }
+
+    fn shown(&self, state: State, states: &Predicate) -> Shown {
+        Shown { state, states: Some(states.clone()) }
     }
 
     /// Whether `predicate` holds somewhere, or could.
@@ -111,7 +116,7 @@ impl<'a> Inquiry<'a> {
         kind: Kind,
         place: FindingPlace,
         message: String,
-        witness: State,
+        witness: Shown,
     ) {
         let finding = Finding::new(kind, Severity::Error, place, message);
         self.report.add(finding.shown_by(witness));
@@ -122,7 +127,7 @@ impl<'a> Inquiry<'a> {
         kind: Kind,
         place: FindingPlace,
         message: String,
-        witness: State,
+        witness: Shown,
     ) {
         let finding = Finding::new(kind, Severity::Warning, place, message);
         self.report.add(finding.shown_by(witness));
@@ -137,7 +142,7 @@ impl<'a> Inquiry<'a> {
         kind: Kind,
         place: FindingPlace,
         message: String,
-        witness: State,
+        witness: Shown,
     ) {
         let finding = Finding::new(kind, Severity::Note, place, message);
         self.report.add(finding.shown_by(witness));

@@ -65,7 +65,8 @@
 //! # What a finding means
 //!
 //! A *witness* is a state that the formulas of one location, or of one jump, admit. Whether a run
-//! comes to it is another question, which reachability analysis answers and this does not: a
+//! comes to it is another question, which reachability answers (`confirm` in `pleach_verify::reach`,
+//! from the [states](Finding::states) of a finding) and this does not: a
 //! witness that cannot come up says that the model does not say so; an invariant or a range will.
 //! That a transition never fires, on the other hand, is proven, for all runs that begin in the
 //! initial location.

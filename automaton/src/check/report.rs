@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use pleach_guards::Predicate;
+
 use crate::decision::{Proof, State};
 
 /// What was found out about a model before anything runs.
@@ -28,6 +30,16 @@ pub struct Finding {
     pub message: String,
     /// A state in which it shows. For what happens in a jump, it is the state before, x⁻.
     pub witness: Option<State>,
+    /// All such states of its location, of which the witness is one, so that it can be asked whether
+    /// a run comes to any of them.
+    pub states: Option<Predicate>,
+}
+
+/// A state in which a fault shows, and what holds in all such states.
+#[derive(Clone, Debug)]
+pub(super) struct Shown {
+    pub(super) state: State,
+    pub(super) states: Option<Predicate>,
 }
 
 /// A fault that was looked for and cannot be, with the proof.
@@ -184,7 +196,7 @@ impl Finding {
         place: FindingPlace,
         message: String,
     ) -> Self {
-        Finding { kind, severity, place, message, witness: None }
+        Finding { kind, severity, place, message, witness: None, states: None }
     }
 
     /// Whether both are notes that differ in nothing but the component.
@@ -196,8 +208,15 @@ impl Finding {
             && (self.kind, at(self), &self.message) == (other.kind, at(other), &other.message)
     }
 
-    pub(super) fn shown_by(self, witness: State) -> Self {
-        Finding { witness: Some(witness), ..self }
+    pub(super) fn shown_by(self, shown: Shown) -> Self {
+        Finding { witness: Some(shown.state), states: shown.states, ..self }
+    }
+}
+
+impl Shown {
+    /// A state that is the only one asked about.
+    pub(super) fn alone(state: &State) -> Self {
+        Shown { state: state.clone(), states: None }
     }
 }
 
@@ -262,7 +281,7 @@ impl fmt::Display for FindingPlace {
 
 impl fmt::Display for Finding {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Finding { kind, severity, place, message, witness } = self;
+        let Finding { kind, severity, place, message, witness, .. } = self;
         write!(formatter, "{severity}: {kind}: {place}: {message}")?;
         if let Some(state) = witness.as_ref().filter(|state| !state.is_empty()) {
             let values = state.iter().map(|(name, value)| format!("{name} = {value}"));

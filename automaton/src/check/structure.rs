@@ -6,7 +6,7 @@ use pleach_guards::Valuation;
 use super::inquiry::Inquiry;
 use super::model::{Effect, Motion};
 use super::reachability::Reach;
-use super::report::{Finding, FindingPlace, Kind, Severity};
+use super::report::{Finding, FindingPlace, Kind, Severity, Shown};
 
 impl Inquiry<'_> {
     /// The initial state is there, and a run can begin in it.
@@ -29,9 +29,9 @@ impl Inquiry<'_> {
                 "the initial state is outside the invariant `{invariant}`: begin inside it"
             );
             if is_stuck {
-                self.error(Kind::StartsOutside, start, message, state.clone());
+                self.error(Kind::StartsOutside, start, message, Shown::alone(state));
             } else {
-                self.warn_with(Kind::StartsOutside, start, message, state.clone());
+                self.warn_with(Kind::StartsOutside, start, message, Shown::alone(state));
             }
         }
         for (name, range) in &model.region {
@@ -41,7 +41,7 @@ impl Inquiry<'_> {
                     model.range_of(name)
                 );
                 let place = FindingPlace { variable: Some(name.clone()), ..place.clone() };
-                self.warn_with(Kind::StartsOutOfRange, place, message, state.clone());
+                self.warn_with(Kind::StartsOutOfRange, place, message, Shown::alone(state));
             }
         }
     }

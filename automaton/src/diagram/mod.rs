@@ -12,6 +12,7 @@
 //! | [`coverage_svg`] | the picture, with what runs have left out in red | [coverage](crate::coverage) |
 //! | [`plot`] | variables and locations over time | [trajectories](crate::trajectory) |
 //! | [`phase_portrait`] | one variable over another | trajectories |
+//! | [`FlowpipePicture`] | sets of states in the plane of two quantities | what is reached |
 //! | [`outcome`] | how a run went, in a line | trajectories |
 //!
 //! A transition shows `event [guard] / reset`, then its urgency and priority; a location shows its
@@ -66,6 +67,6 @@ mod table;
 pub use dot::dot;
 pub use latex::latex;
 pub use mermaid::{composition_mermaid, mermaid};
-pub use plot::{UnknownVariable, outcome, phase_portrait, plot};
+pub use plot::{FlowpipePicture, Patch, UnknownVariable, outcome, phase_portrait, plot};
 pub use svg::{composition_svg, coverage_svg, svg};
 pub use table::table;

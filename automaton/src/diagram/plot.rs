@@ -2,6 +2,7 @@
 
 mod axis;
 mod curve;
+mod flowpipe;
 mod portrait;
 mod sheet;
 
@@ -13,6 +14,7 @@ use axis::{Axis, power_of_ten};
 use curve::Quantity;
 use sheet::{Sheet, WIDTH, area_colour, text_width};
 
+pub use flowpipe::{FlowpipePicture, Patch};
 pub use portrait::{UnknownVariable, phase_portrait};
 
 /// Left of the panels, for the numbers of their axes, in pixels.

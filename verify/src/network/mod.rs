@@ -16,6 +16,8 @@
 //! 3. the [`Monitor`] that runs every check over a mission, and the [`Judge`], which holds events
 //!    and what observers conclude against the definitions as well: over a run, and over a trace.
 //!
+//! [`cell`] asks the same of all proposals and errors at once, by reachability.
+//!
 //! The [`Limits`] come from the scenario; the only numerical slack is [`SLACK`].
 //!
 //! A robot that stands alone in a square and sends to an access point, and then leaps:
@@ -74,6 +76,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod cell;
 pub mod duty;
 pub mod election;
 pub mod instant;

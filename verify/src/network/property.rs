@@ -224,8 +224,8 @@ impl Property {
                  a leaf services a task from it, and at a junction several branches part."
             }
             Property::Leash => {
-                "A robot that is not of the active team stays within δ of the place of its post, \
-                 or comes no farther from it than it is."
+                "A robot that is not of the active team does not go farther than δ from the place of \
+                 its post, once it is there."
             }
             Property::Multipliers => "No multiplier λ_i of a dual method is negative, eq. (9).",
             Property::Events => {

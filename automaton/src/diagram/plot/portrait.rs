@@ -157,7 +157,7 @@ impl Portrait<'_> {
     }
 }
 
-fn with_power(name: &str, power: Option<i32>) -> String {
+pub(super) fn with_power(name: &str, power: Option<i32>) -> String {
     match power {
         Some(power) => format!("{name}  / {}", power_of_ten(power)),
         None => name.to_owned(),

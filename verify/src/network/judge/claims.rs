@@ -12,6 +12,8 @@ use crate::network::tree;
 
 /// Robots exchange duties when they touch: at most this many ρ apart (they keep 2ρ).
 const CONTACT: f64 = 2.6;
+/// Rounds of beacons that an exchange of duties takes: offer, reply, and the two duties taken.
+const EXCHANGE_ROUNDS: usize = 4;
 /// A team is at a stationary point when no member has moved by more than this share of ρ or σ,
 /// the smaller one, in the last control period.
 const STILL: f64 = 0.3;
@@ -200,8 +202,12 @@ pub(super) fn has_come(walk: &Walk, subgroup: usize, scene: &Scene) -> Result<()
 
 fn touch(mover: usize, parked: usize, scene: &Scene) -> Result<(), Dispute> {
     let positions = &scene.snapshot.positions;
-    let (distance, bound) =
-        ((positions[mover] - positions[parked]).norm(), CONTACT * scene.limits.clearance());
+    let distance = (positions[mover] - positions[parked]).norm();
+    let settings = scene.limits.settings();
+    // From the offer to the end the mover may go on, if that takes more than one period.
+    let periods = EXCHANGE_ROUNDS.div_ceil(settings.rounds_per_period.max(1));
+    let way = periods.saturating_sub(1) as f64 * settings.step_radius;
+    let bound = CONTACT * scene.limits.clearance() + way;
     at_most(distance, bound, &[mover, parked], || {
         format!(
             "robots {mover} and {parked} exchange duties at a distance of {distance:.6}, more than \

@@ -224,7 +224,11 @@ impl Conclusions {
         next: Option<&Ledger>,
         snapshot: &Snapshot,
     ) -> Result<(), Dispute> {
-        if self.apart(&snapshot.primary_team) != self.apart(&ledger.primary_team) {
+        let seen = self.apart(&snapshot.primary_team);
+        // The members of a team that is dissolved leave it one by one, as they hear of it.
+        let is_dissolving = ledger.primary_team.is_empty()
+            && self.primary_team.values().any(|known| is_part(&seen, known));
+        if seen != self.apart(&ledger.primary_team) && !is_dissolving {
             let sentence = format!(
                 "the primary team is reported as {:?}, and the events make it {:?}",
                 snapshot.primary_team, ledger.primary_team

@@ -93,8 +93,14 @@ impl Places {
             };
             let [before, now] = [previous, scene.snapshot]
                 .map(|snapshot| (snapshot.positions[robot] - place).norm());
-            let bound = scene.limits.service_radius().max(before);
-            if now > bound + SLACK {
+            // On its way to the very place it goes round what stands between, and from farther away
+            // it comes back.
+            let bound = scene.limits.service_radius();
+            let returns = [previous, scene.snapshot].iter().any(|snapshot| {
+                let target = snapshot.robots.get(robot).and_then(|shown| shown.target);
+                target.is_some_and(|target| (target - place).norm() <= SLACK)
+            });
+            if !returns && before <= bound && now > bound + SLACK {
                 let sentence = format!(
                     "robot {robot} is not of the active team and goes to a distance of {now:.6} \
                      from its post, more than {bound:.6}"

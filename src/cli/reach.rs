@@ -1,0 +1,230 @@
+//! `pleach reach`: whether any run of a SpaceEx model comes to forbidden states.
+
+use std::io::{self, IsTerminal, Write};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use pleach::guards::Interval;
+use pleach::spaceex::{self, Problem, Solution, Verdict};
+use pleach::verify::reach::Effort;
+use serde_json::json;
+
+use super::job;
+use super::status::{Failure, Status};
+
+/// The arguments of `pleach reach`.
+#[derive(Debug, Args)]
+pub struct ReachArguments {
+    /// The model, an XML file of SpaceEx
+    pub model: PathBuf,
+    /// The configuration: where runs begin, where they must not come, and for how long
+    #[arg(long, value_name = "FILE")]
+    pub cfg: PathBuf,
+    /// Follow runs for SECONDS, whatever the configuration says
+    #[arg(long, value_name = "SECONDS")]
+    pub horizon: Option<f64>,
+    /// Cut affine flows into steps of SECONDS, whatever the configuration says
+    #[arg(long, value_name = "SECONDS")]
+    pub step: Option<f64>,
+    /// Make up to COUNT sets of the states in which a guard of a flow may hold
+    #[arg(long, value_name = "COUNT")]
+    pub clusters: Option<usize>,
+    /// Draw the sets, and runs inside, into FILE
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// The two variables, or `t`, that are drawn [default: those of the configuration, or t and the
+    /// first]
+    #[arg(long, value_name = "X,Y")]
+    pub axes: Option<String>,
+    /// Draw COUNT runs
+    #[arg(long, value_name = "COUNT", default_value_t = 12)]
+    pub runs: usize,
+    /// Write the result as JSON into FILE, or to the standard output as -
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write neither progress nor the verdict
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Reads a model, encloses its runs, and says what it found.
+pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
+    let read = |path: &Path| {
+        std::fs::read_to_string(path)
+            .map_err(|error| Failure::Usage(format!("{}: cannot be read: {error}", path.display())))
+    };
+    let (model, configuration) = (read(&arguments.model)?, read(&arguments.cfg)?);
+    let problem = spaceex::read(&model, &configuration);
+    let mut problem = problem.map_err(|error| {
+        let file = match error {
+            spaceex::SpaceExError::Configuration { .. } => &arguments.cfg,
+            _ => &arguments.model,
+        };
+        Failure::Usage(format!("{}: {error}", file.display()))
+    })?;
+    problem.settings.horizon = arguments.horizon.unwrap_or(problem.settings.horizon);
+    problem.settings.step = arguments.step.unwrap_or(problem.settings.step);
+    problem.settings.clusters = arguments.clusters.unwrap_or(problem.settings.clusters);
+    let begin = Instant::now();
+    let solution = solve(&problem, arguments.quiet)?;
+    let seconds = begin.elapsed().as_secs_f64();
+    if let Some(path) = &arguments.svg {
+        let axes = axes(&problem, arguments.axes.as_deref())?;
+        let runs = problem.runs(arguments.runs);
+        let picture = solution.picture(&problem.system, [&axes[0], &axes[1]], &runs);
+        let picture = picture.map_err(Failure::Usage)?.to_svg();
+        job::create_file(path)?.write_all(picture.as_bytes())?;
+    }
+    if let Some(path) = &arguments.json {
+        let text = format!("{:#}\n", result(&problem, &solution));
+        if path.as_os_str() == "-" {
+            io::stdout().lock().write_all(text.as_bytes())?;
+        } else {
+            job::create_file(path)?.write_all(text.as_bytes())?;
+        }
+    }
+    if !arguments.quiet {
+        eprintln!("{}", verdict(&problem, &solution, seconds));
+    }
+    Ok(match solution.verdict() {
+        Verdict::Holds => Status::Done,
+        Verdict::Undecided => Status::Unserviced,
+        Verdict::Violated => Status::InvariantViolated,
+    })
+}
+
+/// Encloses the runs, with a line that says how far it is.
+fn solve(problem: &Problem, is_quiet: bool) -> Result<Solution, Failure> {
+    let shows = !is_quiet && io::stderr().is_terminal();
+    let mut segments = 0;
+    let mut progress = |time: Interval| {
+        segments += 1;
+        if shows && segments % 256 == 0 {
+            eprint!("\r{segments} sets, at {:.3} of {} s", time.upper(), problem.settings.horizon);
+        }
+        ControlFlow::Continue(())
+    };
+    let solution = problem.solve(&Effort::default(), &mut progress);
+    if shows {
+        eprint!("\r\x1b[K");
+    }
+    solution.map_err(|error| Failure::Usage(error.to_string()))
+}
+
+/// The quantities that are drawn.
+fn axes(problem: &Problem, asked: Option<&str>) -> Result<[String; 2], Failure> {
+    let names: Vec<String> = match asked {
+        Some(text) => text.split(',').map(|name| name.trim().to_owned()).collect(),
+        None => problem.shown.clone(),
+    };
+    match (&names[..], asked) {
+        ([across, up], _) => Ok([across.clone(), up.clone()]),
+        ([up], None) => Ok(["t".to_owned(), up.clone()]),
+        (_, Some(text)) => Err(Failure::Usage(format!("{text:?} are no two names: write X,Y"))),
+        (_, None) => {
+            let first = problem.automata.first().and_then(|automaton| automaton.names().first());
+            Ok(["t".to_owned(), first.copied().unwrap_or("t").to_owned()])
+        }
+    }
+}
+
+/// What was found, in a few lines.
+fn verdict(problem: &Problem, solution: &Solution, seconds: f64) -> String {
+    let sets: usize = visits(solution).map(|visit| visit.segments.len()).sum();
+    let mut lines = vec![match solution.verdict() {
+        Verdict::Holds if problem.forbidden.is_empty() => {
+            format!("{}: all states are enclosed, and none is forbidden", problem.system)
+        }
+        Verdict::Holds => format!("{}: no run comes to a forbidden state", problem.system),
+        Verdict::Violated => format!("{}: a run comes to a forbidden state", problem.system),
+        Verdict::Undecided => format!("{}: undecided", problem.system),
+    }];
+    if let (Verdict::Violated, Some(run)) = (solution.verdict(), &solution.nearest) {
+        let names = run.trajectory.variables();
+        let listed = |values: &[f64]| {
+            let pairs = names.iter().zip(values).map(|(name, value)| format!("{name} = {value}"));
+            pairs.collect::<Vec<_>>().join(", ")
+        };
+        lines.push(format!("  it begins at {}", listed(&run.start)));
+        for (name, value) in &run.parameters {
+            lines.push(format!("  with {name} = {value}"));
+        }
+        lines.push(format!("  and is at {} at {} s", listed(&run.state), run.at.t));
+    }
+    if solution.verdict() == Verdict::Undecided {
+        for proof in &solution.proofs {
+            lines.push(format!("  the enclosure ends with {:?}", proof.enclosure.ending));
+            if let Some(doubt) = proof.doubts.first() {
+                let place = &solution.model.locations()[doubt.location].name;
+                lines.push(format!(
+                    "  in location {place}, {} to {} s, it meets what is forbidden; try shorter steps, \
+                     octagons or more clusters",
+                    doubt.time.lower(), doubt.time.upper()
+                ));
+            }
+        }
+    }
+    lines.push(format!("  {sets} sets in {} visits, {seconds:.3} s", visits(solution).count()));
+    lines.join("\n")
+}
+
+fn visits(solution: &Solution) -> impl Iterator<Item = &pleach::verify::reach::Visit> {
+    solution.proofs.iter().flat_map(|proof| &proof.enclosure.visits)
+}
+
+/// The result for other programs: without times, so that equal questions give equal bytes.
+fn result(problem: &Problem, solution: &Solution) -> serde_json::Value {
+    let ends = |side: &Interval| json!([side.lower(), side.upper()]);
+    let segment = |segment: &pleach::verify::reach::Segment| {
+        let states: Vec<_> = segment.set.hull().unwrap_or_default().iter().map(ends).collect();
+        json!({ "time": ends(&segment.time), "states": states })
+    };
+    let visits = visits(solution).map(|visit| {
+        json!({
+            "location": solution.model.locations()[visit.location].name,
+            "jumps": visit.depth,
+            "entered": ends(&visit.elapsed),
+            "segments": visit.segments.iter().map(segment).collect::<Vec<_>>(),
+        })
+    });
+    let proofs = solution.proofs.iter().map(|proof| {
+        let doubt = |doubt: &pleach::verify::reach::Doubt| {
+            json!({
+                "forbidden": doubt.forbidden,
+                "location": solution.model.locations()[doubt.location].name,
+                "time": ends(&doubt.time),
+                "states": doubt.states.iter().map(ends).collect::<Vec<_>>(),
+            })
+        };
+        json!({
+            "ending": format!("{:?}", proof.enclosure.ending),
+            "clearances": proof.clearances.iter().map(|c| c.is_finite().then_some(*c)).collect::<Vec<_>>(),
+            "doubts": proof.doubts.iter().map(doubt).collect::<Vec<_>>(),
+        })
+    });
+    let nearest = solution.nearest.as_ref().map(|run| {
+        json!({
+            "start": run.start,
+            "parameters": run.parameters.iter().map(|(name, value)| json!([name, value])).collect::<Vec<_>>(),
+            "forbidden": run.forbidden,
+            "time": run.at.t,
+            "state": run.state,
+            "margin": run.margin,
+            "violates": run.is_violation,
+        })
+    });
+    json!({
+        "system": problem.system,
+        "verdict": match solution.verdict() {
+            Verdict::Holds => "holds",
+            Verdict::Violated => "violated",
+            Verdict::Undecided => "undecided",
+        },
+        "variables": solution.model.variables(),
+        "proofs": proofs.collect::<Vec<_>>(),
+        "nearest_run": nearest,
+        "visits": visits.collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,85 @@
+//! The configuration: lines `key = value`.
+
+use super::SpaceExError;
+use super::formula::{self, Clause};
+
+/// A value with its line.
+pub(super) type Line<T> = (usize, T);
+
+/// What a configuration says.
+#[derive(Debug, Default)]
+pub(super) struct Options {
+    pub system: Option<Line<String>>,
+    /// Alternatives of clauses that hold together.
+    pub initially: Line<Vec<Vec<Clause>>>,
+    pub forbidden: Line<Vec<Vec<Clause>>>,
+    pub horizon: Option<f64>,
+    pub step: Option<f64>,
+    pub directions: Option<Line<String>>,
+    pub jumps: Option<usize>,
+    pub shown: Vec<String>,
+}
+
+impl Options {
+    pub fn read(text: &str) -> Result<Self, SpaceExError> {
+        let mut options = Options { initially: (0, vec![vec![]]), ..Options::default() };
+        for (line, content) in (1..).zip(text.lines()) {
+            let wrong = |problem: String| SpaceExError::Configuration { line, problem };
+            let content = content.trim();
+            if content.is_empty() || content.starts_with('#') || content.starts_with(';') {
+                continue;
+            }
+            let Some((key, value)) = content.split_once('=') else {
+                return Err(wrong(format!("`{content}` is no line `key = value`")));
+            };
+            let value = value.trim().trim_matches('"').trim();
+            let number = || -> Result<f64, SpaceExError> {
+                let number: f64 =
+                    value.parse().map_err(|_| wrong(format!("`{value}` is no number")))?;
+                if number.is_nan() { Err(wrong("NaN is no number".into())) } else { Ok(number) }
+            };
+            match key.trim() {
+                "system" => options.system = Some((line, value.to_owned())),
+                "initially" => {
+                    options.initially = (line, formula::alternatives(value).map_err(wrong)?);
+                }
+                "forbidden" if value.is_empty() => {}
+                "forbidden" => {
+                    options.forbidden = (line, formula::alternatives(value).map_err(wrong)?);
+                }
+                "time-horizon" => options.horizon = Some(number()?),
+                "sampling-time" | "flowpipe-tolerance-step" => options.step = Some(number()?),
+                "directions" => options.directions = Some((line, value.to_owned())),
+                "iter-max" | "max-iterations" => {
+                    let limit = number()?;
+                    // A negative limit is none.
+                    options.jumps = (limit >= 0.0).then_some(limit as usize);
+                }
+                "output-variables" => {
+                    options.shown = value.split(',').map(|name| name.trim().to_owned()).collect();
+                }
+                // Of other tools' methods and outputs.
+                "scenario"
+                | "output-format"
+                | "output-file"
+                | "rel-err"
+                | "abs-err"
+                | "verbosity"
+                | "set-aggregation"
+                | "flowpipe-tolerance"
+                | "clustering"
+                | "output-error"
+                | "local-time-horizon"
+                | "map-zero-duration-jump-sets"
+                | "simu-init-sampling-points" => {}
+                other => {
+                    return Err(wrong(format!(
+                        "`{other}` is no key known here: known are system, initially, forbidden, \
+                     time-horizon, sampling-time, iter-max, directions and output-variables"
+                    )));
+                }
+            }
+        }
+        Ok(options)
+    }
+}

@@ -1,0 +1,311 @@
+//! Networks of components, made into one automaton.
+//!
+//! The instances of base components run side by side. A label that several of them know is taken by
+//! all of these together.
+
+use std::collections::BTreeMap;
+
+use crate::guards::{Expression, Substitution, constant};
+
+use super::SpaceExError;
+use super::document::{Component, Place, Transition};
+use super::formula::{self, Clause, Relation, Side};
+
+/// A base component with its names bound.
+pub(super) struct Instance<'a> {
+    /// Empty for a system that is a base component itself.
+    pub name: String,
+    pub component: &'a Component,
+    /// What its parameters stand for.
+    pub names: BTreeMap<String, Bound>,
+}
+
+/// What a parameter stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Bound {
+    /// A parameter of the whole.
+    Name(String),
+    Number(f64),
+}
+
+/// A parameter of the whole.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Known {
+    pub is_label: bool,
+    pub is_constant: bool,
+}
+
+/// The instances in a system, and the parameters of the whole.
+pub(super) struct Network<'a> {
+    pub instances: Vec<Instance<'a>>,
+    pub known: BTreeMap<String, Known>,
+}
+
+/// How deep components may contain each other.
+const DEPTH: usize = 32;
+
+impl<'a> Network<'a> {
+    /// The instances in `system`.
+    pub fn of(components: &'a [Component], system: &'a Component) -> Result<Self, SpaceExError> {
+        let mut network = Network { instances: Vec::new(), known: BTreeMap::new() };
+        network.add(components, system, "", BTreeMap::new(), 0)?;
+        Ok(network)
+    }
+
+    fn add(
+        &mut self,
+        components: &'a [Component],
+        component: &'a Component,
+        name: &str,
+        mut names: BTreeMap<String, Bound>,
+        depth: usize,
+    ) -> Result<(), SpaceExError> {
+        let wrong = |line: usize, problem: String| Err(SpaceExError::Model { line, problem });
+        if depth > DEPTH {
+            return wrong(component.line, format!("component `{}` contains itself", component.id));
+        }
+        let prefix = if name.is_empty() { String::new() } else { format!("{name}.") };
+        for parameter in &component.parameters {
+            let bound = names.entry(parameter.name.clone());
+            // What is not bound, as what is local, is the instance's own.
+            let bound = bound.or_insert_with(|| Bound::Name(format!("{prefix}{}", parameter.name)));
+            if let Bound::Name(global) = bound {
+                let known =
+                    Known { is_label: parameter.is_label, is_constant: parameter.is_constant };
+                let known_before =
+                    self.known.entry(global.clone()).or_insert_with(|| known.clone());
+                if known_before.is_label != known.is_label {
+                    return wrong(
+                        parameter.line,
+                        format!("`{global}` is a label in one component and a number in another"),
+                    );
+                }
+                known_before.is_constant &= known.is_constant;
+            }
+        }
+        if component.binds.is_empty() {
+            let instance = Instance { name: name.to_owned(), component, names };
+            self.instances.push(instance);
+            return Ok(());
+        }
+        if !component.locations.is_empty() {
+            return wrong(
+                component.line,
+                format!("component `{}` has both locations and binds", component.id),
+            );
+        }
+        for bind in &component.binds {
+            let Some(inner) = components.iter().find(|other| other.id == bind.component) else {
+                return wrong(bind.line, format!("there is no component `{}`", bind.component));
+            };
+            let mut inner_names = BTreeMap::new();
+            for (key, value) in &bind.maps {
+                if !inner.parameters.iter().any(|parameter| parameter.name == *key) {
+                    return wrong(
+                        bind.line,
+                        format!("component `{}` has no parameter `{key}`", inner.id),
+                    );
+                }
+                let value = match (value.parse::<Expression>(), names.get(value)) {
+                    (_, Some(bound)) => bound.clone(),
+                    (Ok(formula), None) => match formula.evaluate(&()) {
+                        Ok(number) => Bound::Number(number),
+                        Err(_) => {
+                            return wrong(
+                                bind.line,
+                                format!(
+                                    "`{key}` is bound to `{value}`, which is neither a number nor a parameter of `{}`",
+                                    component.id
+                                ),
+                            );
+                        }
+                    },
+                    (Err(error), None) => return wrong(bind.line, format!("`{value}`: {error}")),
+                };
+                inner_names.insert(key.clone(), value);
+            }
+            let inner_name = format!("{prefix}{}", bind.name);
+            self.add(components, inner, &inner_name, inner_names, depth + 1)?;
+        }
+        Ok(())
+    }
+}
+
+impl Instance<'_> {
+    /// The name of a parameter in the whole.
+    pub fn global(&self, name: &str) -> Option<&str> {
+        match self.names.get(name)? {
+            Bound::Name(global) => Some(global),
+            Bound::Number(_) => None,
+        }
+    }
+
+    /// Names and numbers of the whole in the place of parameters.
+    fn substitution(&self) -> Substitution {
+        Substitution::new(self.names.iter().map(|(name, bound)| {
+            let value = match bound {
+                Bound::Name(global) => crate::guards::variable(global),
+                Bound::Number(value) => constant(*value),
+            };
+            (name, value)
+        }))
+    }
+
+    /// A conjunction of the component, in names of the whole.
+    pub fn clauses(&self, text: &str, line: usize) -> Result<Vec<Clause>, SpaceExError> {
+        let wrong = |problem: String| SpaceExError::Model { line, problem };
+        let substitution = self.substitution();
+        let side = |side: Side| -> Result<Side, SpaceExError> {
+            match side {
+                Side::Formula(formula) => {
+                    let stranger = formula
+                        .variables()
+                        .into_iter()
+                        .find(|name| !self.names.contains_key(*name));
+                    if let Some(stranger) = stranger {
+                        return Err(wrong(format!(
+                            "`{stranger}` is no parameter of component `{}`",
+                            self.component.id
+                        )));
+                    }
+                    Ok(Side::Formula(formula.substitute(&substitution)))
+                }
+                Side::Primed(name) => match self.global(&name) {
+                    Some(global) => Ok(Side::Primed(global.to_owned())),
+                    None => Err(wrong(format!(
+                        "`{name}'`: `{name}` is no variable of component `{}`",
+                        self.component.id
+                    ))),
+                },
+            }
+        };
+        let clauses = formula::conjunction(text).map_err(wrong)?;
+        clauses
+            .into_iter()
+            .map(|clause| match clause {
+                Clause::Compare { left, relation, right } => {
+                    Ok(Clause::Compare { left: side(left)?, relation, right: side(right)? })
+                }
+                Clause::Location { .. } => {
+                    Err(wrong("`loc` can stand in the configuration only".into()))
+                }
+                other => Ok(other),
+            })
+            .collect()
+    }
+
+    /// The rates that a location gives: `None` where no time passes.
+    pub fn rates(&self, place: &Place) -> Result<Option<Vec<(String, Expression)>>, SpaceExError> {
+        let wrong = |problem: String| SpaceExError::Model { line: place.line, problem };
+        let mut rates = Vec::new();
+        for clause in self.clauses(&place.flow, place.line)? {
+            match clause {
+                Clause::Always => {}
+                Clause::Never => return Ok(None),
+                Clause::Compare {
+                    left: Side::Primed(name),
+                    relation: Relation::Equal | Relation::Assigned,
+                    right: Side::Formula(rate),
+                } => {
+                    if rates.iter().any(|(known, _)| *known == name) {
+                        return Err(wrong(format!(
+                            "the flow of `{}` says twice what `{name}'` is",
+                            place.name
+                        )));
+                    }
+                    rates.push((name, rate));
+                }
+                _ => {
+                    return Err(wrong(format!(
+                        "the flow of `{}` is to say x' == … for each variable; inclusions of rates are not \
+                     supported: add an input within bounds",
+                        place.name
+                    )));
+                }
+            }
+        }
+        Ok(Some(rates))
+    }
+
+    /// What a transition assigns: a formula, or bounds on what the value may be.
+    pub fn assignments(
+        &self,
+        transition: &Transition,
+    ) -> Result<Vec<(String, Assigned)>, SpaceExError> {
+        let wrong = |problem: String| SpaceExError::Model { line: transition.line, problem };
+        let mut assigned: Vec<(String, Assigned)> = Vec::new();
+        for clause in self.clauses(&transition.assignment, transition.line)? {
+            let (left, relation, right) = match clause {
+                Clause::Always => continue,
+                Clause::Compare { left, relation, right } => (left, relation, right),
+                _ => return Err(wrong("an assignment is written as x := … or x' == …".into())),
+            };
+            let (name, relation, value) = match (&left, &right) {
+                (Side::Primed(name), Side::Formula(value)) => {
+                    (name.clone(), relation, value.clone())
+                }
+                (Side::Formula(value), Side::Primed(name)) => {
+                    (name.clone(), turned(relation), value.clone())
+                }
+                (Side::Formula(Expression::Variable(name)), Side::Formula(value))
+                    if matches!(relation, Relation::Assigned | Relation::Equal) =>
+                {
+                    (name.to_string(), relation, value.clone())
+                }
+                _ => return Err(wrong("an assignment is written as x := … or x' == …".into())),
+            };
+            let place = assigned.iter().position(|(known, _)| *known == name);
+            match relation {
+                Relation::Assigned | Relation::Equal if place.is_none() => {
+                    assigned.push((name, Assigned::Value(value)));
+                }
+                Relation::Assigned | Relation::Equal => {
+                    return Err(wrong(format!("`{name}` is assigned twice")));
+                }
+                bound => {
+                    let place = place.unwrap_or_else(|| {
+                        assigned.push((name.clone(), Assigned::Within(None, None)));
+                        assigned.len() - 1
+                    });
+                    let is_lower = matches!(bound, Relation::AtLeast | Relation::MoreThan);
+                    let bound = match &mut assigned[place].1 {
+                        Assigned::Within(lower, _) if is_lower => lower,
+                        Assigned::Within(_, upper) => upper,
+                        Assigned::Value(_) => {
+                            return Err(wrong(format!("`{name}` is assigned twice")));
+                        }
+                    };
+                    if bound.replace(value).is_some() {
+                        return Err(wrong(format!("`{name}'` is bounded twice from one side")));
+                    }
+                }
+            }
+        }
+        let is_open =
+            |one: &Assigned| matches!(one, Assigned::Within(None, _) | Assigned::Within(_, None));
+        match assigned.iter().find(|(_, one)| is_open(one)) {
+            Some((name, _)) => {
+                Err(wrong(format!("what `{name}'` may be is not bounded from both sides")))
+            }
+            None => Ok(assigned),
+        }
+    }
+}
+
+/// What a variable becomes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Assigned {
+    Value(Expression),
+    /// Between two values.
+    Within(Option<Expression>, Option<Expression>),
+}
+
+fn turned(relation: Relation) -> Relation {
+    match relation {
+        Relation::AtMost => Relation::AtLeast,
+        Relation::LessThan => Relation::MoreThan,
+        Relation::AtLeast => Relation::AtMost,
+        Relation::MoreThan => Relation::LessThan,
+        other => other,
+    }
+}

@@ -1,0 +1,222 @@
+//! The product of the instances of a network, and the question over it.
+
+mod clause;
+mod jump;
+mod place;
+mod question;
+
+use std::collections::BTreeMap;
+
+use crate::automaton::{Automaton, Coordinate, Name, Record};
+use crate::guards::Interval;
+use crate::verify::reach::Uncertain;
+
+use super::configuration::Options;
+use super::document::Component;
+use super::network::{Bound, Network};
+use super::{Initial, Problem, SpaceExError};
+use clause::fixed;
+use question::settings;
+
+/// How many locations a product may have.
+const LOCATIONS: usize = 4096;
+
+type Result<T> = std::result::Result<T, SpaceExError>;
+
+/// The problem that components and configuration pose.
+pub(super) fn problem(components: &[Component], options: &Options) -> Result<Problem> {
+    let system = system(components, options)?;
+    let network = Network::of(components, system)?;
+    let product = Product::of(&network, system.line, options)?;
+    product.problem(system.id.clone(), options)
+}
+
+/// The component that the configuration names, or else the last.
+fn system<'a>(components: &'a [Component], options: &Options) -> Result<&'a Component> {
+    let wrong = |line, problem: String| SpaceExError::Configuration { line, problem };
+    match &options.system {
+        Some((line, name)) => components.iter().find(|one| one.id == *name).ok_or_else(|| {
+            let known: Vec<&str> = components.iter().map(|one| one.id.as_str()).collect();
+            wrong(*line, format!("there is no component `{name}`: there are {}", known.join(", ")))
+        }),
+        None => components.last().ok_or_else(|| SpaceExError::Model {
+            line: 1,
+            problem: "there is no component".into(),
+        }),
+    }
+}
+
+/// Side by side.
+struct Product<'a> {
+    network: &'a Network<'a>,
+    line: usize,
+    /// The coordinates.
+    variables: Vec<String>,
+    inputs: Vec<(String, Interval)>,
+    /// Constants with their values.
+    constants: Vec<(String, Interval)>,
+    /// The places of the instances in each location of the product.
+    tuples: Vec<Vec<usize>>,
+    names: Vec<Name>,
+}
+
+impl<'a> Product<'a> {
+    fn of(network: &'a Network<'a>, line: usize, options: &Options) -> Result<Self> {
+        let mut product = Product {
+            network,
+            line,
+            variables: Vec::new(),
+            inputs: Vec::new(),
+            constants: Vec::new(),
+            tuples: Vec::new(),
+            names: Vec::new(),
+        };
+        product.classify(options)?;
+        product.enumerate()?;
+        Ok(product)
+    }
+
+    fn wrong<T>(&self, problem: String) -> Result<T> {
+        Err(SpaceExError::Model { line: self.line, problem })
+    }
+
+    /// Says of each number whether it is a coordinate, an input or a constant.
+    fn classify(&mut self, options: &Options) -> Result<()> {
+        let mut flowing = Vec::new();
+        for instance in &self.network.instances {
+            for place in &instance.component.locations {
+                let rates = instance.rates(place)?.unwrap_or_default();
+                flowing.extend(rates.into_iter().map(|(name, _)| name));
+            }
+            for transition in &instance.component.transitions {
+                flowing.extend(instance.assignments(transition)?.into_iter().map(|(name, _)| name));
+            }
+        }
+        for (name, known) in &self.network.known {
+            if known.is_label {
+                continue;
+            }
+            if flowing.contains(name) {
+                self.variables.push(name.clone());
+            } else if known.is_constant {
+                let Some(values) = fixed(&options.initially.1, name) else {
+                    return self.wrong(format!(
+                        "`{name}` is a constant without a value: bind it to a number, or give it one in `initially`"
+                    ));
+                };
+                self.constants.push((name.clone(), values));
+            } else {
+                let values = self.input_bounds(name)?;
+                self.inputs.push((name.clone(), values));
+            }
+        }
+        Ok(())
+    }
+
+    /// Between which numbers invariants keep an input; over all locations, for there is one input.
+    fn input_bounds(&self, name: &str) -> Result<Interval> {
+        let mut bounds: Option<Interval> = None;
+        for instance in &self.network.instances {
+            if !instance.names.values().any(|bound| *bound == Bound::Name(name.to_owned())) {
+                continue;
+            }
+            for place in &instance.component.locations {
+                let clauses = instance.clauses(&place.invariant, place.line)?;
+                let Some(within) = fixed(&[clauses], name) else { continue };
+                bounds = Some(bounds.map_or(within, |known| known.hull(within)));
+            }
+        }
+        match bounds {
+            Some(bounds) if bounds.width().is_finite() => Ok(bounds),
+            _ => self.wrong(format!(
+                "`{name}` has neither a flow nor bounds: give it a flow, or keep it between two numbers in \
+                 the invariants"
+            )),
+        }
+    }
+
+    /// The tuples of locations, and their names.
+    fn enumerate(&mut self) -> Result<()> {
+        self.tuples = vec![Vec::new()];
+        for instance in &self.network.instances {
+            let count = instance.component.locations.len();
+            if self.tuples.len() * count > LOCATIONS {
+                return self.wrong(format!("the network has more than {LOCATIONS} locations"));
+            }
+            self.tuples = self
+                .tuples
+                .iter()
+                .flat_map(|tuple| (0..count).map(move |place| [&tuple[..], &[place]].concat()))
+                .collect();
+        }
+        let name = |tuple: &Vec<usize>| {
+            let parts = tuple.iter().zip(&self.network.instances);
+            let parts = parts.map(|(place, instance)| location_name(instance.component, *place));
+            Name::new(&parts.collect::<Vec<_>>().join(", "))
+        };
+        self.names = self.tuples.iter().map(name).collect();
+        Ok(())
+    }
+
+    fn problem(&self, system: String, options: &Options) -> Result<Problem> {
+        if self.tuples.is_empty() || self.network.instances.is_empty() {
+            return self.wrong(format!("component `{system}` has no locations"));
+        }
+        let initial = self.initial(options)?;
+        let mut begins: Vec<&String> = initial.iter().flat_map(|one| &one.locations).collect();
+        begins.sort();
+        begins.dedup();
+        let automata = begins.into_iter().map(|name| self.automaton(Name::new(name), &initial));
+        let automata = automata.collect::<Result<Vec<_>>>()?;
+        let varying = |values: &[(String, Interval)], varies| -> Vec<Uncertain> {
+            let wide = values.iter().filter(|(_, values)| varies || values.width() > 0.0);
+            wide.map(|(name, values)| Uncertain {
+                parameter: name.clone(),
+                values: *values,
+                varies,
+            })
+            .collect()
+        };
+        let mut uncertain = varying(&self.constants, false);
+        uncertain.extend(varying(&self.inputs, true));
+        Ok(Problem {
+            system,
+            automata,
+            uncertain,
+            initial,
+            forbidden: self.forbidden(options)?,
+            settings: settings(options)?,
+            shown: options.shown.clone(),
+        })
+    }
+
+    fn automaton(&self, first: Name, initial: &[Initial]) -> Result<Automaton<Name, Name, Record>> {
+        let middles = initial.first().map(|one| one.states.hull().iter().map(Interval::midpoint));
+        let middles: Vec<f64> = middles.into_iter().flatten().collect();
+        let state = Record::new(self.variables.iter().zip(middles));
+        let state = state
+            .map_err(|error| SpaceExError::Model { line: self.line, problem: error.to_string() })?;
+        let coordinates: BTreeMap<String, Coordinate<Record>> =
+            self.variables.iter().cloned().zip(state.coordinates()).collect();
+        let mut builder = Automaton::<Name, Name, Record>::starting_in(first).initially(state);
+        for (name, values) in self.constants.iter().chain(&self.inputs) {
+            builder = builder.parameter(name, values.midpoint());
+        }
+        for (tuple, name) in self.tuples.iter().zip(&self.names) {
+            builder = self.add_location(builder, tuple, *name, &coordinates)?;
+        }
+        for (tuple, name) in self.tuples.iter().zip(&self.names) {
+            builder = self.add_transitions(builder, tuple, *name, &coordinates)?;
+        }
+        builder
+            .build()
+            .map_err(|error| SpaceExError::Model { line: self.line, problem: error.to_string() })
+    }
+}
+
+/// The name of a location; with its id where several have it.
+fn location_name(component: &Component, place: usize) -> String {
+    let own = &component.locations[place];
+    let is_repeated = component.locations.iter().filter(|other| other.name == own.name).count() > 1;
+    if is_repeated { format!("{}#{}", own.name, own.id) } else { own.name.clone() }
+}

@@ -1,0 +1,82 @@
+//! The locations of a product.
+
+use std::collections::BTreeMap;
+
+use super::clause::predicate;
+use super::{Product, Result};
+use crate::automaton::{Builder, Coordinate, Name, Rate, Record};
+use crate::guards::{Expression, Predicate};
+use crate::spaceex::SpaceExError;
+use crate::spaceex::formula::{Clause, Side};
+
+impl Product<'_> {
+    /// Adds a location with the rates and invariants of its parts.
+    pub(super) fn add_location(
+        &self,
+        mut builder: Builder<Name, Name, Record>,
+        tuple: &[usize],
+        name: Name,
+        coordinates: &BTreeMap<String, Coordinate<Record>>,
+    ) -> Result<Builder<Name, Name, Record>> {
+        let (mut rates, mut invariant): (Option<BTreeMap<String, Expression>>, Vec<Predicate>) =
+            (Some(BTreeMap::new()), Vec::new());
+        let mut line = self.line;
+        for (instance, place) in self.network.instances.iter().zip(tuple) {
+            let place = &instance.component.locations[*place];
+            line = place.line;
+            match (instance.rates(place)?, &mut rates) {
+                (Some(listed), Some(rates)) => {
+                    for (variable, rate) in listed {
+                        if let Some(known) = rates.insert(variable.clone(), rate.clone())
+                            && known != rate
+                        {
+                            let problem =
+                                format!("two components give different rates of `{variable}`");
+                            return Err(SpaceExError::Model { line, problem });
+                        }
+                    }
+                }
+                _ => rates = None,
+            }
+            for clause in instance.clauses(&place.invariant, place.line)? {
+                // Bounds on inputs say what inputs are.
+                if !self.is_input_bound(&clause) {
+                    invariant.extend(predicate(&clause, place.line)?);
+                }
+            }
+        }
+        let mut listed: Vec<Rate<Record>> = Vec::new();
+        for (variable, coordinate) in coordinates {
+            match &rates {
+                None => {}
+                Some(rates) => match rates.get(variable) {
+                    Some(rate) => listed.push(coordinate.rate(rate.clone())),
+                    None => {
+                        return Err(SpaceExError::Model {
+                            line,
+                            problem: format!(
+                                "location `{name}` says nothing of `{variable}'`: write `{variable}' == 0` if it rests"
+                            ),
+                        });
+                    }
+                },
+            }
+        }
+        builder = builder.flow(name, listed);
+        if !invariant.is_empty() {
+            builder = builder.invariant(name, Predicate::all(invariant));
+        }
+        Ok(builder)
+    }
+
+    /// A bound on an input alone.
+    fn is_input_bound(&self, clause: &Clause) -> bool {
+        let Clause::Compare { left, right, .. } = clause else { return false };
+        let is_input = |side: &Side| {
+            side.name().is_some_and(|name| self.inputs.iter().any(|(input, _)| input == name))
+        };
+        let is_number =
+            |side: &Side| matches!(side, Side::Formula(formula) if formula.evaluate(&()).is_ok());
+        is_input(left) && is_number(right) || is_input(right) && is_number(left)
+    }
+}

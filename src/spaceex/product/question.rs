@@ -1,0 +1,162 @@
+//! Where runs begin, where they must not come, and for how long.
+
+use super::clause::{fixed, predicate};
+use super::{Product, Result, location_name};
+use crate::guards::{Interval, Predicate, Substitution, constant};
+use crate::spaceex::configuration::Options;
+use crate::spaceex::formula::Clause;
+use crate::spaceex::network::Instance;
+use crate::spaceex::{Initial, SpaceExError};
+use crate::verify::reach::{Directions, Forbidden, Polytope, Region, Settings, StateSet, Template};
+
+impl Product<'_> {
+    /// The names of the product's locations that clauses allow.
+    fn allowed(&self, clauses: &[Clause], line: usize) -> Result<Vec<usize>> {
+        let mut allowed: Vec<usize> = (0..self.tuples.len()).collect();
+        for clause in clauses {
+            let Clause::Location { component, location } = clause else { continue };
+            let wrong = |problem: String| SpaceExError::Configuration { line, problem };
+            // In a system that is one base component, its own name stands for it.
+            let matching = |instance: &Instance<'_>| {
+                instance.name == *component
+                    || instance.name.is_empty() && instance.component.id == *component
+                    || self.network.instances.len() == 1 && component.is_empty()
+            };
+            let at = self.network.instances.iter().position(matching);
+            let at = at.ok_or_else(|| {
+                let known: Vec<&str> = self
+                    .network
+                    .instances
+                    .iter()
+                    .map(|one| {
+                        if one.name.is_empty() {
+                            one.component.id.as_str()
+                        } else {
+                            one.name.as_str()
+                        }
+                    })
+                    .collect();
+                wrong(format!(
+                    "`loc({component})`: there is no such component; there are {}",
+                    known.join(", ")
+                ))
+            })?;
+            let component = self.network.instances[at].component;
+            let places: Vec<usize> = (0..component.locations.len())
+                .filter(|place| {
+                    component.locations[*place].name == *location
+                        || location_name(component, *place) == *location
+                })
+                .collect();
+            if places.is_empty() {
+                let known: Vec<&str> =
+                    component.locations.iter().map(|place| place.name.as_str()).collect();
+                return Err(wrong(format!(
+                    "there is no location `{location}`: there are {}",
+                    known.join(", ")
+                )));
+            }
+            allowed.retain(|tuple| places.contains(&self.tuples[*tuple][at]));
+        }
+        Ok(allowed)
+    }
+
+    fn names_of(&self, tuples: &[usize]) -> Vec<String> {
+        tuples.iter().map(|tuple| self.names[*tuple].as_str().to_owned()).collect()
+    }
+
+    /// Where runs begin, one for each alternative.
+    pub(super) fn initial(&self, options: &Options) -> Result<Vec<Initial>> {
+        let (line, alternatives) = &options.initially;
+        let wrong = |problem: String| SpaceExError::Configuration { line: *line, problem };
+        let resting: Vec<&(String, Interval)> =
+            self.constants.iter().filter(|(_, values)| values.width() > 0.0).collect();
+        let names: Vec<String> =
+            self.variables.iter().chain(resting.iter().map(|(name, _)| name)).cloned().collect();
+        let mut initial = Vec::new();
+        for clauses in alternatives {
+            let locations = self.names_of(&self.allowed(clauses, *line)?);
+            let mut sides = Vec::new();
+            for name in &names {
+                let side = fixed(std::slice::from_ref(clauses), name)
+                    .filter(|side| side.width().is_finite());
+                sides.push(side.ok_or_else(|| {
+                    wrong(format!("`initially` does not bound `{name}` from both sides"))
+                })?);
+            }
+            // Comparisons of several variables cut the box.
+            let mut cuts = Vec::new();
+            for clause in clauses {
+                cuts.extend(predicate(clause, *line)?.filter(|one| one.variables().len() > 1));
+            }
+            let values = self.constants.iter().filter(|(_, values)| values.width() == 0.0);
+            let values = values.map(|(name, values)| (name, constant(values.midpoint())));
+            let values = Substitution::new(values);
+            let cut = Predicate::all(cuts).substitute(&values);
+            let region = Region::of(&cut, &names).map_err(|error| wrong(error.to_string()))?;
+            for conjunction in &region.alternatives {
+                let mut template = Template::boxes(names.len());
+                conjunction
+                    .half_spaces
+                    .iter()
+                    .for_each(|half_space| half_space.add_to(&mut template));
+                let polytope = Polytope::around(template, &sides);
+                let states = conjunction.cut(&polytope, &names).and_then(StateSet::from_polytope);
+                let Some(states) = states else { continue };
+                initial.push(Initial { locations: locations.clone(), states });
+            }
+        }
+        if initial.is_empty() {
+            return Err(wrong("`initially` allows no state".into()));
+        }
+        Ok(initial)
+    }
+
+    pub(super) fn forbidden(&self, options: &Options) -> Result<Vec<Forbidden>> {
+        let (line, alternatives) = &options.forbidden;
+        let mut forbidden = Vec::new();
+        for clauses in alternatives {
+            let mut states = Vec::new();
+            for clause in clauses {
+                states.extend(predicate(clause, *line)?);
+            }
+            let states = Predicate::all(states);
+            let is_local = clauses.iter().any(|clause| matches!(clause, Clause::Location { .. }));
+            if is_local {
+                for location in self.names_of(&self.allowed(clauses, *line)?) {
+                    forbidden.push(Forbidden::within(&location, states.clone()));
+                }
+            } else {
+                forbidden.push(Forbidden::anywhere(states));
+            }
+        }
+        Ok(forbidden)
+    }
+}
+
+/// Settings as the configuration says them.
+pub(super) fn settings(options: &Options) -> Result<Settings> {
+    let defaults = Settings::default();
+    let directions = match &options.directions {
+        None => Directions::Boxes,
+        Some((_, name)) if name == "box" => Directions::Boxes,
+        // Octagons stand in for uniform directions.
+        Some((_, name)) if name == "oct" || name.starts_with("uni") => Directions::Octagons,
+        Some((line, name)) => {
+            return Err(SpaceExError::Configuration {
+                line: *line,
+                problem: format!(
+                    "directions `{name}` are not known: box, oct or uni with a number"
+                ),
+            });
+        }
+    };
+    Ok(Settings {
+        horizon: options.horizon.unwrap_or(defaults.horizon),
+        step: options.step.unwrap_or(defaults.step),
+        jump_limit: options.jumps.unwrap_or(defaults.jump_limit),
+        directions,
+        enters_invariants: true,
+        ..defaults
+    })
+}

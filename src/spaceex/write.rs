@@ -1,0 +1,258 @@
+//! Automata as models and configurations of SpaceEx.
+
+use crate::automaton::{Assignment, Automaton, Coordinates, NewValue};
+use crate::discrete::{Event, Location, Urgency};
+use crate::guards::{Comparison, Expression, Predicate, Relation};
+use crate::verify::reach::{Directions, Forbidden, Settings, Uncertain};
+
+use super::Initial;
+
+/// A model and its configuration.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// XML.
+    pub model: String,
+    /// Lines `key = value`.
+    pub configuration: String,
+}
+
+/// The automaton and its question in the files of SpaceEx, as one base component called `system`.
+///
+/// Inputs become numbers that invariants bound. A transition that has to be taken gets
+/// `asap="true"`.
+///
+/// # Errors
+///
+/// A sentence that names what has no counterpart there: functions, predicates that are not
+/// conjunctions of comparisons, and formulas beyond arithmetic.
+pub fn write<L: Location, E: Event, S: Coordinates>(
+    automaton: &Automaton<L, E, S>,
+    uncertain: &[Uncertain],
+    initial: &[Initial],
+    forbidden: &[Forbidden],
+    settings: &Settings,
+) -> Result<Written, String> {
+    let writer = Writer { automaton, uncertain };
+    Ok(Written {
+        model: writer.model()?,
+        configuration: writer.configuration(initial, forbidden, settings)?,
+    })
+}
+
+struct Writer<'a, L, E, S> {
+    automaton: &'a Automaton<L, E, S>,
+    uncertain: &'a [Uncertain],
+}
+
+impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
+    fn model(&self) -> Result<String, String> {
+        let mut lines = vec![
+            r#"<?xml version="1.0" encoding="utf-8"?>"#.to_owned(),
+            r#"<sspaceex xmlns="http://www-verimag.imag.fr/xml-namespaces/sspaceex" version="0.2" math="SpaceEx">"#.to_owned(),
+            r#"  <component id="system">"#.to_owned(),
+        ];
+        let number = |name: &str, dynamics: &str, controlled: bool| {
+            format!(
+                r#"    <param name="{}" type="real" local="false" d1="1" d2="1" dynamics="{dynamics}" controlled="{controlled}" />"#,
+                escaped(name)
+            )
+        };
+        lines.extend(self.automaton.names().iter().map(|name| number(name, "any", true)));
+        let varies =
+            |name: &str| self.uncertain.iter().any(|one| one.varies && one.parameter == name);
+        for (name, _) in self.automaton.parameters() {
+            lines.push(if varies(name) {
+                number(name, "any", false)
+            } else {
+                number(name, "const", false)
+            });
+        }
+        for event in self.automaton.events() {
+            lines.push(format!(
+                r#"    <param name="{}" type="label" local="false" />"#,
+                escaped(event.name())
+            ));
+        }
+        for (id, location) in (1..).zip(self.automaton.locations()) {
+            lines.extend(self.location(id, *location)?);
+        }
+        let graph = self.automaton.graph();
+        for edge in graph.edge_indices() {
+            let Some((source, target)) = graph.edge_endpoints(edge) else { continue };
+            let transition = &graph[edge];
+            let urgent = if transition.urgency == Urgency::May { "" } else { r#" asap="true""# };
+            let assignments = transition.reset.assignments().ok_or_else(|| {
+                format!("the reset of event `{}` is a function", transition.event.name())
+            })?;
+            let assignments = assignments.iter().map(assignment).collect::<Result<Vec<_>, _>>()?;
+            let assignments = assignments.join(" & ");
+            lines.push(format!(
+                r#"    <transition source="{}" target="{}"{urgent}>"#,
+                source.index() + 1,
+                target.index() + 1
+            ));
+            lines.push(format!("      <label>{}</label>", escaped(transition.event.name())));
+            lines.push(format!(
+                "      <guard>{}</guard>",
+                escaped(&conjunction(transition.guard.predicate())?)
+            ));
+            lines.push(format!("      <assignment>{}</assignment>", escaped(&assignments)));
+            lines.push("    </transition>".to_owned());
+        }
+        lines.extend(["  </component>".to_owned(), "</sspaceex>".to_owned(), String::new()]);
+        Ok(lines.join("\n"))
+    }
+
+    fn location(&self, id: usize, location: L) -> Result<Vec<String>, String> {
+        let mode = self.automaton.mode(location);
+        let mut kept = Vec::new();
+        if let Some(invariant) = mode.and_then(|mode| mode.invariant.as_ref()) {
+            kept.push(conjunction(invariant)?);
+        }
+        let inputs = self.uncertain.iter().filter(|one| one.varies);
+        kept.extend(inputs.map(|one| {
+            format!(
+                "{} <= {} & {} <= {}",
+                one.values.lower(),
+                one.parameter,
+                one.parameter,
+                one.values.upper()
+            )
+        }));
+        kept.retain(|part| part != "true");
+        let flow = mode.and_then(|mode| mode.flow.as_ref());
+        let rates = match flow {
+            Some(flow) => flow.rates().ok_or_else(|| {
+                format!("the flow of location `{}` is a function", location.name())
+            })?,
+            None => &[],
+        };
+        let rate = |name: &&'static str| {
+            let listed = rates.iter().find(|rate| rate.coordinate() == *name);
+            let rate = listed.map_or(Ok("0".to_owned()), |rate| plain(rate.rate()))?;
+            Ok(format!("{name}' == {rate}"))
+        };
+        let rates = self.automaton.names().iter().map(rate).collect::<Result<Vec<_>, String>>()?;
+        Ok(vec![
+            format!(r#"    <location id="{id}" name="{}">"#, escaped(location.name())),
+            format!("      <invariant>{}</invariant>", escaped(&kept.join(" & "))),
+            format!("      <flow>{}</flow>", escaped(&rates.join(" & "))),
+            "    </location>".to_owned(),
+        ])
+    }
+
+    fn configuration(
+        &self,
+        initial: &[Initial],
+        forbidden: &[Forbidden],
+        settings: &Settings,
+    ) -> Result<String, String> {
+        let resting =
+            self.uncertain.iter().filter(|one| !one.varies).map(|one| one.parameter.as_str());
+        let names: Vec<&str> = self.automaton.names().iter().copied().chain(resting).collect();
+        let is_uncertain = |name: &str| self.uncertain.iter().any(|one| one.parameter == name);
+        let certain: Vec<String> = self
+            .automaton
+            .parameters()
+            .filter(|(name, _)| !is_uncertain(name))
+            .map(|(name, value)| format!("{name} == {value}"))
+            .collect();
+        let mut begins = Vec::new();
+        for one in initial {
+            let sides = names.iter().zip(one.states.hull());
+            let sides = sides.map(|(name, side)| {
+                format!("{} <= {name} & {name} <= {}", side.lower(), side.upper())
+            });
+            let states: Vec<String> = sides.chain(certain.iter().cloned()).collect();
+            let is_everywhere = one.locations.len() == self.automaton.locations().len();
+            if is_everywhere {
+                begins.push(states.join(" & "));
+                continue;
+            }
+            for location in &one.locations {
+                begins.push(format!("{} & loc(system)=={location}", states.join(" & ")));
+            }
+        }
+        let mut ends = Vec::new();
+        for one in forbidden {
+            let form = one.states.disjunctive_form(256).map_err(|error| error.to_string())?;
+            for case in form {
+                let case = case.into_iter().map(Predicate::Comparison);
+                let case = conjunction(&Predicate::all(case))?;
+                ends.push(match &one.location {
+                    Some(location) => format!("{case} & loc(system)=={location}"),
+                    None => case,
+                });
+            }
+        }
+        let directions = match settings.directions {
+            Directions::Boxes => "box",
+            Directions::Octagons | Directions::Listed(_) => "oct",
+        };
+        Ok(format!(
+            "system = \"system\"\ninitially = \"{}\"\nforbidden = \"{}\"\ntime-horizon = {}\n\
+             sampling-time = {}\niter-max = {}\ndirections = \"{directions}\"\n",
+            begins.join(" | "),
+            ends.join(" | "),
+            settings.horizon,
+            settings.step,
+            settings.jump_limit
+        ))
+    }
+}
+
+/// A conjunction of comparisons, in the spelling of keyboards.
+fn conjunction(predicate: &Predicate) -> Result<String, String> {
+    match predicate {
+        Predicate::Comparison(comparison) => compared(comparison),
+        Predicate::All(parts) if parts.is_empty() => Ok("true".to_owned()),
+        Predicate::All(parts) => {
+            let parts = parts.iter().map(conjunction).collect::<Result<Vec<_>, _>>()?;
+            Ok(parts.join(" & "))
+        }
+        other => Err(format!("`{other}` is no conjunction of comparisons")),
+    }
+}
+
+fn compared(comparison: &Comparison) -> Result<String, String> {
+    let symbol = match comparison.relation {
+        Relation::AtMost => "<=",
+        Relation::LessThan => "<",
+        Relation::AtLeast => ">=",
+        Relation::MoreThan => ">",
+    };
+    Ok(format!("{} {symbol} {}", plain(&comparison.left)?, plain(&comparison.right)?))
+}
+
+/// An assignment, of a value or of bounds on it.
+fn assignment<S>(assignment: &Assignment<S>) -> Result<String, String> {
+    let name = assignment.coordinate();
+    Ok(match assignment.value() {
+        NewValue::Exactly(value) => format!("{name} := {}", plain(value)?),
+        NewValue::Within(lower, upper) => {
+            format!("{name}' >= {} & {name}' <= {}", plain(lower)?, plain(upper)?)
+        }
+    })
+}
+
+/// A formula in the spelling of keyboards.
+fn plain(formula: &Expression) -> Result<String, String> {
+    let text = formula.to_string();
+    let mut plain = String::new();
+    for character in text.chars() {
+        match character {
+            '−' => plain.push('-'),
+            '·' => plain.push('*'),
+            '÷' => plain.push('/'),
+            '²' => plain.push_str("^2"),
+            '³' => plain.push_str("^3"),
+            '√' => return Err(format!("`{text}` has a root, which the format lacks")),
+            other => plain.push(other),
+        }
+    }
+    Ok(plain)
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,176 @@
+//! Models of SpaceEx: what is read, written and refused.
+
+use pleach::guards::Interval;
+use pleach::spaceex::{self, Problem, Verdict};
+use pleach::verify::reach::{Completion, Effort};
+use std::ops::ControlFlow;
+
+const BALL: [&str; 2] =
+    [include_str!("spaceex/bouncing-ball.xml"), include_str!("spaceex/bouncing-ball.cfg")];
+const TIMERS: [&str; 2] =
+    [include_str!("spaceex/two-timers.xml"), include_str!("spaceex/two-timers.cfg")];
+
+fn problem([model, configuration]: [&str; 2]) -> Problem {
+    spaceex::read(model, configuration).unwrap()
+}
+
+fn verdict(problem: &Problem) -> Verdict {
+    problem.solve(&Effort::default(), &mut |_| ControlFlow::Continue(())).unwrap().verdict()
+}
+
+fn refusal(model: &str, configuration: &str) -> String {
+    spaceex::read(model, configuration).unwrap_err().to_string()
+}
+
+#[test]
+fn a_component_with_bound_constants_is_read_and_answered() {
+    let ball = problem(BALL);
+    assert_eq!(ball.system, "system");
+    let automaton = &ball.automata[0];
+    assert_eq!(automaton.names(), ["v", "x"]);
+    assert_eq!(automaton.locations().len(), 1);
+    assert_eq!(ball.initial[0].locations, ["flying"]);
+    assert_eq!(verdict(&ball), Verdict::Holds);
+    let low = BALL[1].replace("x >= 10.25", "x >= 10.1 & v > -1");
+    assert_eq!(verdict(&problem([BALL[0], &low])), Verdict::Violated);
+}
+
+/// Two components that tick together, an input within bounds, a value within bounds after a jump, and
+/// no word on where the tank begins: in both of its locations.
+#[test]
+fn networks_are_products() {
+    let timers = problem(TIMERS);
+    let names: Vec<&str> = timers.automata[0].locations().iter().map(|one| one.as_str()).collect();
+    assert_eq!(names, ["waiting, open", "waiting, shut"]);
+    assert_eq!(timers.initial[0].locations, names);
+    assert_eq!(timers.automata.len(), 2);
+    assert_eq!(timers.automata[0].names(), ["clock", "level"]);
+    let uncertain: Vec<(&str, Interval)> =
+        timers.uncertain.iter().map(|one| (one.parameter.as_str(), one.values)).collect();
+    assert_eq!(uncertain, [("inflow", Interval::new(0.0, 0.5).unwrap())]);
+    let solution = timers.solve(&Effort::default(), &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(solution.verdict(), Verdict::Holds);
+    assert_eq!(solution.proofs[0].enclosure.ending, Completion::Horizon);
+    // Shut for a second, the tank rises by up to a half from at most 1.25.
+    let full = TIMERS[1].replace("level >= 2.5", "level >= 1.8");
+    assert_eq!(verdict(&problem([TIMERS[0], &full])), Verdict::Holds);
+    let full = TIMERS[1].replace("level >= 2.5", "level >= 1.6");
+    assert_eq!(verdict(&problem([TIMERS[0], &full])), Verdict::Violated);
+}
+
+/// What is written reads back as the same automaton and the same question.
+#[test]
+fn what_is_written_is_read_back() {
+    for files in [BALL, TIMERS] {
+        let first = problem(files);
+        let write = |problem: &Problem| {
+            spaceex::write(
+                &problem.automata[0],
+                &problem.uncertain,
+                &problem.initial,
+                &problem.forbidden,
+                &problem.settings,
+            )
+            .unwrap()
+        };
+        let written = write(&first);
+        let second = problem([&written.model, &written.configuration]);
+        let names = |problem: &Problem| -> Vec<String> {
+            problem.automata[0].locations().iter().map(|one| one.as_str().to_owned()).collect()
+        };
+        assert_eq!(names(&first), names(&second));
+        assert_eq!(first.initial.len(), second.initial.len());
+        assert_eq!(verdict(&first), verdict(&second));
+        assert_eq!(write(&second).model.lines().count(), written.model.lines().count());
+    }
+}
+
+#[test]
+fn what_is_not_supported_is_refused_with_its_line() {
+    let [model, configuration] = BALL;
+    let changed = |from: &str, to: &str| model.replace(from, to);
+    let cases = [
+        (
+            changed("v' == -g</flow>", "v' &lt;= -g</flow>"),
+            "line 9 of the model: the flow of `flying` is to say x' == … for each variable; inclusions of \
+             rates are not supported: add an input within bounds",
+        ),
+        (
+            changed("<map key=\"c\">0.75</map>", "<map key=\"c\">d</map>"),
+            "line 25 of the model: `c` is bound to `d`, which is neither a number nor a parameter of \
+             `system`",
+        ),
+        (
+            changed("name=\"c\" type=\"real\"", "name=\"g\" type=\"real\""),
+            "line 7 of the model: component `ball` has two parameters `g`: rename one",
+        ),
+        (
+            changed("x' == v &amp; v' == -g", "v' == -g"),
+            "line 26 of the model: `x` has neither a flow nor bounds: give it a flow, or keep it between \
+             two numbers in the invariants",
+        ),
+        (
+            changed("v := -c*v", "v := -w*v"),
+            "line 14 of the model: `w` is no parameter of component `ball`",
+        ),
+        (
+            changed("d1=\"1\"", "d1=\"2\""),
+            "line 4 of the model: `x` is no number (d1 is not 1): use one parameter for each entry",
+        ),
+    ];
+    for (model, expected) in cases {
+        let found = refusal(&model, configuration);
+        let end = |text: &str| text.split_once(": ").map(|(_, end)| end.to_owned());
+        assert_eq!(end(&found), end(expected), "{found}");
+    }
+    let asked = |from: &str, to: &str| refusal(model, &configuration.replace(from, to));
+    assert_eq!(
+        asked("loc(one)==flying", "loc(one)==rolling"),
+        "line 3 of the configuration: there is no location `rolling`: there are flying"
+    );
+    assert_eq!(
+        asked("10 <= x <= 10.2 &", ""),
+        "line 3 of the configuration: `initially` does not bound `x` from both sides"
+    );
+    assert_eq!(
+        asked("directions = \"box\"", "directions = \"stars\""),
+        "line 7 of the configuration: directions `stars` are not known: box, oct or uni with a number"
+    );
+    assert_eq!(
+        asked("system = \"system\"", "system = \"ball2\""),
+        "line 2 of the configuration: there is no component `ball2`: there are ball, system"
+    );
+}
+
+/// Locations of one name are told apart by their ids.
+#[test]
+fn locations_of_one_name_are_told_apart() {
+    let model = BALL[0].replace(
+        "    <transition source=\"1\" target=\"1\">",
+        "    <location id=\"2\" name=\"flying\"><flow>x' == 0 &amp; v' == 0</flow></location>\n    \
+         <transition source=\"1\" target=\"2\">",
+    );
+    let problem = problem([&model, BALL[1]]);
+    let names: Vec<&str> = problem.automata[0].locations().iter().map(|one| one.as_str()).collect();
+    assert_eq!(names, ["flying#1", "flying#2"]);
+    assert_eq!(problem.initial[0].locations, names);
+}
+
+/// Of a network without an initial `loc`, every location is initial; one alternative for each `|`.
+#[test]
+fn alternatives_of_initial_states_are_kept_apart() {
+    let [model, configuration] = TIMERS;
+    let configuration = configuration.replace(
+        "\"clock == 0 & 1 <= level & level <= 1.2 & period == 1\"",
+        "\"clock == 0 & period == 1 & (1 <= level <= 1.2 & loc(tank)==open | level == 0.5 & loc(tank)==shut)\"",
+    );
+    let problem = problem([model, &configuration]);
+    let found: Vec<(Vec<String>, String)> = problem
+        .initial
+        .iter()
+        .map(|one| (one.locations.clone(), one.states.hull()[1].to_string()))
+        .collect();
+    let open = (vec!["waiting, open".to_owned()], "[1, 1.2]".to_owned());
+    let shut = (vec!["waiting, shut".to_owned()], "[0.5, 0.5]".to_owned());
+    assert_eq!(found, [open, shut]);
+}

@@ -1,0 +1,213 @@
+//! The friendly competition's list (ARCH-COMP, categories AFF and NLN): which instances are proven
+//! here, and how long it takes.
+//!
+//! ```sh
+//! cargo run --release -p pleach-verify --example competition                          # prints the table
+//! cargo run --release -p pleach-verify --example competition -- docs/reachability.md  # writes it there
+//! ```
+//!
+//! Times are of one thread. A name instead of a file runs the instances whose names begin with it. A
+//! number at the end draws as many simulated runs of each instance and fails if one leaves its enclosure.
+
+mod gearbox;
+mod nonlinear;
+mod platoon;
+mod rendezvous;
+
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use pleach_automaton::{Automaton, Name, Record};
+use pleach_verify::reach::{
+    Completion, Directions, Forbidden, Model, Proof, Settings, StateSet, Uncertain, prove, runs,
+};
+
+type TestResult<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// An instance of the list.
+pub struct Instance {
+    automaton: Automaton<Name, Name, Record>,
+    start: StateSet,
+    uncertain: Vec<Uncertain>,
+    forbidden: Vec<Forbidden>,
+    settings: Settings,
+    /// Into how many parts the initial set is cut along each axis.
+    parts: Vec<usize>,
+    measured: Option<Measure>,
+}
+
+impl Instance {
+    /// The instance with its initial set cut into parts.
+    fn cut(mut self, parts: &[usize]) -> Self {
+        self.parts = parts.to_vec();
+        self
+    }
+}
+
+/// What the list asks to be measured of the states during the last step.
+#[derive(Clone, Copy)]
+pub enum Measure {
+    /// The width of a variable.
+    Width(&'static str),
+    /// The product of the widths of two.
+    Area(&'static str, &'static str),
+    /// The width of the sum of all.
+    Sum,
+}
+
+/// The lines between which the table stands in a document.
+const MARKS: [&str; 2] = ["<!-- begin of the table -->", "<!-- end of the table -->"];
+
+fn main() -> TestResult<()> {
+    let argument = std::env::args().nth(1);
+    let document = argument.as_ref().filter(|argument| argument.ends_with(".md"));
+    let is_name = |argument: &&String| document.is_none() && argument.parse::<usize>().is_err();
+    let prefix = argument.as_ref().filter(is_name);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let mut table = String::from(
+        "| instance | answer | time | sets | stays away by | at the end |\n| --- | --- | --- | --- | --- | --- |\n",
+    );
+    let count: Option<usize> =
+        std::env::args().next_back().and_then(|argument| argument.parse().ok());
+    for (name, instance) in instances()? {
+        if prefix.is_some_and(|prefix| !name.starts_with(prefix.as_str())) {
+            continue;
+        }
+        let begin = Instant::now();
+        let (model, proof) =
+            pool.install(|| solved(&instance).map_err(|error| error.to_string()))?;
+        let seconds = begin.elapsed().as_secs_f64();
+        let line = line(name, &instance, &model, &proof, seconds);
+        eprint!("{line}");
+        if let Some(count) = count {
+            simulated(name, &instance, &model, &proof, count)?;
+        }
+        table.push_str(&line);
+    }
+    match document {
+        None => print!("{table}"),
+        Some(path) => {
+            let text = std::fs::read_to_string(path)?;
+            let (before, rest) = text.split_once(MARKS[0]).ok_or("the document has no table")?;
+            let (_, after) = rest.split_once(MARKS[1]).ok_or("the table has no end")?;
+            std::fs::write(path, format!("{before}{}\n{table}{}{after}", MARKS[0], MARKS[1]))?;
+        }
+    }
+    Ok(())
+}
+
+fn solved(instance: &Instance) -> TestResult<(Model, Proof)> {
+    let model = Model::with_uncertain(&instance.automaton, &instance.uncertain)?;
+    let starts = instance.start.parts(&instance.parts);
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let proof = prove(&model, &starts, &instance.forbidden, &instance.settings, go_on)?;
+    Ok((model, proof))
+}
+
+/// Fails if one of `count` simulated runs leaves the enclosure of all runs.
+fn simulated(
+    name: &str,
+    instance: &Instance,
+    model: &Model,
+    proof: &Proof,
+    count: usize,
+) -> TestResult<()> {
+    /// The simulator's tolerances of 1e-9 add up to less.
+    const ERROR: f64 = 1e-6;
+    if !matches!(proof.enclosure.ending, Completion::Horizon | Completion::Everything) {
+        return Ok(());
+    }
+    let Instance { automaton, uncertain, start, settings, .. } = instance;
+    let starts = std::slice::from_ref(start);
+    let drawn = runs(automaton, uncertain, starts, settings.horizon, count, 1);
+    let own = automaton.names().len();
+    for run in &drawn {
+        let constants = &run.start[own..];
+        if let Some(escape) = proof.enclosure.escape(model, &run.trajectory, constants, ERROR) {
+            return Err(format!("{name}: a run from {:?} escapes: {escape}", run.start).into());
+        }
+    }
+    eprintln!("    {} simulated runs are inside", drawn.len());
+    Ok(())
+}
+
+/// A line of the table.
+fn line(name: &str, instance: &Instance, model: &Model, proof: &Proof, seconds: f64) -> String {
+    let answer = match (proof.holds(), instance.forbidden.is_empty()) {
+        (true, true) => "enclosed",
+        (true, false) => "holds",
+        (false, _) => "undecided",
+    };
+    let sets: usize = proof.enclosure.visits.iter().map(|visit| visit.segments.len()).sum();
+    let nearest = proof.clearances.iter().copied().fold(f64::INFINITY, f64::min);
+    let away = if nearest.is_finite() { format!("{nearest:.3}") } else { String::new() };
+    let mut line = String::new();
+    let measured = measured(instance, model, proof).unwrap_or_default();
+    // Writing to a string does not fail.
+    let _ = writeln!(line, "| {name} | {answer} | {seconds:.2} s | {sets} | {away} | {measured} |");
+    line
+}
+
+/// What the list asks to be measured.
+fn measured(instance: &Instance, model: &Model, proof: &Proof) -> Option<String> {
+    let last = &proof.enclosure.visits.last()?.segments.last()?.set;
+    let sides = last.hull()?;
+    let width = |name: &str| {
+        let place = model.variables().iter().position(|variable| variable == name)?;
+        Some(sides[place].width())
+    };
+    Some(match instance.measured? {
+        Measure::Width(name) => format!("width of {name} {:.4}", width(name)?),
+        Measure::Area(one, other) => format!("area {:.2e}", width(one)? * width(other)?),
+        Measure::Sum => {
+            let bound = |sign: f64| {
+                let direction = vec![sign; model.variables().len()];
+                last.template().position(&direction).map(|place| last.bounds()[place])
+            };
+            format!("width of the sum {:.1e}", bound(1.0)? + bound(-1.0)?)
+        }
+    })
+}
+
+/// Every instance with the settings that are right for it.
+fn instances() -> TestResult<Vec<(&'static str, Instance)>> {
+    let affine = |horizon, step| Settings { horizon, step, ..Settings::default() };
+    let smooth = |horizon, tolerance, order, degree, generators| Settings {
+        horizon,
+        tolerance,
+        order,
+        degree,
+        generators,
+        step: 0.5,
+        ..Settings::default()
+    };
+    // The reports take jumps as SpaceEx does.
+    let jumping = |horizon, step| Settings { enters_invariants: true, ..affine(horizon, step) };
+    let gears = |step| Settings { clusters: 4, ..jumping(0.2, step) };
+    let approach = |clusters| Settings { clusters, ..jumping(300.0, 0.04) };
+    let stiff = |order| Settings {
+        directions: Directions::Listed(vec![vec![1.0; 3]]),
+        ..smooth(40.0, 1e-9, order, 1, 4)
+    };
+    let alike = [(1.25, 1.55); 2];
+    Ok(vec![
+        ("PLAD01-BND42", platoon::deterministic(42.0, affine(20.0, 0.02))?),
+        ("PLAD01-BND30", platoon::deterministic(30.0, affine(20.0, 0.02))?),
+        ("GRBX01", gearbox::shift((0.0001, 0.0001), gears(0.0005))?),
+        ("GRBX02", gearbox::shift((0.00005, 0.00015), gears(0.0005))?),
+        ("SRNA01", rendezvous::mission(None, approach(1))?),
+        ("SRA01", rendezvous::mission(Some((120.0, 120.0)), approach(1))?),
+        ("SRA02", rendezvous::mission(Some((120.0, 125.0)), approach(4))?),
+        ("VDP, in 16 parts", nonlinear::oscillator(smooth(7.0, 1e-7, 8, 3, 4))?.cut(&[8, 2])),
+        ("CVDP23", nonlinear::van_der_pol(alike, (1.0, 3.0), 2.75, smooth(7.0, 1e-5, 8, 3, 4))?),
+        ("LALO20, W = 0.01", nonlinear::laub_loomis(0.01, 4.5, smooth(20.0, 1e-7, 6, 2, 4))?),
+        ("LALO20, W = 0.05", nonlinear::laub_loomis(0.05, 4.5, smooth(20.0, 1e-5, 6, 2, 4))?),
+        ("LALO20, W = 0.1", nonlinear::laub_loomis(0.1, 5.0, smooth(20.0, 1e-5, 6, 2, 4))?),
+        ("LOVO", nonlinear::lotka_volterra(smooth(3.64, 1e-9, 8, 2, 20))?),
+        ("ROBE, case 1", nonlinear::robertson(1e2, 1e3, stiff(8))?),
+        ("QUAD, ± 0.1", nonlinear::quadrotor(0.1, smooth(5.0, 1e-7, 6, 2, 4))?),
+        ("QUAD, ± 0.4", nonlinear::quadrotor(0.4, smooth(5.0, 1e-7, 6, 2, 4))?),
+        ("QUAD, ± 0.8", nonlinear::quadrotor(0.8, smooth(5.0, 1e-6, 6, 3, 4))?),
+    ])
+}

@@ -1,0 +1,52 @@
+//! Reachability: every state that an automaton can come to, enclosed.
+//!
+//! A simulator follows one run; here all runs are followed at once, from sets of initial states, with
+//! inputs that are only known to lie in intervals, and with every rounding error. [`verify()`] asks
+//! whether any of them comes to [forbidden states](Forbidden), and has one of three [answers](Answer):
+//! it holds, which is a proof; a run violates it; or it is undecided.
+//!
+//! A [`Model`] is made from an automaton whose flows, guards and resets are formulas. [`explore()`]
+//! encloses its runs: affine flows by [support functions](affine), others by [Taylor models](taylor),
+//! and where guards may hold by [polytopes](polytope) in template directions that are cut, mapped and put
+//! together. [`falsify()`] searches for a run that comes to forbidden states, and [`verify_formula()`] asks
+//! formulas over time of all runs. [`confirm()`] says whether what checks have found comes up. `docs/reachability.md`
+//! says what is guaranteed, and where not.
+
+pub mod affine;
+pub mod confirm;
+pub mod containment;
+pub mod explore;
+pub mod exponential;
+pub mod falsify;
+mod flow;
+pub mod model;
+pub mod polytope;
+pub mod question;
+pub mod region;
+pub mod search;
+mod series;
+pub mod set;
+pub mod settings;
+mod signal;
+pub mod taylor;
+mod taylor_model;
+pub mod temporal;
+pub mod vector;
+pub mod zonotope;
+
+pub use affine::AffineFlow;
+pub use confirm::{Confirmed, Reachability, confirm};
+pub use containment::Escape;
+pub use explore::{Completion, Enclosure, Segment, Visit, explore};
+pub use exponential::exponential;
+pub use falsify::{Counterexample, TimedState, falsify, followed};
+pub use model::{Assignments, Dynamics, Jump, Model, ModelError, Place, Uncertain};
+pub use polytope::{Bound, Polytope, Template};
+pub use question::{Answer, Doubt, Forbidden, Proof, ReachError, prove, verify};
+pub use region::{Conjunction, HalfSpace, Region, RegionError};
+pub use search::{Effort, Run, runs};
+pub use set::StateSet;
+pub use settings::{Directions, InvalidSetting, Settings};
+pub use temporal::{RobustnessProof, TemporalAnswer, Violation, prove_formula, verify_formula};
+pub use vector::{IntervalMatrix, dot, dot_numbers, sum_up};
+pub use zonotope::Zonotope;

@@ -1,0 +1,338 @@
+//! Polytopes in template directions, and linear programs over them that check their own answer.
+
+use std::sync::Arc;
+
+use pleach_guards::Interval;
+
+use super::vector::{dot_numbers, magnitude};
+
+/// Directions in which sets are bounded.
+///
+/// The first 2 n of them, in n dimensions, are e₁, −e₁, e₂, …, so that every set has a bounding box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Template {
+    dimension: usize,
+    directions: Vec<Vec<f64>>,
+}
+
+impl Template {
+    /// The directions of a box.
+    pub fn boxes(dimension: usize) -> Self {
+        let unit = |axis: usize, sign: f64| {
+            let mut direction = vec![0.0; dimension];
+            direction[axis] = sign;
+            direction
+        };
+        let directions = (0..dimension).flat_map(|axis| [unit(axis, 1.0), unit(axis, -1.0)]);
+        Template { dimension, directions: directions.collect() }
+    }
+
+    /// Those of a box and ±eᵢ ± eⱼ for each pair of coordinates.
+    pub fn octagons(dimension: usize) -> Self {
+        let mut template = Template::boxes(dimension);
+        for one in 0..dimension {
+            for other in one + 1..dimension {
+                for (first, second) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+                    let mut direction = vec![0.0; dimension];
+                    (direction[one], direction[other]) = (first, second);
+                    template.add(direction);
+                }
+            }
+        }
+        template
+    }
+
+    /// Adds a direction, unless it is there or zero; says where it is.
+    pub fn add(&mut self, direction: Vec<f64>) -> Option<usize> {
+        if direction.iter().all(|entry| *entry == 0.0) || !direction.iter().all(|e| e.is_finite()) {
+            return None;
+        }
+        let known = self.directions.iter().position(|known| *known == direction);
+        Some(known.unwrap_or_else(|| {
+            self.directions.push(direction);
+            self.directions.len() - 1
+        }))
+    }
+
+    /// Adds a direction and its opposite.
+    pub fn add_both(&mut self, direction: &[f64]) {
+        self.add(direction.to_vec());
+        self.add(direction.iter().map(|entry| -entry).collect());
+    }
+
+    /// How many coordinates the directions have.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// The directions.
+    pub fn directions(&self) -> &[Vec<f64>] {
+        &self.directions
+    }
+
+    /// Where this direction is.
+    pub fn position(&self, direction: &[f64]) -> Option<usize> {
+        self.directions.iter().position(|known| known == direction)
+    }
+}
+
+/// The points x with d · x ≤ b for each direction d of a template and its bound b.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polytope {
+    template: Arc<Template>,
+    bounds: Vec<f64>,
+}
+
+/// What a linear program has shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound {
+    /// No point exceeds this.
+    AtMost(f64),
+    /// There are no points.
+    Empty,
+}
+
+impl Polytope {
+    /// The polytope with these bounds, one for each direction.
+    pub fn new(template: Arc<Template>, bounds: Vec<f64>) -> Self {
+        Polytope { template, bounds }
+    }
+
+    /// A box, bounded in all directions of a template.
+    pub fn around(template: Template, sides: &[Interval]) -> Self {
+        let bounds =
+            template.directions.iter().map(|direction| over_box(direction, sides)).collect();
+        Polytope { template: Arc::new(template), bounds }
+    }
+
+    /// The directions.
+    pub fn template(&self) -> &Arc<Template> {
+        &self.template
+    }
+
+    /// The bounds, one for each direction.
+    pub fn bounds(&self) -> &[f64] {
+        &self.bounds
+    }
+
+    /// The bound in a direction of the template.
+    pub fn bound(&self, direction: &[f64]) -> Option<f64> {
+        self.template.position(direction).map(|place| self.bounds[place])
+    }
+
+    /// The box that the first directions bound; `None` if it has no points.
+    pub fn hull(&self) -> Option<Vec<Interval>> {
+        let side =
+            |axis: usize| Interval::new(-self.bounds[2 * axis + 1], self.bounds[2 * axis]).ok();
+        (0..self.template.dimension()).map(side).collect()
+    }
+
+    /// Bounds direction number `place` by `bound`, if that is less.
+    pub fn cut(&mut self, place: usize, bound: f64) {
+        self.bounds[place] = self.bounds[place].min(bound);
+    }
+
+    /// The smallest polytope of the template around this one and another.
+    pub fn join(&mut self, other: &Polytope) {
+        for (bound, another) in self.bounds.iter_mut().zip(&other.bounds) {
+            *bound = bound.max(*another);
+        }
+    }
+
+    /// What is in this polytope and in another of the same template.
+    #[must_use]
+    pub fn intersection(mut self, other: &Polytope) -> Self {
+        for (bound, another) in self.bounds.iter_mut().zip(&other.bounds) {
+            *bound = bound.min(*another);
+        }
+        self
+    }
+
+    /// Whether opposite bounds contradict each other: then there are no points.
+    pub fn is_seen_empty(&self) -> bool {
+        (0..self.template.dimension())
+            .any(|axis| self.bounds[2 * axis] < -self.bounds[2 * axis + 1])
+    }
+
+    /// Whether a point is in it, up to rounding.
+    pub fn contains_point(&self, point: &[f64]) -> bool {
+        let inside = |(direction, bound): (&Vec<f64>, &f64)| {
+            direction.iter().zip(point).map(|(d, x)| d * x).sum::<f64>() <= *bound
+        };
+        self.template.directions.iter().zip(&self.bounds).all(inside)
+    }
+
+    /// The bounds made as small as the others allow; `None` if there are no points.
+    #[must_use]
+    pub fn tightened(&self) -> Option<Polytope> {
+        if self.is_seen_empty() {
+            return None;
+        }
+        let mut tightened = self.clone();
+        for (place, direction) in self.template.directions.iter().enumerate() {
+            let direction: Vec<Interval> = direction.iter().map(|d| Interval::point(*d)).collect();
+            match tightened.support(&direction) {
+                Bound::AtMost(bound) => tightened.cut(place, bound),
+                Bound::Empty => return None,
+            }
+        }
+        (!tightened.is_seen_empty()).then_some(tightened)
+    }
+
+    /// At least the largest ℓ · x for points x and directions ℓ in `direction`.
+    ///
+    /// By duality every combination y ≥ 0 of the template's directions with Σ yᵢ dᵢ = ℓ bounds ℓ · x
+    /// by Σ yᵢ bᵢ. The simplex method in floating-point numbers looks for the best y; the bound is
+    /// then computed in intervals, with ℓ − Σ yᵢ dᵢ bounded over the box.
+    pub fn support(&self, direction: &[Interval]) -> Bound {
+        let Some(sides) = self.hull() else { return Bound::Empty };
+        let middle: Vec<f64> = direction.iter().map(Interval::midpoint).collect();
+        let mut simplex = Simplex::new(self, &middle);
+        let is_bounded = simplex.run();
+        if !is_bounded {
+            let ray = simplex.ray.clone();
+            let nothing = vec![Interval::point(0.0); direction.len()];
+            if self.certified(&nothing, &ray, &sides) < 0.0 {
+                return Bound::Empty;
+            }
+        }
+        Bound::AtMost(self.certified(direction, &simplex.multipliers(), &sides))
+    }
+
+    /// The bound on ℓ · x that these multipliers prove.
+    fn certified(
+        &self,
+        direction: &[Interval],
+        multipliers: &[(usize, f64)],
+        sides: &[Interval],
+    ) -> f64 {
+        let mut rest = direction.to_vec();
+        let mut bound = Interval::point(0.0);
+        for &(place, multiplier) in multipliers.iter().filter(|(_, multiplier)| *multiplier > 0.0) {
+            let multiplier = Interval::point(multiplier);
+            bound = bound + multiplier * Interval::point(self.bounds[place]);
+            for (rest, entry) in rest.iter_mut().zip(&self.template.directions[place]) {
+                if *entry != 0.0 {
+                    *rest = *rest - multiplier * Interval::point(*entry);
+                }
+            }
+        }
+        let left = rest.iter().zip(sides).filter(|(rest, _)| magnitude(**rest) > 0.0);
+        let left = left.map(|(rest, side)| *rest * *side);
+        left.fold(bound, |sum, term| sum + term).upper()
+    }
+}
+
+/// The simplex method on the dual: minimise Σ yᵢ bᵢ over y ≥ 0 with Σ yᵢ dᵢ = ℓ, from the basis of
+/// the box. Nothing depends on its being right.
+struct Simplex<'a> {
+    polytope: &'a Polytope,
+    /// The places of the directions in the basis.
+    basis: Vec<usize>,
+    /// Row i: what yᵢ of the basis is per unit of each coordinate of ℓ.
+    inverse: Vec<Vec<f64>>,
+    /// The multipliers of the basis.
+    values: Vec<f64>,
+    /// Where the program is unbounded: multipliers that combine the directions to nothing.
+    ray: Vec<(usize, f64)>,
+}
+
+impl<'a> Simplex<'a> {
+    /// How often the basis changes, at most, for each coordinate.
+    const PIVOTS: usize = 8;
+
+    fn new(polytope: &'a Polytope, direction: &[f64]) -> Self {
+        let dimension = direction.len();
+        let positive = |axis: usize| direction[axis] >= 0.0;
+        let basis = (0..dimension).map(|axis| 2 * axis + usize::from(!positive(axis))).collect();
+        let mut inverse = vec![vec![0.0; dimension]; dimension];
+        for (axis, row) in inverse.iter_mut().enumerate() {
+            row[axis] = if positive(axis) { 1.0 } else { -1.0 };
+        }
+        let values = direction.iter().map(|entry| entry.abs()).collect();
+        Simplex { polytope, basis, inverse, values, ray: Vec::new() }
+    }
+
+    /// Improves the basis; `false` where the dual is unbounded, so that the polytope is empty.
+    fn run(&mut self) -> bool {
+        for _ in 0..Self::PIVOTS * self.basis.len() {
+            let Some(entering) = self.entering() else { return true };
+            let direction = &self.polytope.template.directions[entering];
+            let column: Vec<f64> = self
+                .inverse
+                .iter()
+                .map(|row| row.iter().zip(direction).map(|(a, b)| a * b).sum())
+                .collect();
+            let Some(leaving) = self.leaving(&column) else {
+                self.ray =
+                    self.basis.iter().zip(&column).map(|(place, entry)| (*place, -entry)).collect();
+                self.ray.push((entering, 1.0));
+                return false;
+            };
+            self.pivot(entering, leaving, &column);
+        }
+        true
+    }
+
+    /// The direction whose bound the vertex of the basis exceeds most.
+    fn entering(&self) -> Option<usize> {
+        const NEARLY: f64 = 1e-12;
+        let dimension = self.basis.len();
+        let bounds = &self.polytope.bounds;
+        let mut vertex = vec![0.0; dimension];
+        for (row, place) in self.inverse.iter().zip(&self.basis) {
+            for (coordinate, entry) in vertex.iter_mut().zip(row) {
+                *coordinate += entry * bounds[*place];
+            }
+        }
+        let excess = |(place, direction): (usize, &Vec<f64>)| {
+            let (mut reached, mut size) = (0.0, 0.0);
+            for (entry, coordinate) in direction.iter().zip(&vertex) {
+                reached += entry * coordinate;
+                size += (entry * coordinate).abs();
+            }
+            let excess = reached - bounds[place];
+            (excess > NEARLY * (size + bounds[place].abs())).then_some((place, excess))
+        };
+        let exceeded = self.polytope.template.directions.iter().enumerate().filter_map(excess);
+        exceeded.max_by(|(_, one), (_, other)| one.total_cmp(other)).map(|(place, _)| place)
+    }
+
+    /// The row that becomes zero first.
+    fn leaving(&self, column: &[f64]) -> Option<usize> {
+        const PIVOT: f64 = 1e-9;
+        let ratios = column.iter().zip(&self.values).enumerate();
+        let ratios = ratios.filter(|(_, (entry, _))| **entry > PIVOT);
+        let ratios = ratios.map(|(row, (entry, value))| (row, value / entry));
+        ratios.min_by(|(_, one), (_, other)| one.total_cmp(other)).map(|(row, _)| row)
+    }
+
+    fn pivot(&mut self, entering: usize, leaving: usize, column: &[f64]) {
+        let step = self.values[leaving] / column[leaving];
+        let pivot_row: Vec<f64> =
+            self.inverse[leaving].iter().map(|entry| entry / column[leaving]).collect();
+        for (row, factor) in column.iter().enumerate().filter(|(row, _)| *row != leaving) {
+            self.values[row] = (self.values[row] - factor * step).max(0.0);
+            for (entry, pivot) in self.inverse[row].iter_mut().zip(&pivot_row) {
+                *entry -= factor * pivot;
+            }
+        }
+        self.values[leaving] = step;
+        self.inverse[leaving] = pivot_row;
+        self.basis[leaving] = entering;
+    }
+
+    fn multipliers(&self) -> Vec<(usize, f64)> {
+        self.basis.iter().copied().zip(self.values.iter().copied()).collect()
+    }
+}
+
+/// At least the largest d · x over a box; along an axis exactly that.
+pub fn over_box(direction: &[f64], sides: &[Interval]) -> f64 {
+    let mut entries = direction.iter().zip(sides).filter(|(entry, _)| **entry != 0.0);
+    match (entries.next(), entries.next()) {
+        (Some((1.0, side)), None) => side.upper(),
+        (Some((-1.0, side)), None) => -side.lower(),
+        _ => dot_numbers(sides, direction).upper(),
+    }
+}

@@ -1,0 +1,203 @@
+//! The search for a run that is as near as can be to something: random, then local, in parallel.
+//!
+//! Runs are drawn over initial states, constant values of inputs and parameters, and policies for
+//! transitions that may be taken; then the nearest one is varied less and less.
+
+use pleach_automaton::composition::Policy;
+use pleach_automaton::{Automaton, Composition, Coordinates, Trajectory, sweep};
+use pleach_discrete::{Event, Location};
+use pleach_guards::Interval;
+
+use super::model::Uncertain;
+use super::set::StateSet;
+
+/// How much is searched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effort {
+    /// How many runs are drawn at random.
+    pub random: usize,
+    /// How often the nearest runs are varied.
+    pub rounds: usize,
+    /// How many runs are tried each time.
+    pub variations: usize,
+    /// Where the sequence of draws begins.
+    pub seed: u64,
+    /// How long runs last where the question has no horizon, in seconds.
+    pub longest: f64,
+}
+
+/// A run that was drawn.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Where it begins: the coordinates, then the parameters that rest.
+    pub start: Vec<f64>,
+    /// The values of inputs and parameters.
+    pub parameters: Vec<(String, f64)>,
+    /// The run.
+    pub trajectory: Trajectory,
+}
+
+/// Runs that are drawn at random, `count` of them or less where runs cannot be made: from points of
+/// `starts`, as often corners as others, with constant values of inputs and parameters and any policy.
+/// They are the same for the same seed.
+pub fn runs<L: Location + Sync, E: Event + Sync, S: Coordinates>(
+    automaton: &Automaton<L, E, S>,
+    uncertain: &[Uncertain],
+    starts: &[StateSet],
+    horizon: f64,
+    count: usize,
+    seed: u64,
+) -> Vec<Run> {
+    let search = Search { automaton, uncertain, starts, horizon };
+    let mut draws = Draws(seed);
+    let cases: Vec<Choices> = (0..count).map(|_| search.drawn(&mut draws)).collect();
+    sweep(&cases, |_, _| (), |case| search.run(case)).into_iter().flatten().collect()
+}
+
+/// How near a run has come.
+pub(super) trait Nearness: Send {
+    /// The larger, the nearer.
+    fn margin(&self) -> f64;
+    /// Whether the search is over.
+    fn is_there(&self) -> bool;
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Effort { random: 64, rounds: 8, variations: 16, seed: 1, longest: 100.0 }
+    }
+}
+
+/// What a run is made from: the numbers from −1 to 1 that stand for all choices.
+#[derive(Clone, Debug)]
+struct Choices {
+    start: usize,
+    shares: Vec<f64>,
+    policy: Policy,
+}
+
+/// Numbers that look random, the same for the same seed (Steele, Lea and Flood 2014, *Fast splittable
+/// pseudorandom number generators*).
+struct Draws(u64);
+
+impl Draws {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        mixed ^ (mixed >> 31)
+    }
+
+    /// From −1 to 1.
+    fn share(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.next() % count.max(1) as u64) as usize
+    }
+}
+
+/// What runs are drawn from.
+pub(super) struct Search<'a, L, E, S> {
+    pub automaton: &'a Automaton<L, E, S>,
+    pub uncertain: &'a [Uncertain],
+    pub starts: &'a [StateSet],
+    pub horizon: f64,
+}
+
+impl<L: Location + Sync, E: Event + Sync, S: Coordinates> Search<'_, L, E, S> {
+    /// The nearest run that is found, as `measure` has it; `None` if no run could be made.
+    pub fn nearest<N: Nearness>(
+        &self,
+        effort: &Effort,
+        measure: impl Fn(&Run) -> Option<N> + Sync,
+    ) -> Option<(Run, N)> {
+        let mut draws = Draws(effort.seed);
+        let mut cases: Vec<Choices> = (0..effort.random).map(|_| self.drawn(&mut draws)).collect();
+        let mut best: Option<(Run, N, Choices)> = None;
+        let mut reach = 0.5;
+        for _ in 0..=effort.rounds {
+            let tried = |case: &Choices| {
+                let trial = self.run(case)?;
+                measure(&trial).map(|nearness| (trial, nearness))
+            };
+            let found = sweep(&cases, |_, _| (), tried);
+            for (found, case) in found.into_iter().zip(cases) {
+                let Some((trial, nearness)) = found else { continue };
+                if best.as_ref().is_none_or(|(_, known, _)| nearness.margin() > known.margin()) {
+                    best = Some((trial, nearness, case));
+                }
+            }
+            let Some((_, nearness, choices)) = &best else { return None };
+            if nearness.is_there() {
+                break;
+            }
+            cases = (0..effort.variations).map(|_| choices.varied(reach, &mut draws)).collect();
+            reach *= 0.6;
+        }
+        best.map(|(trial, nearness, _)| (trial, nearness))
+    }
+
+    /// Any choices, corners as often as points between them.
+    fn drawn(&self, draws: &mut Draws) -> Choices {
+        let generators = self.starts.iter().map(|start| start.to_zonotope().generators().len());
+        let length = generators.max().unwrap_or(0) + self.uncertain.len();
+        let shares = (0..length).map(|_| match draws.below(2) {
+            0 => draws.share().signum(),
+            _ => draws.share(),
+        });
+        let shares = shares.collect();
+        let policy = match draws.below(3) {
+            0 => Policy::Late,
+            1 => Policy::Early,
+            _ => Policy::Random { seed: draws.next() },
+        };
+        Choices { start: draws.below(self.starts.len()), shares, policy }
+    }
+
+    /// The run that is chosen.
+    fn run(&self, choices: &Choices) -> Option<Run> {
+        let mut shares = choices.shares.iter().copied();
+        let varying = self.uncertain.iter().filter(|one| one.varies);
+        let mut parameters: Vec<(String, f64)> = varying
+            .map(|one| (one.parameter.clone(), at(one.values, shares.next().unwrap_or(0.0))))
+            .collect();
+        // Where the shares are used up, further ones follow from them.
+        let rest: Vec<f64> = shares.collect();
+        let seed = rest.iter().fold(0u64, |seed, share| seed.rotate_left(7) ^ share.to_bits());
+        let (mut further, mut rest) = (Draws(seed), rest.into_iter());
+        let mut draw = || rest.next().unwrap_or_else(|| further.share());
+        let start = self.starts.get(choices.start)?.point(&mut draw)?;
+        let example = self.automaton.initial_state()?;
+        let (coordinates, constants) = start.split_at_checked(example.names().len())?;
+        let resting = self.uncertain.iter().filter(|one| !one.varies);
+        parameters
+            .extend(resting.zip(constants).map(|(one, value)| (one.parameter.clone(), *value)));
+        let mut automaton = self.automaton.clone();
+        for (parameter, value) in &parameters {
+            automaton = automaton.with(parameter, *value).ok()?;
+        }
+        let state = example.like(coordinates);
+        let composition =
+            Composition::builder().add_in("automaton", &automaton, state).build().ok()?;
+        let settings = pleach_automaton::Settings { policy: choices.policy, ..Default::default() };
+        let trajectory = composition.run_with(settings, self.horizon).ok()?;
+        Some(Run { start, parameters, trajectory })
+    }
+}
+
+impl Choices {
+    /// Others nearby.
+    fn varied(&self, reach: f64, draws: &mut Draws) -> Self {
+        let vary = |share: &f64| (share + reach * draws.share()).clamp(-1.0, 1.0);
+        Choices { shares: self.shares.iter().map(vary).collect(), ..self.clone() }
+    }
+}
+
+/// The number at a share from −1 to 1 of the way.
+fn at(values: Interval, share: f64) -> f64 {
+    let middle = values.midpoint();
+    (middle + share * 0.5 * values.width()).clamp(values.lower(), values.upper())
+}

@@ -1,0 +1,328 @@
+//! Flows that are not affine, enclosed by Taylor series in time whose coefficients are polynomials in
+//! the initial state.
+//!
+//! One step goes as follows. The state is a vector of polynomials in symbols from −1 to 1, one for
+//! each dimension of the initial set and for each error that was made on the way. From them come
+//! the Taylor coefficients x₀, …, xₖ₋₁ in time, as [Taylor models](super::taylor_model). A box B and a
+//! duration h are found with
+//!
+//! ```text
+//! Σ xⱼ [0, h]ʲ + [0, h]ᵏ f⁽ᵏ⁾(B) ⊆ B,     j < k,
+//! ```
+//!
+//! where f⁽ᵏ⁾(B) is the k-th Taylor coefficient of solutions through B, in intervals. Then every
+//! solution stays in B for h seconds, and the left side encloses it at each instant (Nedialkov,
+//! Jackson and Pryce 2001, *An effective high-order interval method for validating existence and
+//! uniqueness of the solution of an IVP for an ODE*, Reliable Computing 7). At the end of the step the
+//! remainders become symbols of their own, so that later steps turn and shrink them with the flow.
+
+use std::sync::Arc;
+
+use pleach_guards::{Expression, Interval};
+
+use super::flow::Stretch;
+use super::polytope::Template;
+use super::series::{Coefficient, SeriesProgram};
+use super::set::StateSet;
+use super::settings::Settings;
+use super::taylor_model::{Limits, Monomial, TaylorModel};
+use super::vector::{around_zero, magnitude};
+
+/// How many symbols there can be.
+const SYMBOLS: usize = 240;
+
+/// A flow on its way.
+pub(super) struct Integration {
+    /// `None` where a formula is not smooth.
+    program: Option<SeriesProgram>,
+    state: Vec<TaylorModel>,
+    /// Symbols of the initial set come first and stay.
+    first_error: usize,
+    /// The symbols in use are those below.
+    symbols: usize,
+    /// The time that has passed: a sum of floating-point numbers, so an interval.
+    time: Interval,
+    /// What is tried next, in seconds.
+    next_step: f64,
+    longest_step: f64,
+    order: usize,
+    tolerance: f64,
+    most_symbols: usize,
+}
+
+/// What encloses a step.
+struct Step {
+    length: f64,
+    /// xⱼ for each variable.
+    coefficients: Vec<Vec<TaylorModel>>,
+    /// f⁽ᵏ⁾(B) for each variable.
+    last: Vec<Interval>,
+}
+
+impl Integration {
+    pub fn new(
+        rates: &[Expression],
+        variables: &[String],
+        start: &StateSet,
+        settings: &Settings,
+    ) -> Self {
+        let dimension = variables.len();
+        let zonotope = start.to_zonotope().reduced((SYMBOLS / 2).saturating_sub(dimension));
+        let slack = zonotope.slack().iter().filter(|slack| **slack > 0.0).count();
+        let limits = Limits {
+            degree: settings.degree,
+            first_error: zonotope.generators().len() + slack,
+            least: settings.tolerance * 1e-3,
+        };
+        let mut symbols = zonotope.generators().len();
+        let mut state = Vec::new();
+        for axis in 0..dimension {
+            let slopes = zonotope.generators().iter().enumerate();
+            let slopes = slopes.map(|(number, generator)| (number as u8, generator[axis]));
+            let slack = zonotope.slack()[axis];
+            let slack = (slack > 0.0).then(|| {
+                symbols += 1;
+                ((symbols - 1) as u8, slack)
+            });
+            state.push(TaylorModel::affine(zonotope.center()[axis], slopes.chain(slack), limits));
+        }
+        let most = symbols + settings.generators * dimension;
+        Integration {
+            program: SeriesProgram::compile(rates, variables).ok(),
+            state,
+            first_error: symbols,
+            symbols,
+            time: Interval::point(0.0),
+            next_step: settings.step.min(1e-2),
+            longest_step: settings.step,
+            order: settings.order,
+            tolerance: settings.tolerance,
+            most_symbols: most.clamp(symbols + dimension, SYMBOLS),
+        }
+    }
+
+    /// How far it has come, in seconds.
+    pub fn time(&self) -> f64 {
+        self.time.lower()
+    }
+
+    /// The next step, at most up to `until`; `None` where there is no enclosure.
+    pub fn step(&mut self, template: &Arc<Template>, until: f64) -> Option<Stretch> {
+        let most = (until - self.time.lower()).next_up();
+        let step = self.enclosed(most)?;
+        let directions = template.directions();
+        let during = directions.iter().map(|direction| step.bound_along(direction));
+        let during: Vec<f64> = during.collect();
+        let from = self.time.lower();
+        self.state = step.end();
+        self.time = self.time + Interval::point(step.length);
+        self.name_errors();
+        let after =
+            directions.iter().map(|direction| combined(direction, &self.state).range().upper());
+        let after = after.collect();
+        Some(Stretch { from, to: self.time.upper(), during, after })
+    }
+
+    /// Finds a step of at most `most` seconds.
+    fn enclosed(&mut self, most: f64) -> Option<Step> {
+        /// The shortest step, as a share of the longest.
+        const SHORTEST: f64 = 1e-7;
+        let program = self.program.as_ref()?;
+        let limits = self.state.first()?.limits();
+        let coefficients = program.solve(&self.state, self.order - 1, limits)?;
+        let mut length = self.next_step.min(self.longest_step);
+        loop {
+            length = length.min(most);
+            if length.is_nan() || length <= self.time.lower() * f64::EPSILON {
+                return None;
+            }
+            let Some(last) = remainder(program, &coefficients, length, self.order) else {
+                length *= 0.5;
+                if length < self.longest_step * SHORTEST {
+                    return None;
+                }
+                continue;
+            };
+            let error = share_of_error(&self.state, &last, length, self.order);
+            let factor = (0.5 * self.tolerance / error.max(1e-300)).powf(1.0 / self.order as f64);
+            if error > self.tolerance && length > self.longest_step * SHORTEST {
+                length *= factor.clamp(0.2, 0.9);
+                continue;
+            }
+            self.next_step =
+                length.max(self.next_step.min(self.longest_step) * 0.25) * factor.clamp(0.3, 1.5);
+            return Some(Step { length, coefficients, last });
+        }
+    }
+
+    /// Gives the remainders symbols of their own, and makes room for them where need be.
+    fn name_errors(&mut self) {
+        if self.symbols + self.state.len() > self.most_symbols {
+            self.merge_errors();
+        }
+        for component in &mut self.state {
+            if component.name_rest(self.symbols as u8) {
+                self.symbols += 1;
+            }
+        }
+    }
+
+    /// Moves the smaller half of the symbols of errors into the remainders.
+    fn merge_errors(&mut self) {
+        let first = self.first_error;
+        let mut sizes = vec![0.0f64; self.symbols];
+        for (monomial, coefficient) in self.state.iter().flat_map(|component| component.terms()) {
+            for symbol in monomial.symbols() {
+                sizes[usize::from(symbol)] += coefficient.abs();
+            }
+        }
+        let mut ranked: Vec<usize> = (first..self.symbols).collect();
+        ranked.sort_by(|one, other| sizes[*other].total_cmp(&sizes[*one]).then(one.cmp(other)));
+        let kept = ranked.len() / 2;
+        let mut name: Vec<Option<u8>> = (0..first).map(|symbol| Some(symbol as u8)).collect();
+        name.resize(self.symbols, None);
+        let mut kept_symbols: Vec<usize> = ranked[..kept].to_vec();
+        kept_symbols.sort_unstable();
+        for (number, symbol) in kept_symbols.iter().enumerate() {
+            name[*symbol] = Some((first + number) as u8);
+        }
+        for component in &mut self.state {
+            component
+                .give_up(|monomial, _| monomial.symbols().any(|s| name[usize::from(s)].is_none()));
+            component.rename(|symbol| name[usize::from(symbol)].unwrap_or(symbol));
+        }
+        self.symbols = first + kept;
+    }
+}
+
+/// f⁽ᵏ⁾(B) for a box B that solutions do not leave for `length` seconds; `None` if none is found.
+fn remainder(
+    program: &SeriesProgram,
+    coefficients: &[Vec<TaylorModel>],
+    length: f64,
+    order: usize,
+) -> Option<Vec<Interval>> {
+    /// How often a box is tried.
+    const TRIALS: usize = 4;
+    let within = Interval::new(0.0, length).ok()?;
+    let known: Vec<Interval> =
+        coefficients.iter().map(|series| polynomial(series, within)).collect();
+    let power = power_of(within, order);
+    let mut guess: Vec<Interval> = known.iter().map(|side| inflated(*side, 0.01)).collect();
+    for _ in 0..TRIALS {
+        let series = program.solve(&guess, order, ())?;
+        let last: Vec<Interval> = series.iter().map(|of_one| of_one[order]).collect();
+        let image: Vec<Interval> =
+            known.iter().zip(&last).map(|(side, last)| *side + power * *last).collect();
+        let is_inside = |(inner, outer): (&Interval, &Interval)| {
+            outer.lower() <= inner.lower() && inner.upper() <= outer.upper()
+        };
+        if image.iter().zip(&guess).all(is_inside) {
+            return Some(last);
+        }
+        if !image.iter().all(|side| side.lower().is_finite() && side.upper().is_finite()) {
+            return None;
+        }
+        guess = image.iter().zip(&guess).map(|(new, old)| inflated(new.hull(*old), 0.1)).collect();
+    }
+    None
+}
+
+/// tᵏ for times t.
+fn power_of(time: Interval, order: usize) -> Interval {
+    (0..order).fold(Interval::point(1.0), |power, _| power * time)
+}
+
+/// A wider interval.
+fn inflated(side: Interval, share: f64) -> Interval {
+    side + around_zero(side.width() * share + magnitude(side) * 1e-9 + 1e-12)
+}
+
+/// Σ xⱼ tʲ for times t, as one interval.
+fn polynomial(series: &[TaylorModel], time: Interval) -> Interval {
+    series
+        .iter()
+        .rev()
+        .fold(Interval::point(0.0), |sum, coefficient| sum * time + coefficient.range())
+}
+
+/// What a step adds to the remainders, as a share of the state.
+fn share_of_error(state: &[TaylorModel], last: &[Interval], length: f64, order: usize) -> f64 {
+    let power = length.powi(order as i32);
+    let share = |(component, last): (&TaylorModel, &Interval)| {
+        magnitude(*last) * power / magnitude(component.range()).max(1.0)
+    };
+    state.iter().zip(last).map(share).fold(0.0, f64::max)
+}
+
+/// Of no components.
+const NONE: Limits = Limits { degree: 1, first_error: 0, least: 0.0 };
+
+/// d · x
+fn combined(direction: &[f64], components: &[TaylorModel]) -> TaylorModel {
+    let limits = components.first().map_or(NONE, TaylorModel::limits);
+    let zero = TaylorModel::constant(Interval::point(0.0), limits);
+    let terms = direction.iter().zip(components).filter(|(entry, _)| **entry != 0.0);
+    terms.fold(zero, |sum, (entry, component)| match *entry {
+        1.0 => sum.plus(component),
+        -1.0 => sum.minus(component),
+        entry => sum.plus(&component.scaled(Interval::point(entry))),
+    })
+}
+
+impl Step {
+    /// The state at the end.
+    fn end(&self) -> Vec<TaylorModel> {
+        let time = Interval::point(self.length);
+        let power = power_of(time, self.coefficients.first().map_or(0, Vec::len));
+        let end = |(series, last): (&Vec<TaylorModel>, &Interval)| {
+            let limits = series[0].limits();
+            let nothing = TaylorModel::constant(Interval::point(0.0), limits);
+            let sum = series
+                .iter()
+                .rev()
+                .fold(nothing, |sum, coefficient| sum.scaled(time).plus(coefficient));
+            sum.plus(&TaylorModel::number(power * *last, limits))
+        };
+        self.coefficients.iter().zip(&self.last).map(end).collect()
+    }
+
+    /// At least d · x during the step.
+    fn bound_along(&self, direction: &[f64]) -> f64 {
+        let order = self.coefficients.first().map_or(0, Vec::len);
+        let length = Interval::point(self.length);
+        let within = Interval::new(0.0, self.length).unwrap_or(Interval::WHOLE);
+        let mut rest = Interval::point(0.0);
+        // The coefficients of each monomial in time from 0 to 1, by power.
+        let mut entries: Vec<(Monomial, usize, f64)> = Vec::new();
+        let mut power = Interval::point(1.0);
+        for at in 0..order {
+            let column: Vec<TaylorModel> = direction
+                .iter()
+                .zip(&self.coefficients)
+                .map(|(entry, series)| match entry {
+                    0.0 => TaylorModel::constant(Interval::point(0.0), series[0].limits()),
+                    _ => series[at].clone(),
+                })
+                .collect();
+            let along = combined(direction, &column).scaled(power);
+            rest = rest + along.rest().hull(Interval::point(0.0));
+            entries.extend(along.terms().iter().map(|(monomial, a)| (*monomial, at, *a)));
+            power = power * length;
+        }
+        let last = direction.iter().zip(&self.last).filter(|(entry, _)| **entry != 0.0);
+        let last = last.map(|(entry, last)| Interval::point(*entry) * *last);
+        let last = last.fold(Interval::point(0.0), |sum, term| sum + term);
+        rest = rest + power_of(within, order) * last;
+        entries.sort_by_key(|(monomial, at, _)| (*monomial, *at));
+        let groups = entries.chunk_by(|one, other| one.0 == other.0);
+        let ranges = groups.map(|group| {
+            let over_time = group.iter().map(|(_, at, a)| match at {
+                0 => Interval::point(*a),
+                _ => Interval::point(*a).hull(Interval::point(0.0)),
+            });
+            group[0].0.range() * over_time.fold(Interval::point(0.0), |sum, term| sum + term)
+        });
+        ranges.fold(rest, |sum, term| sum + term).upper()
+    }
+}
