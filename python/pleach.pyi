@@ -18,6 +18,9 @@ __version__: str
 ROLES: tuple[str, ...]
 """The names of the roles; `Mission.roles` holds indices into it."""
 
+LOCATIONS: tuple[str, ...]
+"""The names of the locations of the duty automaton; `Mission.locations` holds indices into it."""
+
 class ScenarioError(ValueError):
     """No mission can start from a scenario: every mistake with its place and what would be right."""
 
@@ -58,6 +61,15 @@ class Mission:
     @property
     def roles(self) -> NDArray[numpy.uint8]:
         """Shape (K, N): indices into `ROLES`."""
+    @property
+    def locations(self) -> NDArray[numpy.uint8]:
+        """Shape (K, N): where each robot is in the duty automaton, indices into `LOCATIONS`."""
+    @property
+    def targets(self) -> NDArray[numpy.float64]:
+        """Shape (K, N, 2): where each robot goes; NaN if it stands still."""
+    @property
+    def messages(self) -> NDArray[numpy.uint64]:
+        """Shape (K, N, 2): how many messages each robot has sent and heard in the period."""
     @property
     def events(self) -> list[dict[str, Any]]:
         """The events with their period `k`, as in traces."""

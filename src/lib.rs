@@ -163,6 +163,8 @@ pub mod import;
 pub mod judge;
 pub mod mission;
 pub mod page;
+#[cfg(feature = "pdf")]
+pub mod pdf;
 pub mod prelude;
 #[cfg(feature = "mcap")]
 pub mod recording;

@@ -13,6 +13,7 @@
 mod scene;
 
 use crate::automaton::network::record::Snapshot;
+use crate::discrete::Location as _;
 use crate::story;
 use crate::trace::{TraceEntry, TraceError, TraceReader};
 use mcap::records::MessageHeader;

@@ -186,6 +186,8 @@ impl Summary {
             let Some(Extreme { value, instant, robots }) = extreme else { continue };
             let concerned: Vec<String> = robots.iter().map(usize::to_string).collect();
             let noun = if robots.len() == 1 { "robot" } else { "robots" };
+            // What rounds to zero has no sign.
+            let value = (value * 1e6).round() / 1e6 + 0.0;
             writeln!(
                 formatter,
                 "  {label:<19} {value:.6} at k = {} ({noun} {}); {symbol} {}",

@@ -142,6 +142,14 @@ fn narrow_passages_and_closed_parts_are_told() {
 }
 
 #[test]
+fn an_access_point_outside_the_floor_is_told() {
+    let plan = plan("cellar.map", &Reading::default());
+    let choices = Choices { access_points: vec![[1000.0, 3.0]], ..Choices::named("cellar") };
+    let error = import::skeleton(&plan, &choices).unwrap_err().to_string();
+    assert!(error.starts_with("the access point at (1000, 3) lies outside the floor"), "{error}");
+}
+
+#[test]
 fn maps_that_are_none_are_refused() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     for (name, text, said) in [

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The packages that users depend on, the root package first.
-const PACKAGES: [&str; 6] = ["", "guards", "discrete", "continuous", "automaton", "verify"];
+const PACKAGES: [&str; 7] =
+    ["", "guards", "discrete", "continuous", "drawing", "automaton", "verify"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -114,11 +115,12 @@ fn only_network_modules_know_of_the_network() {
 
 #[test]
 fn the_layers_know_only_those_below_them() {
-    let layers: [(&str, &[&str]); 5] = [
+    let layers: [(&str, &[&str]); 6] = [
         ("guards", &[]),
         ("discrete", &[]),
+        ("drawing", &[]),
         ("continuous", &["pleach-guards"]),
-        ("automaton", &["pleach-guards", "pleach-discrete", "pleach-continuous"]),
+        ("automaton", &["pleach-guards", "pleach-discrete", "pleach-continuous", "pleach-drawing"]),
         ("verify", &["pleach-guards", "pleach-discrete", "pleach-continuous", "pleach-automaton"]),
     ];
     for (package, below) in layers {
@@ -154,6 +156,13 @@ fn users_do_not_build_what_tests_the_product() {
             let drives_robots = |feature: &toml::Value| feature.as_str() == Some("abstraction");
             assert!(!features.is_some_and(|it| it.iter().any(drives_robots)), "{package:?}");
         }
+    }
+}
+
+#[test]
+fn every_picture_is_drawn_with_one_layer() {
+    for package in PACKAGES.into_iter().filter(|package| *package != "drawing") {
+        assert!(!dependencies(package).contains(&"svg".to_owned()), "{package:?} draws by itself");
     }
 }
 

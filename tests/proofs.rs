@@ -12,8 +12,8 @@ use pleach::verify::network::Property;
 use pleach_exploration::network::{ALWAYS, Campaign, Counts, ENDS, QUICK, THOROUGH};
 
 /// The packages that may have harnesses.
-const PACKAGES: [&str; 7] =
-    ["", "guards", "discrete", "continuous", "automaton", "verify", "exploration"];
+const PACKAGES: [&str; 8] =
+    ["", "guards", "discrete", "continuous", "drawing", "automaton", "verify", "exploration"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

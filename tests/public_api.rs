@@ -9,10 +9,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The published packages: name and folder.
-const PACKAGES: [(&str, &str); 6] = [
+const PACKAGES: [(&str, &str); 7] = [
     ("pleach-guards", "guards"),
     ("pleach-discrete", "discrete"),
     ("pleach-continuous", "continuous"),
+    ("pleach-drawing", "drawing"),
     ("pleach-automaton", "automaton"),
     ("pleach-verify", "verify"),
     ("pleach", ""),

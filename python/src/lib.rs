@@ -8,7 +8,8 @@ mod trajectory;
 use mission::{Mission, Recorder};
 use model::{Automaton, Composition};
 use pleach_library::automaton::network::scenario::ValidScenario;
-use pleach_library::discrete::network::Role;
+use pleach_library::discrete::Location;
+use pleach_library::discrete::network::{Activity, Role};
 use pleach_library::scenario_file::{self, Setting};
 use pleach_library::{mission as missions, starts};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -101,6 +102,8 @@ fn pleach(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("ROLES", PyTuple::new(py, Role::ALL.map(|role| role.name()))?)?;
+    let locations = Activity::ALL.iter().map(|activity| activity.name());
+    module.add("LOCATIONS", PyTuple::new(py, locations)?)?;
     module.add("ScenarioError", py.get_type::<ScenarioError>())?;
     module.add("ModelError", py.get_type::<ModelError>())?;
     module.add_class::<Mission>()?;

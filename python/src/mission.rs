@@ -1,10 +1,11 @@
 //! A mission as arrays.
 
-use numpy::ndarray::{Array1, Array2, Array3};
+use numpy::ndarray::{Array, Array1, Array2, Array3, Dimension, StrideShape};
 use numpy::{PyArray1, PyArray2, PyArray3, ToPyArray};
 use pleach_library::automaton::network::record::{End, MissionEvent, Snapshot};
 use pleach_library::automaton::network::scenario::ValidScenario;
-use pleach_library::discrete::network::Role;
+use pleach_library::discrete::Location;
+use pleach_library::discrete::network::{Activity, Role};
 use pleach_library::mission::Watcher;
 use pyo3::prelude::*;
 use std::io;
@@ -19,6 +20,9 @@ pub struct Recorder {
     residuals: Vec<f64>,
     multipliers: Vec<f64>,
     roles: Vec<u8>,
+    locations: Vec<u8>,
+    targets: Vec<f64>,
+    messages: Vec<u64>,
     routes: Vec<f64>,
     tree: Vec<i64>,
     events: Vec<String>,
@@ -37,6 +41,9 @@ impl Recorder {
             residuals: Vec::new(),
             multipliers: Vec::new(),
             roles: Vec::new(),
+            locations: Vec::new(),
+            targets: Vec::new(),
+            messages: Vec::new(),
             routes: Vec::new(),
             tree: Vec::new(),
             events: Vec::new(),
@@ -55,8 +62,10 @@ impl Recorder {
             name: self.name,
             scenario: self.scenario,
             times: Array1::from_vec(self.times),
-            positions: Array3::from_shape_vec((periods, robots, 2), self.positions)
-                .unwrap_or_default(),
+            positions: shaped(self.positions, (periods, robots, 2)),
+            targets: shaped(self.targets, (periods, robots, 2)),
+            messages: shaped(self.messages, (periods, robots, 2)),
+            locations: shaped(self.locations, (periods, robots)),
             residuals: table(self.residuals),
             multipliers: table(self.multipliers),
             roles: shaped(self.roles, (periods, robots)),
@@ -67,12 +76,16 @@ impl Recorder {
     }
 }
 
-fn shaped<T: Clone + Default>(values: Vec<T>, shape: (usize, usize)) -> Array2<T> {
-    Array2::from_shape_vec(shape, values).unwrap_or_default()
+fn shaped<T: Clone + Default, D: Dimension>(
+    values: Vec<T>,
+    shape: impl Into<StrideShape<D>>,
+) -> Array<T, D> {
+    Array::from_shape_vec(shape, values).unwrap_or_default()
 }
 
 fn shaped_rows<T: Clone + Default>(values: Vec<T>, columns: usize) -> Array2<T> {
-    shaped::<T>(values.clone(), (values.len() / columns, columns))
+    let rows = values.len() / columns;
+    shaped(values, (rows, columns))
 }
 
 impl Watcher for Recorder {
@@ -83,6 +96,13 @@ impl Watcher for Recorder {
         self.multipliers.extend(&snapshot.multipliers);
         let index = |role: &Role| Role::ALL.iter().position(|other| other == role);
         self.roles.extend(snapshot.roles.iter().filter_map(index).map(|index| index as u8));
+        for robot in &snapshot.robots {
+            let location = Activity::ALL.iter().position(|other| *other == robot.activity);
+            self.locations.extend(location.map(|location| location as u8));
+            let target = robot.target.map_or([f64::NAN; 2], |target| [target.x, target.y]);
+            self.targets.extend(target);
+            self.messages.extend([robot.sent, robot.heard]);
+        }
         for route in &snapshot.routes {
             let [k, from, to] = [snapshot.step, route.from, route.to].map(|number| number as f64);
             self.routes.extend([k, from, to, route.share, route.reliability]);
@@ -121,6 +141,9 @@ pub struct Mission {
     residuals: Array2<f64>,
     multipliers: Array2<f64>,
     roles: Array2<u8>,
+    locations: Array2<u8>,
+    targets: Array3<f64>,
+    messages: Array3<u64>,
     routes: Array2<f64>,
     tree: Array2<i64>,
     events: Vec<String>,
@@ -151,6 +174,21 @@ impl Mission {
     #[getter]
     fn roles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u8>> {
         self.roles.to_pyarray(py)
+    }
+
+    #[getter]
+    fn locations<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u8>> {
+        self.locations.to_pyarray(py)
+    }
+
+    #[getter]
+    fn targets<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<f64>> {
+        self.targets.to_pyarray(py)
+    }
+
+    #[getter]
+    fn messages<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<u64>> {
+        self.messages.to_pyarray(py)
     }
 
     #[getter]

@@ -18,12 +18,18 @@ def mission():
 def test_arrays_have_one_row_for_each_period(mission):
     periods, robots = mission.times.size, len(mission.scenario["robot"])
     assert mission.positions.shape == (periods, robots, 2)
-    for array in (mission.residuals, mission.multipliers, mission.roles):
+    for array in (mission.residuals, mission.multipliers, mission.roles, mission.locations):
         assert array.shape == (periods, robots)
     assert mission.positions.dtype == numpy.float64
     assert numpy.all(mission.residuals >= -1e-6)
     assert numpy.all(numpy.diff(mission.times) > 0)
     assert mission.roles.max() < len(pleach.ROLES)
+    assert mission.targets.shape == mission.messages.shape == (periods, robots, 2)
+    goes = ~numpy.isnan(mission.targets).any(axis=2)
+    assert goes.any() and not goes.all()
+    leading = mission.locations == pleach.LOCATIONS.index("leading the team")
+    assert leading.any() and numpy.all(mission.roles[leading] == pleach.ROLES.index("leader"))
+    assert mission.messages.min() > 0, "robots repeat their beacons in every period"
     assert mission.tree.shape[1] == 3 and mission.routes.shape[1] == 5
 
 

@@ -130,6 +130,10 @@ pub struct RunArguments {
     /// Write figures without titles, for papers with captions of their own
     #[arg(long)]
     pub plain: bool,
+    /// Write each figure as PDF, too
+    #[cfg(feature = "pdf")]
+    #[arg(long, conflicts_with = "no_figures")]
+    pub pdf: bool,
     /// Write a table of the runs to FILE as comma-separated values
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
@@ -168,6 +172,7 @@ pub struct CheckArguments {
 
 /// The arguments of `pleach import`.
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub struct ImportArguments {
     /// The map: .yaml with its image, .map, .geojson, .json or .svg
     pub map: PathBuf,

@@ -7,8 +7,12 @@ use super::record::Record;
 use super::source::STANDARD;
 use super::status::Failure;
 use pleach::automaton::network::scenario::ValidScenario;
+#[cfg(feature = "pdf")]
+use pleach::figures::ANIMATION;
 use pleach::figures::Album;
 use pleach::mission::{self, Watcher};
+#[cfg(feature = "pdf")]
+use pleach::pdf::Printer;
 use pleach::summary::Summary;
 use pleach::trace::TraceWriter;
 use std::fs::{self, File};
@@ -25,6 +29,9 @@ pub struct Outputs {
     pub figures: Option<PathBuf>,
     /// Whether figures go without titles.
     pub plain: bool,
+    /// Whether figures are written as PDF, too.
+    #[cfg(feature = "pdf")]
+    pub pdf: bool,
 }
 
 /// A run that has ended.
@@ -51,6 +58,8 @@ pub fn run(
     if let Some(folder) = &outputs.figures {
         create_folder(folder)?;
     }
+    #[cfg(feature = "pdf")]
+    let printer = outputs.pdf.then(Printer::new).transpose()?;
     let open = |album: Album| if outputs.plain { album.plain() } else { album };
     let mut album = outputs.figures.as_ref().map(|_| open(Album::new(scenario)));
 
@@ -66,7 +75,24 @@ pub fn run(
         (Some(album), Some(folder)) => album.write(folder, &completed.end)?,
         _ => Vec::new(),
     };
+    #[cfg(feature = "pdf")]
+    let figures = match printer {
+        Some(printer) => with_pdf(&printer, figures)?,
+        None => figures,
+    };
     Ok(Finished { record, summary: summary.completed(completed, elapsed), figures })
+}
+
+/// The figures, before them a PDF of each that is a picture.
+#[cfg(feature = "pdf")]
+fn with_pdf(printer: &Printer, figures: Vec<PathBuf>) -> Result<Vec<PathBuf>, Failure> {
+    let pictures = figures.iter().filter(|path| {
+        path.extension().is_some_and(|kind| kind == "svg") && !path.ends_with(ANIMATION)
+    });
+    let mut all =
+        pictures.map(|picture| printer.print_beside(picture)).collect::<Result<Vec<_>, _>>()?;
+    all.extend(figures);
+    Ok(all)
 }
 
 fn start_trace(

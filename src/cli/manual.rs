@@ -22,7 +22,8 @@ pub fn write_manual(folder: Option<&Path>) -> Result<Status, Failure> {
         None => clap_mangen::Man::new(Arguments::command()).render(&mut io::stdout().lock())?,
         Some(folder) => {
             job::create_folder(folder)?;
-            clap_mangen::generate_to(Arguments::command(), folder)?;
+            let failed = |source| Failure::Creation { path: folder.to_owned(), source };
+            clap_mangen::generate_to(Arguments::command(), folder).map_err(failed)?;
         }
     }
     Ok(Status::Done)

@@ -39,6 +39,8 @@ fn run_one(
         figures: (!arguments.no_figures)
             .then(|| arguments.figures.clone().unwrap_or_else(default_folder)),
         plain: arguments.plain,
+        #[cfg(feature = "pdf")]
+        pdf: arguments.pdf,
     };
     let mut progress = Progress::new(&run.scenario, arguments.quiet);
     let finished = job::run(run, &outputs, &mut progress, interrupt)?;
@@ -69,6 +71,8 @@ fn run_many(
             trace: arguments.trace.as_ref().map(|folder| folder.join(format!("{name}.jsonl"))),
             figures: arguments.figures.as_ref().map(|folder| folder.join(name)),
             plain: arguments.plain,
+            #[cfg(feature = "pdf")]
+            pdf: arguments.pdf,
         }
     };
     let mission = |run: &Planned| -> Record {
@@ -82,9 +86,7 @@ fn run_many(
     let records = batch::run(runs, arguments.jobs(), arguments.quiet, interrupt, mission);
     write_tables(arguments, &records)?;
     let mut said = table::draw(&records, terminal::width());
-    for record in records.iter().filter(|record| !record.reason.is_empty()) {
-        said += &format!("run {}: {}\n", record.run, record.reason);
-    }
+    said += &table::reasons(&records);
     if records.len() < runs.len() {
         said += &format!("{} of {} runs did not begin\n", runs.len() - records.len(), runs.len());
     }

@@ -106,6 +106,10 @@ pub enum Failure {
         /// What is wrong with it.
         source: pleach::recording::RecordingError,
     },
+    /// A figure cannot be written as PDF.
+    #[cfg(feature = "pdf")]
+    #[error(transparent)]
+    Pdf(#[from] pleach::pdf::PdfError),
     /// No page can be made of a trace.
     #[error("{}: {error}", path.display())]
     Trace {
@@ -163,6 +167,8 @@ impl Failure {
             | Failure::Creation { .. } => Status::BadInput,
             #[cfg(feature = "mcap")]
             Failure::Recording { .. } => Status::BadInput,
+            #[cfg(feature = "pdf")]
+            Failure::Pdf(_) => Status::Failed,
             Failure::Output(_) | Failure::Mission(_) | Failure::Internal(_) => Status::Failed,
         }
     }

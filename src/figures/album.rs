@@ -20,6 +20,8 @@ use super::scene::Scene;
 use super::series::Series;
 use super::spacing::Walls;
 
+/// The file of the animation.
+pub const ANIMATION: &str = "animation.svg";
 /// Ways shorter than this share of ρ are not drawn.
 const TRAIL_STEP: f64 = 0.25;
 
@@ -126,7 +128,7 @@ impl Album {
             (format!("{index:0digits$}-k{step:05}-{slug}.svg"), self.plan.render(&scene))
         });
         let curves = self.curve_figures().map(|(name, svg)| (name.to_owned(), svg));
-        let film = ("animation.svg".to_owned(), self.film.render(&self.plan, self.last.as_ref()));
+        let film = (ANIMATION.to_owned(), self.film.render(&self.plan, self.last.as_ref()));
         let page = ("index.html".to_owned(), self.page.render());
         let mut written = Vec::new();
         for (name, text) in drawn.chain(curves).chain([film, page]) {

@@ -1,10 +1,11 @@
 //! The mission as a picture that moves: SVG with animations, for pages that show no scripts.
 
 use pleach_automaton::network::record::Snapshot;
-use svg::node::element::{Animate, AnimateTransform, Group, Line};
+use pleach_drawing::svg::node::element::{Animate, AnimateTransform, Group, Line};
+use pleach_drawing::{disc, layer, number};
 
-use super::canvas::{Spot, View, layer, number, rectangle, sheet, text};
-use super::marks::{Mark, TaskState, disc};
+use super::canvas::{Spot, View, rectangle, sheet, text};
+use super::marks::{Mark, TaskState};
 use super::palette;
 use super::plan::Plan;
 

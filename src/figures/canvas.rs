@@ -1,20 +1,13 @@
-//! Small strokes that every figure is made of: numbers, texts, lines, and the map to the paper.
+//! Strokes, texts and sheets as figures draw them, and the map from the workspace to the sheet.
 
-use svg::Document;
-use svg::node::element::{Group, Line, Rectangle, Text};
+use pleach_drawing::style::{INK, QUIET, WORDS};
+use pleach_drawing::svg::Document;
+use pleach_drawing::svg::node::element::{Line, Rectangle, Text};
+use pleach_drawing::{self as drawing, line, number};
 
-use super::palette::{CHARACTER_WIDTH, FONT, INK, PAPER, QUIET, SUBTITLE_SIZE, TITLE_SIZE};
+use super::palette::{SUBTITLE_SIZE, TITLE_SIZE};
 
-/// A place on the paper, y downwards.
-pub(crate) type Spot = [f64; 2];
-
-/// Writes a coordinate with two decimals and without a negative zero, so that equal pictures
-/// have equal bytes.
-pub(super) fn number(value: f64) -> String {
-    let text = format!("{value:.2}");
-    let short = text.trim_end_matches('0').trim_end_matches('.');
-    if short == "-0" { "0".to_owned() } else { short.to_owned() }
-}
+pub(crate) use pleach_drawing::Spot;
 
 /// Writes a quantity for people: with four decimals or four significant digits at most, and as few
 /// as it needs.
@@ -27,37 +20,27 @@ pub fn quantity(value: f64) -> String {
     if short == "-0" { "0".to_owned() } else { short.to_owned() }
 }
 
-/// Writes the corners of a polygon or polyline.
-pub(super) fn corners(spots: impl IntoIterator<Item = Spot>) -> String {
-    let pairs: Vec<String> =
-        spots.into_iter().map(|[x, y]| format!("{},{}", number(x), number(y))).collect();
-    pairs.join(" ")
-}
-
 /// How wide a text is, estimated without its font.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
-    text.chars().count() as f64 * size * CHARACTER_WIDTH
+    WORDS.width(text, size)
 }
 
-/// A text that starts at a place on the paper.
-pub(super) fn text(content: impl Into<String>, [x, y]: Spot, size: f64, colour: &str) -> Text {
-    Text::new(content)
-        .set("x", number(x))
-        .set("y", number(y))
-        .set("font-size", number(size))
-        .set("fill", colour)
+/// A text that starts at a place.
+pub(super) fn text(content: impl Into<String>, spot: Spot, size: f64, colour: &str) -> Text {
+    drawing::text(content, spot).set("font-size", number(size)).set("fill", colour)
 }
 
-/// A straight stroke.
+/// A straight stroke with round ends.
 pub(super) fn stroke(from: Spot, to: Spot, colour: &str, width: f64) -> Line {
-    Line::new()
-        .set("x1", number(from[0]))
-        .set("y1", number(from[1]))
-        .set("x2", number(to[0]))
-        .set("y2", number(to[1]))
+    line(from, to)
         .set("stroke", colour)
         .set("stroke-width", number(width))
         .set("stroke-linecap", "round")
+}
+
+/// A filled rectangle from a corner, with its size.
+pub(super) fn rectangle(corner: Spot, size: Spot, colour: &str) -> Rectangle {
+    drawing::rectangle(corner, size).set("fill", colour)
 }
 
 /// Above the drawings of figures with a heading, for title and subtitle.
@@ -87,31 +70,11 @@ pub(super) fn headed(
         .add(text(subtitle, [20.0, 56.0], fitting(subtitle, SUBTITLE_SIZE), QUIET))
 }
 
-fn framed([left, top]: Spot, [width, height]: [f64; 2], title: &str) -> Document {
-    let corners = [left, top, width, height].map(number);
-    Document::new()
-        .set("viewBox", corners.join(" "))
-        .set("width", number(width))
-        .set("height", number(height))
-        .set("font-family", FONT)
+fn framed(corner: Spot, size: Spot, title: &str) -> Document {
+    drawing::sheet(corner, size)
+        .set("font-family", WORDS.families)
         .set("role", "img")
         .set("aria-label", title)
-        .add(rectangle([left, top], [width, height], PAPER))
-}
-
-/// A filled rectangle from a corner, with its size.
-pub(super) fn rectangle([x, y]: Spot, [width, height]: [f64; 2], colour: &str) -> Rectangle {
-    Rectangle::new()
-        .set("x", number(x))
-        .set("y", number(y))
-        .set("width", number(width.max(0.0)))
-        .set("height", number(height.max(0.0)))
-        .set("fill", colour)
-}
-
-/// A layer of a picture; its class names it for readers of the file.
-pub(super) fn layer(class: &str) -> Group {
-    Group::new().set("class", class)
 }
 
 /// The map from the workspace to the paper: same scale in x and y, y turned over.

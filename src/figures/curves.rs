@@ -1,11 +1,11 @@
 //! Curves over control periods: axes, the lines of telling moments, and the curves themselves.
 
-use svg::node::element::{Group, Polyline};
+use pleach_drawing::svg::node::element::Group;
+use pleach_drawing::{Axis, layer, named, polyline};
 
-use super::canvas::{Spot, corners, headed, layer, quantity, rectangle, stroke, text, text_width};
+use super::canvas::{Spot, headed, rectangle, stroke, text, text_width};
 use super::marks::draw_moment;
 use super::palette;
-use super::plan::round_length;
 use crate::story::Moment;
 
 /// Upper left corner of the plot.
@@ -138,9 +138,7 @@ impl Chart<'_> {
     fn lines(&self, frame: &Frame) -> Group {
         self.curves.iter().fold(layer("curves"), |group, curve| {
             let spots = curve.points.iter().map(|[k, value]| [frame.x(*k), frame.y(*value)]);
-            let line = Polyline::new()
-                .set("points", corners(spots))
-                .set("fill", "none")
+            let line = polyline(spots)
                 .set("stroke", curve.colour)
                 .set("stroke-width", curve.width)
                 .set("stroke-opacity", curve.opacity)
@@ -208,54 +206,53 @@ fn sign_legend() -> Group {
 /// The axes.
 struct Frame {
     last_step: f64,
-    low: f64,
-    high: f64,
+    steps: Axis,
+    values: Axis,
 }
 
 impl Frame {
     fn around(chart: &Chart<'_>) -> Frame {
-        let values = chart.curves.iter().flat_map(|curve| curve.points.iter().map(|p| p[1]));
-        let values: Vec<f64> = values.chain(chart.limits.iter().map(|limit| limit.value)).collect();
-        let high = values.iter().copied().fold(0.0, f64::max);
-        let low = values.iter().copied().fold(0.0, f64::min);
-        let room = if high > low { (high - low) * 0.06 } else { 1.0 };
-        let low = if low < 0.0 { low - room } else { 0.0 };
-        Frame { last_step: chart.last_step.max(1) as f64, low, high: high + room }
+        let curves = chart.curves.iter().flat_map(|curve| curve.points.iter().map(|p| p[1]));
+        let limits = chart.limits.iter().map(|limit| limit.value);
+        let [left, top] = CORNER;
+        let [right, foot] = [left + SIZE[0], top + SIZE[1]];
+        let last_step = chart.last_step.max(1) as f64;
+        Frame {
+            last_step,
+            steps: Axis::exact([0.0, last_step], left, right),
+            values: Axis::from_zero(curves.chain(limits), foot, top),
+        }
     }
 
     fn x(&self, step: f64) -> f64 {
-        CORNER[0] + (step / self.last_step).min(1.0) * SIZE[0]
+        self.steps.place(step.min(self.last_step))
     }
 
     fn y(&self, value: f64) -> f64 {
-        CORNER[1] + (self.high - value) / (self.high - self.low) * SIZE[1]
+        self.values.place(value)
     }
 
     fn grid(&self, axis: &str, period_axis: &str) -> Group {
         let foot = CORNER[1] + SIZE[1];
         let right = CORNER[0] + SIZE[0];
+        let words =
+            |words: String, spot: Spot| text(words, spot, palette::TEXT_SIZE, palette::QUIET);
         let mut group = layer("axes");
-        for value in ticks(self.low, self.high, 6.0) {
-            let y = self.y(value);
-            let words = text(
-                quantity(value),
-                [CORNER[0] - 8.0, y + 4.0],
-                palette::TEXT_SIZE,
-                palette::QUIET,
-            );
+        let (ticks, power) = self.values.ticks(6.0);
+        for tick in ticks {
+            let number = words(tick.text, [CORNER[0] - 8.0, tick.place + 4.0]);
             group = group
-                .add(stroke([CORNER[0], y], [right, y], palette::GRID, 0.8))
-                .add(words.set("text-anchor", "end"));
+                .add(stroke([CORNER[0], tick.place], [right, tick.place], palette::GRID, 0.8))
+                .add(number.set("text-anchor", "end"));
         }
-        for step in ticks(0.0, self.last_step, 10.0) {
-            let x = self.x(step);
-            let words = text(quantity(step), [x, foot + 18.0], palette::TEXT_SIZE, palette::QUIET);
+        for tick in self.steps.ticks(10.0).0 {
+            let number = words(tick.text, [tick.place, foot + 18.0]);
             group = group
-                .add(stroke([x, foot], [x, foot + 4.0], palette::QUIET, 1.0))
-                .add(words.set("text-anchor", "middle"));
+                .add(stroke([tick.place, foot], [tick.place, foot + 4.0], palette::QUIET, 1.0))
+                .add(number.set("text-anchor", "middle"));
         }
         let middle = CORNER[1] + SIZE[1] / 2.0;
-        let axis_name = text(axis, [0.0, 0.0], palette::SUBTITLE_SIZE, palette::INK)
+        let axis_name = text(named(axis, power), [0.0, 0.0], palette::SUBTITLE_SIZE, palette::INK)
             .set("text-anchor", "middle")
             .set("transform", format!("translate(22,{middle}) rotate(-90)"));
         let period_name = text(
@@ -273,24 +270,9 @@ impl Frame {
     }
 }
 
-/// Round values between two ends, about `count` of them.
-fn ticks(low: f64, high: f64, count: f64) -> Vec<f64> {
-    let step = round_length((high - low) / count * 2.0);
-    let (first, last) = ((low / step).ceil() as i64, (high / step + 1e-9).floor() as i64);
-    (first..=last).map(|index| index as f64 * step).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ticks_are_round_and_inside() {
-        assert_eq!(ticks(0.0, 744.0, 10.0), [0., 100., 200., 300., 400., 500., 600., 700.]);
-        let small = ticks(-0.01, 0.09, 6.0);
-        assert_eq!(small.len(), 5, "{small:?}");
-        assert!(small.iter().all(|value| (-0.01..=0.09).contains(value)));
-    }
 
     #[test]
     fn labels_are_pushed_apart_and_stay_above_the_floor() {

@@ -1,11 +1,12 @@
 //! What the marks and strokes mean: a column beside the drawing.
 
-use svg::node::element::Group;
+use pleach_drawing::svg::node::element::Group;
+use pleach_drawing::{layer, number, round_below};
 
-use super::canvas::{Spot, View, layer, number, quantity, rectangle, stroke, text};
+use super::canvas::{Spot, View, quantity, rectangle, stroke, text};
 use super::marks::{Mark, TaskState, active_ring};
 use super::palette;
-use super::plan::{Plan, bar, round_length};
+use super::plan::{Plan, bar};
 use super::scene::{link_width, path_band, to_scale, tree_width, way_to_post};
 
 /// Width of the column, with the white at its right.
@@ -107,7 +108,7 @@ impl Column {
         let (length, words) = match range <= longest {
             true => (range, format!("l = {}: links fully reliable", quantity(range))),
             false => {
-                let length = round_length(longest);
+                let length = round_below(longest);
                 (length, format!("{} (l = {})", quantity(length), quantity(range)))
             }
         };

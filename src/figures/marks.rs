@@ -2,10 +2,11 @@
 
 use pleach_automaton::network::record::Snapshot;
 use pleach_discrete::network::Role;
+use pleach_drawing::svg::node::element::{Circle, Group, Polygon, Title};
+use pleach_drawing::{corners, disc, layer, number, polyline};
 use serde::Serialize;
-use svg::node::element::{Circle, Group, Polygon, Polyline, Title};
 
-use super::canvas::{Spot, corners, number, stroke};
+use super::canvas::{Spot, stroke};
 use super::palette;
 use crate::story::Moment;
 
@@ -119,8 +120,7 @@ impl Mark {
 
     /// Draws the mark so that it looks as large as a dot of this radius.
     pub(super) fn draw(self, [x, y]: Spot, radius: f64, tooltip: &str) -> Group {
-        let group = Group::new()
-            .set("class", "mark")
+        let group = layer("mark")
             .set("fill", self.colour())
             .set("stroke", palette::INK)
             .set("stroke-width", number((radius * 0.14).clamp(0.6, 1.1)))
@@ -186,7 +186,7 @@ impl TaskState {
     /// Draws a cross; a serviced task stands in a full ring, one to come is faint.
     pub(super) fn draw(self, [x, y]: Spot, arm: f64, tooltip: &str) -> Group {
         let width = arm * 0.27;
-        let mut group = Group::new().set("class", "task").add(Title::new(tooltip));
+        let mut group = layer("task").add(Title::new(tooltip));
         let tint = disc([x, y], arm * 1.5).set("fill", palette::TASK);
         match self {
             TaskState::Unannounced => group = group.set("opacity", "0.35"),
@@ -215,11 +215,6 @@ pub(super) fn active_ring(centre: Spot, radius: f64) -> Circle {
         .set("fill", "none")
         .set("stroke", palette::INK)
         .set("stroke-width", "1.3")
-}
-
-/// A filled circle.
-pub(super) fn disc([x, y]: Spot, radius: f64) -> Circle {
-    Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", number(radius))
 }
 
 /// A regular figure whose corners take turns among `radii`; `turn` counts in corners, from the
@@ -254,9 +249,7 @@ pub(crate) fn moment_strokes(moment: Moment) -> &'static [&'static [Spot]] {
 
 /// Draws the mark of a moment in a box of half width `arm`.
 pub(super) fn draw_moment(moment: Moment, [x, y]: Spot, arm: f64, tooltip: &str) -> Group {
-    let group = Group::new()
-        .set("class", "moment")
-        .set("fill", "none")
+    let group = layer("moment")
         .set("stroke", palette::INK)
         .set("stroke-width", number(arm * 0.36))
         .set("stroke-linecap", "round")
@@ -264,6 +257,6 @@ pub(super) fn draw_moment(moment: Moment, [x, y]: Spot, arm: f64, tooltip: &str)
         .add(Title::new(tooltip));
     moment_strokes(moment).iter().fold(group, |group, stroke| {
         let spots = stroke.iter().map(|[dx, dy]| [x + arm * dx, y + arm * dy]);
-        group.add(Polyline::new().set("points", corners(spots)))
+        group.add(polyline(spots))
     })
 }

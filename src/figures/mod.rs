@@ -37,7 +37,7 @@ pub(crate) use marks::TaskState;
 pub(crate) use screen::{link_data, mark_data, moment_data};
 pub(crate) use spacing::Walls;
 
-pub use album::Album;
+pub use album::{ANIMATION, Album};
 pub use canvas::quantity;
 pub use marks::Mark;
 pub use plan::Plan;

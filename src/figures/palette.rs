@@ -1,23 +1,16 @@
-//! The colours and type sizes that all figures share.
+//! The colours and type sizes that all figures share, besides those of every picture.
 //!
 //! The colours of marks are those of Okabe and Ito, which people with any kind of colour vision
 //! can tell apart; where the captions of the paper ask for a hue that they lack, the lightness
 //! differs. No meaning rests on colour alone: every mark has a shape of its own too.
 
-/// Paper around the drawing.
-pub(crate) const PAPER: &str = "#ffffff";
+use pleach_drawing::style::WORDS;
+pub(crate) use pleach_drawing::style::{BAND, GRID, INK, PAPER, QUIET};
+
 /// Walls and holes.
 pub(crate) const WALL: &str = "#454d5c";
 /// Space in which robots may be.
 pub(crate) const FLOOR: &str = "#fbfaf6";
-/// Titles and marks' outlines.
-pub(crate) const INK: &str = "#1b1f27";
-/// Text of second rank, axes.
-pub(crate) const QUIET: &str = "#5d6573";
-/// Grid lines.
-pub(crate) const GRID: &str = "#e3e5e9";
-/// Background of every second task in the curves.
-pub(crate) const BAND: &str = "#f4f5f8";
 /// The outline of W_f and limits that may not be crossed.
 pub(crate) const LIMIT: &str = "#d0342c";
 /// Communication links.
@@ -83,8 +76,9 @@ pub(crate) fn style_sheet() -> String {
         screen.into_iter().chain(curves).collect::<Vec<_>>().join(" ")
     };
     let (light, dark) = (declared(false), declared(true));
+    let font = WORDS.families;
     format!(
-        ":root {{ color-scheme: light; --font: {FONT}; {light} }}\n\
+        ":root {{ color-scheme: light; --font: {font}; {light} }}\n\
          @media screen and (prefers-color-scheme: dark) {{ :root {{ color-scheme: dark; {dark} }} }}\n\
          @media screen {{\n\
          :root[data-theme=\"light\"] {{ color-scheme: light; {light} }}\n\
@@ -105,9 +99,6 @@ const DARK_CURVES: [&str; 12] = [
     "#e59cc6", "#b08d80", "#8391f0", "#b5c24a",
 ];
 
-/// The typefaces, the first that is installed.
-pub(crate) const FONT: &str =
-    "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif";
 /// Size of titles.
 pub(crate) const TITLE_SIZE: f64 = 20.0;
 /// Size of subtitles and names of axes.
@@ -116,7 +107,5 @@ pub(crate) const SUBTITLE_SIZE: f64 = 13.0;
 pub(crate) const TEXT_SIZE: f64 = 12.0;
 /// Size of the numbers beside marks.
 pub(crate) const LABEL_SIZE: f64 = 10.5;
-/// Width of a character relative to the size of its type, on average.
-pub(crate) const CHARACTER_WIDTH: f64 = 0.54;
 /// Width of every figure in its own units, and on paper in pixels.
 pub(crate) const WIDTH: f64 = 960.0;

@@ -1,9 +1,10 @@
 //! The floor plan behind the robots: walls, free space and the lengths that matter in it.
 
 use pleach_automaton::network::scenario::Scenario;
-use svg::node::element::{Group, Path};
+use pleach_drawing::svg::node::element::{Group, Path};
+use pleach_drawing::{corners, layer, number};
 
-use super::canvas::{Spot, View, corners, layer, number, rectangle};
+use super::canvas::{Spot, View, rectangle};
 use super::labels::WallTest;
 use super::palette;
 
@@ -107,16 +108,6 @@ impl WallTest for PaperWalls {
 /// The sides of a closed loop.
 pub(super) fn sides(points: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     points.iter().copied().zip(points.iter().copied().cycle().skip(1))
-}
-
-/// A round length, 1, 2 or 5 times a power of ten, not longer than `limit`.
-pub(super) fn round_length(limit: f64) -> f64 {
-    if !(limit.is_finite() && limit > 0.0) {
-        return 1.0;
-    }
-    let power = 10.0_f64.powf(limit.log10().floor());
-    let factor = [5.0, 2.0].into_iter().find(|factor| factor * power <= limit).unwrap_or(1.0);
-    factor * power
 }
 
 /// Draws a length as a bar with ends.

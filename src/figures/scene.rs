@@ -2,10 +2,11 @@
 
 use pleach_automaton::network::record::Snapshot;
 use pleach_discrete::Location as _;
-use svg::Document;
-use svg::node::element::{Circle, Group, Polyline, Text};
+use pleach_drawing::svg::Document;
+use pleach_drawing::svg::node::element::{Circle, Group, Polyline, Text};
+use pleach_drawing::{disc, layer, number, polyline};
 
-use super::canvas::{Spot, View, corners, headed, layer, number, stroke, text};
+use super::canvas::{Spot, View, headed, stroke, text};
 use super::labels::LabelPlaces;
 use super::legend;
 use super::marks::{Mark, TaskState, active_ring};
@@ -114,9 +115,7 @@ impl Picture<'_> {
         let moved = self.scene.trails.iter().filter(|trail| trail.len() > 1);
         moved.fold(layer("trails"), |group, trail| {
             group.add(
-                Polyline::new()
-                    .set("points", corners(trail.iter().map(|point| self.view.spot(*point))))
-                    .set("fill", "none")
+                polyline(trail.iter().map(|point| self.view.spot(*point)))
                     .set("stroke", palette::TRAIL)
                     .set("stroke-width", "1.6")
                     .set("stroke-opacity", "0.7")
@@ -280,9 +279,7 @@ pub(super) fn tree_width(traffic: f64) -> f64 {
 
 /// The band below the path Σ.
 pub(super) fn path_band(spots: Vec<Spot>) -> Polyline {
-    Polyline::new()
-        .set("points", corners(spots))
-        .set("fill", "none")
+    polyline(spots)
         .set("stroke", palette::RECRUIT)
         .set("stroke-opacity", "0.2")
         .set("stroke-width", "19")
@@ -292,7 +289,7 @@ pub(super) fn path_band(spots: Vec<Spot>) -> Polyline {
 
 /// The disc of radius ρ that a robot keeps for itself, to scale.
 pub(super) fn to_scale(centre: Spot, radius: f64) -> Circle {
-    super::marks::disc(centre, radius)
+    disc(centre, radius)
         .set("class", "disc")
         .set("fill", palette::INK)
         .set("fill-opacity", "0.1")
@@ -303,7 +300,7 @@ pub(super) fn to_scale(centre: Spot, radius: f64) -> Circle {
 
 /// A robot's way to the reference of its post.
 pub(super) fn way_to_post(holder: Spot, reference: Spot) -> Group {
-    let place = super::marks::disc(reference, 3.2)
+    let place = disc(reference, 3.2)
         .set("fill", palette::FLOOR)
         .set("stroke", palette::QUIET)
         .set("stroke-width", "1.2");

@@ -62,6 +62,20 @@ pub enum SkeletonError {
     /// The outline cannot be used.
     #[error("no scenario comes of this map: {0}")]
     Site(#[from] crate::automaton::network::SiteError),
+    /// An access point stands outside the floor.
+    #[error(
+        "the access point at ({}, {}) lies outside the floor, which reaches from ({}, {}) to \
+         ({}, {}): place it inside the outline and outside the walls",
+        at[0], at[1], low[0], low[1], high[0], high[1]
+    )]
+    Outside {
+        /// Where it stands.
+        at: [f64; 2],
+        /// The least coordinates of the floor.
+        low: [f64; 2],
+        /// The greatest coordinates of the floor.
+        high: [f64; 2],
+    },
     /// There is no room.
     #[error(
         "no place was found for {0}: the clearance may be too large for this floor, or the links \
@@ -105,6 +119,7 @@ pub fn skeleton(
     .map(|position| AccessPoint { position })
     .collect();
     let site = Site::new(&scenario)?;
+    access_points_are_on_the_floor(&scenario, &site)?;
     let starts = match plan.places.robots.is_empty() {
         false => plan.places.robots.clone(),
         true => (0..STARTS)
@@ -132,6 +147,19 @@ pub fn skeleton(
         notes.push(format!("robots cannot reach {:.1} % of the floor", 100.0 * unreached));
     }
     Ok((ValidScenario::new(scenario)?, notes))
+}
+
+fn access_points_are_on_the_floor(scenario: &Scenario, site: &Site) -> Result<(), SkeletonError> {
+    let places = scenario.access_point.iter().map(|access_point| access_point.position);
+    let outside = places.into_iter().find(|&place| !site.workspace.contains(place.into()));
+    let corners = || scenario.workspace.boundary.iter();
+    let end = |axis: usize, better: fn(f64, f64) -> f64| {
+        corners().map(|corner| corner[axis]).reduce(better).unwrap_or_default()
+    };
+    outside.map_or(Ok(()), |at| {
+        let [low, high] = [f64::min, f64::max].map(|better| [0, 1].map(|axis| end(axis, better)));
+        Err(SkeletonError::Outside { at, low, high })
+    })
 }
 
 /// Drafts of starts that are tried.

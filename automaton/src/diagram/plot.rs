@@ -1,16 +1,15 @@
 //! Plots of a trajectory: variables and locations over time.
 
-mod axis;
 mod curve;
 mod flowpipe;
 mod portrait;
 mod sheet;
 
+use pleach_drawing::{Axis, named, power_of_ten};
 use pleach_guards::constant;
 
 use crate::executor::{Ending, Reason};
 use crate::trajectory::{FlowInterval, Trajectory};
-use axis::{Axis, power_of_ten};
 use curve::Quantity;
 use sheet::{Sheet, WIDTH, area_colour, text_width};
 
@@ -44,7 +43,7 @@ const DOT_DISTANCE: f64 = 8.0;
 /// for each component, coloured by its location. A jump is a dashed line from x⁻, an open dot, to
 /// x⁺, a full one.
 pub fn plot(trajectory: &Trajectory) -> String {
-    let mut sheet = Sheet::new();
+    let mut sheet = Sheet::default();
     let right = WIDTH - RIGHT;
     let end = trajectory.ending().at.t;
     let time = Axis::exact([0.0, end], LEFT, right);
@@ -130,11 +129,7 @@ fn draw_panel(
     let right = WIDTH - RIGHT;
     sheet.panel([LEFT, top], [right - LEFT, PANEL]);
     let (ticks, power) = vertical.ticks(TICKS[0]);
-    let caption = match power {
-        Some(power) => format!("{name}  / {}", power_of_ten(power)),
-        None => name.to_owned(),
-    };
-    sheet.text(LEFT, top - CAPTION / 3.0, &caption, "name");
+    sheet.text(LEFT, top - CAPTION / 3.0, &named(name, power), "name");
     for tick in ticks {
         sheet.line([LEFT, tick.place], [right, tick.place], "grid");
         sheet.text(LEFT - 8.0, tick.place, &tick.text, "quiet end");

@@ -7,8 +7,8 @@
 
 use std::fmt::Write as _;
 
-use super::axis::Axis;
-use super::sheet::number;
+use pleach_drawing::{Axis, number};
+
 use crate::trajectory::{Sample, between};
 
 /// Samples closer than this are thinned, in pixels.
@@ -134,8 +134,8 @@ mod tests {
         assert_eq!(values.iter().copied().fold(0.0, f64::max), 1.0);
         let (time, up) = (Axis::exact([0.0, 1.0], 0.0, 90.0), Axis::exact([0.0, 1.0], 60.0, 0.0));
         let path = path(&samples, (Quantity::Time, &time), (height, &up));
-        let controls = "30.00 -20.00 60.00 -20.00"; // 4/3 at thirds of the way
-        assert_eq!(path, format!("M 0.00 60.00 C {controls} 90.00 60.00"));
+        let controls = "30 -20 60 -20"; // 4/3 at thirds of the way
+        assert_eq!(path, format!("M 0 60 C {controls} 90 60"));
     }
 
     #[test]

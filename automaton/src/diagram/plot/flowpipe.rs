@@ -1,8 +1,8 @@
 //! Flowpipes: boxes around sets of states in the plane of two quantities, with runs drawn inside.
 
-use super::axis::Axis;
-use super::portrait::with_power;
-use super::sheet::{Sheet, WIDTH, area_colour, number, text_width};
+use pleach_drawing::{Axis, named, number};
+
+use super::sheet::{Sheet, WIDTH, area_colour, text_width};
 use super::{LEFT, RIGHT};
 
 /// The height of the panel, in pixels.
@@ -51,7 +51,7 @@ impl FlowpipePicture {
         let across = Axis::roomy(across.chain(points().map(|point| point[0])), LEFT, right);
         let up = self.patches.iter().flat_map(|patch| patch.up);
         let up = Axis::roomy(up.chain(points().map(|point| point[1])), TOP + PANEL, TOP);
-        let mut sheet = Sheet::new();
+        let mut sheet = Sheet::default();
         sheet.text(LEFT, 24.0, &self.title, "title");
         sheet.text(LEFT, 46.0, &self.subtitle, "quiet");
         self.draw_frame(&mut sheet, &across, &up);
@@ -75,13 +75,13 @@ impl FlowpipePicture {
             sheet.line([LEFT, tick.place], [right, tick.place], "grid");
             sheet.text(LEFT - 8.0, tick.place, &tick.text, "quiet end");
         }
-        sheet.text(LEFT, TOP - 14.0, &with_power(&self.names[1], power), "name");
+        sheet.text(LEFT, TOP - 14.0, &named(&self.names[1], power), "name");
         let (ticks, power) = across.ticks(TICKS);
         for tick in ticks {
             sheet.line([tick.place, TOP], [tick.place, bottom], "grid");
             sheet.text(tick.place, bottom + 15.0, &tick.text, "quiet middle");
         }
-        let name = with_power(&self.names[0], power);
+        let name = named(&self.names[0], power);
         sheet.text((LEFT + right) / 2.0, bottom + 36.0, &name, "name middle");
     }
 

@@ -1,8 +1,8 @@
-//! FlowInterval portraits: one variable over another.
+//! Phase portraits: one variable over another.
 
+use pleach_drawing::{Axis, named};
 use thiserror::Error;
 
-use super::axis::{Axis, power_of_ten};
 use super::curve::{self, Quantity};
 use super::sheet::{Sheet, WIDTH, line_colour, text_width};
 use super::{LEFT, RIGHT, draw_dots, outcome};
@@ -47,7 +47,7 @@ pub fn phase_portrait(
         vertical: (vertical, axis(trajectory, vertical, [TOP + PANEL, TOP])),
         component: telling_component(trajectory),
     };
-    let mut sheet = Sheet::new();
+    let mut sheet = Sheet::default();
     sheet.text(LEFT, 24.0, &format!("{up} over {across}"), "title");
     sheet.text(LEFT, 46.0, &outcome(trajectory), "quiet");
     portrait.draw_frame(&mut sheet, across, up);
@@ -95,13 +95,13 @@ impl Portrait<'_> {
             sheet.line([LEFT, tick.place], [right, tick.place], "grid");
             sheet.text(LEFT - 8.0, tick.place, &tick.text, "quiet end");
         }
-        sheet.text(LEFT, TOP - 14.0, &with_power(up, power), "name");
+        sheet.text(LEFT, TOP - 14.0, &named(up, power), "name");
         let (ticks, power) = self.horizontal.1.ticks(TICKS);
         for tick in ticks {
             sheet.line([tick.place, TOP], [tick.place, bottom], "grid");
             sheet.text(tick.place, bottom + 15.0, &tick.text, "quiet middle");
         }
-        sheet.text((LEFT + right) / 2.0, bottom + 36.0, &with_power(across, power), "name middle");
+        sheet.text((LEFT + right) / 2.0, bottom + 36.0, &named(across, power), "name middle");
     }
 
     fn draw_curves(&self, sheet: &mut Sheet) {
@@ -154,12 +154,5 @@ impl Portrait<'_> {
     fn place(&self, sample: &Sample) -> [f64; 2] {
         let [(across, horizontal), (up, vertical)] = [&self.horizontal, &self.vertical];
         [horizontal.place(across.value(sample)), vertical.place(up.value(sample))]
-    }
-}
-
-pub(super) fn with_power(name: &str, power: Option<i32>) -> String {
-    match power {
-        Some(power) => format!("{name}  / {}", power_of_ten(power)),
-        None => name.to_owned(),
     }
 }

@@ -1,8 +1,12 @@
 //! The strokes that a picture of an automaton is made of. Colours and lines are up to one style
 //! sheet, in which the classes of the strokes are named.
 
-use svg::node::element::{Circle, Definitions, Group, Line, Marker, Path, Rectangle, Style, Text};
-use svg::{Document, Node};
+pub(super) use pleach_drawing::number;
+use pleach_drawing::svg::node::element::{
+    Definitions, Group, Line, Marker, Path, Rectangle, Style,
+};
+use pleach_drawing::svg::{Document, Node};
+use pleach_drawing::{self as drawing, disc, sheet, style};
 
 /// The size of the text, in pixels.
 const FONT_SIZE: f64 = 13.0;
@@ -10,8 +14,6 @@ const FONT_SIZE: f64 = 13.0;
 pub(super) const LINE_HEIGHT: f64 = 17.0;
 /// White around the picture, in pixels.
 pub(super) const MARGIN: f64 = 16.0;
-/// The mean width of a character of a sans-serif font, as a share of its size, on the safe side.
-const CHARACTER_WIDTH: f64 = 0.6;
 /// From the middle of a line of text down to its base line, as a share of the size of the font.
 const DESCENT: f64 = 0.35;
 /// The radius of the dot where an arrow begins, in pixels.
@@ -19,21 +21,26 @@ const DOT: f64 = 4.5;
 /// How far a loop reaches up and to the right, in pixels.
 const LOOP: [f64; 2] = [26.0, 15.0];
 
-const STYLE: &str = "\
-text { font-family: 'DejaVu Sans', 'Segoe UI', Helvetica, Arial, sans-serif; fill: #1b1f24; }
-.middle { text-anchor: middle; }
-.name { font-weight: bold; }
-.condition { fill: #3b4554; }
-.key { fill: #6a7482; font-style: italic; }
-.paper { fill: #ffffff; }
-.stripe { fill: #f4f6f9; }
-.location { fill: #dfe9f6; stroke: #34527a; stroke-width: 1.5; }
-.column { stroke: #a9b8cc; stroke-width: 1; }
-.dot { fill: #1b1f24; }
-.arrow { fill: none; stroke: #1b1f24; stroke-width: 1.2; }
-.may { stroke-dasharray: 5 4; }
-.at-once { stroke-width: 2.2; }
-.head { fill: #1b1f24; }";
+/// Colours besides those that all pictures share: of conditions, keys and locations.
+fn style_sheet() -> String {
+    let (families, ink, band) = (style::FORMULAS.families, style::INK, style::BAND);
+    format!(
+        "\
+text {{ font-family: {families}; fill: {ink}; }}
+.middle {{ text-anchor: middle; }}
+.name {{ font-weight: bold; }}
+.condition {{ fill: #3b4554; }}
+.key {{ fill: #6a7482; font-style: italic; }}
+.stripe {{ fill: {band}; }}
+.location {{ fill: #dfe9f6; stroke: #34527a; stroke-width: 1.5; }}
+.column {{ stroke: #a9b8cc; stroke-width: 1; }}
+.dot {{ fill: {ink}; }}
+.arrow {{ fill: none; stroke: {ink}; stroke-width: 1.2; }}
+.may {{ stroke-dasharray: 5 4; }}
+.at-once {{ stroke-width: 2.2; }}
+.head {{ fill: {ink}; }}"
+    )
+}
 
 /// What else there is in pictures of runs and of compositions; the others do without.
 const MORE_STYLE: &str = "
@@ -66,7 +73,7 @@ pub(super) struct Size {
 
 /// How wide a line of text is, estimated without its font.
 pub(super) fn text_width(text: &str) -> f64 {
-    text.chars().count() as f64 * FONT_SIZE * CHARACTER_WIDTH
+    style::FORMULAS.width(text, FONT_SIZE)
 }
 
 /// A picture while it is being drawn.
@@ -84,26 +91,17 @@ impl Canvas {
 
     /// The strokes as an SVG document.
     pub fn finish(self, Size { width, height }: Size) -> String {
-        let (width, height) = (number(width), number(height));
-        let view = format!("0 0 {width} {height}");
         let (mut style, mut definitions) =
-            (STYLE.to_owned(), Definitions::new().add(head("head", "head")));
+            (style_sheet(), Definitions::new().add(head("head", "head")));
         if self.is_rich {
             style.push_str(MORE_STYLE);
             definitions = definitions
                 .add(head("missed-head", "missed-dot"))
                 .add(head("pipe-head", "pipe-dot"));
         }
-        let paper =
-            Rectangle::new().set("class", "paper").set("width", "100%").set("height", "100%");
-        let document = Document::new()
-            .set("font-size", FONT_SIZE)
-            .add(Style::new(style))
-            .add(definitions)
-            .add(paper);
-        let document = self.strokes.into_iter().fold(document, Document::add);
-        let document = document.set("width", width).set("height", height).set("viewBox", view);
-        format!("{document}\n")
+        let sheet = sheet([0.0; 2], [width, height]).set("font-size", FONT_SIZE);
+        let document = sheet.add(Style::new(style)).add(definitions);
+        format!("{}\n", self.strokes.into_iter().fold(document, Document::add))
     }
 
     /// Puts another picture here, with its upper left corner at `corner`.
@@ -126,8 +124,7 @@ impl Canvas {
     /// A line of text whose middle is at the height of `place`.
     pub fn label(&mut self, place: Place, text: &str, class: &str) {
         let base = place.y + DESCENT * FONT_SIZE;
-        let text = Text::new(text).set("class", class);
-        self.add(text.set("x", number(place.x)).set("y", number(base)));
+        self.add(drawing::text(text, [place.x, base]).set("class", class));
     }
 
     /// The box of a location. Its attribute `data-location` is the name, for scripts that show
@@ -162,8 +159,7 @@ impl Canvas {
 
     /// A dot of another colour.
     pub fn dot_of(&mut self, at: Place, class: &str) {
-        let circle = Circle::new().set("class", class).set("r", DOT);
-        self.add(circle.set("cx", number(at.x)).set("cy", number(at.y)));
+        self.add(disc([at.x, at.y], DOT).set("class", class));
     }
 
     /// An arrow with its head at `to`.
@@ -226,22 +222,9 @@ fn head_of(class: &str) -> &'static str {
 }
 
 fn rectangle(corner: Place, size: Size) -> Rectangle {
-    Rectangle::new()
-        .set("x", number(corner.x))
-        .set("y", number(corner.y))
-        .set("width", number(size.width))
-        .set("height", number(size.height))
+    drawing::rectangle([corner.x, corner.y], [size.width, size.height])
 }
 
 fn line(from: Place, to: Place) -> Line {
-    Line::new()
-        .set("x1", number(from.x))
-        .set("y1", number(from.y))
-        .set("x2", number(to.x))
-        .set("y2", number(to.y))
-}
-
-/// A tenth of a pixel is fine enough.
-pub(super) fn number(value: f64) -> String {
-    format!("{value:.1}")
+    drawing::line([from.x, from.y], [to.x, to.y])
 }

@@ -1,6 +1,4 @@
-//! Axes: which numbers stand at them, and where a value is on the paper.
-
-use pleach_guards::constant;
+//! Axes: which numbers stand at them, and where a value is on the sheet.
 
 /// The most digits before and behind the point that a number at an axis may have; else all numbers
 /// of the axis share a power of ten.
@@ -8,9 +6,9 @@ const DIGITS: i32 = 4;
 /// White beyond the smallest and the largest value, as a share of their distance.
 const ROOM: f64 = 0.06;
 
-/// A linear scale from values to places on the paper.
+/// A linear scale from values to places on the sheet.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Axis {
+pub struct Axis {
     low: f64,
     high: f64,
     /// Where `low` and `high` are, in pixels.
@@ -20,14 +18,17 @@ pub(super) struct Axis {
 
 /// A number at an axis.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
-    /// In pixels.
+pub struct Tick {
+    /// Where it stands, in pixels.
     pub place: f64,
+    /// The number as people read it.
     pub text: String,
 }
 
 impl Axis {
-    /// The axis from the smallest to the largest of `values` exactly.
+    /// The axis from the smallest to the largest of `values` exactly, between the places `from` and
+    /// `to`. Values that are not finite do not count; where all are equal, the axis reaches beyond
+    /// them at both ends.
     pub fn exact(values: impl IntoIterator<Item = f64>, from: f64, to: f64) -> Axis {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in values.into_iter().filter(|value| value.is_finite()) {
@@ -53,25 +54,39 @@ impl Axis {
         Axis { low: low - room, high: high + room, from, to }
     }
 
+    /// The axis from zero to the values, with some white beyond the smallest and the largest, but
+    /// none beyond zero.
+    pub fn from_zero(values: impl IntoIterator<Item = f64>, from: f64, to: f64) -> Axis {
+        let whole = Axis::exact(values.into_iter().chain([0.0]), from, to);
+        let room = (whole.high - whole.low) * ROOM;
+        let beyond = |end: f64, room: f64| if end == 0.0 { end } else { end + room };
+        Axis { low: beyond(whole.low, -room), high: beyond(whole.high, room), from, to }
+    }
+
     /// Where `value` is, in pixels.
+    #[must_use]
     pub fn place(&self, value: f64) -> f64 {
         self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)
     }
 
     /// How far apart two values are that differ by `difference`, in pixels.
+    #[must_use]
     pub fn distance(&self, difference: f64) -> f64 {
         (difference / (self.high - self.low) * (self.to - self.from)).abs()
     }
 
     /// About `count` round numbers, and the power of ten that they share, if there is one.
+    #[must_use]
     pub fn ticks(&self, count: f64) -> (Vec<Tick>, Option<i32>) {
-        let step = round_step((self.high - self.low) / count);
+        // Twice as long at most: there are at least half as many steps as wanted.
+        let step = round_below(2.0 * ((self.high - self.low) / count));
         let largest = self.low.abs().max(self.high.abs());
         let (magnitude, fineness) = (exponent(largest), exponent(step));
         let power = (magnitude > DIGITS || fineness < -DIGITS).then_some(magnitude);
         let shift = power.unwrap_or(0);
         let decimals = usize::try_from(shift - fineness).unwrap_or(0);
-        let (first, last) = ((self.low / step).ceil(), (self.high / step).floor());
+        // Ends that are multiples but for rounding have their number.
+        let (first, last) = ((self.low / step - 1e-9).ceil(), (self.high / step + 1e-9).floor());
         let mut ticks = Vec::new();
         let mut number = first;
         // A step that is lost in rounding would not lead on.
@@ -85,10 +100,10 @@ impl Axis {
     }
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that is at most twice `wanted`, so that there are
-/// at least half as many steps as wanted.
-fn round_step(wanted: f64) -> f64 {
-    let limit = 2.0 * wanted;
+/// The longest round length, 1, 2 or 5 times a power of ten, that is at most `limit`; 1 where there
+/// is none.
+#[must_use]
+pub fn round_below(limit: f64) -> f64 {
     if !(limit.is_finite() && limit > 0.0) {
         return 1.0;
     }
@@ -110,9 +125,28 @@ fn written(value: f64, decimals: usize) -> String {
     if value < 0.0 && !is_zero { format!("−{text}") } else { text }
 }
 
+/// What an axis is called if its numbers share a power of ten: `λ  / 10⁻⁶`.
+#[must_use]
+pub fn named(name: &str, power: Option<i32>) -> String {
+    match power {
+        Some(power) => format!("{name}  / {}", power_of_ten(power)),
+        None => name.to_owned(),
+    }
+}
+
 /// 10 to the power, as text: `10⁻⁶`.
-pub(super) fn power_of_ten(power: i32) -> String {
-    constant(10.0).power(f64::from(power)).to_string()
+#[must_use]
+pub fn power_of_ten(power: i32) -> String {
+    let raised = |sign: char| match sign {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => {
+            digit.to_digit(10).and_then(|digit| char::from_u32(0x2070 + digit)).unwrap_or(digit)
+        }
+    };
+    format!("10{}", power.to_string().chars().map(raised).collect::<String>())
 }
 
 #[cfg(test)]
@@ -129,10 +163,28 @@ mod tests {
     fn numbers_are_round_and_readable() {
         let few = |texts: &[&str]| texts.iter().map(ToString::to_string).collect::<Vec<_>>();
         assert_eq!(texts(0.0, 10.0), (few(&["0", "2", "4", "6", "8", "10"]), None));
+        assert_eq!(texts(0.0, 0.6), (few(&["0.0", "0.2", "0.4", "0.6"]), None));
         assert_eq!(texts(-0.5, 0.5), (few(&["−0.4", "−0.2", "0.0", "0.2", "0.4"]), None));
         assert_eq!(texts(0.0, 3e-7), (few(&["0", "1", "2", "3"]), Some(-7)));
         assert_eq!(texts(2e6, 3e6), (few(&["2.0", "2.2", "2.4", "2.6", "2.8", "3.0"]), Some(6)));
-        assert_eq!(power_of_ten(-12), "10⁻¹²");
+        assert_eq!([-12, 7, 30].map(power_of_ten), ["10⁻¹²", "10⁷", "10³⁰"]);
+    }
+
+    #[test]
+    fn an_axis_from_zero_has_no_white_there() {
+        let ends = |values: [f64; 2]| {
+            let Axis { low, high, .. } = Axis::from_zero(values, 0.0, 100.0);
+            [low, high]
+        };
+        assert_eq!(ends([1.0, 2.0]), [0.0, 2.12]);
+        assert_eq!(ends([-1.0, -2.0]), [-2.12, 0.0]);
+        assert_eq!(ends([-1.0, 1.0]), [-1.12, 1.12]);
+    }
+
+    #[test]
+    fn round_lengths_are_not_longer_than_asked_for() {
+        assert_eq!([0.7, 0.02, 999.0, 1000.0].map(round_below), [0.5, 0.02, 500.0, 1000.0]);
+        assert_eq!([0.0, f64::INFINITY, f64::NAN].map(round_below), [1.0; 3]);
     }
 
     proptest! {
