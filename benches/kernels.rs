@@ -11,7 +11,7 @@ use pleach::continuous::network::routing::adal::AdalSettings;
 use pleach::continuous::network::routing::local::{LinkOffer, local_minimiser, weight};
 use pleach::continuous::network::routing::repair::{Share, meet_demand};
 use pleach::continuous::network::routing::rounds::{Method, Rounds};
-use pleach::discrete::network::{Bid, Election};
+use pleach::discrete::network::{Bid, Election, NoticeId};
 use pleach_benches::scene::{Crowd, Scene};
 
 /// Discs that detours keep out of are this many ρ wide.
@@ -132,7 +132,7 @@ fn coordination(criterion: &mut Criterion) {
     let audiences = scene.audiences();
     let views: Vec<Election> = (0..scene.site.robots)
         .map(|robot| {
-            let mut view = Election::new(1);
+            let mut view = Election::new(NoticeId::new(1, 0));
             view.place(robot, Some(Bid { rank: 1, merit: robot as i64, economy: 0 }));
             view
         })

@@ -4,6 +4,7 @@ use crate::automaton::network::record::MissionEvent;
 
 /// What makes a moment worth a picture, and a mark across curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Moment {
     /// A leader is elected.
     Elected,
@@ -173,6 +174,7 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             ),
             None,
         ),
+        other => (format!("{other:?}"), None),
     }
 }
 

@@ -83,6 +83,7 @@ impl<W: Write> Watcher for TraceWriter<W> {
 
 /// One entry of a trace after its header.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum TraceEntry {
     /// Something happened in control period `step`.
     Event {

@@ -22,6 +22,7 @@ mod layering;
 mod medium;
 mod outcomes;
 mod proofs;
+mod proven;
 mod public_api;
 mod random_missions;
 mod records;

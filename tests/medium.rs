@@ -1,7 +1,8 @@
 //! Distributed means distributed: what robots do is decided by the messages that reach them.
 
 use crate::missions::{
-    Arrival, Filtered, Mission, Period, network_over, run, run_over, run_unmonitored, shipped,
+    Arrival, AskedTwice, Filtered, Mission, Period, Written, network_over, run, run_over,
+    run_unmonitored, shipped,
 };
 use pleach::automaton::network::Radio;
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
@@ -34,6 +35,18 @@ fn no_message_goes_where_there_is_no_link() {
     let (range, longest) = (network.site().settings.link.max_range, longest.get());
     assert!(longest < range, "R = 0 over {longest}");
     assert!(longest > 0.99 * range, "the whole range is used");
+}
+
+/// Nodes share nothing but what a message says: if each is written as text and read again by each of its
+/// receivers, the mission is the same.
+#[test]
+fn messages_that_are_written_and_read_again_lead_to_the_same_mission() {
+    let scenario = shipped("redundant-node");
+    let shared = run(scenario.clone());
+    let (written, network) = run_over(scenario, Written::new);
+    assert_eq!(written.periods, shared.periods);
+    assert_eq!(written.end, shared.end);
+    assert!(network.medium().bytes() > 1_000_000);
 }
 
 /// Whatever robots know of each other has gone through the medium: without it no robot learns of a
@@ -149,6 +162,26 @@ fn one_round_a_period_and_fifty_both_service_study_one() {
         scenario.control.rounds_per_period = Some(rounds);
         let mission = run(scenario);
         mission.assert_serviced();
+    }
+}
+
+// ---- Notices issued at once --------------------------------------------------------------------
+
+/// Two access points that serve the same user announce the same task at the same step of the mission. The
+/// notice of the higher index wins everywhere, and the mission goes on from it.
+#[test]
+fn two_access_points_that_announce_at_once_do_not_tie() {
+    for name in ["study-2", "two-clusters"] {
+        let scenario = shipped(name);
+        let mut network = network_over(&scenario, AskedTwice::new);
+        let (periods, end) = run_unmonitored(&mut network, 5_000);
+        let announced = |period: &Period| {
+            let first = Event::TaskAnnounced { task: 0 };
+            period.events.iter().filter(|event| **event == first).count()
+        };
+        assert!(periods.iter().any(|period| announced(period) == 2), "{name}: nothing is decided");
+        let end = end.unwrap();
+        assert_eq!(end.outcome, Outcome::Serviced, "{name}: {}", end.reason);
     }
 }
 

@@ -38,7 +38,7 @@ pub struct Builder<L, E, S> {
     flows: Vec<(L, Flow<S>)>,
     invariants: Vec<(L, Predicate)>,
     ranges: Vec<(String, RangeInclusive<f64>)>,
-    /// The names of all variables, where the type of the state tells.
+    /// The names of all variables, where the type of the state has them.
     known: Option<Vec<&'static str>>,
     /// Names that stand for numbers, with these.
     parameters: Vec<(String, f64)>,

@@ -76,7 +76,7 @@ pub struct ComponentCoverage {
     slots: Vec<usize>,
 }
 
-/// A trajectory tells nothing of the coverage of a composition.
+/// A trajectory does not determine the coverage of a composition.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CoverageError {

@@ -309,7 +309,7 @@ fn neighbours(point: &[f64]) -> impl Iterator<Item = Vec<f64>> {
     })
 }
 
-/// The work allowed makes no sense.
+/// The work allowed is not valid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "a search takes at least 1 box, not {boxes}, and a resolution from 0 to 1, not {resolution}"

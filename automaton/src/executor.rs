@@ -133,7 +133,7 @@ pub trait System {
     fn flow(&mut self, duration: f64) -> Result<(), Self::Error>;
 }
 
-/// Someone who looks on while a system runs.
+/// Observes a run of a system.
 pub trait Observer<S: System + ?Sized> {
     /// A jump has been taken.
     ///
@@ -158,7 +158,7 @@ impl<S: System + ?Sized> Observer<S> for () {
 /// A round of jumps while it is under way.
 pub struct Round<'a, J> {
     now: HybridTime,
-    /// None where nobody looks at jumps.
+    /// None where no observer looks at jumps.
     report: Option<&'a mut dyn FnMut(TraceEntry<J>)>,
 }
 

@@ -112,7 +112,7 @@ impl<S> Flow<S> {
         }
     }
 
-    /// Carries `state` over `duration` seconds, at least 0, and says whether it did: only an
+    /// Carries `state` over `duration` seconds, at least 0, and returns whether it did: only an
     /// [exact](Flow::exact) flow can by itself.
     #[must_use]
     pub fn advance(&self, state: &mut S, duration: f64) -> bool {

@@ -157,7 +157,7 @@ impl Valuation for Record {
 }
 
 impl Coordinates for Record {
-    /// None that the type tells; each record has its own.
+    /// None in the type; each record has its own.
     const NAMES: &'static [&'static str] = &[];
 
     /// A record without names: only [`like`](Coordinates::like) knows them.

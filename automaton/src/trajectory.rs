@@ -24,7 +24,7 @@ use crate::time::HybridTime;
 /// It is a list of intervals with a jump between any two: in phase j, between jump j − 1 and jump j,
 /// the locations rest and the state flows. The flows are kept as they were solved, in pieces that
 /// are polynomials in time, so that values can be read at every instant as exactly as at any other.
-/// Where it could not be told whether something happens, there is a [`Doubt`]. What is written to a
+/// Where it is undecided whether something happens, there is a [`Doubt`]. What is written to a
 /// file and read back is equal to the bit.
 ///
 /// ```
@@ -194,7 +194,7 @@ impl Trajectory {
         Sample { t: at.t, values, rates }
     }
 
-    /// Where it could not be told whether something happens; see [`Doubt`].
+    /// Where it is undecided whether something happens; see [`Doubt`].
     pub fn doubts(&self) -> &[Doubt] {
         &self.doubts
     }

@@ -103,7 +103,7 @@ impl Course {
     fn advances(&self, members: usize) -> bool {
         let network = self.network();
         let moving = network.robots().into_iter().any(|robot| robot.is_active());
-        let newest = network.robots().into_iter().max_by_key(|robot| robot.notice_number());
+        let newest = network.robots().into_iter().max_by_key(|robot| robot.notice_id());
         moving
             && newest.is_some_and(|robot| robot.phase() == Phase::Advance)
             && network.primary_team().len() >= members

@@ -181,7 +181,7 @@ impl Crowd {
         }
     }
 
-    /// One round of beacons: every robot speaks, hears and thinks.
+    /// One round of beacons: every robot sends, receives and deliberates.
     pub fn exchange_beacons(&mut self) {
         let Crowd { robots, outputs, audiences } = self;
         for (robot, outputs) in robots.iter_mut().zip(outputs.iter_mut()) {

@@ -13,12 +13,12 @@ pub enum Fairness {
     /// An action that stays possible from some moment on is taken at last.
     Weak,
     /// An action that is possible time and again, in the same state, is taken there at last:
-    /// every way out that is passed for ever is used.
+    /// every way out that is passed forever is used.
     Strong,
 }
 
 impl<S, A: Copy + Ord> StateGraph<S, A> {
-    /// Where a fair path may stay for ever without coming to a goal: each such set of states by
+    /// Where a fair path may stay forever without coming to a goal: each such set of states by
     /// one of its members that is first in the order of the visit.
     ///
     /// An infinite path ends in one strongly connected component (with at least one transition),
@@ -53,7 +53,7 @@ impl<S, A: Copy + Ord> StateGraph<S, A> {
         traps
     }
 
-    /// Whether a fair path may stay in a component for ever.
+    /// Whether a fair path may stay in a component forever.
     fn holds(&self, component: &BTreeSet<StateId>, fairness: Fairness) -> bool {
         let stays = |next: &StateId| component.contains(next);
         let mut actions =

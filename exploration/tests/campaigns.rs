@@ -61,8 +61,8 @@ fn a_robot_that_joins_from_another_tree_and_does_not_get_there_says_why_not() {
     assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 522);
 }
 
-/// p₁ exchanges duties with a robot of a lower number, on whose post the one hangs that p₁ hangs
-/// on: no robot ends up below itself. The state machine test found it.
+/// p₁ exchanges duties with a robot of a lower number, to whose post the parent of p₁ is
+/// attached: no robot ends up below itself. The state machine test found it.
 #[test]
 fn an_exchange_across_a_link_keeps_the_tree() {
     let graph = [(0, 1), (0, 3), (1, 4), (2, 3), (3, 4)];

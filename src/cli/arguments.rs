@@ -26,10 +26,10 @@ Exit status:
 
 Start with: pleach run scenarios/study-1.toml";
 
-/// The things that the program does.
+/// The commands of the program.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run the missions of scenarios and say how they went
+    /// Run the missions of scenarios and report their outcomes
     ///
     /// The robots start where the scenario puts them. Tasks are announced one after another,
     /// and for each the network grows a branch until a robot is close enough to service it.
@@ -39,19 +39,19 @@ pub enum Command {
     ///
     /// Several scenarios, values to sweep or repeats give a table with a line for each run, and
     /// the exit status of the worst: 1, then 4, then 3, then 0. Ctrl-C or SIGTERM ends a mission
-    /// in order: trace, summary and figures tell of it up to then, and the exit status is 3.
+    /// in order: trace, summary and figures cover it up to then, and the exit status is 3.
     Run(RunArguments),
-    /// Say whether a mission can start from scenarios, and draw their starts
+    /// Check whether missions can start from scenarios, and draw their starts
     ///
-    /// Nothing is run. Mistakes are told with file, line, key and what would be right (exit
+    /// Nothing is run. Mistakes are reported with file, line, key and what would be right (exit
     /// status 2). Tasks that no robot can service are named (exit status 3), and the links of
     /// the start that cross walls, which the model of the radio does not see, are counted.
     Check(CheckArguments),
     /// Make a scenario of a map: ROS map server, MovingAI, GeoJSON or SVG
     ///
-    /// Prints a scenario that runs. Maps of cells are traced and simplified, and no robot gets
-    /// through a wall by it. What was simplified or left out, and passages too narrow for robots,
-    /// are told on the error output.
+    /// Prints a scenario that runs. Maps of cells are traced and simplified, and walls stay
+    /// closed. What was simplified or left out, and passages too narrow for robots,
+    /// are reported on the error output.
     Import(ImportArguments),
     /// Judge a finished run from its trace alone
     ///
@@ -117,7 +117,7 @@ pub struct RunArguments {
     /// Run up to COUNT missions at once [default: one for each processor]
     #[arg(long, short, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
-    /// Write what happens to FILE, one JSON object a line; with several runs FILE is a folder
+    /// Write what happens to FILE, one JSON object per line; with several runs FILE is a folder
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
     /// Write figures (SVG) into FOLDER [default: figures/<name of the scenario>, and none with

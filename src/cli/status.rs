@@ -31,11 +31,8 @@ impl From<Outcome> for Status {
         match outcome {
             Outcome::Serviced => Status::Done,
             Outcome::InvariantViolated => Status::InvariantViolated,
-            Outcome::InsufficientRobots
-            | Outcome::UnreachableTask
-            | Outcome::StepLimit
-            | Outcome::Blocked
-            | Outcome::Interrupted => Status::Unserviced,
+            // Whatever else may end a mission, some of its tasks are not serviced.
+            _ => Status::Unserviced,
         }
     }
 }

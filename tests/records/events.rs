@@ -53,6 +53,7 @@ fn rename(record: &mut Record, site: usize, kind: Kind) {
         Event::SubgroupStarted { subgroup, .. } | Event::SubgroupArrived { subgroup, .. } => {
             *subgroup += 1;
         }
+        other => panic!("no number of {other:?} is changed"),
     }
 }
 

@@ -41,7 +41,7 @@
 //! | lands outside | error; warning or note if a transition may or must lead on | do resets lead into the invariant of the target? |
 //! | no value | warning | has every formula a finite value where it is evaluated? |
 //! | leaves its range | warning | do they stay within the declared ranges? |
-//! | timeless cycle | error | do forced transitions follow each other for ever? |
+//! | timeless cycle | error | do forced transitions follow each other forever? |
 //! | overlap | warning | can two forced transitions be due together? |
 //! | choice | note | can two transitions be possible together that only may be taken? |
 //! | shadowed priority | warning | is there a state in which it is its turn? |
@@ -53,7 +53,7 @@
 //! | refused label | error | does every component of a label ever take it? |
 //! | blocked label | error | can they take it together? |
 //! | lonely label | warning | does more than one component know it? |
-//! | deadlock | warning, or note where it depends on times and values | does a component wait for labels for ever? |
+//! | deadlock | warning, or note where it depends on times and values | does a component wait for labels forever? |
 //! | unread input | warning | is what is connected read? |
 //! | unexplored | note | was something too large to be looked at? |
 //!
@@ -104,7 +104,7 @@ use model::Model;
 use reachability::Reach;
 
 impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
-    /// What is wrong with the automaton, as far as that can be told before it runs; see
+    /// What is wrong with the automaton, as far as this is known before it runs; see
     /// [`check`](crate::check).
     pub fn check(&self) -> Report {
         self.check_with(Effort::default())

@@ -60,7 +60,7 @@ impl Inquiry<'_> {
         }
     }
 
-    /// One note for all pairs; labels are chosen by those who offer them.
+    /// One note for all pairs; a label is chosen by the components that offer it.
     fn report_choice(&mut self, location: usize, pairs: &[(usize, usize)]) {
         let mut open: Vec<usize> = Vec::new();
         for &(first, second) in pairs {

@@ -89,7 +89,7 @@ pub enum Kind {
     Undefined,
     /// A jump that gives a coordinate a value outside its declared range.
     LeavesRange,
-    /// Forced transitions that follow each other for ever while no time passes.
+    /// Forced transitions that follow each other forever while no time passes.
     TimelessCycle,
     /// Nothing says in which state a run starts.
     NoInitialState,
@@ -108,7 +108,7 @@ pub enum Kind {
     RefusedLabel,
     /// A label whose components never come together where all of them take it.
     BlockedLabel,
-    /// A component that waits for ever for labels that no other takes any more.
+    /// A component that waits forever for labels that no other takes any more.
     Deadlock,
     /// A connected input that no formula reads.
     UnreadInput,

@@ -153,7 +153,7 @@ impl Dictionary {
         self.objective = sum;
     }
 
-    /// Goes from vertex to vertex while the objective can grow; `false` if it can grow for ever.
+    /// Goes from vertex to vertex while the objective can grow; `false` if it can grow forever.
     fn maximise(&mut self) -> bool {
         let mut stalled = false;
         while let Some(column) = self.entering(stalled) {
@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(optimum(&[5.0, 4.0, 3.0], &rows), Some(fractions(&[2.0, 0.0, 1.0])));
     }
 
-    /// Beale's program, on which the greedy rule alone goes round for ever.
+    /// Beale's program, on which the greedy rule alone goes round forever.
     #[test]
     fn vertices_that_stay_do_not_come_back() {
         let rows: [(&[f64], f64); 3] = [

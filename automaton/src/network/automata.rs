@@ -24,15 +24,15 @@ pub struct Automata {
     pub targets: Targets,
     /// The mission as the robot knows it.
     pub mission: MissionAutomaton,
-    /// Where the robot stands in the exchange of duties.
+    /// The state of the robot in the exchange of duties.
     pub dealing: DealingAutomaton,
     /// The robot's place in the tree.
     pub attachment: AttachmentAutomaton,
-    /// Where the robot stands in its control period.
+    /// The stage of the robot in its control period.
     pub control: ControlAutomaton,
     /// The service of the tasks, for an access point.
     pub service: ServiceAutomaton,
-    /// Where an access point stands in its control period.
+    /// The stage of an access point in its control period.
     pub rounds: RoundAutomaton,
     /// What the user does.
     pub request: RequestAutomaton,

@@ -1,22 +1,26 @@
-//! What nodes tell their neighbours.
+//! What nodes send to their neighbours.
 //!
 //! A beacon is a copy of its sender's public state. Every agreement of the network works by
-//! repeating such copies and taking maxima: a message that is doubled or late does no harm to it,
-//! and after one that is lost the next says the same or better.
+//! repeating such copies and taking maxima: a message that is copied or late does no harm,
+//! and the message after a lost one contains the same or newer information.
 
 use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{
-    Agreement, Bulletin, Election, IdSet, Lineage, NodeId, Offer, PostId, Reply,
+    Agreement, Election, IdSet, Lineage, NodeId, NoticeId, Offer, PostId, Reply, bulletin,
 };
+use serde::{Deserialize, Serialize};
 
 use super::duty::{Duty, Hop, Path};
 use super::record::Outcome;
 use super::shared::Shared;
+use super::wire;
 
-/// The newest notice on the mission.
-#[derive(Clone, Debug, PartialEq)]
+/// A notice on the mission.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum Notice {
     /// Nothing is announced.
     Quiet,
@@ -26,10 +30,13 @@ pub enum Notice {
         /// Its number.
         task: usize,
         /// q_v.
+        #[serde(with = "wire")]
         position: Point,
         /// The robots that take part.
+        #[serde(with = "wire")]
         roster: Arc<IdSet>,
         /// The access points whose robots compete.
+        #[serde(with = "wire")]
         eligible: Arc<IdSet>,
     },
     /// The primary team calls for a recruit (Remark 5.4).
@@ -40,7 +47,7 @@ pub enum Notice {
         releases_leader: bool,
     },
     /// The recruit has found the path Σ.
-    Path(Arc<Path>),
+    Path(#[serde(with = "wire")] Arc<Path>),
     /// The primary team is the active team (again).
     Advance {
         /// The post that has joined the team and the post that it follows.
@@ -56,51 +63,63 @@ pub enum Notice {
         /// How.
         outcome: Outcome,
         /// Why, in a sentence.
+        #[serde(with = "wire")]
         reason: Arc<str>,
         /// The task concerned.
         task: Option<usize>,
     },
 }
 
+/// A notice on the mission with its identity.
+pub type Bulletin = bulletin::Bulletin<Shared<Notice>>;
+
 /// What the primary team knows of itself, passed from the leader back to p₁.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct TeamReport {
     /// Control periods since any member moved, as far forward as the leader.
     pub still: u32,
     /// A member whose link is slack although it cannot move.
     pub slack: Option<NodeId>,
-    /// Geodesic distance from the leader to its task.
+    /// Geodesic distance from the leader to its task; infinite if no way leads there.
+    #[serde(with = "wire::distance")]
     pub remaining: f64,
 }
 
 /// The public state of a node.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Beacon {
     /// The sender.
     pub sender: NodeId,
     /// Where it is.
+    #[serde(with = "wire")]
     pub position: Point,
     /// The newest notice on the mission that it knows.
-    pub bulletin: Shared<Bulletin<Notice>>,
+    pub bulletin: Bulletin,
     /// Its view of the current election.
+    #[serde(with = "wire")]
     pub election: Option<Arc<Election>>,
     /// Its view of the agreement about the current path.
     pub agreement: Option<Agreement>,
-    /// Its way over the tree to the robot that calls for a recruit; the number is the call's.
-    pub route: Option<(u32, Shared<Vec<Hop>>)>,
+    /// Its way over the tree to the robot that calls for a recruit, and the call.
+    pub route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     /// The access points that the way crosses first, when the sender is an access point.
     pub crossing: Vec<usize>,
     /// Its way to an access point.
+    #[serde(with = "wire")]
     pub lineage: Option<Arc<Lineage>>,
     /// The node that it is attached to.
     pub parent: Option<NodeId>,
     /// The robots that are attached to it, itself included.
+    #[serde(with = "wire")]
     pub below: Arc<IdSet>,
     /// What it does; none for an access point.
     pub duty: Option<Duty>,
     /// Whether it stands still unless it is asked for.
     pub parked: bool,
     /// Where it wants to go next, if it has been stuck for a while.
+    #[serde(with = "wire")]
     pub way: Option<Point>,
     /// For a redundant robot: whether it could attach to another node than its parent.
     pub can_detach: bool,
@@ -118,12 +137,13 @@ impl Beacon {
     /// Whether the same sender surely said this before `other`: it had heard, or offered, less.
     /// A medium may deliver copies late.
     pub fn is_older_than(&self, other: &Beacon) -> bool {
-        self.bulletin.sequence() < other.bulletin.sequence() || self.offers_made < other.offers_made
+        other.bulletin.id().is_newer_than(self.bulletin.id())
+            || self.offers_made < other.offers_made
     }
 }
 
-/// What a node said last. A node with nothing new to say sends the very same beacon again, and
-/// who hears it knows without reading it.
+/// The beacon that a node sent last. As long as its public state does not change, a node sends the
+/// very same beacon again, and receivers need not read it.
 #[derive(Clone, Debug, Default)]
 pub struct Voice {
     last: Option<Arc<Beacon>>,

@@ -4,7 +4,7 @@
 //! the stages of its control period, one at each tick of its clock, and hears messages between
 //! them; none of this takes time. Until t_{k+1} every robot flows with ẋ = u, τ̇ = 1.
 //!
-//! The network passes messages on and cannot look into a node to tell another of it. What observers
+//! The network passes messages on and has no access to the state of nodes. What observers
 //! see is put together in [`crate::network::observer`].
 
 use std::sync::Arc;
@@ -89,7 +89,7 @@ impl<M: Medium<Message, Point>> Network<M> {
     /// 0: robots first, then access points, last the user.
     ///
     /// # Errors
-    /// When the user cannot say what there is to do.
+    /// When the user cannot take up its tasks.
     pub fn with_medium(
         scenario: &Scenario,
         site: Arc<Site>,

@@ -6,7 +6,7 @@ use pleach_discrete::network::Stage;
 macro_rules! stages {
     ($($(#[$note:meta])* $name:ident $(($count:ident: $(#[$what:meta])*))?),+ $(,)?) => {
         crate::places_of! {
-            /// Where a robot stands in its control period: a [`Stage`] with the data that it owns.
+            /// The stage of a robot in its control period: a [`Stage`] with the data that it owns.
             #[derive(Copy)]
             pub enum Control: Stage { $($(#[$note])* $name($name)),+ }
         }

@@ -2,19 +2,25 @@
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{Activity, Post, PostId, Role, path};
+use serde::{Deserialize, Serialize};
+
+use super::wire;
 
 /// A post with its reference position.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Station {
     /// The post.
     pub post: Post,
     /// Where it is; for posts of redundant robots and of the primary team, where its holder
     /// stood when it took the post.
+    #[serde(with = "wire")]
     pub reference: Point,
 }
 
 /// A station that a robot holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Held {
     /// The station.
     pub station: Station,
@@ -25,7 +31,8 @@ pub struct Held {
 
 crate::places_of! {
     /// What a robot does for the network: an [`Activity`] with the data that it owns.
-    #[derive(Copy)]
+    #[derive(Copy, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
     pub enum Duty: Activity {
         /// It holds the post of a redundant robot and may be recruited.
         Standby(Standby),
@@ -53,7 +60,7 @@ crate::places_of! {
 macro_rules! duties_with_a_post {
     ($($(#[$note:meta])* $name:ident),+ $(,)?) => {
         $($(#[$note])*
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
         pub struct $name(pub Held);
 
         impl Holder for $name {
@@ -94,7 +101,8 @@ duties_with_a_post! {
 }
 
 /// The data of [`Activity::Waiting`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Waiting {
     /// What it holds.
     pub held: Held,
@@ -105,7 +113,8 @@ pub struct Waiting {
 }
 
 /// The data of [`Activity::AwaitingRelease`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct AwaitingRelease {
     /// What it holds.
     pub held: Held,
@@ -114,7 +123,8 @@ pub struct AwaitingRelease {
 }
 
 /// The data of [`Activity::Shifting`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Shifting {
     /// The place of Σ that it left.
     pub place: usize,
@@ -237,11 +247,14 @@ impl Duty {
 }
 
 /// A place of the path Σ with its reference position and where its robot stood at t_h.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PathPlace {
     /// The reference position of the post there.
+    #[serde(with = "wire")]
     pub reference: Point,
     /// x(t_h) of the robot there.
+    #[serde(with = "wire")]
     pub position: Point,
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pleach_continuous::network::LinkReliability;
 
-/// A link model of any kind, as robots use it: through [`LinkReliability`] only.
+/// A link model of any kind, used by robots through [`LinkReliability`] only.
 ///
 /// ```
 /// use pleach_automaton::network::Link;

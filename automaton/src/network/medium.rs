@@ -50,7 +50,7 @@ impl Radio {
         let (first, user) = (self.robots, self.robots + self.access_points);
         match node {
             robot if robot < first => 0..0,
-            // The user talks to the first access point.
+            // The user is wired to the first access point.
             access_point if access_point == first => first..user + 1,
             access_point if access_point < user => first..user,
             _ => first..first + 1,

@@ -22,17 +22,19 @@ pub enum Member {
     User(Box<User>),
 }
 
-/// What a node senses, or is asked for.
+/// What a node measures, or is requested to do.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Sense {
-    /// A robot finds itself here.
+    /// The position of a robot, as it measures it.
     Position(Point),
-    /// A person wants these tasks done, in their order.
+    /// The tasks that a person requests, in their order.
     Tasks(Arc<[Point]>),
 }
 
 /// A node as observers see it.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub enum MemberView<'a> {
     /// A robot.
     Robot(RobotView<'a>),

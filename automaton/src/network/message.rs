@@ -1,39 +1,61 @@
-//! Everything that nodes of the network tell each other.
+//! The messages that nodes of the network exchange.
+//!
+//! Messages are data: in memory they share what they carry, and between processes they are written
+//! and read in any format of [serde](https://serde.rs). A message that is read is checked. Unknown
+//! fields, numbers that are not finite, and elections, agreements, sets and lineages that no node
+//! can have sent are refused:
+//!
+//! ```
+//! use pleach_automaton::network::Message;
+//!
+//! let text = serde_json::to_string(&Message::Demand(0.25))?;
+//! assert_eq!(text, r#"{"demand":0.25}"#);
+//! assert_eq!(serde_json::from_str::<Message>(&text)?, Message::Demand(0.25));
+//! assert!(serde_json::from_str::<Message>(r#"{"demand":null}"#).is_err());
+//! # Ok::<(), serde_json::Error>(())
+//! ```
+
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::routing::adal::NeighbourReport;
-use pleach_discrete::network::{Bulletin, NodeId};
+use pleach_discrete::network::NodeId;
+use serde::{Deserialize, Serialize};
 
-use super::beacon::{Beacon, Notice};
-use super::shared::Shared;
+use super::beacon::{Beacon, Bulletin};
+use super::wire;
 
 /// A message of the network. All of them go through the same medium.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum Message {
-    /// The public state of the sender, to everyone who hears it.
-    Beacon(Arc<Beacon>),
+    /// The public state of the sender, to everyone in range.
+    Beacon(#[serde(with = "wire")] Arc<Beacon>),
     /// How the sender's equation c_i ≥ η stands, to everyone.
     Multiplier {
         /// λ_i, and what ADAL needs beside it.
+        #[serde(with = "wire")]
         report: NeighbourReport,
         /// The parent of the sender in the tree: the node that its demand will go to.
         parent: Option<NodeId>,
     },
     /// F_ij, to the receiver j of the flow; 0 if there is none any more.
-    Flow(f64),
+    Flow(#[serde(with = "wire")] f64),
     /// By how much the sender's flow to its parent grows in the sweep, to the parent.
-    Demand(f64),
+    Demand(#[serde(with = "wire")] f64),
     /// The sender cannot pass on what it is sent, to everyone.
     Shortage,
     /// The move that the sender intends, to everyone.
-    Proposal(Segment),
+    Proposal(#[serde(with = "wire")] Segment),
     /// The sender cannot accept the move that the receiver intends.
     Objection,
     /// The tasks of a user in their order, to the first access point.
-    Request(Arc<[Point]>),
+    Request(#[serde(with = "wire")] Arc<[Point]>),
     /// The newest notice on the mission, from the first access point to the user.
-    News(Shared<Bulletin<Notice>>),
+    News(Bulletin),
 }

@@ -20,6 +20,7 @@ pub mod service;
 pub mod shared;
 pub mod site;
 pub mod user;
+mod wire;
 
 pub use access_point::{AccessPoint, round_automaton, service_automaton};
 pub use automata::{Automata, NamedRow};

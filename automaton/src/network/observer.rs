@@ -93,10 +93,7 @@ impl Overview<'_> {
     }
 
     fn newest(&self) -> Option<RobotView<'_>> {
-        self.robots
-            .iter()
-            .copied()
-            .max_by_key(|robot| (robot.notice_number(), robot.subgroups_done()))
+        self.robots.iter().copied().max_by_key(|robot| (robot.notice_id(), robot.subgroups_done()))
     }
 
     fn task(&self) -> Option<usize> {

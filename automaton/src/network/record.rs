@@ -96,6 +96,7 @@ pub struct PostView {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 #[allow(missing_docs)] // the fields are identities: robots, tasks, nodes
+#[non_exhaustive]
 pub enum MissionEvent {
     /// A user announced a task.
     TaskAnnounced { task: usize },
@@ -114,13 +115,7 @@ pub enum MissionEvent {
     /// The leader is released from its past duties.
     Released { robot: usize },
     /// A robot changes its role.
-    RoleChanged {
-        robot: usize,
-        #[serde(with = "role_by_name")]
-        from: Role,
-        #[serde(with = "role_by_name")]
-        to: Role,
-    },
+    RoleChanged { robot: usize, from: Role, to: Role },
     /// A task is serviced, eq. (2).
     TaskServiced { task: usize, robot: usize },
     /// No routing carries the rates: the residual of `robot` falls below −c_min.
@@ -138,7 +133,7 @@ pub enum MissionEvent {
 pub struct End {
     /// The kind of end.
     pub outcome: Outcome,
-    /// A sentence that a person understands.
+    /// The reason, as a sentence for people.
     pub reason: String,
     /// The task concerned.
     pub task: Option<usize>,
@@ -147,6 +142,7 @@ pub struct End {
 /// The kinds of end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Outcome {
     /// Every task is serviced.
     Serviced,
@@ -176,23 +172,5 @@ impl Outcome {
             Outcome::InvariantViolated => "invariant_violated",
             Outcome::Interrupted => "interrupted",
         }
-    }
-}
-
-/// Roles written by their names; the discrete layer knows nothing of formats.
-mod role_by_name {
-    use pleach_discrete::network::Role;
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-
-    pub(super) fn serialize<S: Serializer>(role: &Role, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(role.name())
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<Role, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        (Role::ALL.into_iter().find(|role| role.name() == name))
-            .ok_or_else(|| D::Error::custom(format!("no role is called {name:?}")))
     }
 }

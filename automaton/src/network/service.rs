@@ -60,7 +60,7 @@ pub struct Serviced {
 pub struct Over;
 
 crate::places_of! {
-    /// Where an access point stands in its control period: a [`Round`] with its data.
+    /// The stage of an access point in its control period: a [`Round`] with its data.
     #[derive(Copy)]
     pub enum Rounds: Round {
         /// It waits for the next sample.

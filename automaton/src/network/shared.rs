@@ -7,8 +7,8 @@ use pleach_discrete::network::Election;
 
 /// A value shared between nodes: a node with a newer value shares another one.
 ///
-/// Two of them are equal if they are one and the same, which costs nothing to find out; the same
-/// equal values in two places count as two.
+/// Two of them are equal if their values are. To find this out costs nothing where they are one and
+/// the same, as they are when a value was passed on within one process.
 #[derive(Debug)]
 pub struct Shared<T>(Arc<T>);
 
@@ -25,13 +25,13 @@ impl<T> Clone for Shared<T> {
     }
 }
 
-impl<T> PartialEq for Shared<T> {
+impl<T: PartialEq> PartialEq for Shared<T> {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
+        Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
     }
 }
 
-impl<T> Eq for Shared<T> {}
+impl<T: Eq> Eq for Shared<T> {}
 
 impl<T> Deref for Shared<T> {
     type Target = T;

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_discrete::Location as _;
-use pleach_discrete::network::{Bulletin, NodeId, REQUESTS, Request, RequestEvent};
+use pleach_discrete::network::{NodeId, REQUESTS, Request, RequestEvent};
 use pleach_guards::Guard;
 use pleach_guards::network::{control, service as guards};
 
 use super::act::{Act, acting};
-use super::beacon::Notice;
+use super::beacon::{Bulletin, Notice};
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
@@ -21,23 +21,24 @@ use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::node::{Input, Node, Outputs};
 use crate::{Automaton, BuildError, Flow, Transfer};
 
-/// A user tells the first access point what there is to do, and hears from it what comes of it.
+/// A user sends its tasks to the first access point and receives notices from it.
 ///
-/// The network is given one control period to connect. Then the user repeats its request in every
+/// The network is given one control period to connect. The user then repeats its request in every
 /// period until it has heard an answer.
 #[derive(Clone, Debug)]
 pub struct User {
     site: Arc<Site>,
     request: Current<Asked>,
-    /// What is left to do of the row that was taken last.
+    /// The remaining acts of the row that was taken last.
     acts: UserActs,
     tasks: Arc<[Point]>,
-    news: Shared<Bulletin<Notice>>,
+    news: Bulletin,
     clock: f64,
 }
 
 /// What a user does when it takes a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum UserAct {
     /// τ := 0.
     RestartClock,
@@ -53,7 +54,7 @@ pub type RequestAutomaton = Automaton<Request, RequestEvent, User>;
 
 crate::observed! {
     impl Observed for User as user;
-    /// What the guards of the user speak of.
+    /// What the guards of the user read.
     pub const USER_GLOSSARY;
     quantities {
         /// τ: seconds since the last sample.
@@ -62,9 +63,9 @@ crate::observed! {
         period: user.site.settings.period,
     }
     propositions {
-        /// The first access point has told what becomes of its request.
-        hears_answer: user.news.sequence() > 0,
-        /// The mission is said to have ended.
+        /// The first access point has answered its request.
+        hears_answer: user.news.number() > 0,
+        /// The newest notice says that the mission has ended.
         hears_end: matches!(user.notice(), Notice::Ended { .. }),
     }
 }
@@ -140,7 +141,7 @@ impl User {
             request: Current::new(Asked::Preparing(Preparing)),
             acts: &[],
             tasks: Arc::from([]),
-            news: Shared::new(Bulletin::first(Notice::Quiet)),
+            news: Bulletin::first(Shared::new(Notice::Quiet)),
             clock: site.settings.period,
             site,
         }
@@ -149,12 +150,6 @@ impl User {
     /// The access point that the user talks to.
     fn desk(&self) -> NodeId {
         self.site.robots
-    }
-
-    fn hear(&mut self, news: &Shared<Bulletin<Notice>>) {
-        if news.is_newer_than(&self.news) {
-            self.news = news.clone();
-        }
     }
 
     /// The newest notice on the mission that it knows.
@@ -193,7 +188,7 @@ impl Node for User {
         match input {
             Input::Sensed(Sense::Tasks(tasks)) => self.tasks = tasks,
             Input::Heard { message: Message::News(news), .. } => {
-                self.hear(news);
+                self.news.merge(news);
                 self.jump(outputs)?;
             }
             Input::Tick { .. } => self.jump(outputs)?,

@@ -1,9 +1,12 @@
 //! Line segments: distances, and the exact test whether a path crosses an edge.
 
+use serde::{Deserialize, Serialize};
+
 use crate::{Point, Vector};
 
 /// The straight line between two points.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Segment {
     /// Where it starts.
     pub from: Point,

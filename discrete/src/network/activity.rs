@@ -175,7 +175,7 @@ impl DutyEvent {
     }
 }
 
-/// Whether a transition leaves no fixed post without a robot (Algorithm 4): who goes away from one
+/// Whether a transition leaves no fixed post without a robot (Algorithm 4): a robot that leaves one
 /// has been replaced.
 pub const fn keeps_posts_held(source: Activity, event: DutyEvent, target: Activity) -> bool {
     !(source.holds_fixed_post() && target.is_under_way()) || event.needs_replacement()

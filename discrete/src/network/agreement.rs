@@ -4,41 +4,50 @@
 //! maxima. Entries of r start negative (unknown) and end at 0 or 1; here `voted` and `breaks`
 //! hold the two bits. Every robot that passes messages on takes part in the spreading.
 
-use super::IdSet;
+use super::{IdSet, NoticeId};
 
 #[cfg(any(kani, test))]
 mod proofs;
 
 /// What a robot knows of the agreement about one path.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "super::serialization::AgreementParts"))]
 pub struct Agreement {
-    number: u32,
+    id: NoticeId,
     voted: IdSet,
     breaks: IdSet,
     arrived: IdSet,
 }
 
 impl Agreement {
-    /// An agreement on which nothing is known yet; `number` tells paths apart.
-    pub const fn new(number: u32) -> Self {
-        Agreement { number, voted: IdSet::new(), breaks: IdSet::new(), arrived: IdSet::new() }
+    /// The agreement about the path that the notice `id` announces, of which nothing is known yet.
+    pub const fn new(id: NoticeId) -> Self {
+        Agreement { id, voted: IdSet::new(), breaks: IdSet::new(), arrived: IdSet::new() }
     }
 
-    /// The number of the path.
-    pub const fn number(&self) -> u32 {
-        self.number
+    /// The agreement with these votes and arrivals; none if a place that has not voted is a break
+    /// point.
+    #[cfg(feature = "serde")]
+    pub(super) fn from_parts(
+        id: NoticeId,
+        voted: IdSet,
+        breaks: IdSet,
+        arrived: IdSet,
+    ) -> Option<Self> {
+        voted.includes(&breaks).then_some(Agreement { id, voted, breaks, arrived })
     }
 
-    /// The robot at `place` says whether it is a break point.
+    /// The notice that announced the path, which tells paths apart.
+    pub const fn id(&self) -> NoticeId {
+        self.id
+    }
+
+    /// The vote of the robot at `place`: whether it is a break point.
     pub fn vote(&mut self, place: usize, is_break_point: bool) {
         if self.voted.insert(place) && is_break_point {
             self.breaks.insert(place);
         }
-    }
-
-    /// Whether the robot at `place` has spoken.
-    pub fn has_voted(&self, place: usize) -> bool {
-        self.voted.contains(place)
     }
 
     /// The robot at `place` has reached its destination, eq. (26).
@@ -48,7 +57,7 @@ impl Agreement {
 
     /// Takes the maximum with what a neighbour sent.
     pub fn merge(&mut self, heard: &Agreement) {
-        if heard.number == self.number {
+        if heard.id == self.id {
             self.voted.merge(&heard.voted);
             self.breaks.merge(&heard.breaks);
             self.arrived.merge(&heard.arrived);
@@ -60,7 +69,7 @@ impl Agreement {
         (0..places).all(|place| self.voted.contains(place))
     }
 
-    /// Whether the robot at `place` has said that it is a break point.
+    /// Whether the robot at `place` has voted that it is a break point.
     pub fn is_break_point(&self, place: usize) -> bool {
         self.breaks.contains(place)
     }
@@ -83,7 +92,7 @@ mod tests {
 
     #[test]
     fn break_points_are_told_once_every_place_has_voted() {
-        let mut agreement = Agreement::new(7);
+        let mut agreement = Agreement::new(NoticeId::new(7, 1));
         for (place, vote) in [(3, true), (0, true), (2, false)] {
             agreement.vote(place, vote);
             assert_eq!(agreement.break_points(4), None);
@@ -95,11 +104,12 @@ mod tests {
 
     #[test]
     fn another_path_is_not_heard() {
-        let (mut mine, mut other) = (Agreement::new(7), Agreement::new(8));
-        assert_eq!((mine.number(), other.number()), (7, 8));
+        let (mine_id, other_id) = (NoticeId::new(7, 1), NoticeId::new(7, 2));
+        let (mut mine, mut other) = (Agreement::new(mine_id), Agreement::new(other_id));
+        assert_eq!((mine.id(), other.id()), (mine_id, other_id));
         other.vote(0, true);
         other.arrive(0);
         mine.merge(&other);
-        assert_eq!(mine, Agreement::new(7));
+        assert_eq!(mine, Agreement::new(mine_id));
     }
 }

@@ -1,29 +1,71 @@
 //! The newest notice on the mission, flooded through the network.
 //!
-//! A mission goes through its steps one at a time, and at each step exactly one node may issue
-//! the next notice: the access point that announces, the elected leader, p₁ that calls for help,
-//! the recruit that found the path. Notices are therefore numbered, and the greater number wins:
-//! a max-consensus that neither loss, nor repetition, nor delay can confuse.
+//! A mission goes through its steps one at a time, and at each step one node may issue the next
+//! notice: the access point that announces, the elected leader, p₁ that calls for help, the recruit
+//! that found the path. Notices are therefore numbered, and the greater number wins: a
+//! max-consensus that neither loss, nor repetition, nor delay can confuse. Where two nodes issue a
+//! notice at the same step, as two access points may that are asked at once, the notice of the
+//! issuer with the higher index wins: [`NoticeId`] is a total order.
+
+use super::NodeId;
 
 #[cfg(any(kani, test))]
 mod proofs;
 
-/// A numbered notice.
+/// The identity of a notice. Identities are ordered by number and then by issuer, and a node issues
+/// at most one notice of each number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct NoticeId {
+    /// The step of the mission, from 0.
+    pub number: u32,
+    /// The node that issued the notice.
+    pub issuer: NodeId,
+}
+
+impl NoticeId {
+    /// The notice with this number that `issuer` issued.
+    pub const fn new(number: u32, issuer: NodeId) -> Self {
+        NoticeId { number, issuer }
+    }
+
+    /// The identity of the notice that `issuer` issues after this one.
+    pub const fn next(self, issuer: NodeId) -> Self {
+        NoticeId { number: self.number + 1, issuer }
+    }
+
+    /// Whether this notice is newer than `other`.
+    pub const fn is_newer_than(self, other: Self) -> bool {
+        self.number > other.number || self.number == other.number && self.issuer > other.issuer
+    }
+}
+
+/// A notice with its identity.
+///
+/// Nodes of a network exchange bulletins of shared notices, so that a merge copies a pointer.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Bulletin<N> {
-    sequence: u32,
+    id: NoticeId,
     notice: N,
 }
 
 impl<N: Clone> Bulletin<N> {
-    /// The first bulletin of a mission.
+    /// The bulletin that every node has before the first notice is issued.
     pub const fn first(notice: N) -> Self {
-        Bulletin { sequence: 0, notice }
+        Bulletin { id: NoticeId::new(0, 0), notice }
     }
 
-    /// The number of this bulletin.
-    pub const fn sequence(&self) -> u32 {
-        self.sequence
+    /// The identity of its notice.
+    pub const fn id(&self) -> NoticeId {
+        self.id
+    }
+
+    /// The number of its notice.
+    pub const fn number(&self) -> u32 {
+        self.id.number
     }
 
     /// What it says.
@@ -31,19 +73,14 @@ impl<N: Clone> Bulletin<N> {
         &self.notice
     }
 
-    /// The bulletin that follows this one.
-    pub fn next(&self, notice: N) -> Self {
-        Bulletin { sequence: self.sequence + 1, notice }
+    /// The bulletin that `issuer` issues after this one.
+    pub fn next(&self, issuer: NodeId, notice: N) -> Self {
+        Bulletin { id: self.id.next(issuer), notice }
     }
 
-    /// Whether it was issued after `other`.
-    pub const fn is_newer_than(&self, other: &Self) -> bool {
-        self.sequence > other.sequence
-    }
-
-    /// Takes over `heard` if it is newer; says whether it was.
+    /// Takes over `heard` if it is newer; returns whether it was.
     pub fn merge(&mut self, heard: &Self) -> bool {
-        let newer = heard.is_newer_than(self);
+        let newer = heard.id.is_newer_than(self.id);
         if newer {
             *self = heard.clone();
         }
@@ -58,8 +95,17 @@ mod tests {
     #[test]
     fn bulletins_count_from_zero() {
         let first = Bulletin::first("announced");
-        let third = first.next("called").next("resumed");
-        assert_eq!((first.sequence(), *first.notice()), (0, "announced"));
-        assert_eq!((third.sequence(), *third.notice()), (2, "resumed"));
+        let third = first.next(4, "called").next(2, "resumed");
+        assert_eq!((first.number(), *first.notice()), (0, "announced"));
+        assert_eq!((third.id(), *third.notice()), (NoticeId::new(2, 2), "resumed"));
+        assert_eq!(third.number(), 2);
+    }
+
+    #[test]
+    fn two_nodes_that_issue_at_once_do_not_tie() {
+        let first = Bulletin::first("announced");
+        let (mut one, mut other) = (first.next(13, "by 13"), first.next(14, "by 14"));
+        assert!(one.merge(&other.clone()) && !other.merge(&first.next(13, "by 13")));
+        assert_eq!((one.notice(), &one), (&"by 14", &other));
     }
 }

@@ -2,13 +2,13 @@
 //!
 //! Control is sampled. Time passes in one location only, [`Stage::Moving`]; at the sample the robot
 //! goes through the others, which take no time. In each it waits for what its neighbours say, up to
-//! the next tick of its clock; then it works on what it has heard, and speaks. Sweeps and negotiation
+//! the next tick of its clock; then it processes what it has received, and sends. Sweeps and negotiation
 //! have a fixed number of rounds, in which a robot with nothing to do does not tick.
 
 use crate::{Row, TransitionTable, Urgency, vocabulary};
 
 vocabulary! {
-    /// Where a robot stands in its control period: what it waits for.
+    /// The stage of a robot in its control period: what it waits for.
     pub enum Stage: Location {
         /// The next sample, while it moves.
         Moving = "moving",
@@ -38,13 +38,13 @@ vocabulary! {
         RoutesDue = "routes due",
         /// The last round of beacons is over, and ADAL needs the flows of the period before.
         OldFlowsDue = "old flows due",
-        /// Every neighbour has told the flows of the period before.
+        /// Every neighbour has sent the flows of the period before.
         OldFlowsHeard = "old flows heard",
-        /// Every neighbour has told its multiplier.
+        /// Every neighbour has sent its multiplier.
         MultipliersHeard = "multipliers heard",
-        /// Every neighbour has told its flows, and another iteration follows.
+        /// Every neighbour has sent its flows, and another iteration follows.
         NextIteration = "next iteration",
-        /// Every neighbour has told its flows of the last iteration.
+        /// Every neighbour has sent its flows of the last iteration.
         SweepDue = "sweep due",
         /// Demands have gone up the tree.
         DemandsHeard = "demands heard",
@@ -52,13 +52,13 @@ vocabulary! {
         SweepOver = "sweep over",
         /// The last sweep is over.
         RoutesDone = "routes done",
-        /// Shortages have been told from robot to robot.
+        /// Shortages have been forwarded from robot to robot.
         ShortagesHeard = "shortages heard",
-        /// Every neighbour has told the flows that it has taken back.
+        /// Every neighbour has sent the flows that it has taken back.
         ReliefsHeard = "reliefs heard",
         /// The routes are as they will be.
         MoveDue = "move due",
-        /// Every neighbour has told its proposal.
+        /// Every neighbour has sent its proposal.
         ProposalsHeard = "proposals heard",
         /// Every neighbour has objected that has to, and moves are judged once more.
         NextAttempt = "next attempt",
@@ -66,11 +66,11 @@ vocabulary! {
         MoveCertified = "move certified",
     }
 
-    /// Where an access point stands in its control period.
+    /// The stage of an access point in its control period.
     pub enum Round: Location {
         /// It waits for the next sample.
         Resting = "resting",
-        /// It has told its beacon, and waits for those of others.
+        /// It has sent its beacon, and waits for those of others.
         Listening = "listening",
     }
 

@@ -6,7 +6,7 @@
 use crate::{Row, TransitionTable, Urgency, vocabulary};
 
 vocabulary! {
-    /// Where a robot stands in the exchange of duties.
+    /// The state of a robot in the exchange of duties.
     pub enum Dealing: Location {
         /// It exchanges nothing.
         Free = "free",

@@ -5,7 +5,7 @@
 //! maxima is the maximum. A robot that does not compete places its token without a bid. Ties go
 //! to the robot with the highest index.
 
-use super::{IdSet, NodeId};
+use super::{IdSet, NodeId, NoticeId};
 
 #[cfg(any(kani, test))]
 mod proofs;
@@ -13,6 +13,8 @@ mod proofs;
 /// What a robot offers; the greater, the better. Compared by `rank` first, then by `merit`, then
 /// by `economy`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Bid {
     /// The class of the bid: no bid of a lower class wins against one of a higher class.
     pub rank: u8,
@@ -24,21 +26,37 @@ pub struct Bid {
 
 /// One robot's view of an election.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "super::serialization::ElectionParts"))]
 pub struct Election {
-    number: u32,
+    id: NoticeId,
     tokens: IdSet,
     best: Option<(Bid, NodeId)>,
 }
 
 impl Election {
-    /// An election in which no token is known yet; `number` tells elections apart.
-    pub const fn new(number: u32) -> Self {
-        Election { number, tokens: IdSet::new(), best: None }
+    /// The election that the notice `id` calls for, in which no token is known yet.
+    pub const fn new(id: NoticeId) -> Self {
+        Election { id, tokens: IdSet::new(), best: None }
     }
 
-    /// The number of the election.
-    pub const fn number(&self) -> u32 {
-        self.number
+    /// The election with these tokens and this best bid; none if its bidder has placed no token.
+    #[cfg(feature = "serde")]
+    pub(super) fn from_parts(
+        id: NoticeId,
+        tokens: IdSet,
+        best: Option<(Bid, NodeId)>,
+    ) -> Option<Self> {
+        best.is_none_or(|(_, bidder)| tokens.contains(bidder)).then_some(Election {
+            id,
+            tokens,
+            best,
+        })
+    }
+
+    /// The notice that called for it, which tells elections apart.
+    pub const fn id(&self) -> NoticeId {
+        self.id
     }
 
     /// Robot `robot` places its token, with a bid if it competes.
@@ -55,7 +73,7 @@ impl Election {
 
     /// Lines 3 and 4 of Algorithm 1: takes the maximum with what a neighbour sent.
     pub fn merge(&mut self, heard: &Election) {
-        if heard.number == self.number {
+        if heard.id == self.id {
             self.tokens.merge(&heard.tokens);
             self.best = self.best.max(heard.best);
         }
@@ -63,8 +81,7 @@ impl Election {
 
     /// Whether what a neighbour sent says nothing new: [`merge`](Self::merge) would change nothing.
     pub fn knows(&self, heard: &Election) -> bool {
-        heard.number != self.number
-            || self.tokens.includes(&heard.tokens) && self.best >= heard.best
+        heard.id != self.id || self.tokens.includes(&heard.tokens) && self.best >= heard.best
     }
 
     /// Whether the token of every robot in `roster` is known (line 1).
@@ -86,8 +103,8 @@ mod tests {
     fn an_election_is_complete_with_the_last_token_of_its_roster() {
         let bid = Bid { rank: 1, merit: -3, economy: 0 };
         let roster: IdSet = [2, 5].into_iter().collect();
-        let mut election = Election::new(7);
-        assert_eq!(election.number(), 7);
+        let mut election = Election::new(NoticeId::new(7, 1));
+        assert_eq!(election.id(), NoticeId::new(7, 1));
         for (robot, offer) in [(2, Some(bid)), (4, None)] {
             election.place(robot, offer);
             assert!(election.has_token(robot));
@@ -102,7 +119,7 @@ mod tests {
     fn what_is_known_changes_nothing_and_what_is_new_does() {
         let bid = |merit| Some(Bid { rank: 1, merit, economy: 0 });
         let election = |number, placed: &[(NodeId, Option<Bid>)]| {
-            let mut election = Election::new(number);
+            let mut election = Election::new(NoticeId::new(number, 1));
             placed.iter().for_each(|&(robot, bid)| election.place(robot, bid));
             election
         };

@@ -3,8 +3,8 @@
 //! Robots are alike: where a mover would have to pass a parked robot, the two exchange duties
 //! instead, which is Algorithm 4's "adopts the role" without the walk. The mover offers its duty;
 //! the parked robot answers with its own and goes on doing it; the mover takes that and gives its
-//! offer up; then the parked robot takes what was offered. Each step is seen in the beacon of the
-//! one who took it, so that messages may be repeated or come late.
+//! offer up; then the parked robot takes what was offered. Each step is visible in the beacon of the
+//! robot that took it, so that messages may be repeated or come late.
 //!
 //! ```
 //! use pleach_discrete::network::Dealings;
@@ -28,6 +28,8 @@ mod proofs;
 
 /// A mover's standing offer to a parked robot.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Offer<D> {
     /// The receiver.
     pub to: NodeId,
@@ -39,6 +41,8 @@ pub struct Offer<D> {
 
 /// The parked robot's answer, repeated until the mover has heard it.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Reply<D> {
     /// The receiver.
     pub to: NodeId,
@@ -63,7 +67,7 @@ impl<D> Reply<D> {
     }
 }
 
-/// Where a robot stands in its exchanges: with an offer as a mover, with a reply as the parked one.
+/// The exchanges of a robot: with an offer as a mover, with a reply as the parked one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dealings<D> {
     offer: Option<Offer<D>>,

@@ -5,7 +5,7 @@ mod proofs;
 
 /// A set of numbers below a few thousand, as bits.
 ///
-/// The numbers below 64 have a word of their own, so that the sets of most networks allocate
+/// The numbers below 64 have a machine word of their own, so that the sets of most networks allocate
 /// nothing.
 #[derive(Clone, Debug, Default, Eq, PartialOrd, Ord)]
 pub struct IdSet {
@@ -41,7 +41,7 @@ impl IdSet {
         set
     }
 
-    /// Adds `id`; says whether it is new.
+    /// Adds `id`; returns whether it is new.
     pub fn insert(&mut self, id: usize) -> bool {
         let (at, bit) = (id / WIDTH, 1 << (id % WIDTH));
         if at > self.rest.len() {
@@ -58,7 +58,7 @@ impl IdSet {
         self.word(id / WIDTH) & (1 << (id % WIDTH)) != 0
     }
 
-    /// Adds every number of `other`; says whether any is new.
+    /// Adds every number of `other`; returns whether any is new.
     pub fn merge(&mut self, other: &IdSet) -> bool {
         if other.rest.len() > self.rest.len() {
             self.rest.resize(other.rest.len(), 0);

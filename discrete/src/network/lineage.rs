@@ -1,6 +1,6 @@
 //! The way from a post to its access point, as a path vector.
 //!
-//! Every robot tells its neighbours its lineage. A redundant robot attaches to the neighbour
+//! Every robot sends its lineage to its neighbours. A redundant robot attaches to the neighbour
 //! with the shortest one; a lineage that already contains the robot's own post is refused, so
 //! that no cycle can close.
 
@@ -8,6 +8,8 @@ use super::PostId;
 
 /// The posts from one post up to the access point, the post itself first.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "super::serialization::LineageParts"))]
 pub struct Lineage {
     posts: Vec<PostId>,
     root: usize,
@@ -32,6 +34,13 @@ impl Lineage {
     /// The lineage of access point `root`.
     pub const fn of_access_point(root: usize) -> Self {
         Lineage { posts: Vec::new(), root }
+    }
+
+    /// The lineage through these posts; none if it leads through one of them twice.
+    #[cfg(feature = "serde")]
+    pub(super) fn from_parts(posts: Vec<PostId>, root: usize) -> Option<Self> {
+        let is_new = |(at, post): (usize, &PostId)| !posts[..at].contains(post);
+        posts.iter().enumerate().all(is_new).then_some(Lineage { posts, root })
     }
 
     /// The lineage of a post that is attached to the bearer of this one; none if that would close a

@@ -14,13 +14,15 @@ pub mod lineage;
 pub mod path;
 pub mod post;
 pub mod role;
+#[cfg(feature = "serde")]
+mod serialization;
 pub mod service;
 pub mod tables;
 
 pub use activity::{Activity, DUTIES, DutyEvent};
 pub use agreement::Agreement;
 pub use attachment::{ATTACHMENT, Attachment, AttachmentEvent};
-pub use bulletin::Bulletin;
+pub use bulletin::{Bulletin, NoticeId};
 pub use control::{CONTROL, ROUNDS, Round, RoundEvent, Stage, StageEvent};
 pub use dealing::{DEALINGS, Dealing, DealingEvent};
 pub use election::{Bid, Election};

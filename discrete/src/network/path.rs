@@ -7,6 +7,8 @@ mod proofs;
 
 /// One place of Σ: the robot that stands there at t_h and the post that it holds.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Hop<P> {
     /// The robot.
     pub robot: NodeId,
@@ -20,6 +22,8 @@ pub struct Hop<P> {
 
 /// The path Σ, from the recruit s₁ (place 0) to p₁ or, when L_b = 1, the leader.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Path<P> {
     /// The places in order.
     pub hops: Vec<Hop<P>>,

@@ -7,6 +7,8 @@ use crate::vocabulary;
 /// Being a junction and being a leaf are facts about the post that a robot holds; where both
 /// hold at once, the role is the more binding one, `Leaf`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Role {
     /// Without a duty: may be recruited.
     Redundant,

@@ -60,7 +60,7 @@ vocabulary! {
         PeriodOver = "period over",
         /// The first access point has announced a task.
         AnswerHeard = "answer heard",
-        /// The mission is said to have ended.
+        /// The newest notice says that the mission has ended.
         EndHeard = "end heard",
     }
 }

@@ -117,7 +117,7 @@ pub enum CampaignError {
 }
 
 /// The name under which a mission is reported that neither ends nor says why.
-pub const ENDS: &str = "every task is serviced, or the robots say why not";
+pub const ENDS: &str = "every task is serviced, or the mission ends with a reason";
 
 /// More states of one configuration than this are not visited.
 const MOST_STATES: usize = 5_000_000;

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use pleach_discrete::network::{Bid, Election, IdSet, NodeId};
+use pleach_discrete::network::{Bid, Election, IdSet, NodeId, NoticeId};
 
 use super::graphs::Graph;
 use crate::{Model, Property};
@@ -38,7 +38,7 @@ impl Ballot {
 
     /// Every robot has placed its own token and heard nothing.
     pub fn begin(&self) -> Views {
-        let mut views = vec![Election::new(1); self.bids.len() + 1];
+        let mut views = vec![Election::new(NoticeId::new(1, self.bids.len())); self.bids.len() + 1];
         for (robot, (view, &bid)) in views.iter_mut().zip(&self.bids).enumerate() {
             view.place(robot, bid);
         }

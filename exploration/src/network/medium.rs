@@ -50,7 +50,7 @@ impl Faults {
     }
 }
 
-/// A copy of a message arrives at most so many rounds after the message.
+/// A copy of a message arrives at most this many rounds after the message.
 pub const LONGEST_ECHO: u8 = 3;
 
 /// A copy that is on its way.

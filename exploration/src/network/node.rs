@@ -71,7 +71,7 @@ impl Local {
 /// Something that happens to one node.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stimulus {
-    /// It hears these beacons, and thinks, before its clock ticks.
+    /// It receives these beacons, and processes them, before its clock ticks.
     Hear(Vec<BeaconId>),
     /// It hears these beacons, and its clock ticks: it counts a round. An access point then serves
     /// the user.

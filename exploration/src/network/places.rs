@@ -178,7 +178,7 @@ impl PlaceGraph {
                 holes: Vec::new(),
             },
             link: RANGES,
-            // A control period is over when the explorer says so.
+            // The explorer decides when a control period is over.
             control: Control { rounds_per_period: Some(usize::MAX), ..Control::default() },
             access_point: (self.robots..self.nodes())
                 .map(|place| AccessPoint { position: at(place) })

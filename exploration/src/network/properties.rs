@@ -7,7 +7,7 @@
 use pleach_automaton::network::RobotView;
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::duty::Duty;
-use pleach_discrete::network::{Anchor, Phase, Post, PostId, PostKind, Role};
+use pleach_discrete::network::{Anchor, NoticeId, Phase, Post, PostId, PostKind, Role, Subgroup};
 
 use super::protocol::{Protocol, State};
 use crate::Property;
@@ -179,22 +179,22 @@ pub fn junctions_and_tasks_are_occupied(protocol: &Protocol, state: &State) -> b
 /// Robots that know an election to be over know the same winner.
 pub fn elections_agree(protocol: &Protocol, state: &State) -> bool {
     let over: Vec<_> = protocol.robots(state).filter_map(RobotView::concluded_election).collect();
-    over.iter().all(|(number, best)| over.iter().all(|(n, b)| n != number || b == best))
+    over.iter().all(|(id, best)| over.iter().all(|(other, b)| other != id || b == best))
 }
 
 /// The elected robot has bid best of all that took part, ties going to the higher index.
 ///
-/// Robots that have begun a later election remember no older bid of theirs: then the word has
-/// gone on, and the election was looked at before.
+/// Robots that have begun a later election remember no older bid of theirs: then the
+/// mission has gone on, and the election was checked before.
 pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
-    protocol.robots(state).filter_map(RobotView::concluded_election).all(|(number, winner)| {
-        let took_part = |robot: RobotView<'_>| robot.election_number() == Some(number);
-        let bids: Vec<_> = protocol.robots(state).map(|robot| robot.own_bid(number)).collect();
+    protocol.robots(state).filter_map(RobotView::concluded_election).all(|(id, winner)| {
+        let took_part = |robot: RobotView<'_>| robot.election() == Some(id);
+        let bids: Vec<_> = protocol.robots(state).map(|robot| robot.own_bid(id)).collect();
         !protocol.robots(state).all(took_part) || election::is_won_by_best(&bids, winner)
     })
 }
 
-/// While Σ is walked one team is active: who moves for a task is in the primary team or in a
+/// While Σ is walked one team is active: a robot that moves for a task is in the primary team or in a
 /// subgroup, all in the same one.
 pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
     let of = |is_member: &dyn Fn(RobotView<'_>) -> bool| -> Vec<usize> {
@@ -205,7 +205,7 @@ pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
     let moving =
         of(&|robot| robot.is_active() && (is_shifting(robot) || robot.duty().is_primary()));
     let primary_team = of(&|robot| robot.duty().is_primary());
-    let known = protocol.robots(state).filter_map(agreed).max_by_key(|&(number, _)| number);
+    let known = protocol.robots(state).filter_map(agreed).max_by_key(|&(id, _)| id);
     let subgroups: Vec<Vec<usize>> = known.map_or_else(Vec::new, |(_, groups)| {
         let has_left = |robot: RobotView<'_>, places: std::ops::Range<usize>| {
             is_shifting(robot) && robot.duty().place().is_some_and(|place| places.contains(&place))
@@ -216,10 +216,10 @@ pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
     team::exactly_one_is_active(&moving, &primary_team, &subgroups)
 }
 
-/// The path that a robot has agreed on, by its number, and its subgroups.
-fn agreed(robot: RobotView<'_>) -> Option<(u32, &[pleach_discrete::network::Subgroup])> {
-    let number = robot.beacon().agreement?.number();
-    (robot.phase() == Phase::Shift).then(|| (number, robot.subgroups()))
+/// The path that a robot has agreed on, by its notice, and its subgroups.
+fn agreed(robot: RobotView<'_>) -> Option<(NoticeId, &[Subgroup])> {
+    let id = robot.beacon().agreement?.id();
+    (robot.phase() == Phase::Shift).then(|| (id, robot.subgroups()))
 }
 
 /// The subgroups of a path that the robots compute, each alone, are the same.
@@ -227,7 +227,7 @@ pub fn subgroups_agree(protocol: &Protocol, state: &State) -> bool {
     let known: Vec<_> = protocol.robots(state).filter_map(agreed).collect();
     known
         .iter()
-        .all(|(number, groups)| known.iter().all(|(n, others)| n != number || groups == others))
+        .all(|(id, groups)| known.iter().all(|(other, others)| other != id || groups == others))
 }
 
 /// The subgroups partition Σ before its last break point.

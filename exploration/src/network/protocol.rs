@@ -16,7 +16,7 @@ use super::node::{BeaconId, Local, LocalId, Node, Nodes, Stimulus};
 use super::places::{PlaceGraph, PlaceId};
 use crate::Model;
 
-/// What is explored: who stands where, how messages go, and how often a robot is in another's way.
+/// What is explored: the places of robots, the medium, and how often a robot is in another's way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration {
     /// The graph.
@@ -69,7 +69,7 @@ pub enum Action {
         /// The receiver.
         to: NodeId,
     },
-    /// A node thinks over what it knows.
+    /// A node processes what it knows.
     Think(NodeId),
     /// A robot comes to the next place on its way.
     Move(NodeId),
@@ -77,7 +77,7 @@ pub enum Action {
     Touch(NodeId),
     /// No node has news: a control period begins.
     Period,
-    /// The user announces a task, or learns that there is none left.
+    /// The access points serve the user: a task is announced, or none is left.
     Announce,
 }
 
@@ -97,11 +97,11 @@ impl fmt::Display for Action {
             }
             Action::Listen(node) => write!(f, "{node} hears all nodes in range"),
             Action::Hear { from, to } => write!(f, "{to} hears {from}"),
-            Action::Think(node) => write!(f, "{node} thinks"),
+            Action::Think(node) => write!(f, "{node} deliberates"),
             Action::Move(robot) => write!(f, "{robot} moves on"),
             Action::Touch(robot) => write!(f, "{robot} cannot pass a robot at its place"),
             Action::Period => write!(f, "a control period begins"),
-            Action::Announce => write!(f, "the user speaks"),
+            Action::Announce => write!(f, "the access points serve the user"),
         }
     }
 }
@@ -169,7 +169,7 @@ impl Protocol {
         let request = Message::Request(places.task_positions().into());
         let mut locals = Vec::with_capacity(user);
         for mut node in robots.chain(access_points) {
-            // The first control period begins, and has no end until the explorer says so.
+            // The first control period begins, and does not end until the explorer ends it.
             node.step(Input::Tick { passed: 0 })?;
             if locals.len() == scenario.robot.len() {
                 node.step(Input::Heard { from: user, message: &request })?;
@@ -336,7 +336,7 @@ impl Protocol {
             })
     }
 
-    /// For how long a robot has not got on when another period is over.
+    /// For how long a robot has made no progress when another period is over.
     fn stillness(&self, state: &State, robot: NodeId) -> u32 {
         let Some(body) = self.nodes.local(state.locals[robot]).robot() else { return 0 };
         let still = body.still_periods();

@@ -60,7 +60,7 @@ fn situation(protocol: &Protocol, state: &State, node: NodeId) -> String {
         robot.phase().name(),
         duty(robot),
         beacon.parent.map_or("none".into(), |parent| parent.to_string()),
-        robot.notice_number(),
+        robot.notice_id().number,
     );
     if let Some(offer) = beacon.offer {
         let _ = write!(text, ", offers {} to {}", duty_text(&offer.duty), offer.to);
@@ -109,5 +109,6 @@ fn word(notice: &Notice) -> String {
         Notice::Advance { joined } => format!("advance {:?}", joined.map(|(a, b)| (a.0, b.0))),
         Notice::Serviced { task } => format!("task {task} serviced"),
         Notice::Ended { outcome, reason, .. } => format!("ended, {}: {reason}", outcome.name()),
+        other => format!("{other:?}"),
     }
 }

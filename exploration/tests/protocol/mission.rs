@@ -16,7 +16,7 @@ use pleach_discrete::network::NodeId;
 use pleach_exploration::network::properties::duties;
 use pleach_exploration::network::{Protocol, State};
 
-/// What is said of the mission, without who says it and where.
+/// The content of a notice on the mission, without issuer and place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Word {
     Quiet,
@@ -48,6 +48,7 @@ impl Word {
             Notice::Advance { .. } => Word::Advance,
             Notice::Serviced { .. } => Word::Serviced,
             Notice::Ended { .. } => Word::Ended,
+            other => panic!("no word for {other:?}"),
         }
     }
 
@@ -130,7 +131,7 @@ impl Mission {
         let mut spoken: Vec<_> = protocol
             .locals(state)
             .map(|local| &protocol.nodes().beacon(local.beacon).bulletin)
-            .map(|bulletin| (bulletin.sequence(), bulletin.notice()))
+            .map(|bulletin| (bulletin.number(), &**bulletin.notice()))
             .collect();
         let known: Vec<u32> = spoken.iter().map(|&(number, _)| number).collect();
         let before = std::mem::replace(&mut self.known, known);
@@ -180,7 +181,7 @@ impl Mission {
         }
     }
 
-    /// Counts the tasks; says whether it is time for this notice.
+    /// Counts the tasks; returns whether it is time for this notice.
     fn count(&mut self, notice: &Notice, before: Word) -> bool {
         match notice {
             Notice::Task { task, .. } => {
@@ -202,7 +203,8 @@ impl Mission {
 
     /// An election is held on a notice that calls for one, and its winner stays the winner.
     fn hear_elections(&mut self, protocol: &Protocol, state: &State) -> Result<(), String> {
-        for (number, best) in protocol.robots(state).filter_map(RobotView::concluded_election) {
+        for (id, best) in protocol.robots(state).filter_map(RobotView::concluded_election) {
+            let number = id.number;
             let winner = best.map(|(_, robot)| robot);
             let first = *self.winners.entry(number).or_insert(winner);
             if first != winner {

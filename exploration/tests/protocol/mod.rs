@@ -54,7 +54,7 @@ impl Network {
     }
 
     /// Takes the step that has waited for the longest time, so that whatever stays possible is
-    /// done at last; says whether there was one. Contacts need not happen.
+    /// done at last; returns whether there was one. Contacts need not happen.
     fn go_on(&mut self) -> bool {
         let steps = self.steps(Protocol::faultless_steps).into_iter();
         let owed = steps.filter(|(action, _)| !matches!(action, Action::Touch(_)));

@@ -24,7 +24,7 @@ pub mod mission {
         Guard::new(name, predicate.and(!proposition("engaged")))
     }
 
-    /// The mission is said to have ended.
+    /// The newest notice says that the mission has ended.
     pub fn ended() -> Guard {
         disengaged("ended", proposition("end_announced"))
     }
@@ -80,7 +80,7 @@ pub mod mission {
         disengaged("path heard", proposition("path_announced"))
     }
 
-    /// Every place of Σ has said whether it is a break point.
+    /// Every place of Σ has voted whether it is a break point.
     pub fn points_agreed() -> Guard {
         Guard::new("points agreed", proposition("points_agreed"))
     }
@@ -95,7 +95,7 @@ pub mod mission {
         disengaged("relieved", proposition("relieved"))
     }
 
-    /// The primary team is said to be the active team.
+    /// The newest notice says that the primary team is the active team.
     pub fn resumed() -> Guard {
         disengaged("resumed", proposition("resumed"))
     }
@@ -111,7 +111,7 @@ pub mod mission {
         disengaged("reached", proposition("leads").and(!proposition("bound")).and(near.or(within)))
     }
 
-    /// The task is said to be serviced.
+    /// The newest notice says that the task is serviced.
     pub fn serviced() -> Guard {
         disengaged("serviced", proposition("service_announced"))
     }

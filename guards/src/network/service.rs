@@ -109,7 +109,7 @@ pub fn answer_heard() -> Guard {
     named("answer heard", proposition("hears_answer") & !proposition("hears_end"))
 }
 
-/// The mission is said to have ended.
+/// The newest notice says that the mission has ended.
 pub fn request_over() -> Guard {
     named("end heard", proposition("hears_end"))
 }

@@ -37,12 +37,14 @@ pub fn have_agreed(views: &[Election]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use pleach_discrete::network::NoticeId;
+
     use super::*;
 
     #[test]
     fn views_that_differ_have_not_agreed() {
         let bid = |merit| Some(Bid { rank: 1, merit, economy: 0 });
-        let [mut one, mut other] = [(); 2].map(|()| Election::new(4));
+        let [mut one, mut other] = [(); 2].map(|()| Election::new(NoticeId::new(4, 0)));
         one.place(0, bid(3));
         other.place(1, bid(2));
         assert!(!have_agreed(&[one.clone(), other.clone()]));

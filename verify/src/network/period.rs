@@ -319,7 +319,7 @@ pub fn service(period: &Period, limits: &Limits) -> Result<(), Violation> {
     Ok(())
 }
 
-/// [`Property::Occupancy`] during the period: who holds a junction or a task when it begins
+/// [`Property::Occupancy`] during the period: the robot that holds a junction or a task when it begins
 /// is within δ of the post until it ends, so that at a hand-over both are.
 ///
 /// # Errors

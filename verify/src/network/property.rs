@@ -7,6 +7,7 @@ use std::fmt;
 /// Each is stated once: as a sentence by [`statement`](Property::statement), and as the pure
 /// function that its variant links to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum Property {
     /// See [`instant::record`](super::instant::record).
     Record,

@@ -50,7 +50,7 @@ pub fn is_one_team(active_team: &[usize], primary_team: &[usize], path: &[usize]
         || is_run_of_path(active_team, path)
 }
 
-/// Whether one team is active: everyone who moves is in it, be it the primary team or a subgroup
+/// Whether one team is active: every robot that moves is in it, be it the primary team or a subgroup
 /// of Σ, and no robot of the other teams moves. Where no robot moves, no two teams do.
 ///
 /// ```

@@ -402,7 +402,7 @@ fn a_task_stays_serviced_while_another_robot_takes_over() {
 fn a_junction_or_task_whose_holder_leaves() {
     breaks(Property::Occupancy, |before, _| before.posts[0].reference.y = 0.031);
     keeps(|before, _| before.posts[0].reference.y = 0.029);
-    // The same for who takes over: the new holder must have arrived.
+    // The same for a takeover: the new holder must have arrived.
     breaks(Property::Occupancy, |_, after| after.posts[0].holder = 3);
     // The robot that held a junction when the period began stays until its end, handed over or not.
     breaks(Property::Occupancy, |before, _| {

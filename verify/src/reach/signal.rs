@@ -171,6 +171,9 @@ mod tests {
         assert_eq!(first(grid.until(within(0.0, 1.5).unwrap(), &whole, &rising)), (-1.0, 1.0));
         // The goal comes at 2 s, and what has to hold until then ends at 1 s.
         let ends = signal(&grid, |t| if t < 1.0 { (2.0, 2.0) } else { (-3.0, -3.0) });
-        assert_eq!(first(grid.until(within(0.0, 3.0).unwrap(), &ends, &rising)), (-1.0, -1.0));
+        let late = signal(&grid, |t| if t < 2.0 { (-1.0, -1.0) } else { (1.0, 1.0) });
+        assert_eq!(first(grid.until(within(0.0, 3.0).unwrap(), &ends, &late)), (-1.0, -1.0));
+        // At 1 s itself the goal may have come, and the other held until then.
+        assert_eq!(first(grid.until(within(0.0, 3.0).unwrap(), &ends, &rising)), (-1.0, 1.0));
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! One step goes as follows. The state is a vector of polynomials in symbols from −1 to 1, one for
 //! each dimension of the initial set and for each error that was made on the way. From them come
-//! the Taylor coefficients x₀, …, xₖ₋₁ in time, as [Taylor models](super::taylor_model). A box B and a
+//! the Taylor coefficients x₀, …, xₖ₋₁ in time, as Taylor models. A box B and a
 //! duration h are found with
 //!
 //! ```text

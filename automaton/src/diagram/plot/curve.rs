@@ -94,7 +94,7 @@ pub(super) fn path(
     path
 }
 
-/// All samples, or where they are too many those that can be told apart.
+/// All samples, or where they are too many those that can be distinguished.
 fn thinned<'a>(samples: &'a [Sample], up: Quantity, horizontal: &Axis) -> Vec<&'a Sample> {
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return Vec::new() };
     let grains = horizontal.distance(last.t - first.t) / GRAIN;

@@ -1,5 +1,5 @@
 //! The picture of a composition: its components side by side in frames, above them a line for each
-//! label, with a dot over everyone who takes part, and below them an arrow for each connection,
+//! label, with a dot over every participant, and below them an arrow for each connection,
 //! from what is read to who reads it.
 
 use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Place, Size, number, text_width};

@@ -1,16 +1,16 @@
-//! The access point as an explorer drives it.
+//! The access point, driven by an explorer.
 
 use super::super::beacon::{Beacon, Notice};
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
 use crate::automaton::TransitionError;
 
 impl AccessPoint {
-    /// What the access point would tell its neighbours now.
+    /// The beacon that the access point would send now.
     pub fn beacon(&self) -> Beacon {
         self.public_state()
     }
 
-    /// In place of a round of messages: thinks over what it has heard, without counting a round.
+    /// In place of a round of messages: processes what it has received, without counting a round.
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
@@ -18,7 +18,7 @@ impl AccessPoint {
         self.think()
     }
 
-    /// In place of what it does for the user at the end of each round.
+    /// In place of serving the user at the end of each round.
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
@@ -27,19 +27,48 @@ impl AccessPoint {
     }
 
     /// Everything, apart from what it hears, that decides what the access point says from now on.
-    /// Waits that are over are over, however long.
+    ///
+    /// Left out is what the explorer stands for and what follows from the rest; how long a wait has
+    /// been over does not matter. A field that is neither told nor left out does not compile.
     pub fn account(&self) -> String {
-        let settled = match self.bulletin.notice() {
-            Notice::Quiet => self.settled_rounds.min(ROUNDS_UNTIL_ROSTER_SETTLES),
+        let AccessPoint {
+            // Told.
+            number,
+            bulletin,
+            election,
+            election_rounds,
+            agreement,
+            route,
+            crossing,
+            roster,
+            settled_rounds,
+            service,
+            // Constant: the request comes before the first state, and does not change.
+            site: _,
+            position: _,
+            requested: _,
+            // Between two stimuli an access point has nothing left to do.
+            heard: _,
+            newest: _,
+            rounds: _,
+            acts: _,
+            is_new: _,
+            voice: _,
+            log: _,
+            // The explorer stands for time.
+            clock: _,
+        } = self;
+        let settled = match self.notice() {
+            Notice::Quiet => (*settled_rounds).min(ROUNDS_UNTIL_ROSTER_SETTLES),
             _ => 0,
         };
         let patience = PATIENCE_WITH_ELECTIONS * self.longest_wait() + 1;
-        let rounds = if self.is_electing() { self.election_rounds.min(patience) } else { 0 };
+        let rounds = if self.is_electing() { (*election_rounds).min(patience) } else { 0 };
         format!(
             "{:?}",
             (
-                (self.number, &self.bulletin, &*self.service, &self.election, rounds),
-                (&self.agreement, &self.route, &self.crossing, &self.roster, settled),
+                (number, bulletin, &**service, election, rounds),
+                (agreement, route, crossing, roster, settled),
             )
         )
     }

@@ -9,12 +9,12 @@ mod abstraction;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Agreement, Anchor, Bulletin, Election, IdSet, Lineage, NodeId};
+use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId, NoticeId};
 
 mod rounds;
 mod service;
 
-use super::beacon::{Beacon, Notice, Voice};
+use super::beacon::{Beacon, Bulletin, Notice, Voice};
 use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
@@ -30,12 +30,12 @@ use crate::node::{Input, Node, Outputs};
 pub use rounds::{RoundAct, RoundActs, RoundAutomaton, round_automaton};
 pub use service::{ACCESS_POINT_GLOSSARY, ServiceAutomaton, ServiceEffect, service_automaton};
 
-/// The first task is announced when the roster has not changed for this many rounds: between two
-/// robots whose links to an access point differ by one, news of them come two rounds apart.
+/// The first task is announced when the roster has not changed for this many rounds: news of two
+/// robots whose numbers of links to an access point differ by one arrive two rounds apart.
 const ROUNDS_UNTIL_ROSTER_SETTLES: usize = 8;
 
-/// An election takes at most this many times the rounds that news can be under way: redundant
-/// robots wait twice that long for the way to the caller before they place their token.
+/// An election takes at most this many times the rounds that a message can travel: redundant
+/// robots wait twice that long for the path to the caller before they place their token.
 const PATIENCE_WITH_ELECTIONS: usize = 4;
 
 /// An access point.
@@ -45,22 +45,22 @@ pub struct AccessPoint {
     site: Arc<Site>,
     position: Point,
     heard: Vec<Arc<Beacon>>,
-    bulletin: Shared<Bulletin<Notice>>,
+    bulletin: Bulletin,
     /// The newest bulletin that it has heard and not taken up.
-    newest: Option<Shared<Bulletin<Notice>>>,
+    newest: Option<Bulletin>,
     election: Option<Arc<Election>>,
     election_rounds: usize,
     agreement: Option<Agreement>,
-    route: Option<(u32, Shared<Vec<Hop>>)>,
+    route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     crossing: Vec<usize>,
     roster: Arc<IdSet>,
     settled_rounds: usize,
     /// What the user has asked for.
     requested: Option<Arc<[Point]>>,
-    /// Where it stands in the service of the tasks, and in its control period.
+    /// Its state in the service of the tasks, and its stage in the control period.
     service: Current<Serving>,
     rounds: Current<Rounds>,
-    /// What is left to do of the row that was taken last.
+    /// The remaining acts of the row that was taken last.
     acts: RoundActs,
     is_new: bool,
     clock: f64,
@@ -77,7 +77,7 @@ impl AccessPoint {
             position: site.access_points[number],
             site,
             heard: Vec::new(),
-            bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
+            bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             newest: None,
             election: None,
             election_rounds: 0,
@@ -106,7 +106,7 @@ impl AccessPoint {
         self.site.robots + self.number
     }
 
-    /// What it tells its neighbours and, over the wire, the other access points: the very same
+    /// The beacon for its neighbours and, over the wire, the other access points: the very same
     /// beacon as before unless something in it has changed.
     fn speak(&mut self) -> Arc<Beacon> {
         let (beacon, _) = self.voice.say(self.public_state());
@@ -136,7 +136,7 @@ impl AccessPoint {
         }
     }
 
-    /// Puts together what it has heard in one round.
+    /// Processes the messages of one round.
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
@@ -148,7 +148,7 @@ impl AccessPoint {
         Ok(())
     }
 
-    /// The first access point tells the user what there is to know.
+    /// The first access point sends the user the newest notice.
     fn tell_user(&self, outputs: &mut Outputs<Message, MissionEvent>) {
         if self.number == 0 {
             let user = self.site.robots + self.site.access_points.len();
@@ -163,9 +163,10 @@ impl AccessPoint {
     }
 
     fn hear_notices(&mut self) -> Result<(), TransitionError> {
-        let newest = self.heard.iter().map(|b| &b.bulletin).max_by_key(|b| b.sequence());
-        self.newest = newest.filter(|heard| heard.is_newer_than(&self.bulletin)).cloned();
-        if self.newest.is_some() {
+        let mut newest = self.bulletin.clone();
+        let hear = |has_news, beacon: &Arc<Beacon>| newest.merge(&beacon.bulletin) || has_news;
+        if self.heard.iter().fold(false, hear) {
+            self.newest = Some(newest);
             self.jump()?;
             self.newest = None;
         }
@@ -187,16 +188,16 @@ impl AccessPoint {
         Ok(())
     }
 
-    fn take_up(&mut self, bulletin: Shared<Bulletin<Notice>>) {
-        let number = bulletin.sequence();
-        match bulletin.notice() {
+    fn take_up(&mut self, bulletin: Bulletin) {
+        let id = bulletin.id();
+        match **bulletin.notice() {
             Notice::Task { .. } | Notice::Call { .. } => {
-                self.election = Some(Arc::new(Election::new(number)));
+                self.election = Some(Arc::new(Election::new(id)));
                 self.election_rounds = 0;
                 self.route = None;
                 self.crossing.clear();
             }
-            Notice::Path(_) => self.agreement = Some(Agreement::new(number)),
+            Notice::Path(_) => self.agreement = Some(Agreement::new(id)),
             _ => {}
         }
         self.bulletin = bulletin;
@@ -205,13 +206,13 @@ impl AccessPoint {
     /// The way to the robot that calls: through a robot that is attached here, or through another
     /// access point so near that a robot can change over from one to the other.
     fn find_route(&mut self) {
-        let number = self.bulletin.sequence();
-        if !matches!(self.bulletin.notice(), Notice::Call { .. }) || self.route.is_some() {
+        let id = self.bulletin.id();
+        if !matches!(self.notice(), Notice::Call { .. }) || self.route.is_some() {
             return;
         }
         let own = Anchor::Access(self.number);
         for beacon in &self.heard {
-            let Some((_, onward)) = beacon.route.as_ref().filter(|(at, _)| *at == number) else {
+            let Some((_, onward)) = beacon.route.as_ref().filter(|(call, _)| *call == id) else {
                 continue;
             };
             let is_child = beacon
@@ -220,7 +221,7 @@ impl AccessPoint {
                 .is_some_and(|duty| duty.post().is_some_and(|post| post.parent == Some(own)));
             let changeover = beacon.duty.is_none() && self.is_within_changeover(beacon.position);
             if is_child || changeover {
-                self.route = Some((number, onward.clone()));
+                self.route = Some((id, onward.clone()));
                 self.crossing = vec![self.number];
                 self.crossing.extend(&beacon.crossing);
                 return;
@@ -248,7 +249,7 @@ impl AccessPoint {
         let settled = self.roster.includes(&roster) && roster.includes(&self.roster);
         self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
         if !settled {
-            // What another access point told may be older than what this one has heard itself.
+            // What another access point sent may be older than what this one has received itself.
             roster.merge(&self.roster);
             self.roster = Arc::new(roster);
         }
@@ -269,7 +270,7 @@ impl AccessPoint {
         matches!(*self.service, Serving::Electing(_))
     }
 
-    /// No message is longer under way than there are nodes to pass it on.
+    /// A message travels for at most as many rounds as there are nodes.
     fn longest_wait(&self) -> usize {
         self.site.robots + self.site.access_points.len()
     }

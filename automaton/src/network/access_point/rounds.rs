@@ -21,14 +21,15 @@ pub type RoundAutomaton = Automaton<Round, RoundEvent, AccessPoint>;
 
 /// A part of the work of a control period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RoundAct {
     /// τ := 0.
     RestartClock,
-    /// It puts together what it has heard, and serves the user.
+    /// It processes the messages received, and serves the user.
     Think,
-    /// The first access point tells the user the newest notice.
+    /// The first access point sends the user the newest notice.
     TellUser,
-    /// It tells its public state.
+    /// It sends its public state.
     TellBeacon,
 }
 
@@ -71,7 +72,7 @@ impl AccessPoint {
         }
     }
 
-    /// The clock calls: the access point takes the next row of its control period.
+    /// The clock is due: the access point takes the next row of its control period.
     pub(super) fn tick(
         &mut self,
         outputs: &mut Outputs<Message, MissionEvent>,
@@ -82,10 +83,10 @@ impl AccessPoint {
             match act {
                 RoundAct::RestartClock => self.clock = 0.0,
                 RoundAct::Think => {
-                    let known = self.bulletin.clone();
+                    let known = self.bulletin.id();
                     self.think()?;
                     self.serve()?;
-                    if self.bulletin != known {
+                    if self.bulletin.id() != known {
                         self.tell_user(outputs);
                     }
                 }

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Bulletin, NodeId, SERVICE, Service, ServiceEvent};
+use pleach_discrete::network::{NodeId, SERVICE, Service, ServiceEvent};
 use pleach_guards::{Guard, network::service as guards};
 
 use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Transfer};
 
-use super::super::beacon::Notice;
+use super::super::beacon::{Bulletin, Notice};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::service::{Announced, Electing, Gathering, Over, Serviced, Serving, UnderWay};
 use super::super::shared::Shared;
@@ -19,7 +19,7 @@ pub type ServiceAutomaton = Automaton<Service, ServiceEvent, AccessPoint>;
 
 crate::observed! {
     impl Observed for AccessPoint as point;
-    /// What the guards of access points speak of.
+    /// What the guards of access points read.
     pub const ACCESS_POINT_GLOSSARY;
     quantities {
         /// τ: seconds since the last sample.
@@ -42,19 +42,19 @@ crate::observed! {
         longest_wait: (PATIENCE_WITH_ELECTIONS * point.longest_wait()) as f64,
     }
     propositions {
-        /// The newest notice that it hears tells of a task, or of a call for a recruit.
+        /// The newest notice received announces a task, or calls for a recruit.
         hears_election: matches!(point.heard_notice(), Some(Notice::Task { .. } | Notice::Call { .. })),
-        /// The newest notice that it hears tells of a path Σ, or that the team advances.
+        /// The newest notice received announces a path Σ, or that the team advances.
         hears_progress: matches!(point.heard_notice(), Some(Notice::Path(_) | Notice::Advance { .. })),
-        /// The newest notice that it hears tells that the task is serviced.
+        /// The newest notice received says that the task is serviced.
         hears_service: matches!(point.heard_notice(), Some(Notice::Serviced { .. })),
-        /// The newest notice that it hears tells that the mission has ended.
+        /// The newest notice received says that the mission has ended.
         hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
         /// The user has asked it for tasks.
         asked: point.requested.is_some(),
         /// There is a task after the one announced last.
         task_left: point.next_task().is_some(),
-        /// It has heard who takes part in the election.
+        /// It knows the roster of the election.
         knows_electors: point.announced().is_some(),
         /// The token of every robot that takes part is known.
         election_over: point.is_election_over(),
@@ -65,14 +65,15 @@ crate::observed! {
     }
 }
 
-/// What a transition does beside.
+/// What a transition does beside changing the location.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum ServiceEffect {
     /// It takes up this bulletin.
-    TakeUp(Shared<Bulletin<Notice>>),
+    TakeUp(Bulletin),
     /// It issues the next notice.
     Issue(Notice),
-    /// It tells observers.
+    /// It reports to observers.
     Report(MissionEvent),
 }
 
@@ -94,7 +95,7 @@ impl Holds<Serving> for AccessPoint {
             match effect {
                 ServiceEffect::TakeUp(bulletin) => self.take_up(bulletin),
                 ServiceEffect::Issue(notice) => {
-                    self.take_up(Shared::new(self.bulletin.next(notice)));
+                    self.take_up(self.bulletin.next(self.id(), Shared::new(notice)));
                 }
                 ServiceEffect::Report(event) => self.log.push(event),
             }
@@ -114,7 +115,7 @@ impl AccessPoint {
 
     /// The notice that it has heard and not taken up.
     fn heard_notice(&self) -> Option<&Notice> {
-        self.newest.as_ref().map(|bulletin| bulletin.notice())
+        self.newest.as_ref().map(|bulletin| &**bulletin.notice())
     }
 
     /// The number of the task after the one serviced last, if the user has asked for one.
@@ -160,7 +161,7 @@ knows! {
 /// It takes up the notice that it has heard.
 fn take_up(point: &AccessPoint, effects: &mut Effects) -> Option<Notice> {
     let newest = point.newest.clone()?;
-    let notice = newest.notice().clone();
+    let notice = Notice::clone(newest.notice());
     effects.push(ServiceEffect::TakeUp(newest));
     Some(notice)
 }

@@ -2,19 +2,19 @@
 //!
 //! Between two jumps of the discrete protocol the flow carries a robot somewhere, and time
 //! passes. An explorer does not follow the flow. It chooses what may come of it: where the robot
-//! stands, and for how long it has not got on. Everything else is the robot itself.
+//! stands, and for how long it has made no progress. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
-use pleach_discrete::network::{Bid, NodeId, Phase, Subgroup};
+use pleach_discrete::network::{Bid, NodeId, NoticeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Path};
 use super::facts::STATIONARY_WINDOW;
 use super::{Robot, RobotError, RobotView};
 
-/// What an explorer reads off a robot beside what observers see.
+/// What an explorer reads from a robot in addition to what observers see.
 impl<'a> RobotView<'a> {
-    /// What the robot would tell its neighbours now.
+    /// The beacon that the robot would send now.
     pub fn beacon(self) -> Beacon {
         self.robot().public_state()
     }
@@ -24,7 +24,7 @@ impl<'a> RobotView<'a> {
         self.robot().dealings().taking()
     }
 
-    /// The path Σ that it was told of last.
+    /// The path Σ that was announced last.
     pub fn path(self) -> Option<&'a Path> {
         self.robot().mission.path().map(|path| &**path)
     }
@@ -34,25 +34,24 @@ impl<'a> RobotView<'a> {
         self.robot().mission.shift().map_or(&[], |shift| &shift.subgroups)
     }
 
-    /// The number of the election that it knows to be over, and the winner with its bid.
-    pub fn concluded_election(self) -> Option<(u32, Option<(Bid, NodeId)>)> {
+    /// The election that it knows to be over, and the winner with its bid.
+    pub fn concluded_election(self) -> Option<(NoticeId, Option<(Bid, NodeId)>)> {
         let election = self.robot().election.as_ref()?;
         let over = election.is_complete(&self.robot().roster);
-        over.then(|| (election.number(), election.best()))
+        over.then(|| (election.id(), election.best()))
     }
 
-    /// The number of the election that it takes part in, or took part in last.
-    pub fn election_number(self) -> Option<u32> {
-        self.robot().election.as_ref().map(|election| election.number())
+    /// The election that it takes part in, or took part in last.
+    pub fn election(self) -> Option<NoticeId> {
+        self.robot().election.as_ref().map(|election| election.id())
     }
 
-    /// What it has bid itself in the election with this number, if it has taken part in it and
-    /// in none since.
-    pub fn own_bid(self, number: u32) -> Option<Bid> {
-        self.robot().bid.filter(|_| self.election_number() == Some(number))
+    /// What it has bid itself in this election, if it has taken part in it and in none since.
+    pub fn own_bid(self, election: NoticeId) -> Option<Bid> {
+        self.robot().bid.filter(|_| self.election() == Some(election))
     }
 
-    /// For how many control periods the robot has not got on.
+    /// The number of control periods without progress.
     pub fn still_periods(self) -> u32 {
         self.robot().still_periods
     }
@@ -64,7 +63,7 @@ impl<'a> RobotView<'a> {
 }
 
 impl Robot {
-    /// In place of a round of messages: thinks over what it has heard, without counting a round.
+    /// In place of a round of messages: processes what it has received, without counting a round.
     ///
     /// # Errors
     /// When a guard cannot be evaluated, or transitions do not come to an end.
@@ -77,7 +76,7 @@ impl Robot {
     }
 
     /// In place of the last stages of a control period and the beginning of the next: the robot
-    /// has not got on for `still_periods` control periods.
+    /// has made no progress for `still_periods` control periods.
     ///
     /// # Errors
     /// When a guard cannot be evaluated, or transitions do not come to an end.

@@ -27,6 +27,7 @@ macro_rules! acts {
     ($($(#[$note:meta])+ $act:ident = $name:literal,)+) => {
         /// A part of the work of a control period.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[non_exhaustive]
         pub enum Act {
             $($(#[$note])+ $act),+
         }

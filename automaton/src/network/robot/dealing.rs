@@ -21,7 +21,7 @@ pub type DealingAutomaton = Automaton<Dealing, DealingEvent, Robot>;
 macro_rules! deals {
     ($($(#[$note:meta])* $name:ident),+ $(,)?) => {
         crate::places_of! {
-            /// Where a robot stands in the exchange of duties, with its offers and replies.
+            /// The state of a robot in the exchange of duties, with its offers and replies.
             pub enum Deal: Dealing { $($(#[$note])* $name($name)),+ }
         }
 
@@ -69,12 +69,13 @@ deals! {
     Giving,
 }
 
-/// What a transition does beside.
+/// The effects of a transition other than changing the location.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum DealingEffect {
     /// It has answered the offer with this number of this mover.
     Answered(NodeId, u32),
-    /// It looks for a partner no more.
+    /// It no longer looks for a partner.
     PartnerAsked,
     /// It takes this duty over from this robot.
     Takes(Duty, NodeId),

@@ -2,7 +2,7 @@
 //! and 4, Remark 5.6).
 //!
 //! Resets are functions from the data of one duty to that of the next. They read the robot as it
-//! was before the jump and change nothing; what a jump does beside is a [`DutyEffect`].
+//! was before the jump and change nothing; any other effect of a jump is a [`DutyEffect`].
 
 use std::sync::Arc;
 
@@ -40,12 +40,13 @@ pub(super) enum Label {
     Exchange(Duty, NodeId),
 }
 
-/// What a transition does beside giving the robot another duty.
+/// The effects of a transition other than another duty.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum DutyEffect {
-    /// The robot tells observers.
+    /// The robot reports to observers.
     Report(MissionEvent),
-    /// Its stillness is counted anew: it begins another way.
+    /// Its stillness is counted from 0: it begins another path.
     Restart,
     /// It was given its duty by this partner, and its place in the tree is another.
     Exchanged(NodeId),
@@ -120,7 +121,7 @@ impl Robot {
         }
     }
 
-    /// Tells observers if the role is not `before` any more.
+    /// Reports to observers if the role is no longer `before`.
     pub(super) fn report_role_after(&mut self, before: Role) {
         let now = self.role();
         if now != before {
@@ -159,7 +160,7 @@ impl Robot {
         match self.label {
             Label::Mission(MissionStep::Recruited) => Some(0),
             Label::Mission(MissionStep::PathHeard) => {
-                let Notice::Path(path) = self.bulletin.notice() else { return None };
+                let Notice::Path(path) = self.notice() else { return None };
                 let place = path.place_of(own)?;
                 (place <= path.last_break_point()).then_some(place)
             }
@@ -167,7 +168,7 @@ impl Robot {
         }
     }
 
-    /// Whether Σ is of no use any more.
+    /// Whether Σ is no longer of use.
     pub(super) fn is_called_off(&self) -> bool {
         use MissionStep::{Announced, Ended, Resumed, Serviced};
         [Announced, Ended, Resumed, Serviced].into_iter().any(|step| self.takes_step(step))
@@ -298,7 +299,7 @@ fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
     let joins_at_once = robot.mission.shift().is_none_or(|shift| shift.subgroups.is_empty());
     let before = held.station.post;
     let parent = if joins_at_once { before.parent } else { Some(Anchor::Post(before.id)) };
-    let id = PostId((robot.site.robots as u32) + robot.bulletin.sequence());
+    let id = PostId((robot.site.robots as u32) + robot.bulletin.number());
     let post = Post { id, kind: PostKind::Primary { follows }, parent, task: None };
     let station = Station { post, reference: robot.position };
     Held { station, left: (!joins_at_once).then_some(before.id) }

@@ -52,9 +52,9 @@ facts! {
         still,
         /// Control periods after which a team that stands still is at a stationary point.
         window,
-        /// Control periods for which this robot has been kept from going on, other than by its links.
+        /// Control periods without progress of this robot for another reason than its links.
         stalled,
-        /// Control periods after which a robot that is kept from going on gives up.
+        /// Control periods without progress after which a robot gives up.
         patience,
         /// Euclidean distance to the announced task.
         distance,
@@ -78,17 +78,17 @@ facts! {
         called,
         /// A path Σ is announced that this robot has not taken up.
         path_announced,
-        /// Every place of Σ has said whether it is a break point.
+        /// Every place of Σ has voted whether it is a break point.
         points_agreed,
         /// Every member of the active subgroup has arrived.
         subgroup_arrived,
         /// This robot is the last that Σ relieves, and its post is held by another.
         relieved,
-        /// The primary team is said to be the active team.
+        /// The newest notice says that the primary team is the active team.
         resumed,
-        /// The task is said to be serviced.
+        /// The newest notice says that the task is serviced.
         service_announced,
-        /// The mission is said to have ended.
+        /// The newest notice says that the mission has ended.
         end_announced,
         /// This robot is p₁.
         first,
@@ -149,13 +149,13 @@ facts! {
             has_past_duties: robot.has_past_duties(),
             /// The leader election is over now, and it has won it.
             wins: robot.wins_now(),
-            /// It learns now that Σ passes its post.
+            /// It learns in this jump that Σ passes its post.
             on_coming_path: robot.is_on_coming_path(),
-            /// It learns now that Σ is given up or done.
+            /// It learns in this jump that Σ is given up or done.
             called_off: robot.is_called_off(),
-            /// It learns now that another task is announced.
+            /// It learns in this jump that another task is announced.
             superseded: robot.is_superseded(),
-            /// It learns now that the primary team is dissolved.
+            /// It learns in this jump that the primary team is dissolved.
             dissolved: robot.is_dissolved(),
             /// It is relieved now of the last post of Σ.
             is_relieved: robot.takes_step(MissionStep::Relieved),
@@ -165,7 +165,7 @@ facts! {
             ahead_is_free: robot.post_ahead().as_ref().is_some_and(Post::is_redundant),
             /// A task is serviced from the post ahead.
             ahead_serves: robot.post_ahead().is_some_and(|post| post.task.is_some()),
-            /// It has found a robot in its way with which to exchange duties.
+            /// A robot in its way is a partner for an exchange of duties.
             finds_partner: robot.partner.is_some(),
             /// The partner has answered its offer.
             offer_answered: robot.answer_to_offer().is_some(),
@@ -181,7 +181,7 @@ facts! {
             mission_over: robot.phase() == Phase::Ended,
             /// A robot is still attached to the post that it has left, and to the robot itself.
             held_back: robot.is_held_by_old_news(),
-            /// A mover that cannot pass asks for way, and it stands in it.
+            /// It stands in the way of a mover that cannot pass and asks for room.
             asked_for_way: robot.way_to_clear().is_some(),
             /// It is off the reference of its post.
             off_post: robot.is_off_post(),
@@ -236,7 +236,7 @@ facts! {
 }
 
 impl Robot {
-    /// Measures the facts; says whether a guard may hold that did not hold before.
+    /// Measures the facts; returns whether a guard may hold that did not hold before.
     pub(super) fn measure(&mut self) -> bool {
         if !std::mem::take(&mut self.is_unmeasured) {
             return false;
@@ -282,13 +282,13 @@ impl Robot {
 
     /// What the newest notice asks of this robot.
     fn measure_word(&self, facts: &mut Facts) {
-        let number = self.bulletin.sequence();
-        let election = self.election.as_ref().map(|election| election.number());
-        let path = self.agreement.as_ref().map(|agreement| agreement.number());
-        match self.bulletin.notice() {
-            Notice::Task { .. } if election != Some(number) => facts.announced = true,
-            Notice::Call { .. } if election != Some(number) => facts.called = true,
-            Notice::Path(_) if path != Some(number) => facts.path_announced = true,
+        let id = self.bulletin.id();
+        let election = self.election.as_ref().map(|election| election.id());
+        let path = self.agreement.as_ref().map(|agreement| agreement.id());
+        match self.notice() {
+            Notice::Task { .. } if election != Some(id) => facts.announced = true,
+            Notice::Call { .. } if election != Some(id) => facts.called = true,
+            Notice::Path(_) if path != Some(id) => facts.path_announced = true,
             Notice::Advance { .. } => facts.resumed = true,
             Notice::Serviced { .. } => facts.service_announced = true,
             Notice::Ended { .. } => facts.end_announced = true,
@@ -297,7 +297,7 @@ impl Robot {
     }
 
     fn is_caller(&self) -> bool {
-        matches!(*self.bulletin.notice(), Notice::Call { caller, .. } if caller == self.id)
+        matches!(*self.notice(), Notice::Call { caller, .. } if caller == self.id)
     }
 
     fn measure_shift(&self, facts: &mut Facts) {
@@ -350,7 +350,7 @@ impl Robot {
     /// yet.
     fn is_pending(&self) -> bool {
         let Some(own) = self.duty.post() else { return false };
-        match *self.bulletin.notice() {
+        match *self.notice() {
             Notice::Advance { joined: Some((newcomer, followed)) } if newcomer == own.id => self
                 .holder(followed)
                 .and_then(|neighbour| neighbour.post())
@@ -368,7 +368,7 @@ impl Robot {
     }
 }
 
-/// How many times the longest regular wait a robot is patient.
+/// The patience of a robot, in multiples of the longest regular wait.
 const PATIENCE: f64 = 4.0;
 
 /// Control periods without motion that make a stationary point.

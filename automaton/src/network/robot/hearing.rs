@@ -25,8 +25,8 @@ pub(super) struct Neighbour {
     silent_rounds: u8,
 }
 
-/// A neighbour that is not heard for more rounds than this is out of range. So many messages in
-/// succession may be lost and nothing comes of it; a control period has more rounds.
+/// A neighbour that is not heard for more rounds than this is out of range. That many messages in
+/// succession may be lost without effect; a control period has more rounds.
 const PATIENCE_WITH_SILENCE: u8 = 2;
 
 impl Neighbour {
@@ -72,9 +72,9 @@ impl Neighbour {
 }
 
 impl Robot {
-    /// Takes in a beacon. One that is overtaken by a newer one of its sender says nothing.
+    /// Takes in a beacon. One that arrives after a newer one of its sender is ignored.
     pub(super) fn hear_beacon(&mut self, beacon: &Arc<Beacon>) {
-        // Beacons of a round mostly come in the order of their senders, and say nothing new.
+        // Beacons of a round mostly come in the order of their senders, and have no news.
         let expected = self.neighbours.get_mut(self.heard_up_to);
         if let Some(known) = expected
             && Arc::ptr_eq(&known.beacon, beacon)
@@ -134,7 +134,7 @@ impl Robot {
         }
     }
 
-    /// A neighbour that the robot knows is not heard; says where the next one stands.
+    /// A neighbour that the robot knows is not heard; returns the index of the next one.
     fn miss(&mut self, at: usize) -> usize {
         let known = &mut self.neighbours[at];
         let silent_rounds = known.silent_rounds + 1;
@@ -178,7 +178,7 @@ impl Robot {
     /// The neighbour that holds `post`.
     ///
     /// At the end of an exchange of duties two robots hold it, and the one whose reply stands is
-    /// about to take the other's: who was still attached to it could end up below itself.
+    /// about to take the other's: a robot that was still attached to it could end up below itself.
     pub(super) fn holder(&self, post: PostId) -> Option<&Neighbour> {
         let holds = |neighbour: &&Neighbour| neighbour.post().is_some_and(|held| held.id == post);
         let holders = self.neighbours.iter().filter(holds);

@@ -18,14 +18,14 @@ const BESIDE: f64 = 2.1;
 
 /// A task is announced: the robot places a bid for it (Remark 5.3).
 pub(super) fn place_bid<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<LeaderElection> {
-    let Notice::Task { task, position, roster, eligible } = robot.bulletin.notice() else {
+    let Notice::Task { task, position, roster, eligible } = robot.notice() else {
         return None;
     };
     let target = robot.site.free_space.nearest(*position);
     let task = TaskNotice { number: *task, position: *position, target };
     let competes = robot.lineage().is_some_and(|lineage| eligible.contains(lineage.root()));
     let bid = competes.then(|| robot.leader_bid(&task)).flatten();
-    let mut election = Election::new(robot.bulletin.sequence());
+    let mut election = Election::new(robot.notice_id());
     election.place(robot.id, bid);
     effects.extend([
         MissionEffect::Restart,

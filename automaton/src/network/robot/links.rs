@@ -1,8 +1,8 @@
 //! The links of the tree that the robot must not lose.
 //!
 //! While a subgroup of Σ is on its way, the posts that it left have no holder. The chain of its
-//! robots then stands for them: going up the tree each is attached to the next, going down each hangs
-//! on the one before, and the break points at both ends hold the chain.
+//! robots then stands for them: going up the tree each is attached to the next, going down each is
+//! attached to the one before, and the break points at both ends hold the chain.
 
 use pleach_discrete::network::{Anchor, NodeId};
 
@@ -28,7 +28,7 @@ impl Robot {
             .or_else(|| self.parent.filter(|&parent| self.neighbour(parent).is_some()))
     }
 
-    /// Keeps its parent in mind.
+    /// Stores its parent.
     pub(super) fn remember_parent(&mut self) {
         self.parent = self.tree_parent();
     }

@@ -2,14 +2,16 @@
 //! and 5).
 //!
 //! Resets are functions from the data of one phase to that of the next. They read the robot as it
-//! was before the jump, with the duty that it has taken in the same jump, and change nothing; what
-//! a step does beside is a [`MissionEffect`]. The steps themselves stand in the chapters on the
+//! was before the jump, with the duty that it has taken in the same jump, and change nothing; any
+//! other effect of a step is a [`MissionEffect`]. The steps themselves are in the chapters on the
 //! election of a leader (`leader`) and of a recruit (`recruit`), on the path Σ and its subgroups
 //! (`path`), and on the primary team (`team`).
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Agreement, Bid, Election, IdSet, MISSION, MissionStep, Phase};
+use pleach_discrete::network::{
+    Agreement, Bid, Election, IdSet, MISSION, MissionStep, NoticeId, Phase,
+};
 use pleach_guards::network::mission as guards;
 
 use crate::located::{Current, DataOf, Holds, Place as _};
@@ -28,22 +30,24 @@ use super::{Robot, TaskNotice, leader, path, recruit, team};
 /// The automaton of the mission as one robot sees it.
 pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
 
-/// What a step of the mission does beside entering another phase.
+/// The effects of a step of the mission other than another phase.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum MissionEffect {
-    /// The robot tells observers.
+    /// The robot reports to observers.
     Report(MissionEvent),
     /// It issues the next notice.
     Issue(Notice),
-    /// It keeps in mind the task announced, the electors of its leader, and the access points whose robots compete.
+    /// It stores the task announced, the electors of its leader, and the access points whose robots
+    /// compete.
     Learn(TaskNotice, Arc<IdSet>, Arc<IdSet>),
     /// It takes part in this election, with its own bid, from the way to the caller that it knows.
-    Elect(Election, Option<Bid>, Option<(u32, Shared<Vec<Hop>>)>),
+    Elect(Election, Option<Bid>, Option<(NoticeId, Shared<Vec<Hop>>)>),
     /// It forgets the way to the caller.
     ForgetRoute,
     /// It takes part in this agreement about Σ.
     Agree(Option<Agreement>),
-    /// Its stillness is counted anew.
+    /// Its stillness is counted from 0.
     Restart,
 }
 
@@ -88,7 +92,7 @@ impl Holds<Mission> for Robot {
 
 impl Robot {
     /// Takes at most one step of the mission, together with the duty automaton if that has a
-    /// transition for it; says whether it did.
+    /// transition for it; returns whether it did.
     pub(super) fn jump_mission(&mut self) -> Result<bool, TransitionError> {
         let site = Arc::clone(&self.site);
         let mut phase = self.phase();
@@ -103,12 +107,10 @@ impl Robot {
         self.mission.location()
     }
 
-    /// Takes the maximum of what it knows of the mission and what its neighbours say.
+    /// Merges what it knows of the mission with the beacons of its neighbours.
     pub(super) fn hear_notices(&mut self) {
         for neighbour in &self.neighbours {
-            if neighbour.beacon.bulletin.is_newer_than(&self.bulletin) {
-                self.bulletin = neighbour.beacon.bulletin.clone();
-            }
+            self.bulletin.merge(&neighbour.beacon.bulletin);
             if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {
                 merge_election(own, heard);
             }
@@ -126,7 +128,12 @@ impl Robot {
 
     /// The next notice on the mission, which this robot is the one to issue.
     fn issue(&mut self, notice: Notice) {
-        self.bulletin = Shared::new(self.bulletin.next(notice));
+        self.bulletin = self.bulletin.next(self.id, Shared::new(notice));
+    }
+
+    /// The identity of the next notice on the mission if this robot issues it.
+    pub(super) fn next_notice_id(&self) -> NoticeId {
+        self.notice_id().next(self.id)
     }
 }
 
@@ -159,7 +166,7 @@ fn resumed<A: DataOf<Mission>>() -> Row {
 /// Never with the table and guards of this crate; they are checked all the same.
 pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
-    // A notice says one thing; an election is won or in vain; a subgroup is on its way or none is.
+    // A notice has one content; an election has a winner or not; at most one subgroup is moving.
     let notices =
         ["announced", "called", "path_announced", "resumed", "service_announced", "end_announced"];
     Automaton::builder(MISSION, Phase::Idle)

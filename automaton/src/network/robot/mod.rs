@@ -1,11 +1,11 @@
-//! One robot: its own state, and what it makes of the messages it hears.
+//! One robot: its own state, and how it processes the messages that it receives.
 //!
 //! Everything here is local. A robot knows its own position and duty, what every robot knows
 //! from the beginning ([`Site`]), and the messages of the neighbours that it hears. It is a
 //! [`Node`](crate::node::Node): `step` says what it does with each input, stage by stage of a
-//! control period. The chapters follow that period: it listens (`hearing`), keeps its place in the tree (`attachment`,
-//! `links`), takes part in the mission (`mission`,
-//! `leader`, `recruit`, `path`, `team`), exchanges duties with a robot in its way
+//! control period. The chapters follow that period: it receives beacons (`hearing`), keeps its place
+//! in the tree (`attachment`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
+//! `path`, `team`), exchanges duties with a robot in its way
 //! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
 //! what its guards see of all this are `facts`.
 
@@ -41,7 +41,7 @@ use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Bulletin, Dealings, Election, IdSet, NodeId, Post, PostId, Role,
+    Agreement, Anchor, Bid, Dealings, Election, IdSet, NodeId, NoticeId, Post, PostId, Role,
 };
 
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
@@ -59,7 +59,7 @@ pub use view::RobotView;
 use crate::automaton::TransitionError;
 use crate::located::Current;
 
-use super::beacon::{Beacon, Notice, TeamReport, Voice};
+use super::beacon::{Beacon, Bulletin, Notice, TeamReport, Voice};
 use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::mission::{Idle, Mission};
@@ -114,7 +114,7 @@ pub struct Robot {
     /// The number of the offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, u32>,
 
-    // What it hears and where it hangs.
+    // What it receives, and its place in the tree.
     neighbours: Vec<Neighbour>,
     /// Where in the table of neighbours the next beacon is expected.
     heard_up_to: usize,
@@ -131,8 +131,8 @@ pub struct Robot {
     can_detach: bool,
     barren_periods: u32,
 
-    // What it was told of the mission.
-    bulletin: Shared<Bulletin<Notice>>,
+    // What it knows of the mission.
+    bulletin: Bulletin,
     tasks: Vec<TaskNotice>,
     roster: Arc<IdSet>,
     eligible: Arc<IdSet>,
@@ -140,7 +140,7 @@ pub struct Robot {
     /// What it has bid in this election itself.
     bid: Option<Bid>,
     waited_rounds: usize,
-    route: Option<(u32, Shared<Vec<Hop>>)>,
+    route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     agreement: Option<Agreement>,
     team: Option<TeamReport>,
 
@@ -176,7 +176,7 @@ pub struct Robot {
     resting_places: VecDeque<Point>,
     still_periods: u32,
 
-    // What it tells observers; no robot reads it.
+    // What it reports to observers; no robot reads it.
     log: Vec<MissionEvent>,
 }
 
@@ -231,7 +231,7 @@ impl Robot {
             reattaches_to: None,
             can_detach: false,
             barren_periods: 0,
-            bulletin: Shared::new(Bulletin::first(Notice::Quiet)),
+            bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             tasks: Vec::new(),
             roster: Arc::default(),
             eligible: Arc::default(),
@@ -268,7 +268,7 @@ impl Robot {
         }
     }
 
-    /// What the robot tells its neighbours now: the very same beacon as before unless something
+    /// The beacon that the robot sends now: the very same as before unless something
     /// in it has changed.
     fn next_beacon(&mut self) -> Arc<Beacon> {
         if !std::mem::take(&mut self.is_unspoken)
@@ -314,9 +314,9 @@ impl Robot {
         self.bulletin.notice()
     }
 
-    /// The number of the newest notice on the mission that it knows.
-    pub(super) fn notice_number(&self) -> u32 {
-        self.bulletin.sequence()
+    /// The identity of the newest notice on the mission that it knows.
+    pub(super) fn notice_id(&self) -> NoticeId {
+        self.bulletin.id()
     }
 
     /// The task announced last, as far as it knows.
@@ -332,9 +332,9 @@ impl Robot {
         self.deal()
     }
 
-    /// After each round of messages: the robot puts together what it has heard.
+    /// After each round of messages: the robot processes what it has received.
     ///
-    /// What comes of it depends on nothing but what the robot hears and its own state. Where
+    /// The result depends only on what the robot receives and on its own state. Where
     /// neither has changed, and no wait is over, there is nothing to do.
     fn deliberate(&mut self) -> Result<(), TransitionError> {
         let is_due = self.count_round();
@@ -344,7 +344,7 @@ impl Robot {
         self.reflect()
     }
 
-    /// The robot puts together what it has heard, whether or not there is news in it.
+    /// Processes what it has received, whether or not it contains news.
     fn reflect(&mut self) -> Result<(), TransitionError> {
         (self.is_unspoken, self.is_unmeasured) = (true, true);
         self.deal()?;
@@ -355,7 +355,7 @@ impl Robot {
     }
 
     /// Takes at most one transition of the mission automaton, together with the duty automaton if
-    /// that has a transition for it, or else one of the duty automaton alone; says whether it did.
+    /// that has a transition for it, or else one of the duty automaton alone; returns whether it did.
     fn jump_once(&mut self) -> Result<bool, TransitionError> {
         let role = self.role();
         let jumped = self.jump_mission()? || self.jump_duty(Label::Alone)?.is_some();
@@ -367,7 +367,7 @@ impl Robot {
         Ok(jumped)
     }
 
-    /// The robot's state has changed: it has something to think over, to say and to measure.
+    /// The robot's state has changed: it has to deliberate, to send its state and to measure its facts.
     fn stir(&mut self) {
         (self.has_news, self.is_unspoken, self.is_unmeasured) = (true, true, true);
     }

@@ -1,4 +1,4 @@
-//! Motion: where the robot goes, what it proposes, what it objects to (Sec. IV, Algorithm 5).
+//! Motion: target, proposals and objections (Sec. IV, Algorithm 5).
 //!
 //! The robot solves the motion problem (21)–(22) with all other robots fixed, and proposes the
 //! solution. A robot that hears a proposal that could overload it or overstretch its link to the tree,
@@ -26,7 +26,7 @@ use crate::node::Outputs;
 
 /// A robot this share of ρ from the reference of its post has settled.
 const SETTLED: f64 = 0.02;
-/// Distances kept are larger than required by this share, so that rounding never shows.
+/// Distances kept are larger than required by this share, so that rounding has no effect.
 const MARGIN: f64 = 1e-4;
 /// Parked robots are kept at this many ρ when there is a way round.
 const KEEP_OUT: f64 = 2.1;
@@ -35,7 +35,7 @@ const KEEP_OUT: f64 = 2.1;
 const DETOUR_ALLOWANCE: f64 = 8.0;
 /// A robot this many ρ behind another stands in a queue.
 const QUEUE: f64 = 2.2;
-/// A way as good as another but for this many ρ is kept: robots do not waver between two sides.
+/// A way as good as another but for this many ρ is kept: robots do not alternate between two sides.
 const CONSTANCY: f64 = 1.0;
 /// A waypoint this many ρ away is as good as reached: no reason to keep to it.
 const NEARBY: f64 = 0.1;
@@ -43,13 +43,13 @@ const NEARBY: f64 = 0.1;
 const OBSTINACY: u32 = 3;
 /// A robot that stays within this share of ρ or σ, the smaller one, stands still.
 const STILL: f64 = 0.3;
-/// A robot that comes back to one of this many places at which it has been last stands still.
+/// A robot that returns to one of this many previous places counts as standing still.
 const RESTING_PLACES: usize = 8;
 /// A proposed move shorter than this share of σ is not made.
 const LEAST_MOVE: f64 = 1e-6;
 /// Relative slack when lengths are compared with limits: they are sums of rounded ones.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// How much of a load a sender may be given, just short of all its time.
+/// How much of a load a sender may be given, just below its whole time.
 const FULL_LOAD: f64 = 1.0 - 1e-9;
 
 impl Robot {
@@ -201,8 +201,8 @@ impl Robot {
         }
     }
 
-    /// Whether the robot could still go by the waypoint of the period before. One that it has all
-    /// but reached would hold it: solvers end short of a waypoint by a little.
+    /// Whether the waypoint of the period before can still be used. One that it has almost
+    /// reached would stop it: solvers end slightly short of a waypoint.
     fn may_keep(&self, waypoint: Point) -> bool {
         self.still_periods < OBSTINACY
             && (waypoint - self.position).norm() > NEARBY * self.clearance()
@@ -290,7 +290,7 @@ impl Robot {
         Some(Disc { center: corner, radius: (corner - self.position).norm() + spare })
     }
 
-    /// Tells the move that it intends, if it intends one.
+    /// Sends its proposed move, if it has one.
     pub(super) fn tell_proposal(&self, outputs: &mut Outputs<Message, MissionEvent>) {
         if let Some(segment) = self.proposal {
             outputs.broadcast(Message::Proposal(segment));
@@ -302,7 +302,7 @@ impl Robot {
         self.proposal.unwrap_or(Segment::still(self.position))
     }
 
-    /// A neighbour tells its proposal.
+    /// The proposal of a neighbour is received.
     pub(super) fn hear_proposal(&mut self, from: NodeId, segment: Segment) {
         match self.heard_moves.iter_mut().find(|(mover, _)| *mover == from) {
             Some((_, known)) if *known == segment => return,
@@ -391,7 +391,7 @@ impl Robot {
     pub(super) fn set_off(&mut self) {
         let segment = self.own_move();
         let step = self.site.settings.step_radius;
-        // Going to and fro is standing still as well, between two places or a few.
+        // Moving back and forth between a few places counts as standing still, too.
         let leash = STILL * self.clearance().min(step);
         if self.resting_places.iter().all(|place| (segment.to - place).norm() > leash) {
             self.resting_places.truncate(RESTING_PLACES - 1);

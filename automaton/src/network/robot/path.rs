@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach_discrete::network::path::{Ties, subgroups};
-use pleach_discrete::network::{Agreement, NodeId, Post, PostId, PostKind, Subgroup};
+use pleach_discrete::network::{Agreement, NodeId, NoticeId, Post, PostId, PostKind, Subgroup};
 
 use super::super::beacon::Notice;
 use super::super::duty::{Duty, Hop, Path, Shifting, Waiting};
@@ -19,8 +19,8 @@ pub(super) fn vote(
     robot: &Robot,
     effects: &mut Effects,
 ) -> Option<PathAgreement> {
-    let Notice::Path(path) = robot.bulletin.notice() else { return None };
-    let agreement = robot.vote_on(path, robot.bulletin.sequence());
+    let Notice::Path(path) = robot.notice() else { return None };
+    let agreement = robot.vote_on(path, robot.notice_id());
     effects.push(MissionEffect::Agree(Some(agreement)));
     Some(PathAgreement { path: Arc::clone(path) })
 }
@@ -67,9 +67,9 @@ pub(super) fn resume<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Advance 
 }
 
 impl Robot {
-    /// What the robot says on the break points of `path`.
-    pub(super) fn vote_on(&self, path: &Path, number: u32) -> Agreement {
-        let mut agreement = Agreement::new(number);
+    /// The vote of the robot on the break points of `path`.
+    pub(super) fn vote_on(&self, path: &Path, id: NoticeId) -> Agreement {
+        let mut agreement = Agreement::new(id);
         if let Some(station) = self.duty.station()
             && let Some(place) = path.place_of(station.post.id)
         {
@@ -106,7 +106,7 @@ impl Robot {
         self.mission.shift()?.active()
     }
 
-    /// Says so when it has arrived at the next place of Σ.
+    /// Reports that it has arrived at the next place of Σ.
     pub(super) fn report_arrival(&mut self) {
         if let Duty::Shifting(Shifting { place, .. }) = *self.duty
             && self.active_subgroup().is_some()

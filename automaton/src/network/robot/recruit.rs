@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Anchor, Bid, Election, IdSet, Phase};
+use pleach_discrete::network::{Anchor, Bid, Election, IdSet, NoticeId, Phase};
 
 use super::super::beacon::{Beacon, Notice};
 use super::super::duty::{Hop, Path, PathPlace};
@@ -14,7 +14,7 @@ use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
 /// Residuals in bids are compared in units of this: routes aim at the same reserve everywhere,
-/// and what is left of differences is the dual iteration's noise.
+/// and remaining differences are the dual iteration's noise.
 const RESIDUAL_RESOLUTION: f64 = 1e-3;
 
 /// p₁ is stuck, or the leader has past duties: it calls for a recruit.
@@ -24,23 +24,23 @@ pub(super) fn call(advance: &Advance, robot: &Robot, effects: &mut Effects) -> R
         let event = MissionEvent::Stationary { robot: robot.id, team: Vec::new() };
         effects.push(MissionEffect::Report(event));
     }
-    let number = robot.bulletin.sequence() + 1;
-    let route = robot.own_hop(Vec::new()).map(|hop| (number, Shared::new(vec![hop])));
+    let id = robot.next_notice_id();
+    let route = robot.own_hop(Vec::new()).map(|hop| (id, Shared::new(vec![hop])));
     effects.extend([
         MissionEffect::Issue(Notice::Call { caller: robot.id, releases_leader }),
-        MissionEffect::Elect(Election::new(number), None, route),
+        MissionEffect::Elect(Election::new(id), None, route),
     ]);
     RecruitElection { before: advance.path.clone() }
 }
 
 /// A recruit is called for.
 pub(super) fn answer<A>(_: &A, robot: &Robot, effects: &mut Effects) -> RecruitElection {
-    let number = robot.bulletin.sequence();
-    let is_caller = matches!(*robot.bulletin.notice(),
+    let id = robot.notice_id();
+    let is_caller = matches!(*robot.notice(),
         Notice::Call { caller, .. } if caller == robot.id);
     let own = is_caller.then(|| robot.own_hop(Vec::new())).flatten();
-    let route = own.map(|hop| (number, Shared::new(vec![hop])));
-    effects.push(MissionEffect::Elect(Election::new(number), None, route));
+    let route = own.map(|hop| (id, Shared::new(vec![hop])));
+    effects.push(MissionEffect::Elect(Election::new(id), None, route));
     RecruitElection { before: robot.mission.path().cloned() }
 }
 
@@ -50,13 +50,13 @@ pub(super) fn announce_path(
     robot: &Robot,
     effects: &mut Effects,
 ) -> Option<PathAgreement> {
-    let Notice::Call { releases_leader, .. } = *robot.bulletin.notice() else { return None };
+    let Notice::Call { releases_leader, .. } = *robot.notice() else { return None };
     let (_, hops) = robot.route.as_ref()?;
     let path = Arc::new(Path { hops: hops.to_vec(), releases_leader });
-    let number = robot.bulletin.sequence() + 1;
+    let id = robot.next_notice_id();
     effects.extend([
         MissionEffect::Issue(Notice::Path(Arc::clone(&path))),
-        MissionEffect::Agree(Some(robot.vote_on(&path, number))),
+        MissionEffect::Agree(Some(robot.vote_on(&path, id))),
         MissionEffect::ForgetRoute,
     ]);
     Some(PathAgreement { path })
@@ -105,7 +105,7 @@ impl Robot {
         Some(Hop { robot: self.id, post: station.post, place, crossing })
     }
 
-    /// Counts one more round of an election of a recruit; says whether a wait is over, so that the
+    /// Counts one more round of an election of a recruit; returns whether a wait is over, so that the
     /// robot may do what it might not do before.
     pub(super) fn count_round(&mut self) -> bool {
         if self.phase() != Phase::RecruitElection {
@@ -119,13 +119,13 @@ impl Robot {
     /// Finds the way over the tree to the caller (footnote 10) and places a token: redundant
     /// robots without children with a bid, once they know the way.
     pub(super) fn answer_call(&mut self) {
-        let number = self.bulletin.sequence();
+        let id = self.notice_id();
         let Some(election) = &self.election else { return };
-        if election.number() != number {
+        if election.id() != id {
             return;
         }
-        if self.route.as_ref().is_none_or(|&(known, _)| known != number) {
-            self.route = self.find_route(number).map(|route| (number, Shared::new(route)));
+        if self.route.as_ref().is_none_or(|&(known, _)| known != id) {
+            self.route = self.find_route(id).map(|route| (id, Shared::new(route)));
         }
         let bid = match &self.route {
             _ if !self.duty.is_redundant() || self.children().next().is_some() => None,
@@ -147,22 +147,22 @@ impl Robot {
         Bid { rank: 1, merit, economy: -(hops as i64) }
     }
 
-    /// A redundant robot that no tree connects to the caller only says where it could help.
+    /// A redundant robot that no tree connects to the caller only bids to show where it could help.
     fn stranded_bid(&self) -> Option<Bid> {
         let root = self.lineage()?.root();
         Some(Bid { rank: 0, merit: -(root as i64), economy: 0 })
     }
 
-    /// No message is longer under way than there are robots to pass it on.
+    /// A message travels for at most as many rounds as there are nodes.
     pub(super) fn longest_wait(&self) -> usize {
         self.site.robots + self.site.access_points.len()
     }
 
     /// The way to the caller, through a tree neighbour that knows one; where the trees of two
     /// access points are not connected, through any link that may be built.
-    fn find_route(&self, number: u32) -> Option<Vec<Hop>> {
+    fn find_route(&self, id: NoticeId) -> Option<Vec<Hop>> {
         let own = *self.duty.post()?;
-        let known = |beacon: &Beacon| beacon.route.as_ref().is_some_and(|&(at, _)| at == number);
+        let known = |beacon: &Beacon| beacon.route.as_ref().is_some_and(|&(call, _)| call == id);
         let may_cross = self.waited_rounds > self.longest_wait();
         let joins = |neighbour: &Neighbour| match neighbour.post() {
             None => own.parent == Some(Anchor::Access(neighbour.id() - self.site.robots)),

@@ -66,7 +66,7 @@ impl Robot {
     pub(super) fn is_first(&self) -> bool {
         let Some(post) = self.duty.post().filter(|post| post.is_primary()) else { return false };
         let follower = PostKind::Primary { follows: Some(post.id) };
-        let told = matches!(*self.bulletin.notice(),
+        let told = matches!(*self.notice(),
             Notice::Advance { joined: Some((_, followed)) } if followed == post.id);
         let gives =
             |beacon: &Beacon| beacon.reply.as_ref().is_some_and(|reply| reply.accepted.is_some());
@@ -80,7 +80,7 @@ impl Robot {
     /// The post of a newcomer that this robot should attach to but does not yet reach.
     pub(super) fn awaited_parent(&self) -> Option<PostId> {
         let post = self.duty.post()?;
-        match *self.bulletin.notice() {
+        match *self.notice() {
             Notice::Advance { joined: Some((newcomer, followed)) }
                 if followed == post.id && !post.is_child_of(newcomer) =>
             {

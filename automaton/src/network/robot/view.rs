@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Dealing, NodeId, Phase, Role, Stage, Subgroup};
+use pleach_discrete::network::{Dealing, NodeId, NoticeId, Phase, Role, Stage, Subgroup};
 
 use super::super::beacon::{Beacon, Notice};
 use super::super::duty::Duty;
@@ -62,7 +62,7 @@ impl<'a> RobotView<'a> {
         self.0.phase()
     }
 
-    /// Where it stands in its control period.
+    /// Its stage in the control period.
     pub fn stage(self) -> Stage {
         self.0.stage()
     }
@@ -77,9 +77,9 @@ impl<'a> RobotView<'a> {
         self.0.notice()
     }
 
-    /// The number of that notice.
-    pub fn notice_number(self) -> u32 {
-        self.0.notice_number()
+    /// The identity of that notice.
+    pub fn notice_id(self) -> NoticeId {
+        self.0.notice_id()
     }
 
     /// The task announced last, as far as it knows.

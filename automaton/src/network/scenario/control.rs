@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 /// How the routing variables are computed in every control period.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum RoutingMethod {
     /// The dual iteration (13)–(14).
     Dual,
@@ -18,6 +19,7 @@ pub enum RoutingMethod {
 /// How the motion problem (21)–(22) is solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum MotionSolver {
     /// Exact enumeration of the active constraints in the plane.
     #[default]
@@ -70,6 +72,7 @@ pub struct ControlKey {
 
 /// What may stand at a key, with access to what does.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub enum Values {
     /// A length, at least `SHORTEST` and at most 1 time the range of the links.
     Length(fn(&Control) -> Option<f64>),

@@ -37,6 +37,7 @@ pub struct Fault {
 /// Lengths are in the scenario's unit. Robots and access points are counted from 0.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are the numbers that the sentences show
+#[non_exhaustive]
 pub enum Problem {
     /// A name that cannot be a file name.
     #[error(

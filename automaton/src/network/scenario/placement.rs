@@ -49,7 +49,7 @@ pub(super) fn faults(scenario: &Scenario, site: &Site) -> Vec<Fault> {
     }
 }
 
-/// A site and who starts in it.
+/// A site and the starts in it.
 struct Ground<'a> {
     site: &'a Site,
     robots: Vec<Point>,
@@ -219,7 +219,7 @@ impl Scenario {
     }
 }
 
-/// Where in the scenario the polygon stands that the error speaks of; of two, the later one.
+/// Where in the scenario the polygon stands that the error is about; of two, the later one.
 fn key_of_outline(error: &WorkspaceError) -> KeyPath {
     let workspace = KeyPath::root().key("workspace");
     let of = |polygon: &Polygon| match *polygon {

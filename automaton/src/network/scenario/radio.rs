@@ -10,7 +10,7 @@ use crate::network::Link;
 ///
 /// The reliability of a link depends on its length alone: links reach through walls, as in the
 /// paper. In a building the two distances should be those that hold through its walls.
-/// [`ValidScenario::count_links`](super::ValidScenario::count_links) tells how many links of the
+/// [`ValidScenario::count_links`](super::ValidScenario::count_links) counts how many links of the
 /// start cross walls.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -30,6 +30,7 @@ pub enum Remark {
 
 /// Why no robot can service a task.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum TaskRemark {
     /// It is farther than δ from every place where a robot may stand.
     TooDeep {

@@ -29,6 +29,8 @@
 //! a robot and its neighbours. With the [default settings](AdalSettings::default) this converged on
 //! every network tried, dense and sparse, where a common τ large enough to be useful did not.
 
+use serde::{Deserialize, Serialize};
+
 use super::TIME_BUDGET;
 use super::dual::MULTIPLIER_CAP;
 use super::local::{LinkOffer, budget_price, share};
@@ -62,7 +64,8 @@ impl AdalSettings {
 }
 
 /// What a robot sends to its neighbours in every iteration.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct NeighbourReport {
     /// λ_j.
     pub multiplier: f64,

@@ -11,7 +11,7 @@ use thiserror::Error;
 pub struct DirectedLink {
     /// i: index of the sending robot.
     pub sender: usize,
-    /// j: who receives.
+    /// j: the receiver.
     pub receiver: Receiver,
     /// R_ij, in (0, 1].
     pub reliability: f64,

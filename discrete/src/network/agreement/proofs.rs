@@ -2,6 +2,8 @@
 
 use super::*;
 
+/// The notice that announces the path.
+const ID: NoticeId = NoticeId::new(1, 1);
 /// Places of the path.
 const PLACES: usize = 4;
 
@@ -10,7 +12,7 @@ const PLACES: usize = 4;
 /// Here and below drawn arrays are walked by reference: what an iterator by value returns says by a
 /// niche of the drawn byte whether it goes on, and a model checker then unrolls what follows.
 fn any_view(votes: &[bool; PLACES]) -> Agreement {
-    let mut view = Agreement::new(1);
+    let mut view = Agreement::new(ID);
     for (place, vote) in votes.iter().enumerate() {
         if kani::any() {
             view.vote(place, *vote);
@@ -51,11 +53,11 @@ fn a_vote_stands() {
     let place = usize::from(kani::any_where(|place: &u8| usize::from(*place) < PLACES));
     for voter in 0..PLACES {
         // The number of the place is a constant in each round of this loop.
-        if voter == place && before.has_voted(voter) {
+        if voter == place && before.voted.contains(voter) {
             view.vote(voter, kani::any());
         }
     }
-    kani::cover!(before.has_voted(place));
+    kani::cover!(before.voted.contains(place));
     assert!(view == before);
 }
 
@@ -65,7 +67,7 @@ fn a_vote_stands() {
 #[kani::unwind(6)]
 fn arrivals_are_known_together_if_each_is_known() {
     let (arrived, heard): ([bool; PLACES], [bool; PLACES]) = (kani::any(), kani::any());
-    let (mut view, mut other) = (Agreement::new(1), Agreement::new(1));
+    let (mut view, mut other) = (Agreement::new(ID), Agreement::new(ID));
     for place in 0..PLACES {
         if arrived[place] {
             view.arrive(place);
@@ -90,14 +92,17 @@ fn arrivals_are_known_together_if_each_is_known() {
 fn a_view_of_another_path_changes_nothing() {
     let (votes, others): ([bool; PLACES], [bool; PLACES]) = (kani::any(), kani::any());
     let view = any_view(&votes);
-    // One of a path before, or of one after.
-    let mut other = Agreement::new(if kani::any() { 0 } else { 2 });
+    // One of a path before, or of one that another node announced at the same step.
+    let id = if kani::any() { NoticeId::new(0, 1) } else { NoticeId::new(1, 2) };
+    let mut other = Agreement::new(id);
     for (place, vote) in others.iter().enumerate() {
         other.vote(place, *vote);
         if kani::any() {
             other.arrive(place);
         }
     }
-    kani::cover!(other.have_arrived(0..PLACES) && !view.has_voted(0) && view.is_break_point(1));
+    kani::cover!(
+        other.have_arrived(0..PLACES) && !view.voted.contains(0) && view.is_break_point(1)
+    );
     assert!(merged(view.clone(), &other) == view);
 }

@@ -5,6 +5,9 @@ use super::*;
 /// Robots whose tokens are placed.
 const ROBOTS: usize = 3;
 
+/// The election that the views are of.
+const ID: NoticeId = NoticeId::new(1, 1);
+
 /// No bid, or one of four that differ in rank and merit.
 fn any_bid() -> Option<Bid> {
     let code: u8 = kani::any_where(|code| *code < 5);
@@ -13,7 +16,7 @@ fn any_bid() -> Option<Bid> {
 
 /// What a robot knows that has heard the tokens of any of the robots.
 fn any_view(bids: &[Option<Bid>; ROBOTS]) -> Election {
-    let mut view = Election::new(1);
+    let mut view = Election::new(ID);
     for (robot, bid) in bids.iter().enumerate() {
         if kani::any() {
             view.place(robot, *bid);
@@ -41,18 +44,23 @@ fn merging_views_is_taking_a_maximum() {
     assert!(merged(one.clone(), &one) == one);
 }
 
-/// A view of another election changes nothing, whatever it says.
+/// A view of another election changes nothing, whatever it says: not of one before or after, nor of
+/// one that another node called for at the same step.
 #[kani::proof]
 #[kani::unwind(5)]
 fn a_view_of_another_election_changes_nothing() {
     let bids = [any_bid(), any_bid(), any_bid()];
     let view = any_view(&bids);
-    let mut old = Election::new(kani::any_where(|number: &u8| *number != 1).into());
+    let below_four = |drawn: &u8| *drawn < 4;
+    let (number, issuer) = (kani::any_where(below_four), kani::any_where(below_four));
+    kani::assume((number, issuer) != (1, 1));
+    let mut old = Election::new(NoticeId::new(number.into(), issuer.into()));
     // By reference: see the proofs of agreements.
     for (robot, bid) in bids.iter().enumerate() {
         old.place(robot, *bid);
     }
     kani::cover!(old.best() > view.best());
+    kani::cover!(number == 1);
     assert!(merged(view.clone(), &old) == view);
 }
 
@@ -64,7 +72,7 @@ fn bids_are_ordered_by_rank_first_and_ties_go_to_the_higher_index() {
     let bid = || Bid { rank: kani::any(), merit: kani::any(), economy: kani::any() };
     let one = bid();
     let other = if kani::any() { one } else { bid() };
-    let mut election = Election::new(0);
+    let mut election = Election::new(ID);
     election.place(0, Some(one));
     election.place(1, Some(other));
     kani::cover!(one == other);

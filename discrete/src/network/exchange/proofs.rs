@@ -6,7 +6,7 @@ use super::*;
 const MOVER: NodeId = 0;
 const PARKED: NodeId = 1;
 
-/// What a robot does, and what it tells of its dealings: now, and before its last step.
+/// What a robot does, and what it sends of its dealings: now, and before its last step.
 struct Robot {
     duty: u8,
     now: Dealings<u8>,

@@ -55,6 +55,7 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
                 return record(format!("an event names node {parent}, of {}", limits.nodes()));
             }
         }
+        other => return record(format!("the judge does not know the event {other:?}")),
     }
     if let Some(robot) = robots.into_iter().find(|&robot| robot >= limits.robots()) {
         return record(format!("an event names robot {robot}, of {}", limits.robots()));

@@ -117,6 +117,7 @@ impl Ledger {
             MissionEvent::TaskServiced { task, robot } => self.service(*task, *robot),
             MissionEvent::DutiesExchanged { mover, parked } => self.exchange(*mover, *parked),
             MissionEvent::Reattached { .. } | MissionEvent::RouteInfeasible { .. } => Ok(()),
+            other => dispute(&[], format!("the judge does not know the event {other:?}")),
         }
     }
 

@@ -4,10 +4,10 @@
 //!
 //! - **the world**: positions, flows, parents. The [`Monitor`] holds them against the
 //!   [properties](Property) that speak of one instant or one control period;
-//! - **events**: each is a claim, that it is true of the world at its instant ([`claims`]) and
-//!   that it follows from the events before it ([`ledger`]);
+//! - **events**: each is a claim, that it is true of the world at its instant (`claims`) and
+//!   that it follows from the events before it (`ledger`);
 //! - **what observers conclude**: phase, task, teams, posts, who answers for a task. The judge
-//!   derives them from the events and the world, and they are compared ([`conclusions`]).
+//!   derives them from the events and the world, and they are compared (`conclusions`).
 //!
 //! So nothing is taken on trust but that robots are where the record shows them. A run is judged
 //! while it goes on, and a trace afterwards, by the same code.

@@ -1,6 +1,6 @@
 //! Elections: agreement, validity, and an end after as many rounds as the component is wide.
 
-use pleach_discrete::network::{Bid, Election, IdSet, Role};
+use pleach_discrete::network::{Bid, Election, IdSet, NoticeId, Role};
 
 use crate::network::election::{have_agreed, is_won_by_best};
 use crate::network::team::has_at_most_one_leader;
@@ -24,7 +24,7 @@ fn any_bid() -> Option<Bid> {
 
 /// Every robot places its own token.
 fn begin(bids: &[Option<Bid>; ROBOTS]) -> [Election; ROBOTS] {
-    let mut views = [Election::new(1), Election::new(1), Election::new(1), Election::new(1)];
+    let mut views = [(); 4].map(|()| Election::new(NoticeId::new(1, 0)));
     for (robot, view) in views.iter_mut().enumerate() {
         view.place(robot, bids[robot]);
     }

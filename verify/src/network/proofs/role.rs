@@ -6,8 +6,8 @@ use pleach_discrete::network::activity::may_follow;
 use super::below;
 use crate::network::duty::{closure, is_reachable};
 
-/// Any role, any three changes that the table of duties allows: an observer who looks once a while
-/// may see the robot turn from one to the other; and every role may come after every other.
+/// Any role, any three changes that the table of duties allows: an observer that looks from time
+/// to time may see the robot change from one to the other; and every role may come after every other.
 #[kani::proof]
 #[kani::unwind(80)]
 fn an_observer_may_see_what_the_table_allows() {

@@ -1,7 +1,7 @@
 //! From ties to teams: what the robots of Σ vote, agree on and form.
 
-use pleach_discrete::network::Agreement;
 use pleach_discrete::network::path::{Ties, is_break_point, last_break_point, subgroups};
+use pleach_discrete::network::{Agreement, NoticeId};
 
 use super::below;
 use crate::network::team::{
@@ -12,6 +12,8 @@ use crate::network::team::{
 const PATH: [usize; 4] = [5, 3, 8, 1];
 /// Its places.
 const PLACES: usize = PATH.len();
+/// The notice that announces the path.
+const ID: NoticeId = NoticeId::new(1, 0);
 
 /// What the robots vote: any ties, any crossings.
 fn any_votes(last: usize) -> [bool; PLACES] {
@@ -43,7 +45,7 @@ const SETS: usize = 1 << PLACES;
 /// Any break points that robots may agree on, as a set of places: bit i is for place i.
 fn any_break_points() -> usize {
     let votes = any_votes(last_break_point(PLACES, kani::any()));
-    let mut view = Agreement::new(1);
+    let mut view = Agreement::new(ID);
     for (place, vote) in votes.iter().enumerate() {
         view.vote(place, *vote);
     }
@@ -75,13 +77,13 @@ fn places_of(set: usize) -> ([usize; PLACES], usize) {
 #[kani::unwind(6)]
 fn robots_that_have_heard_every_vote_form_the_same_subgroups() {
     let votes = any_votes(last_break_point(PLACES, kani::any()));
-    let (mut one, mut other) = (Agreement::new(1), Agreement::new(1));
+    let (mut one, mut other) = (Agreement::new(ID), Agreement::new(ID));
     for (place, vote) in votes.iter().enumerate() {
         one.vote(place, *vote);
     }
     // The other hears the votes from the end of the path on, and of some twice.
     for place in [3, 2, 1, 0] {
-        let mut voter = Agreement::new(1);
+        let mut voter = Agreement::new(NoticeId::new(1, 0));
         voter.vote(place, votes[place]);
         other.merge(&voter);
         assert!(other.is_settled(PLACES) == (place == 0));
