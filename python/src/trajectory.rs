@@ -25,7 +25,7 @@ impl Trajectory {
     pub fn new(run: models::Trajectory, drawings: Vec<Drawing>) -> Self {
         let (mut times, mut jumped, mut values) = (Vec::new(), Vec::new(), Vec::new());
         let mut places: Vec<u32> = Vec::new();
-        for (number, phase) in (0..).zip(run.phases()) {
+        for (number, phase) in (0..).zip(run.intervals()) {
             for sample in &phase.samples {
                 times.push(sample.t);
                 jumped.push(number);
