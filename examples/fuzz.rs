@@ -1,6 +1,6 @@
 //! Has every reader read texts that are wrong in every way; see `tests/fuzzing`.
 //!
-//! `cargo run --release --example fuzz -- COUNT [SEED]`, with so many inputs in all.
+//! `cargo run --release --example fuzz -- COUNT [SEED]`; COUNT is the number of inputs for all readers together.
 
 #[path = "../tests/fuzzing/mod.rs"]
 mod fuzzing;

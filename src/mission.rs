@@ -129,7 +129,7 @@ pub fn run_network<M: Medium<Message, Point>>(
 /// transitions that consumes no time can reach it.
 const JUMPS_PER_PERIOD: u32 = 1_000_000;
 
-/// The end of a mission that its record belies; one that was stopped for a violation says so.
+/// The end of a mission that its record contradicts; one that was stopped for a violation says so.
 fn stopped(violation: &Violation, end: &End) -> End {
     match end.outcome {
         Outcome::InvariantViolated => end.clone(),

@@ -5,16 +5,15 @@
 
 use crate::floor_plans::{Family, scenario};
 use crate::generated::keep_up_to_date;
-use crate::missions::{shipped, valid};
+use crate::missions::{shipped, shipped_names, valid};
 use pleach::automaton::network::scenario::{RoutingMethod, ValidScenario};
 use pleach::automaton::network::{NamedRow, Network, Radio, Site};
 use pleach::mission;
 use pleach_exploration::network::{Findings, QUICK};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::sync::Arc;
 
-/// Random missions of each family; those of the hall take too long for every day.
+/// Random missions of each family of every day.
 const SEEDS: u64 = 2;
 
 /// Why rows are there that none of these takes, by what their names contain: table, source, event,
@@ -86,18 +85,14 @@ fn taken(scenario: &ValidScenario) -> Vec<(NamedRow, u64)> {
 }
 
 fn shipped_scenarios() -> impl Iterator<Item = ValidScenario> {
-    let files = fs::read_dir("scenarios").unwrap().map(|entry| entry.unwrap().path());
-    let mut names: Vec<String> =
-        files.map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned()).collect();
-    names.sort();
-    names.into_iter().map(|name| valid(shipped(&name)))
+    shipped_names().into_iter().map(|name| valid(shipped(&name)))
 }
 
 /// Random missions, one with routes by ADAL, one with rates that links cannot carry, and one without
 /// a task.
 fn drawn_scenarios() -> impl Iterator<Item = ValidScenario> {
-    let families = Family::ALL.into_iter().filter(|&family| family != Family::Hall);
-    let random = families.flat_map(|family| (1..=SEEDS).map(move |seed| scenario(family, seed)));
+    let random = Family::of_every_day()
+        .flat_map(|family| (1..=SEEDS).map(move |seed| scenario(family, seed)));
     let mut by_adal = shipped("study-2");
     by_adal.control.routing_method = Some(RoutingMethod::Adal);
     let mut laden = shipped("study-1");

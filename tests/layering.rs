@@ -1,15 +1,12 @@
 //! The layering that `docs/architecture.md` describes, read off manifests and sources.
 
+use crate::sources::{files_below, lines_of_code, read, relative, root};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The packages that users depend on, the root package first.
 const PACKAGES: [&str; 7] =
     ["", "guards", "discrete", "continuous", "drawing", "automaton", "verify"];
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// A source file: its path from the root of the workspace, and its lines of code without comments.
 struct Source {
@@ -18,19 +15,10 @@ struct Source {
 }
 
 impl Source {
-    fn read(path: &Path) -> Self {
-        let text = fs::read_to_string(path).unwrap();
-        let is_test_module = |line: &str| line.starts_with("#[cfg(test)]");
-        // By convention a file's tests come last.
-        let end = text.lines().position(|line| line.starts_with("mod tests {"));
-        let lines = text
-            .lines()
-            .enumerate()
-            .take(end.unwrap_or(usize::MAX))
-            .map(|(number, line)| (number + 1, without_comment(line).to_owned()))
-            .filter(|(_, line)| !is_test_module(line))
-            .collect();
-        let path = path.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/");
+    fn read(file: &Path) -> Self {
+        let path = relative(file);
+        let text = read(&path);
+        let lines = lines_of_code(&text).map(|(number, line)| (number, line.to_owned())).collect();
         Source { path, lines }
     }
 
@@ -50,31 +38,15 @@ impl Source {
     }
 }
 
-fn without_comment(line: &str) -> &str {
-    line.find("//").map_or(line, |at| &line[..at])
-}
-
 /// Every product source; files that hold nothing but tests are none.
 fn sources() -> Vec<Source> {
-    let mut files = Vec::new();
-    for package in PACKAGES {
-        collect(&root().join(package).join("src"), &mut files);
-    }
-    files.retain(|path| path.file_name().is_none_or(|name| name != "tests.rs"));
+    let folders = PACKAGES.iter().map(|package| Path::new(package).join("src"));
+    let mut files: Vec<_> = folders.flat_map(files_below).collect();
+    let is_source = |path: &Path| path.extension().is_some_and(|extension| extension == "rs");
+    files.retain(|path| is_source(path) && path.file_name().is_none_or(|name| name != "tests.rs"));
     files.sort();
     assert!(files.len() > 50, "the sources are not where they are looked for");
     files.iter().map(|path| Source::read(path)).collect()
-}
-
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            collect(&path, files);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            files.push(path);
-        }
-    }
 }
 
 fn assert_none(offences: Vec<String>, rule: &str) {

@@ -9,6 +9,7 @@ mod fuzzing;
 mod generated;
 mod missions;
 mod oracle;
+mod sources;
 
 mod book;
 mod browser;

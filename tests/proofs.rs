@@ -5,8 +5,9 @@ pub mod catalogue;
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use crate::sources::{files_below, read, relative, root};
 use catalogue::faults;
 use pleach::verify::network::Property;
 use pleach_exploration::network::{ALWAYS, Campaign, Counts, ENDS, QUICK, THOROUGH};
@@ -15,26 +16,16 @@ use pleach_exploration::network::{ALWAYS, Campaign, Counts, ENDS, QUICK, THOROUG
 const PACKAGES: [&str; 8] =
     ["", "guards", "discrete", "continuous", "drawing", "automaton", "verify", "exploration"];
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 fn document() -> String {
-    fs::read_to_string(root().join("docs/proofs.md")).unwrap()
-}
-
-/// The files below a folder.
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
+    read("docs/proofs.md")
 }
 
 /// Every harness in the sources, with the path of its file.
 fn harnesses() -> BTreeSet<(String, String)> {
     let mut harnesses = BTreeSet::new();
-    for path in PACKAGES.iter().flat_map(|package| files(&root().join(package).join("src"))) {
+    for path in PACKAGES.iter().flat_map(|package| files_below(Path::new(package).join("src"))) {
         let source = fs::read_to_string(&path).unwrap();
-        let path = path.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/");
+        let path = relative(&path);
         for after in source.split("#[kani::proof]").skip(1) {
             let name = after.split("fn ").nth(1).unwrap().split('(').next().unwrap();
             harnesses.insert((name.to_owned(), path.clone()));
@@ -97,7 +88,7 @@ fn the_document_names_every_lemma() {
         .map(|(_, target)| target)
         .collect();
     let folder = root().join("proofs/smt");
-    let lemmas: BTreeSet<String> = files(&folder)
+    let lemmas: BTreeSet<String> = files_below(&folder)
         .iter()
         .map(|path| path.file_name().unwrap().to_string_lossy().into_owned())
         .filter(|name| name.ends_with(".smt2"))
@@ -160,10 +151,11 @@ fn the_document_names_every_property_test_and_counts_the_cases() {
     let mut tests = BTreeSet::new();
     for path in folders.map(|(package, it)| root().join(package).join(it)).filter(|it| it.exists())
     {
-        for file in files(&path).iter().filter(|file| file.extension().is_some_and(|it| it == "rs"))
+        for file in
+            files_below(&path).iter().filter(|file| file.extension().is_some_and(|it| it == "rs"))
         {
             let source = fs::read_to_string(file).unwrap();
-            let file = file.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/");
+            let file = relative(file);
             // This file only speaks of property tests.
             if file != "tests/proofs.rs" {
                 tests.extend(property_tests(&file, &source));
@@ -216,7 +208,7 @@ fn the_document_names_every_fault_and_each_applies() {
 fn names_a_test(filter: &str) -> bool {
     let folders = PACKAGES.iter().flat_map(|package| ["src", "tests"].map(|it| (package, it)));
     let folders = folders.map(|(package, it)| root().join(package).join(it));
-    folders.filter(|folder| folder.exists()).flat_map(|folder| files(&folder)).any(|file| {
+    folders.filter(|folder| folder.exists()).flat_map(|folder| files_below(&folder)).any(|file| {
         let is_module = file.iter().any(|part| part.to_string_lossy() == filter);
         is_module
             || fs::read_to_string(&file).is_ok_and(|source| {
@@ -247,7 +239,7 @@ fn grouped(number: usize) -> String {
 
 #[test]
 fn the_document_of_the_exploration_counts_every_campaign() {
-    let document = fs::read_to_string(root().join("docs/exploration.md")).unwrap();
+    let document = read("docs/exploration.md");
     let named: Vec<&str> = rows(&document, "The campaigns")
         .into_iter()
         .filter(|row| !row.starts_with("| campaign") && !row.starts_with("| ---"))

@@ -5,9 +5,8 @@
 //! so that this test fails when robots no longer call what is proven.
 
 use crate::proofs::catalogue::faults;
+use crate::sources::{files_below, lines_of_code, read, relative, root};
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
 
 /// A function, its file, the file that calls it, and the call.
 type Call = (&'static str, &'static str, &'static str, &'static str);
@@ -103,15 +102,9 @@ const CLAIMS: &[(&str, &str)] = &[
     ("taking", EXCHANGE),
 ];
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 /// The code of a file: without comments, and without the tests at its end.
 fn code(path: &str) -> String {
-    let text = fs::read_to_string(root().join(path)).unwrap_or_else(|_| panic!("{path}"));
-    let lines = text.lines().take_while(|line| !line.starts_with("mod tests {"));
-    lines.map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+    lines_of_code(&read(path)).map(|(_, line)| line).collect::<Vec<_>>().join("\n")
 }
 
 /// The name that a line of code gives to a function, and whether it is public.
@@ -140,26 +133,12 @@ fn called(code: &str) -> BTreeSet<String> {
     names
 }
 
-fn harness_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            harness_files(&path, found);
-        } else if path.ends_with("proofs.rs") {
-            found.push(path);
-        }
-    }
-}
-
 /// The public functions that harnesses call in the file that they stand beside, each with its file.
 fn harnessed() -> BTreeSet<(String, String)> {
-    let mut harnesses = Vec::new();
-    for folder in ["discrete/src/network", "continuous/src/geometry", "continuous/src/network"] {
-        harness_files(&root().join(folder), &mut harnesses);
-    }
+    let folders = ["discrete/src/network", "continuous/src/geometry", "continuous/src/network"];
+    let mut harnesses: Vec<_> = folders.into_iter().flat_map(files_below).collect();
+    harnesses.retain(|path| path.ends_with("proofs.rs"));
     assert!(harnesses.len() >= 14, "the harnesses are not where they are looked for");
-    let relative =
-        |path: &Path| path.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/");
     let mut found = BTreeSet::new();
     for harness in harnesses.iter().map(|path| relative(path)) {
         let folder = harness.strip_suffix("/proofs.rs").unwrap();
@@ -180,7 +159,7 @@ fn harnessed() -> BTreeSet<(String, String)> {
 /// The public functions in which faults are planted.
 fn faulty() -> BTreeSet<(String, String)> {
     let planted = faults(root()).unwrap().into_iter().filter_map(|fault| {
-        let text = fs::read_to_string(root().join(&fault.file)).unwrap();
+        let text = read(&fault.file);
         let before = &text[..text.find(&fault.before).unwrap()];
         // What stands at the left margin closes the function before.
         let last = before.lines().rev().take_while(|line| *line != "}").find_map(function)?;

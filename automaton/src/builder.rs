@@ -1,4 +1,4 @@
-//! How an automaton is put together.
+//! Building automata.
 
 mod checks;
 mod error;
@@ -20,7 +20,7 @@ use crate::located::Transfer;
 use crate::observed::{Observed, Watch};
 use crate::reset::Reset;
 
-/// An [`Automaton`] that is being put together.
+/// An [`Automaton`] under construction.
 ///
 /// There are two ways to begin. [`Automaton::builder`] takes a table, and each of its events gets
 /// a guard and a reset [`on`](Builder::on) all rows at once; [`Automaton::starting_in`] takes one

@@ -44,6 +44,11 @@ pub enum Family {
 }
 
 impl Family {
+    /// All but the hall, whose missions take too long for every day.
+    pub fn of_every_day() -> impl Iterator<Item = Family> {
+        Family::ALL.into_iter().filter(|&family| family != Family::Hall)
+    }
+
     pub const ALL: [Family; 14] = [
         Family::Office,
         Family::Ring,

@@ -1,9 +1,11 @@
-//! The radio with a filter: tests see every message that would arrive, and may lose it.
+//! The radio with a passage behind it: tests see every message that would arrive, and decide whether,
+//! where and as what it does.
 
 use pleach::automaton::network::{Message, Radio, Site};
 use pleach::automaton::node::{Delivery, Envelope, Medium};
 use pleach::continuous::Point;
 use pleach::discrete::network::NodeId;
+use std::ops::Deref;
 
 /// A message that would arrive.
 #[derive(Clone, Copy, Debug)]
@@ -18,10 +20,70 @@ pub struct Arrival {
     pub distance: Option<f64>,
 }
 
-/// A radio that loses the messages of which `loses` says so.
+/// What happens to a message between the radio and a node that would hear it.
+pub trait Passage {
+    /// Where the nodes are now.
+    fn update(&mut self, _: &[Point]) {}
+
+    /// Hands a message over as often as it arrives, and as it arrives.
+    fn pass<E>(
+        &mut self,
+        delivery: Delivery<'_, Message>,
+        hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
+    ) -> Result<(), E>;
+}
+
+/// A radio with a passage behind it.
+#[derive(Debug)]
+pub struct Through<P> {
+    radio: Radio,
+    passage: P,
+}
+
+impl<P> Through<P> {
+    fn new(site: &Site, passage: P) -> Self {
+        Through { radio: Radio::new(site), passage }
+    }
+}
+
+impl<P> Deref for Through<P> {
+    type Target = P;
+
+    fn deref(&self) -> &P {
+        &self.passage
+    }
+}
+
+impl<P: Passage> Medium<Message, Point> for Through<P> {
+    fn update(&mut self, bodies: &[Point]) {
+        self.passage.update(bodies);
+        self.radio.update(bodies);
+    }
+
+    fn send(&mut self, envelope: Envelope<Message>) {
+        self.radio.send(envelope);
+    }
+
+    fn time_to_arrival(&self) -> Option<f64> {
+        self.radio.time_to_arrival()
+    }
+
+    fn flow(&mut self, duration: f64) {
+        self.radio.flow(duration);
+    }
+
+    fn deliver<E>(
+        &mut self,
+        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Through { radio, passage } = self;
+        radio.deliver(|delivery| passage.pass(delivery, &mut hand_over))
+    }
+}
+
+/// Loses the messages of which `loses` says so.
 #[derive(Debug)]
 pub struct Filtered<F> {
-    radio: Radio,
     robots: usize,
     positions: Vec<Point>,
     messages: u64,
@@ -30,9 +92,10 @@ pub struct Filtered<F> {
 }
 
 impl<F: FnMut(Arrival) -> bool> Filtered<F> {
-    pub fn new(site: &Site, loses: F) -> Self {
-        let (radio, robots) = (Radio::new(site), site.robots);
-        Filtered { radio, robots, positions: Vec::new(), messages: 0, updates: 0, loses }
+    pub fn new(site: &Site, loses: F) -> Through<Self> {
+        let positions = Vec::new();
+        let filter = Filtered { robots: site.robots, positions, messages: 0, updates: 0, loses };
+        Through::new(site, filter)
     }
 
     /// How many messages have arrived or been lost.
@@ -41,99 +104,65 @@ impl<F: FnMut(Arrival) -> bool> Filtered<F> {
     }
 }
 
-impl<F: FnMut(Arrival) -> bool> Medium<Message, Point> for Filtered<F> {
+impl<F: FnMut(Arrival) -> bool> Passage for Filtered<F> {
     fn update(&mut self, bodies: &[Point]) {
         self.updates += 1;
         bodies.clone_into(&mut self.positions);
-        self.radio.update(bodies);
     }
 
-    fn send(&mut self, envelope: Envelope<Message>) {
-        self.radio.send(envelope);
-    }
-
-    fn time_to_arrival(&self) -> Option<f64> {
-        self.radio.time_to_arrival()
-    }
-
-    fn flow(&mut self, duration: f64) {
-        self.radio.flow(duration);
-    }
-
-    fn deliver<E>(
+    fn pass<E>(
         &mut self,
+        delivery: Delivery<'_, Message>,
         mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let Filtered { radio, robots, positions, messages, updates, loses } = self;
-        radio.deliver(|delivery| {
-            let (sender, receiver) = (delivery.from, delivery.to);
-            let is_wire = sender >= *robots && receiver >= *robots;
-            let distance = (!is_wire).then(|| (positions[sender] - positions[receiver]).norm());
-            let (number, period) = (*messages, *updates - 1);
-            *messages += 1;
-            let arrival = Arrival { number, period, sender, receiver, distance };
-            if loses(arrival) { Ok(()) } else { hand_over(delivery) }
-        })
+        let (sender, receiver) = (delivery.from, delivery.to);
+        let is_wire = sender >= self.robots && receiver >= self.robots;
+        let length = || (self.positions[sender] - self.positions[receiver]).norm();
+        let distance = (!is_wire).then(length);
+        let (number, period) = (self.messages, self.updates - 1);
+        self.messages += 1;
+        let arrival = Arrival { number, period, sender, receiver, distance };
+        if (self.loses)(arrival) { Ok(()) } else { hand_over(delivery) }
     }
 }
 
-/// A radio over which the user's request also arrives at a second access point, so that two of them serve the
-/// same user.
+/// The user's request also arrives at a second access point, so that two of them serve the same
+/// user.
 #[derive(Debug)]
 pub struct AskedTwice {
-    radio: Radio,
     second: NodeId,
 }
 
 impl AskedTwice {
-    pub fn new(site: &Site) -> Self {
-        AskedTwice { radio: Radio::new(site), second: site.robots + 1 }
+    pub fn new(site: &Site) -> Through<Self> {
+        Through::new(site, AskedTwice { second: site.robots + 1 })
     }
 }
 
-impl Medium<Message, Point> for AskedTwice {
-    fn update(&mut self, bodies: &[Point]) {
-        self.radio.update(bodies);
-    }
-
-    fn send(&mut self, envelope: Envelope<Message>) {
-        self.radio.send(envelope);
-    }
-
-    fn time_to_arrival(&self) -> Option<f64> {
-        self.radio.time_to_arrival()
-    }
-
-    fn flow(&mut self, duration: f64) {
-        self.radio.flow(duration);
-    }
-
-    fn deliver<E>(
+impl Passage for AskedTwice {
+    fn pass<E>(
         &mut self,
+        Delivery { from, to, message }: Delivery<'_, Message>,
         mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let AskedTwice { radio, second } = self;
-        radio.deliver(|Delivery { from, to, message }| {
-            hand_over(Delivery { from, to, message })?;
-            match message {
-                Message::Request(_) => hand_over(Delivery { from, to: *second, message }),
-                _ => Ok(()),
-            }
-        })
+        hand_over(Delivery { from, to, message })?;
+        match message {
+            Message::Request(_) => hand_over(Delivery { from, to: self.second, message }),
+            _ => Ok(()),
+        }
     }
 }
 
-/// A radio between processes: every message is written as text by its sender and read by each of its
+/// As between processes: every message is written as text by its sender and read by each of its
 /// receivers, and nothing else goes from node to node.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Written {
-    radio: Radio,
     bytes: u64,
 }
 
 impl Written {
-    pub fn new(site: &Site) -> Self {
-        Written { radio: Radio::new(site), bytes: 0 }
+    pub fn new(site: &Site) -> Through<Self> {
+        Through::new(site, Written::default())
     }
 
     /// The length of all texts so far.
@@ -142,34 +171,16 @@ impl Written {
     }
 }
 
-impl Medium<Message, Point> for Written {
-    fn update(&mut self, bodies: &[Point]) {
-        self.radio.update(bodies);
-    }
-
-    fn send(&mut self, envelope: Envelope<Message>) {
-        self.radio.send(envelope);
-    }
-
-    fn time_to_arrival(&self) -> Option<f64> {
-        self.radio.time_to_arrival()
-    }
-
-    fn flow(&mut self, duration: f64) {
-        self.radio.flow(duration);
-    }
-
-    fn deliver<E>(
+impl Passage for Written {
+    fn pass<E>(
         &mut self,
+        Delivery { from, to, message }: Delivery<'_, Message>,
         mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let Written { radio, bytes } = self;
-        radio.deliver(|Delivery { from, to, message }| {
-            let text = serde_json::to_string(message).expect("a message can be written");
-            *bytes += text.len() as u64;
-            let message: Message =
-                serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
-            hand_over(Delivery { from, to, message: &message })
-        })
+        let text = serde_json::to_string(message).expect("a message can be written");
+        self.bytes += text.len() as u64;
+        let message: Message =
+            serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
+        hand_over(Delivery { from, to, message: &message })
     }
 }

@@ -36,6 +36,16 @@ pub struct Mission {
     pub extremes: Extremes,
 }
 
+/// The names of the scenarios that are shipped, in ascending order.
+pub fn shipped_names() -> Vec<String> {
+    let mut names: Vec<_> = std::fs::read_dir("scenarios")
+        .unwrap()
+        .map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    names.sort();
+    names
+}
+
 /// The scenario of that name among those that are shipped.
 pub fn shipped(name: &str) -> Scenario {
     let path = format!("scenarios/{name}.toml");

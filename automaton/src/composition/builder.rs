@@ -12,7 +12,7 @@ use crate::automaton::Automaton;
 use crate::check::model::Model;
 use crate::coordinates::Coordinates;
 
-/// A [`Composition`] that is being put together.
+/// A [`Composition`] under construction.
 #[derive(Default)]
 #[must_use = "a composition is complete after `build`"]
 pub struct CompositionBuilder {

@@ -1,5 +1,5 @@
-//! Flows that are not affine: van der Pol's oscillator, alone (VDP) and coupled (CVDP), an enzyme of a
-//! cell (LALO20), predators and prey (LOVO), a stiff reaction (ROBE), a quadrotor (QUAD).
+//! Flows that are not affine: van der Pol's oscillator, alone (VDP) and coupled (CVDP), enzyme
+//! activities in a cell (LALO20), predators and prey (LOVO), a stiff reaction (ROBE), a quadrotor (QUAD).
 //!
 //! Models and numbers as in the ARCH-COMP reports (NLN): L. Geretti et al., *ARCH-COMP category
 //! report: continuous and hybrid systems with nonlinear dynamics*, 2020 to 2025.

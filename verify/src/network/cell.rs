@@ -2,8 +2,8 @@
 //!
 //! The certificates of motion say where robots are while they move, by an argument over straight
 //! segments. Here the same is asked of the flow: an automaton of one control period, in which the robot
-//! goes to any point of its cell within its step radius, and is anywhere within its error of where it
-//! believes to be. Its [enclosure](crate::reach) knows nothing of segments.
+//! goes to any point of its cell within its step radius, and is anywhere within its error of its own
+//! estimate of its position. The [enclosure](crate::reach) does not use segments.
 
 use std::f64::consts::TAU;
 
@@ -33,7 +33,7 @@ vocabulary! {
 coordinates! {
     /// A robot in one control period.
     pub struct Mover {
-        /// Where it believes to be.
+        /// Its own estimate of its position.
         x,
         /// Likewise.
         y,
@@ -41,7 +41,7 @@ coordinates! {
         u,
         /// Likewise.
         v,
-        /// By what its position is off what it believes.
+        /// Its true position minus that estimate.
         e,
         /// Likewise.
         f,
@@ -86,7 +86,7 @@ pub enum CellMotionError {
 
 impl CellMotion {
     /// The motion from `position`, for `period` > 0 seconds, within a cell of half-planes, by at most
-    /// `step_radius`; the robot is within `error` ≥ 0 of where it believes to be, which is the error of
+    /// `step_radius`; the robot is within `error` ≥ 0 of its own estimate, which is the error of
     /// its position and that of its motion together.
     ///
     /// # Errors

@@ -40,7 +40,7 @@ pub enum Completion {
     SegmentLimit,
     /// A flow could not be enclosed any farther.
     Diverged,
-    /// Whoever watched had seen enough.
+    /// The observer has stopped the search.
     Stopped,
 }
 

@@ -47,7 +47,7 @@ pub struct Conclusions {
 }
 
 impl Conclusions {
-    /// Nothing has happened in a network with so many nodes.
+    /// The conclusions before the first period, in a network of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
         Conclusions {
             patience: nodes,

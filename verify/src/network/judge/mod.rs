@@ -159,16 +159,17 @@ impl<'a> Judge<'a> {
         let mut pending: Vec<&MissionEvent> = events.iter().collect();
         while !pending.is_empty() {
             let mut first = None;
-            let entered =
-                pending.iter().position(|event| match self.follows(event, events, snapshot) {
-                    Ok(_) => true,
+            let entered = pending.iter().enumerate().find_map(|(at, event)| {
+                match self.follows(event, events, snapshot) {
+                    Ok(ledger) => Some((at, ledger)),
                     Err(dispute) => {
                         first.get_or_insert(dispute);
-                        false
+                        None
                     }
-                });
+                }
+            });
             match (entered, first) {
-                (Some(at), _) => self.enter(pending.remove(at), events, snapshot)?,
+                (Some((at, ledger)), _) => self.enter(pending.remove(at), ledger, snapshot)?,
                 (None, Some(dispute)) => return Err(dispute),
                 (None, None) => break,
             }
@@ -200,13 +201,14 @@ impl<'a> Judge<'a> {
         Ok(ledger)
     }
 
+    /// Takes an event with the ledger after it.
     fn enter(
         &mut self,
         event: &MissionEvent,
-        events: &[MissionEvent],
+        ledger: Ledger,
         snapshot: &Snapshot,
     ) -> Result<(), Dispute> {
-        self.ledger = self.follows(event, events, snapshot)?;
+        self.ledger = ledger;
         self.places.enter(event, snapshot);
         self.conclusions.enter(event, &self.ledger, snapshot.step)
     }

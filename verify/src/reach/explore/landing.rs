@@ -14,7 +14,7 @@ use crate::reach::set::StateSet;
 use crate::reach::vector::{IntervalMatrix, dot, radius};
 use crate::reach::zonotope::Zonotope;
 
-/// The parts of a flow in which a jump's guard may hold, not yet put together.
+/// The parts of a flow in which a jump's guard may hold, not yet merged.
 #[derive(Default)]
 pub(super) struct Crossing {
     pub parts: Vec<(Interval, Polytope)>,
