@@ -1,7 +1,7 @@
 //! What the shell and `man` know of the program, made from its arguments.
 
 use super::arguments::Arguments;
-use super::job;
+use super::output;
 use super::status::{Failure, Status};
 use clap::CommandFactory;
 use clap_complete::Shell;
@@ -21,7 +21,7 @@ pub fn write_manual(folder: Option<&Path>) -> Result<Status, Failure> {
     match folder {
         None => clap_mangen::Man::new(Arguments::command()).render(&mut io::stdout().lock())?,
         Some(folder) => {
-            job::create_folder(folder)?;
+            output::create_folder(folder)?;
             let failed = |source| Failure::Creation { path: folder.to_owned(), source };
             clap_mangen::generate_to(Arguments::command(), folder).map_err(failed)?;
         }
