@@ -54,9 +54,11 @@ impl EventSearch {
         self.looks
     }
 
-    /// The width, in seconds, at which a bracket between these instants is narrow enough.
+    /// The width, in seconds, at which a bracket between these instants is narrow enough. It is
+    /// positive, also at time 0.
     pub fn tolerance(&self, from: f64, to: f64) -> f64 {
-        self.resolution.max(SPACINGS * f64::EPSILON * from.abs().max(to.abs()))
+        let spacings = SPACINGS * f64::EPSILON * from.abs().max(to.abs());
+        self.resolution.max(spacings).max(f64::MIN_POSITIVE)
     }
 }
 

@@ -31,7 +31,8 @@ pub(super) fn narrow<E>(
     let first_width = after.time - before.time;
     let halvings = (first_width / tolerance).log2().ceil().max(0.0) + EXTRA_EVALUATIONS;
     // Half the width that the bracket may have by now if it is to be narrow enough in the end.
-    let mut budget = 0.5 * tolerance * halvings.exp2();
+    // The bound is for powers that overflow.
+    let mut budget = (0.5 * tolerance * halvings.exp2()).min(2.0 * first_width);
     loop {
         let half = 0.5 * (after.time - before.time);
         if half <= 0.5 * tolerance {

@@ -59,7 +59,8 @@ fn search(
         if let Some(onset) = found.onset {
             let landing = formula.verdict(&state(&piece, onset.time));
             assert!(landing.is_ok_and(|verdict| verdict.holds), "lands where it holds");
-            assert!(onset.time - onset.before <= 2.0 * f64::EPSILON * onset.time.abs());
+            let narrow = (2.0 * f64::EPSILON * onset.time.abs()).max(f64::MIN_POSITIVE);
+            assert!(onset.time - onset.before <= narrow);
         }
         if found.onset.is_some() || piece.end() >= curve.end() {
             return Ok(Finding { onset: found.onset, doubts });
@@ -86,6 +87,15 @@ fn a_fast_formula_of_a_slow_flow_is_followed() {
     for duration in [0.03, 1.0, 10.0, 100.0, 1e6] {
         let time = first(&clock(duration), &guard, &["x"]);
         assert!((time - exact).abs() < 1e-16, "{time} for {duration}");
+    }
+}
+
+/// What holds from the start on, but not at the start itself, begins at one of the smallest numbers.
+#[test]
+fn what_holds_right_after_the_start_begins_there() {
+    for guard in [variable("x").more_than(0.0), variable("x").sin().more_than(0.0)] {
+        let time = first(&clock(10.0), &guard, &["x"]);
+        assert!(time > 0.0 && time < 1e-300, "{time}");
     }
 }
 
