@@ -192,6 +192,20 @@ fn robertsons_reaction_is_where_it_should_be() {
     }
 }
 
+/// B. van der Pol's oscillator with μ = 1000, where it is stiff, as the test set of F. Mazzia and
+/// C. Magherini (release 2.4) gives it at t = 2000.
+#[test]
+fn a_stiff_oscillator_is_where_it_should_be() {
+    let [p, v] = x();
+    let rates = [Expression::from(&v), 1000.0 * (1.0 - p.power(2.0)) * &v - &p];
+    let trajectory = run(moving([2.0, 0.0], rates), 2000.0);
+    let values = trajectory.values_at(2000.0).expect("the run lasts");
+    assert_near(values[0], 1.706_167_732_170_483, 1e-6);
+    assert_near(values[1], -8.928_097_010_247_975e-4, 1e-9);
+    let samples: usize = trajectory.intervals().map(|one| one.samples.len()).sum();
+    assert!(samples < 3000, "{samples}");
+}
+
 /// Mild stiffness: ẋ = −1000 (x − cos t) + …, so that x = cos t. Where explicit steps are as long as
 /// stability allows, there are hundreds per second; accuracy allows much longer ones.
 #[test]
