@@ -57,7 +57,8 @@ pub(super) struct Plan<'a> {
 impl Plan<'_> {
     /// The flow up to an event; `steps` is how many pieces and spans may still be looked at.
     pub(super) fn fly(self, steps: &mut u64) -> Result<Flight, Halt> {
-        let Plan { group, standing, settings, policy, allowance, since, start, limit, linear } = self;
+        let Plan { group, standing, settings, policy, allowance, since, start, limit, linear } =
+            self;
         let composition = standing.composition;
         let field = Field::of(composition, group, standing.locations, start);
         let conditions = Conditions { standing, group, policy, allowance };
@@ -74,9 +75,9 @@ impl Plan<'_> {
             return Ok(rests(Moment::default()));
         }
         let failed = |fault: Fault| flow_failure(standing, group, since, fault);
-        let locations = || group.components.iter().map(|&index| standing.locations[index]).collect();
-        let linear =
-            if field.is_straight() { Ok(None) } else { linear.of(locations(), &field) };
+        let locations =
+            || group.components.iter().map(|&index| standing.locations[index]).collect();
+        let linear = if field.is_straight() { Ok(None) } else { linear.of(locations(), &field) };
         let solver = linear.and_then(|linear| Solver::new(&field, linear, settings, limit));
         let solver = solver.map_err(|fault| failed(fault.to_string().into()))?;
         let mut search = Search {

@@ -9,7 +9,9 @@ mod events;
 mod instants;
 mod trajectories;
 
-use pleach_automaton::{Automaton, Builder, Coordinate, Coordinates, Trajectory, coordinates, from};
+use pleach_automaton::{
+    Automaton, Builder, Coordinate, Coordinates, Trajectory, coordinates, from,
+};
 use pleach_discrete::vocabulary;
 use pleach_guards::Predicate;
 

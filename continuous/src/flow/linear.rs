@@ -137,11 +137,7 @@ impl LinearFlow {
     ///
     /// [`InvalidFlow`] unless `state` has the dimension of the field, its numbers are finite, and the
     /// duration is finite and not negative.
-    pub fn of(
-        field: &Arc<LinearField>,
-        state: &[f64],
-        duration: f64,
-    ) -> Result<Self, InvalidFlow> {
+    pub fn of(field: &Arc<LinearField>, state: &[f64], duration: f64) -> Result<Self, InvalidFlow> {
         InvalidFlow::check_length("state at the start", state.len(), field.dimension())?;
         InvalidFlow::check_finite("state", state)?;
         if !(duration >= 0.0 && duration.is_finite()) {

@@ -109,7 +109,11 @@ impl CompositionBuilder {
     }
 
     /// Gives every coordinate that is no input a slot, and every input the slot of what it reads.
-    pub(super) fn lay_out(&self, sources: &[Option<usize>], composition: &mut Composition) -> Layout {
+    pub(super) fn lay_out(
+        &self,
+        sources: &[Option<usize>],
+        composition: &mut Composition,
+    ) -> Layout {
         let alone = self.parts.len() == 1;
         let mut layout = Layout { offsets: Vec::new(), slots: vec![0; sources.len()] };
         let mut number = 0;

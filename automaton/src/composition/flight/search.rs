@@ -40,7 +40,12 @@ impl From<String> for Fault {
     }
 }
 
-pub(super) fn flow_failure(standing: Standing<'_>, group: &Group, since: Moment, reason: Fault) -> Halt {
+pub(super) fn flow_failure(
+    standing: Standing<'_>,
+    group: &Group,
+    since: Moment,
+    reason: Fault,
+) -> Halt {
     let (from, to) = (since.seconds(), reason.at.map(|at| (since + Moment::from(at)).seconds()));
     let reason = match to {
         Some(to) => format!("{} at {to} s", reason.text),
