@@ -114,6 +114,8 @@ impl<'a> Solver<'a> {
         if let Some(last) = self.pieces.pop() {
             self.pieces.push(last.within(0.0, time));
         }
+        // A record keeps them, of each of very many flights.
+        self.pieces.shrink_to_fit();
         Ok(self.pieces)
     }
 
