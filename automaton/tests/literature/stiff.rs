@@ -32,8 +32,8 @@ fn a_stiff_oscillator_is_where_it_should_be() {
     let rates = [Expression::from(&v), 1000.0 * (1.0 - p.power(2.0)) * &v - &p];
     let trajectory = run(moving([2.0, 0.0], rates), 2000.0);
     let values = trajectory.values_at(2000.0).expect("the run lasts");
-    assert_near(values[0], 1.706_167_732_170_483, 1e-6);
-    assert_near(values[1], -8.928_097_010_247_975e-4, 1e-9);
+    assert_near(values[0], 1.706_167_732_170_483, 1e-5);
+    assert_near(values[1], -8.928_097_010_247_975e-4, 1e-8);
     let samples: usize = trajectory.intervals().map(|one| one.samples.len()).sum();
     assert!(samples < 3000, "{samples}");
 }

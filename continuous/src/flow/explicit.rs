@@ -19,6 +19,16 @@ pub(super) struct Explicit {
     fractions: Vec<f64>,
 }
 
+/// A motion λ of a flow, as two states near each other show it during a step of length h.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    /// |h λ|.
+    pub(super) speed: f64,
+    /// By how much the states approach each other: about |h λ| if λ is real and negative, and 0 if it
+    /// is imaginary.
+    pub(super) decay: f64,
+}
+
 impl Explicit {
     pub(super) fn new(dimension: usize) -> Self {
         let zeros = || vec![0.0; dimension];
@@ -71,19 +81,24 @@ impl Explicit {
         estimate(tolerances, state, &trial.state, step, stages, &mut self.fractions)
     }
 
-    /// |h λ| for the fastest motion λ that the last stages show.
+    /// The fastest motion that the last stages show.
     ///
     /// Stages 12 and 13 are evaluated at the same instant at two states: Hairer and Wanner, *Solving
     /// Ordinary Differential Equations II*, 2nd ed., section IV.2, doi:10.1007/978-3-642-05221-7.
-    pub(super) fn stiffness(&self, step: f64, trial: &Trial) -> f64 {
-        let distance = |one: &[f64], another: &[f64]| -> f64 {
-            one.iter().zip(another).map(|(one, another)| (one - another).powi(2)).sum()
-        };
-        let apart = distance(&trial.state, &self.end_of_twelfth);
+    pub(super) fn motion(&self, step: f64, trial: &Trial) -> Motion {
+        let states = trial.state.iter().zip(&self.end_of_twelfth);
+        let rates = trial.rates.iter().zip(&self.stages[10]);
+        let (mut apart, mut along, mut faster) = (0.0, 0.0, 0.0);
+        for ((x, other_x), (rate, other_rate)) in states.zip(rates) {
+            let (state, rate) = (x - other_x, rate - other_rate);
+            apart += state * state;
+            along += state * rate;
+            faster += rate * rate;
+        }
         if apart > 0.0 {
-            step * (distance(&trial.rates, &self.stages[10]) / apart).sqrt()
+            Motion { speed: step * (faster / apart).sqrt(), decay: -step * along / apart }
         } else {
-            0.0
+            Motion { speed: 0.0, decay: 0.0 }
         }
     }
 

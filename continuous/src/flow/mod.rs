@@ -50,6 +50,7 @@ mod piece;
 mod root;
 mod rosenbrock;
 mod step;
+mod suspicion;
 mod tolerances;
 
 pub use constant::ConstantFlow;
