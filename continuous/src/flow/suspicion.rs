@@ -35,7 +35,7 @@ const HARMLESS: f64 = 1.0;
 const HARMLESS_STEPS: u32 = 25;
 /// An explicit step with a decay of |h λ| from here on follows what has faded, or what is about to:
 /// where the solution itself is slow, implicit steps would be longer.
-const FAST: f64 = 1.0;
+const FAST: f64 = 0.5;
 /// The least part of a motion that is decay if it is no oscillation.
 const MOSTLY: f64 = 0.8;
 /// The steps after which it is first tried, and by how much they become more at every vain trial.
