@@ -1,6 +1,6 @@
 //! The search for the end of a flight: the first instant at which something has to happen.
 
-use pleach_continuous::flow::{Doubt, Finding, Lost, Onset, Uncertainty, isolate};
+use pleach_continuous::flow::{Curve, Doubt, Finding, Lost, Onset, Uncertainty, isolate};
 use pleach_guards::Course;
 
 use crate::composition::group::Group;
