@@ -103,11 +103,14 @@ impl<'a> Field<'a> {
     ///
     /// If a coefficient is not finite.
     pub(super) fn linear(&self) -> Result<Option<LinearPart>, InvalidFlow> {
+        let curved = self.rows.iter().filter(|row| **row == Row::Curved).count();
+        if curved > LARGEST_LINEAR {
+            return Ok(None);
+        }
         let Some((offsets, entries)) = self.entries() else { return Ok(None) };
-        let belongs = |&place: &usize| {
-            self.rows[place] == Row::Curved || entries.iter().any(|entry| entry.1 == place)
-        };
-        let variables: Arc<[usize]> = (0..self.rows.len()).filter(belongs).collect();
+        let mut belongs: Vec<bool> = self.rows.iter().map(|row| *row == Row::Curved).collect();
+        entries.iter().for_each(|(_, column, _)| belongs[*column] = true);
+        let variables: Arc<[usize]> = (0..belongs.len()).filter(|&place| belongs[place]).collect();
         let moving = variables.iter().filter(|&&place| self.rows[place] != Row::Line(0.0));
         if moving.count() > LARGEST_LINEAR || variables.len() > LARGEST_MATRIX {
             return Ok(None);
