@@ -2,9 +2,10 @@
 //!
 //! A polynomial is its own only piece. A solution by exponentials is cut into pieces of a fraction
 //! of a turn of its fastest mode that has not faded. Each is the Taylor polynomial of the solution,
-//! with a proven bound on the rest: with |M| the matrix of magnitudes and a the magnitudes of the
-//! next term, if |M| a ≤ λ a in every component, the terms that follow shrink at least as those of
-//! a geometric series. Where a mode is so fast that it has faded but rules the series, as in stiff
+//! with a proven bound on the rest: with |M| the matrix of magnitudes, s the sum of the magnitudes of
+//! the terms up to the k-th, and times in units of the length of the piece, let |M| s ≤ λ s in every
+//! component. If the k-th term is at most μ s, the one after it is at most μ s λ ÷ (k + 1), and so on: they
+//! shrink at least as those of a geometric series. Where a mode is so fast that it has faded but rules the series, as in stiff
 //! systems, the piece is instead a polynomial [through](Piece::through) the solution, with an
 //! estimate of its error.
 
@@ -56,28 +57,33 @@ impl Exponential {
         let mut term: Vec<f64> = state.iter().copied().chain([self.constant]).collect();
         let mut most: Vec<f64> = term.iter().map(|x| x.abs()).collect();
         let mut sums = most.clone();
+        let mut moved = vec![0.0; most.len()];
         let (mut next, mut next_most) = (term.clone(), most.clone());
         let mut terms = state.to_vec();
         for degree in 1..=MOST_TERMS + 1 {
             let step = length / degree as f64;
             for ((row, next), next_most) in self.generator.iter().zip(&mut next).zip(&mut next_most)
             {
-                let (mut moved, mut bound) = (0.0, 0.0);
+                let (mut sum, mut bound) = (0.0, 0.0);
                 for &(column, entry) in row {
-                    moved += entry * term[column];
+                    sum += entry * term[column];
                     bound += entry.abs() * most[column];
                 }
-                (*next, *next_most) = (moved * step, bound * step);
+                (*next, *next_most) = (sum * step, bound * step);
             }
+            moved
+                .iter_mut()
+                .zip(&next_most)
+                .for_each(|(moved, most)| *moved += degree as f64 * most);
             // `most` bounds the last term, which would be the first that is left out.
             if degree > 1
-                && let Some(rest) = remainder(&most, &next_most)
-                && (0..dimension).all(|i| rest * most[i] <= NEGLIGIBLE * sums[i])
+                && let Some(rest) = remainder(&most, &sums, &moved, degree)
+                && rest <= NEGLIGIBLE
             {
                 let mut piece = Piece::new(start, start + length, start, length);
                 let terms = &terms[..(degree - 1) * dimension];
-                for i in 0..dimension {
-                    piece.push(terms.iter().copied().skip(i).step_by(dimension), rest * most[i]);
+                for (i, sum) in sums[..dimension].iter().enumerate() {
+                    piece.push(terms.iter().copied().skip(i).step_by(dimension), rest * sum);
                 }
                 return Some(piece);
             }
@@ -90,16 +96,16 @@ impl Exponential {
     }
 }
 
-/// By how much a term and all that follow are more than it, at most, where `this` bounds it and
-/// `next` the term after it; none where no bound is seen.
-fn remainder(this: &[f64], next: &[f64]) -> Option<f64> {
-    let mut ratio: f64 = 0.0;
-    for (next, this) in next.iter().zip(this) {
-        if *next > 0.0 {
-            ratio = ratio.max(next / this);
-        }
-    }
-    // Rounding of the products is far below this margin.
-    let ratio = ratio * (1.0 + 1e-12);
-    (ratio < 0.5).then(|| 1.0 / (1.0 - ratio))
+/// All terms from one on, as a part of the sum s of the magnitudes up to it, at most; none where no
+/// bound is seen. `most` are the magnitudes of that term, whose degree is `next` − 1, and `moved` is
+/// |M| s, for the length of the piece.
+fn remainder(most: &[f64], sums: &[f64], moved: &[f64], next: usize) -> Option<f64> {
+    let largest = |parts: &[f64]| {
+        let ratios =
+            parts.iter().zip(sums).map(|(part, sum)| if *part > 0.0 { part / sum } else { 0.0 });
+        // Rounding of the sums is far below this margin.
+        ratios.fold(0.0, f64::max) * (1.0 + 1e-12)
+    };
+    let ratio = largest(moved) / next as f64;
+    (ratio < 0.5).then(|| largest(most) / (1.0 - ratio))
 }
