@@ -41,6 +41,9 @@ pub(super) struct Field<'a> {
     places: RefCell<Vec<Vec<f64>>>,
 }
 
+/// A coefficient of a linear rate: its row, its column and its value.
+type Entry = (usize, usize, f64);
+
 impl<'a> Field<'a> {
     pub(super) fn of(
         composition: &'a Composition,
@@ -126,9 +129,8 @@ impl<'a> Field<'a> {
         Ok(Some(LinearPart { variables, field }))
     }
 
-    /// What the rates of the group are if all are linear: their constants, and the row, the column
-    /// and the value of each coefficient.
-    fn entries(&self) -> Option<(Vec<f64>, Vec<(usize, usize, f64)>)> {
+    /// What the rates of the group are if all are linear: their constants, and the coefficients.
+    fn entries(&self) -> Option<(Vec<f64>, Vec<Entry>)> {
         let (mut offsets, mut entries) = (vec![0.0; self.rows.len()], Vec::new());
         for (component, place) in &self.moving {
             let PlaceMotion::Rates(rates) = &place.motion else { return None };
