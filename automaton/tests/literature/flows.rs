@@ -141,7 +141,7 @@ fn arenstorfs_orbit_closes() {
     let automaton = moving(start, rates).build().expect("the model is sound");
     let settings =
         Settings { relative_tolerance: 1e-13, absolute_tolerance: 1e-13, ..Settings::default() };
-    let period = 17.065_216_560_157_962;
+    let period = 17.065_216_560_157_96;
     let trajectory = automaton.run_with(settings, period).expect("it can be run");
     let end = trajectory.values_at(period).expect("the run lasts");
     for (found, exact) in end.iter().zip(start).take(2) {

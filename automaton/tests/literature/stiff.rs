@@ -18,7 +18,7 @@ fn robertsons_reaction_is_where_it_should_be() {
     let trajectory = automaton.run_with(settings, 40.0).expect("it can be run");
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
     let values = trajectory.values_at(40.0).expect("the run lasts");
-    let exact = [0.715_827_068_719_394_1, 9.185_534_764_557_338e-6, 0.284_163_745_745_841_3];
+    let exact = [0.715_827_068_719_394, 9.185_534_764_557_338e-6, 0.284_163_745_745_841_3];
     for (found, exact) in values.iter().zip(exact) {
         assert_near(*found, exact, 1e-7 * exact);
     }
