@@ -15,6 +15,8 @@
 pub mod affine;
 pub mod confirm;
 pub mod containment;
+#[cfg(test)]
+mod exact;
 pub mod explore;
 pub mod exponential;
 pub mod falsify;
@@ -23,11 +25,13 @@ pub mod model;
 pub mod polytope;
 pub mod question;
 pub mod region;
+pub mod rounding;
 pub mod search;
 mod series;
 pub mod set;
 pub mod settings;
 mod signal;
+pub mod sparse;
 pub mod taylor;
 mod taylor_model;
 pub mod temporal;
@@ -44,9 +48,11 @@ pub use model::{Assignments, Dynamics, Jump, Model, ModelError, Place, Uncertain
 pub use polytope::{Bound, Polytope, Template};
 pub use question::{Answer, Doubt, Forbidden, Proof, ReachError, prove, verify};
 pub use region::{Conjunction, HalfSpace, Region, RegionError};
+pub use rounding::sum_up;
 pub use search::{Effort, Run, runs};
 pub use set::StateSet;
 pub use settings::{Directions, InvalidSetting, Settings};
+pub use sparse::{Span, SparseFlow};
 pub use temporal::{RobustnessProof, TemporalAnswer, Violation, prove_formula, verify_formula};
-pub use vector::{IntervalMatrix, dot, dot_numbers, sum_up};
+pub use vector::{IntervalMatrix, dot, dot_numbers};
 pub use zonotope::Zonotope;
