@@ -12,7 +12,7 @@ use crate::{Automaton, BuildError, Flow, Transfer};
 use super::super::act::{Act, acting};
 use super::super::message::Message;
 use super::super::record::MissionEvent;
-use super::super::robot::RobotError;
+use super::super::robot::{ROUNDS_TO_BE_HEARD, RobotError};
 use super::super::service::{Listening, Resting, Rounds};
 use super::AccessPoint;
 
@@ -31,7 +31,7 @@ pub enum RoundAct {
     TellUser,
     /// It sends its public state.
     TellBeacon,
-    /// What it has heard in this control period is not needed any more.
+    /// The nodes of which it has heard nothing in this control period are out of range.
     Forget,
 }
 
@@ -45,7 +45,7 @@ impl Act for RoundAct {
             RoundAct::Think => "deliberate, serve",
             RoundAct::TellUser => "tell the user",
             RoundAct::TellBeacon => "tell beacon",
-            RoundAct::Forget => "forget beacons",
+            RoundAct::Forget => "forget silent nodes",
         }
     }
 }
@@ -84,9 +84,16 @@ impl AccessPoint {
         site.automata.rounds.step_in_place::<Rounds>(self)?;
         for act in std::mem::take(&mut self.acts) {
             match act {
-                RoundAct::RestartClock => self.clock = 0.0,
-                RoundAct::Forget => self.heard.clear(),
+                RoundAct::RestartClock => {
+                    self.clock = 0.0;
+                    self.expect_everyone();
+                }
+                RoundAct::Forget => self.forget_silent(),
                 RoundAct::Think => {
+                    // The round that has begun is one more than those that are over.
+                    if self.round() == ROUNDS_TO_BE_HEARD + 1 {
+                        self.forget_silent();
+                    }
                     let known = self.bulletin.id();
                     self.think()?;
                     self.serve()?;
@@ -138,7 +145,7 @@ pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
         .carried_out(row(
             RoundEvent::RoundsOver,
             guards::rounds_over(),
-            &[Think, Forget],
+            &[Forget, Think],
             |_: &Listening| Resting,
         ))
         .build()

@@ -69,7 +69,8 @@ use super::record::MissionEvent;
 use super::shared::Shared;
 use super::site::Site;
 use duties::Label;
-use hearing::{Neighbour, ROUNDS_TO_BE_HEARD};
+use hearing::Neighbour;
+pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
 use rounds::Rounds;
 
