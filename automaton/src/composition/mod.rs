@@ -187,7 +187,7 @@ impl Composition {
 }
 
 impl Component {
-    fn place(&self, location: usize) -> &blueprint::Place {
+    fn place(&self, location: usize) -> &blueprint::Mode {
         &self.blueprint.places[location]
     }
 }

@@ -11,7 +11,7 @@ use crate::reset::Reset;
 #[derive(Clone, Debug)]
 pub(crate) struct Sketch {
     /// In the order of `L::ALL`.
-    pub places: Vec<Place>,
+    pub places: Vec<Mode>,
     /// In the order of the rows of the table.
     pub links: Vec<Link>,
     /// The number of the initial location.
@@ -22,7 +22,7 @@ pub(crate) struct Sketch {
 
 /// A location.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub(crate) struct Mode {
     pub name: &'static str,
     /// The rates, each by itself; or the name of the flow.
     pub flow: Vec<String>,
@@ -71,7 +71,7 @@ impl Sketch {
                 .iter()
                 .map(|it| (format!("{} := {}", it.commanded, it.name), it.to_string()))
                 .collect();
-            Place { name: location.name(), flow, invariant, commands, is_missed: false }
+            Mode { name: location.name(), flow, invariant, commands, is_missed: false }
         };
         let rank = |edge| {
             let ranks = automaton
@@ -106,7 +106,7 @@ impl Sketch {
     }
 }
 
-impl Place {
+impl Mode {
     /// The name, then the flow, the invariant, and what is chosen at samples, if there are any.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![self.name.to_owned()];

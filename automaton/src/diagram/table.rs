@@ -3,7 +3,7 @@
 use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;
 
-use super::sketch::{Place, Sketch};
+use super::sketch::{Mode, Sketch};
 use crate::automaton::{Automaton, Transition};
 
 /// The automaton in Markdown: the full location × event table; below it guard and reset, a row an
@@ -119,17 +119,17 @@ fn is_same<E, S>(one: &Transition<E, S>, other: &Transition<E, S>) -> bool {
 /// The locations, with what is said of any of them.
 fn modes(sketch: &Sketch) -> Columns {
     let places = || sketch.places.iter();
-    let column = |cell: &dyn Fn(&Place) -> String| -> Vec<String> {
+    let column = |cell: &dyn Fn(&Mode) -> String| -> Vec<String> {
         places().map(|place| or_nothing(cell(place))).collect()
     };
     let mut columns: Columns = vec![("location", column(&|place| format!("**{}**", place.name)))];
     if places().any(|place| !place.flow.is_empty() || place.invariant.is_some()) {
-        let invariant = |place: &Place| place.invariant.clone().unwrap_or_default();
+        let invariant = |place: &Mode| place.invariant.clone().unwrap_or_default();
         columns.push(("flow", column(&|place| place.flow.join(", "))));
         columns.push(("time passes while", column(&invariant)));
     }
     if places().any(|place| !place.commands.is_empty()) {
-        let chosen = |place: &Place| -> String {
+        let chosen = |place: &Mode| -> String {
             let cases: Vec<&str> = place.commands.iter().map(|(_, case)| case.as_str()).collect();
             cases.join("; else ")
         };

@@ -1,7 +1,7 @@
 //! How parts are joined: channels, connections, slots and labels.
 
 use super::{CompositionBuilder, CompositionError, Part};
-use crate::composition::blueprint::{Change, Place, PlaceMotion};
+use crate::composition::blueprint::{Change, Mode, ModeMotion};
 use crate::composition::{Component, Composition, Label};
 
 impl CompositionBuilder {
@@ -183,7 +183,7 @@ impl Part {
             let mut leaving = places.iter().flat_map(|place| &place.leaving);
             place == self.blueprint.initial || leaving.any(|leaving| leaving.target == place)
         };
-        let is_deaf = |place: &Place| !place.leaving.iter().any(|it| Some(it.event) == number);
+        let is_deaf = |place: &Mode| !place.leaving.iter().any(|it| Some(it.event) == number);
         let mut numbered = places.iter().enumerate();
         match numbered.find(|(number, place)| is_deaf(place) && is_entered(*number)) {
             Some((_, place)) => Err(CompositionError::NotReceptive {
@@ -215,8 +215,8 @@ impl Component {
         }
         for place in &self.blueprint.places {
             let moved: Vec<usize> = match &place.motion {
-                PlaceMotion::Rates(rates) => rates.iter().map(|rate| rate.coordinate).collect(),
-                PlaceMotion::Field(_) | PlaceMotion::Exact(_) => Vec::new(),
+                ModeMotion::Rates(rates) => rates.iter().map(|rate| rate.coordinate).collect(),
+                ModeMotion::Field(_) | ModeMotion::Exact(_) => Vec::new(),
             };
             let set = place.leaving.iter().flat_map(|leaving| match &leaving.change {
                 Change::Assignments(assignments) => {

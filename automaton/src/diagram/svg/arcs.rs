@@ -11,7 +11,7 @@
 mod path;
 mod strokes;
 
-use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Place, Size, text_width};
+use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Pixel, Size, text_width};
 use super::{broken, stroke_class};
 use crate::diagram::sketch::{Link, Sketch};
 
@@ -57,7 +57,7 @@ pub(super) fn draw(sketch: &Sketch) -> (Canvas, Size) {
     strokes::draw_key(&mut canvas, sketch, &mut extent);
 
     let mut picture = Canvas::new();
-    let corner = Place { x: MARGIN - extent.left, y: MARGIN - extent.top };
+    let corner = Pixel { x: MARGIN - extent.left, y: MARGIN - extent.top };
     picture.inset(canvas, corner);
     let width = extent.right - extent.left + 2.0 * MARGIN;
     (picture, Size { width, height: extent.bottom - extent.top + 2.0 * MARGIN })
@@ -118,7 +118,7 @@ struct Extent {
 }
 
 impl Extent {
-    fn include(&mut self, corner: Place, size: Size) {
+    fn include(&mut self, corner: Pixel, size: Size) {
         self.left = self.left.min(corner.x);
         self.top = self.top.min(corner.y);
         self.right = self.right.max(corner.x + size.width);
@@ -247,7 +247,7 @@ impl Row {
 }
 
 impl Box {
-    fn of(place: &crate::diagram::sketch::Place) -> Box {
+    fn of(place: &crate::diagram::sketch::Mode) -> Box {
         let lines: Vec<String> =
             place.lines().iter().flat_map(|line| broken(line, LINE_LENGTH)).collect();
         let longest = lines.iter().map(|line| text_width(line)).fold(0.0, f64::max);
