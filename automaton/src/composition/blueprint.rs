@@ -19,7 +19,7 @@ use crate::reset::{NewValue, Reset};
 /// Locations and events are numbers here, in the order of `ALL`, and formulas are compiled against
 /// the coordinates of the automaton's own state.
 pub(crate) struct Blueprint {
-    pub(crate) places: Vec<Mode>,
+    pub(crate) modes: Vec<Mode>,
     pub(crate) events: Vec<&'static str>,
     pub(crate) coordinates: Vec<&'static str>,
     pub(crate) initial: usize,
@@ -103,7 +103,7 @@ impl Blueprint {
         let automaton = &automaton.with_numbers();
         let (graph, names) = (automaton.graph(), automaton.names());
         let shape = automaton.initial_state();
-        let mut places = Vec::with_capacity(automaton.locations().len());
+        let mut modes = Vec::with_capacity(automaton.locations().len());
         let locations = automaton.locations().iter();
         for (node, (&location, mode)) in locations.zip(&automaton.modes).enumerate() {
             let leaving = automaton.leaving[node].iter().map(|&edge| {
@@ -117,7 +117,7 @@ impl Blueprint {
                     change: change(&transition.reset, names, shape)?,
                 })
             });
-            places.push(Mode {
+            modes.push(Mode {
                 name: location.name(),
                 rates: tape(mode.flow.as_ref(), names)?,
                 motion: match &mode.flow {
@@ -135,7 +135,7 @@ impl Blueprint {
         let events = automaton.events().iter().map(|event| event.name()).collect();
         let initial = position(automaton.locations(), automaton.initial());
         let (coordinates, own) = (names.to_vec(), automaton.own.clone());
-        Ok(Blueprint { places, events, coordinates, initial, own, sketch })
+        Ok(Blueprint { modes, events, coordinates, initial, own, sketch })
     }
 }
 

@@ -185,7 +185,7 @@ impl Model {
         let numbers = automaton.parameters().filter(|(name, _)| is_certain(name));
         let numbers = Substitution::new(numbers.map(|(name, value)| (name, constant(value))));
         let reader = Reader { automaton, variables: &variables, inputs, numbers };
-        let locations = automaton.locations().iter().map(|location| reader.place(*location));
+        let locations = automaton.locations().iter().map(|location| reader.mode(*location));
         let locations = locations.collect::<Result<Vec<_>, _>>()?;
         let initial = automaton.locations().iter().position(|it| *it == automaton.initial());
         Ok(Model { locations, initial: initial.into_iter().collect(), variables })
@@ -230,16 +230,16 @@ struct Reader<'a, L, E, S> {
 }
 
 impl<L: Location, E: Event, S: Coordinates> Reader<'_, L, E, S> {
-    fn place(&self, location: L) -> Result<Mode, ModelError> {
+    fn mode(&self, location: L) -> Result<Mode, ModelError> {
         let name = location.name().to_owned();
-        let mode = self.automaton.mode(location);
-        let invariant = mode.and_then(|mode| mode.invariant.as_ref());
+        let own = self.automaton.mode(location);
+        let invariant = own.and_then(|own| own.invariant.as_ref());
         let invariant = match invariant {
             Some(invariant) => self.region(&name, invariant)?,
             None => Region { alternatives: vec![Default::default()] },
         };
         let mut rates = vec![constant(0.0); self.variables.len()];
-        if let Some(flow) = mode.and_then(|mode| mode.flow.as_ref()) {
+        if let Some(flow) = own.and_then(|own| own.flow.as_ref()) {
             let listed = flow.rates().ok_or_else(|| ModelError::Flow { location: name.clone() })?;
             for rate in listed {
                 if let Some(place) = self.place_of(rate.coordinate()) {

@@ -42,7 +42,7 @@ const LOOP_GAP: f64 = 14.0;
 
 /// Whether the picture does not become a tangle.
 pub(super) fn suit(sketch: &Sketch) -> bool {
-    (1..=MOST_PLACES).contains(&sketch.places.len()) && sketch.links.len() <= MOST_LINKS
+    (1..=MOST_PLACES).contains(&sketch.modes.len()) && sketch.links.len() <= MOST_LINKS
 }
 
 /// Draws boxes and arcs; also says how large the picture is.
@@ -172,7 +172,7 @@ impl Arc {
 
 impl Row {
     fn of(sketch: &Sketch) -> Row {
-        let mut order: Vec<usize> = (0..sketch.places.len()).collect();
+        let mut order: Vec<usize> = (0..sketch.modes.len()).collect();
         order.sort_by_key(|&place| Some(place) != sketch.initial);
         let position = |place| order.iter().position(|&one| one == place).unwrap_or_default();
         let arcs: Vec<Arc> = sketch
@@ -185,7 +185,7 @@ impl Row {
                 class: format!("arrow {}", stroke_class(link.urgency, link.is_missed)),
             })
             .collect();
-        let boxes = order.iter().map(|&place| Box::of(&sketch.places[place])).collect();
+        let boxes = order.iter().map(|&place| Box::of(&sketch.modes[place])).collect();
         let mut row = Row { boxes, height: 0.0, arcs, start: sketch.start.clone() };
         row.set_sizes();
         row

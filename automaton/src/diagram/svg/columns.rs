@@ -85,17 +85,17 @@ impl Row {
 
 fn columns(sketch: &Sketch, left: f64) -> Vec<Column> {
     let mut from = left;
-    let places = sketch.places.iter();
-    places
-        .map(|place| {
-            let lines = place.lines();
+    let modes = sketch.modes.iter();
+    modes
+        .map(|mode| {
+            let lines = mode.lines();
             let lines: Vec<String> =
                 lines.iter().flat_map(|line| wrapped(line, BOX_LINE_LENGTH)).collect();
             let longest = lines.iter().map(|line| text_width(line)).fold(0.0, f64::max);
             let width = longest + 2.0 * PADDING;
             let x = from + width / 2.0;
             from += width + GAP;
-            Column { name: place.name, lines, is_missed: place.is_missed, x, width }
+            Column { name: mode.name, lines, is_missed: mode.is_missed, x, width }
         })
         .collect()
 }

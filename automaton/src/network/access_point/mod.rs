@@ -20,7 +20,7 @@ use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
-use super::robot::{RobotError, RobotFault};
+use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election};
 use super::site::Site;
@@ -162,13 +162,17 @@ impl AccessPoint {
         }
     }
 
-    /// A control period begins, in which everyone speaks again.
-    fn expect_everyone(&mut self) {
+    /// A control period begins, in which all nodes send again.
+    fn expect_all(&mut self) {
         self.silent = self.heard.iter().map(|beacon| beacon.sender).collect();
     }
 
-    /// Everyone in range has spoken: who is silent is out of range.
+    /// After the first rounds all nodes in range have sent: those that were silent are out of range.
     fn forget_silent(&mut self) {
+        // The round that has begun is one more than those that are over; after the last, none has.
+        if (1..=ROUNDS_TO_BE_HEARD).contains(&self.round()) {
+            return;
+        }
         let silent = std::mem::take(&mut self.silent);
         self.heard.retain(|beacon| !silent.contains(&beacon.sender));
     }

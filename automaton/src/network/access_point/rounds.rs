@@ -12,7 +12,7 @@ use crate::{Automaton, BuildError, Flow, Transfer};
 use super::super::act::{Act, acting};
 use super::super::message::Message;
 use super::super::record::MissionEvent;
-use super::super::robot::{ROUNDS_TO_BE_HEARD, RobotError};
+use super::super::robot::RobotError;
 use super::super::service::{Listening, Resting, Rounds};
 use super::AccessPoint;
 
@@ -31,7 +31,7 @@ pub enum RoundAct {
     TellUser,
     /// It sends its public state.
     TellBeacon,
-    /// The nodes of which it has heard nothing in this control period are out of range.
+    /// After the first rounds, the nodes of which it has heard nothing are out of range.
     Forget,
 }
 
@@ -86,14 +86,10 @@ impl AccessPoint {
             match act {
                 RoundAct::RestartClock => {
                     self.clock = 0.0;
-                    self.expect_everyone();
+                    self.expect_all();
                 }
                 RoundAct::Forget => self.forget_silent(),
                 RoundAct::Think => {
-                    // The round that has begun is one more than those that are over.
-                    if self.round() == ROUNDS_TO_BE_HEARD + 1 {
-                        self.forget_silent();
-                    }
                     let known = self.bulletin.id();
                     self.think()?;
                     self.serve()?;
@@ -139,7 +135,7 @@ pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
         .carried_out(row(
             RoundEvent::NextRound,
             guards::next_round(),
-            &[Think, TellBeacon],
+            &[Forget, Think, TellBeacon],
             |listening: &Listening| Listening { round: listening.round + 1 },
         ))
         .carried_out(row(

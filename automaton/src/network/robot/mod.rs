@@ -97,8 +97,8 @@ pub struct Robot {
     rate: f64,
     site: Arc<Site>,
 
-    // Where it stands in its control period, rounds of beacons, sweeps or negotiation, what it does now, and
-    // whether that is its first period.
+    // Where it stands in its control period, rounds of beacons, sweeps or negotiation, what it does
+    // now, and whether that is its first period.
     control: Current<Control>,
     round_count: Rounds,
     acts: Acts,
