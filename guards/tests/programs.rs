@@ -2,7 +2,8 @@
 
 use crate::common::{expressions, predicates};
 use pleach_guards::{
-    EvaluationError, Expression, Interval, Predicate, Substitution, Tape, Verdict, constant, variable,
+    EvaluationError, Expression, Interval, Predicate, Substitution, Tape, Verdict, constant,
+    variable,
 };
 use proptest::prelude::*;
 

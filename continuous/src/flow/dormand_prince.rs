@@ -234,6 +234,26 @@ pub(super) fn combine<const N: usize>(
     }
 }
 
+/// target = step · Σ weight · (stage − first stage), for weights that sum to 0: of straight motion
+/// it is exactly 0.
+#[inline]
+pub(super) fn combine_differences<const N: usize>(
+    target: &mut [f64],
+    step: f64,
+    weights: [f64; N],
+    stages: [&[f64]; N],
+) {
+    let dimension = target.len();
+    let stages = stages.map(|stage| &stage[..dimension]);
+    for i in 0..dimension {
+        let mut sum = 0.0;
+        for stage in 0..N {
+            sum += weights[stage] * (stages[stage][i] - stages[0][i]);
+        }
+        target[i] = step * sum;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
