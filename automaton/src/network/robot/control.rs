@@ -73,7 +73,7 @@ acts! {
     EndSweep = "end sweep",
     /// c_i of the flows as they are now.
     SettleResidual = "settle c",
-    /// It says so if it cannot pass on what it is sent.
+    /// It reports a shortage if it cannot pass on what it is sent.
     AdmitShortage = "admit shortage",
     /// Overloaded robots are relieved of what does not come over the tree, and a sweep begins.
     SweepAgain = "relieve, begin sweep",
