@@ -1,5 +1,5 @@
-//! Missions in storms: messages are lost, late and copied, robots crash, come back and join late,
-//! and positions and moves have errors.
+//! Missions in storms: messages are lost, late and copied, robots crash, restart and join late, and
+//! positions and moves have errors.
 //!
 //! `cargo run --release --example storm -- COUNT [FIRST_SEED]` runs as many missions, of all kinds
 //! and on all plans in turn, and tells the first that breaks a promise of safety, shrunk.

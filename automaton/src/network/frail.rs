@@ -1,8 +1,7 @@
-//! Nodes that fail: they crash, come back, join late, and their bodies do not quite do as told.
+//! Nodes that fail: they crash, restart, join late, and their positions and moves have errors.
 //!
-//! [`Frail`] stands between a [`Member`] and its ensemble. It holds the true position of the body;
-//! the node knows what its localisation tells it. What befalls a node is its [`Trouble`]. Draws are
-//! those of a seed.
+//! [`Frail`] wraps a [`Member`] of an ensemble. It has the true position of the body; the node knows
+//! what its localisation measures. The faults of a node are its [`Trouble`]. Draws are those of a seed.
 
 use std::sync::Arc;
 
@@ -16,7 +15,7 @@ use super::robot::RobotError;
 use crate::chance::Chance;
 use crate::node::{Input, Node, Observed, Outputs};
 
-/// What befalls one node. Times are in seconds from the beginning.
+/// The faults of one node. Times are in seconds from the beginning.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trouble {
     /// When it joins; its body stands at its start from the beginning.
@@ -38,14 +37,14 @@ pub struct Crash {
     pub time: f64,
     /// After so many inputs at that time: in the midst of the messages of a control period.
     pub inputs: u32,
-    /// When it comes back, having forgotten everything but who it is; none if it never does.
+    /// When it restarts, having forgotten everything but its number; none if it never does.
     pub back: Option<f64>,
 }
 
 /// How a node is made anew that has forgotten everything: from where its body stands.
 pub type Maker = Arc<dyn Fn(Point) -> Member + Send + Sync>;
 
-/// A node with its troubles.
+/// A node with its faults.
 #[derive(Clone)]
 pub struct Frail {
     member: Member,
@@ -86,7 +85,7 @@ impl std::fmt::Debug for Frail {
 const SAME: f64 = 1e-9;
 
 impl Frail {
-    /// The node that `maker` makes at `place`, with what befalls it; control periods take `period`
+    /// The node that `maker` makes at `place`, with its faults; control periods take `period`
     /// seconds, and `seed` decides on errors.
     pub fn new(maker: Maker, place: Point, period: f64, trouble: Trouble, seed: u64) -> Self {
         let begin = trouble.joins.map(|time| on_grid(time, period)).unwrap_or(0.0) + trouble.shift;

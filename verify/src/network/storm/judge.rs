@@ -12,7 +12,7 @@ use super::super::{Limits, SLACK, Violation, instant, link, tree};
 use super::Storm;
 use crate::network::violation::Instant;
 
-/// Looks at a mission control period by control period, and keeps the first violation of each
+/// Judges a mission, one control period after the other, and keeps the first violation of each
 /// property. Nodes that do not run are bodies, and nothing else.
 #[derive(Debug)]
 pub struct Judge {
@@ -25,7 +25,7 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// A judge who has seen nothing yet.
+    /// A judge that has seen nothing yet.
     pub fn new(scenario: &ValidScenario, storm: &Storm) -> Self {
         let is_down = |trouble: &Trouble| trouble.crash.is_some() || trouble.joins.is_some();
         let loses_nodes = storm.troubles.iter().any(|(_, trouble)| is_down(trouble))
@@ -125,7 +125,7 @@ fn relayed(seen: &Snapshot, limits: &Limits) -> Result<(), Violation> {
     }
 }
 
-/// [`Property::RootedTree`]: nobody comes back to itself along the tree.
+/// [`Property::RootedTree`]: the path of no robot up the tree leads back to it.
 fn rooted(seen: &Snapshot) -> Result<(), Violation> {
     let mut parents = vec![None; seen.roles.len()];
     let instant = Instant::of(seen);
@@ -144,7 +144,7 @@ fn rooted(seen: &Snapshot) -> Result<(), Violation> {
     match (0..parents.len()).find(|&robot| returns(robot)) {
         None => Ok(()),
         Some(robot) => {
-            let sentence = format!("the way of robot {robot} up the tree has no end");
+            let sentence = format!("the path of robot {robot} up the tree is a cycle");
             Err(instant.violation(Property::RootedTree, &[robot], (0.0, 1.0), sentence))
         }
     }

@@ -105,7 +105,7 @@ pub fn network(scenario: &ValidScenario, storm: &Storm) -> Result<Stormy, Networ
     Network::of_nodes(scenario, Arc::clone(&site), medium, nodes)
 }
 
-/// Runs a mission through a storm, for at most so many control periods.
+/// Runs a mission through a storm, for at most this many control periods.
 ///
 /// # Errors
 /// When a node cannot go on.
@@ -117,7 +117,7 @@ pub fn ride(
     ride_watched(scenario, storm, periods, |_| {})
 }
 
-/// The same, with someone looking on.
+/// The same, where `watch` is given every snapshot.
 ///
 /// # Errors
 /// When a node cannot go on.
