@@ -53,3 +53,14 @@ fn the_mission_goes_on_although_messages_are_lost() {
         assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
     }
 }
+
+/// A robot that joins late, or restarts with nothing known, does not decide elections alone.
+#[test]
+fn robots_that_join_late_or_restart_go_on() {
+    for kind in [Kind::Late, Kind::Restart] {
+        for seed in 0..6 {
+            let verdict = storm("study-2", kind, seed);
+            assert!(verdict.periods > 0, "{} {seed}", kind.name());
+        }
+    }
+}

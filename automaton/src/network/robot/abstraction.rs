@@ -32,8 +32,7 @@ impl<'a> RobotView<'a> {
     /// The election that it knows to be over, and the winner with its bid.
     pub fn concluded_election(self) -> Option<(NoticeId, Option<(Bid, NodeId)>)> {
         let election = self.robot().election.as_ref()?;
-        let over = election.is_complete(&self.robot().roster);
-        over.then(|| (election.id(), election.best()))
+        self.robot().election_is_over().then(|| (election.id(), election.best()))
     }
 
     /// The election that it takes part in, or took part in last.
