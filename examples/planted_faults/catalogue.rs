@@ -65,7 +65,7 @@ pub enum CatalogueError {
         source: io::Error,
     },
     /// The catalogue is not what it should be.
-    #[error("proofs/faults.toml: {0}")]
+    #[error("a list in proofs: {0}")]
     Catalogue(#[from] toml::de::Error),
     /// The sources have changed under the fault.
     #[error(
@@ -113,7 +113,11 @@ impl Fault {
     }
 }
 
-fn read(root: &Path, path: &str) -> Result<String, CatalogueError> {
+/// A file below `root`.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn read(root: &Path, path: &str) -> Result<String, CatalogueError> {
     fs::read_to_string(root.join(path))
         .map_err(|source| CatalogueError::File { path: path.to_owned(), source })
 }

@@ -2,13 +2,16 @@
 //!
 //! ```text
 //! cargo run --example planted_faults -- [NAME]...
+//! cargo run --example planted_faults -- rounding
 //! ```
 //!
 //! The faults are those of `proofs/faults.toml`; `docs/proofs.md` says what came of them. A fault
-//! is caught if its command fails and says what it should. The copy, what is built of it and what
-//! each command said stay in `faults`, a folder beside what cargo builds.
+//! is caught if its command fails and says what it should. With `rounding`, rounding outward is left
+//! out at each place of `proofs/rounding.toml` instead. The copy, what is built of it and what each
+//! command said stay in `faults`, a folder beside what cargo builds.
 
 mod catalogue;
+mod rounding;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -16,6 +19,7 @@ use std::time::Instant;
 use std::{env, fmt, fs, io};
 
 use catalogue::{CatalogueError, Fault, faults};
+use rounding::{CHOICE, Place, places, with_choices};
 
 /// What is copied from the root of the workspace: all that the packages are built from.
 const SOURCES: [&str; 16] = [
@@ -51,6 +55,8 @@ enum Error {
     Io(#[from] io::Error),
     #[error("there is no fault “{0}” in proofs/faults.toml")]
     Unknown(String),
+    #[error("`cargo test {0}` fails although no rounding is left out")]
+    FailsAnyway(String),
 }
 
 /// What has become of a fault.
@@ -77,6 +83,9 @@ impl fmt::Display for Verdict {
 
 fn main() -> Result<ExitCode, Error> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    if env::args().skip(1).eq(["rounding"]) {
+        return leave_out_rounding(root);
+    }
     let planted = chosen(faults(root)?, env::args().skip(1).collect())?;
     let workshop = Workshop::new(root);
     let mut uncaught = 0;
@@ -90,6 +99,28 @@ fn main() -> Result<ExitCode, Error> {
     }
     println!("{} faults, {} of them caught", planted.len(), planted.len() - uncaught);
     Ok(if uncaught == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Leaves out rounding at one place after the other, and sees whether tests fail.
+fn leave_out_rounding(root: &Path) -> Result<ExitCode, Error> {
+    let places = places(root)?;
+    let workshop = Workshop::new(root);
+    workshop.plant_choices(&places)?;
+    let (mut seen, mut unseen, mut wrong) = (0, 0, 0);
+    for (number, place) in places.iter().enumerate() {
+        let fails = workshop.fails_unrounded(number, place)?;
+        match (fails, &place.unseen) {
+            (true, None) => seen += 1,
+            (false, Some(_)) => unseen += 1,
+            (fails, _) => {
+                wrong += 1;
+                let what = if fails { "SEEN AFTER ALL" } else { "NOT SEEN" };
+                println!("{what}: {}: {}", place.file, place.before);
+            }
+        }
+    }
+    println!("{} places: {seen} seen, {unseen} lawful, {wrong} not as the list says", places.len());
+    Ok(if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// The faults with these names, or all.
@@ -121,11 +152,51 @@ impl<'a> Workshop<'a> {
         }
     }
 
+    /// Makes the copy one in which rounding can be left out at each place, and runs the tests without.
+    fn plant_choices(&self, places: &[Place]) -> Result<(), Error> {
+        let sources = with_choices(self.root, places)?;
+        fs::create_dir_all(&self.copy)?;
+        for path in SOURCES {
+            renew(&self.root.join(path), &self.copy.join(path), &|file| {
+                sources.keys().any(|planted| self.copy.join(planted) == *file)
+            })?;
+        }
+        rounding::write(&self.copy, &sources)?;
+        let mut tests: Vec<&str> = places.iter().map(|place| place.test.as_str()).collect();
+        tests.sort_unstable();
+        tests.dedup();
+        for test in tests {
+            let mut command = self.cargo("test", test);
+            if !command.env_remove(CHOICE).status()?.success() {
+                return Err(Error::FailsAnyway(test.to_owned()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the tests of a place fail where rounding is left out there.
+    fn fails_unrounded(&self, number: usize, place: &Place) -> Result<bool, Error> {
+        let mut command = self.cargo("test", &place.test);
+        Ok(!command.env(CHOICE, number.to_string()).output()?.status.success())
+    }
+
+    /// A command of cargo in the copy, which ends after some time.
+    fn cargo(&self, command: &str, arguments: &str) -> Command {
+        let mut cargo = Command::new("timeout");
+        cargo
+            .args([TIME_LIMIT, "cargo", command])
+            .args(arguments.split_whitespace())
+            .current_dir(&self.copy)
+            .env("CARGO_TARGET_DIR", &self.built);
+        cargo
+    }
+
     /// Plants one fault in sources that have no other, and runs its command.
     fn try_out(&self, fault: &Fault) -> Result<Verdict, Error> {
         fs::create_dir_all(&self.copy)?;
         for path in SOURCES {
-            renew(&self.root.join(path), &self.copy.join(path), &self.copy.join(&fault.file))?;
+            let planted = self.copy.join(&fault.file);
+            renew(&self.root.join(path), &self.copy.join(path), &|file| *file == *planted)?;
         }
         write_if_new(&self.copy.join(&fault.file), fault.planted(self.root)?.as_bytes())?;
         let output = Command::new("timeout")
@@ -149,15 +220,15 @@ impl<'a> Workshop<'a> {
 }
 
 /// Makes a copy what the original is. Files that are so already stay untouched, so that cargo
-/// does not build them again; so does `planted`, which is written next.
-fn renew(original: &Path, copy: &Path, planted: &Path) -> io::Result<()> {
+/// does not build them again; so do those that are planted, which are written next.
+fn renew(original: &Path, copy: &Path, is_planted: &dyn Fn(&Path) -> bool) -> io::Result<()> {
     if original.is_dir() {
         fs::create_dir_all(copy)?;
         for entry in fs::read_dir(original)? {
             let entry = entry?;
-            renew(&entry.path(), &copy.join(entry.file_name()), planted)?;
+            renew(&entry.path(), &copy.join(entry.file_name()), is_planted)?;
         }
-    } else if original.exists() && copy != planted {
+    } else if original.exists() && !is_planted(copy) {
         write_if_new(copy, &fs::read(original)?)?;
     }
     Ok(())

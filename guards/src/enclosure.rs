@@ -302,3 +302,23 @@ fn steps(met: Interval) -> Option<Interval> {
 fn span(lower: f64, upper: f64) -> Interval {
     Interval::new(lower, upper).unwrap_or(Interval::WHOLE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From 0 at 0 to 1 at 3 the slope is a third, which lies between two neighbouring numbers.
+    #[test]
+    fn slopes_of_tables_are_rounded_outward() {
+        let table = Table::linear([(0.0, 0.0), (3.0, 1.0)]).expect("in order");
+        let clock = Enclosure {
+            middle: Interval::point(1.5),
+            range: span(1.0, 2.0),
+            rate: Interval::point(1.0),
+        };
+        let Enclosure { rate, .. } = clock.looked_up(&table, &table.derivative());
+        let below = 1.0 / 3.0;
+        assert!(rate.lower() <= below && below.next_up() <= rate.upper(), "{rate}");
+        assert!(rate.width() < 1e-14, "{rate}");
+    }
+}

@@ -4,6 +4,7 @@ mod common;
 
 mod analysis;
 mod depth;
+mod enclosures;
 mod functions;
 mod margins;
 mod printing;

@@ -13,7 +13,7 @@ use pleach_continuous::geometry::HalfPlane;
 use pleach_discrete::vocabulary;
 use pleach_guards::Interval;
 
-use crate::reach::{Forbidden, Polytope, StateSet, Template, dot_numbers};
+use crate::reach::{Forbidden, Polytope, StateSet, Template, dot, dot_numbers};
 
 vocabulary! {
     /// Whether the control period lasts.
@@ -156,7 +156,9 @@ fn proposals(
     for side in 0..SIDES {
         let (sine, cosine) = (TAU * f64::from(side) / f64::from(SIDES)).sin_cos();
         // The direction is as long as 1, up to rounding.
-        let within = |radius: f64| radius * (1.0 + 4.0 * f64::EPSILON);
+        let direction = [cosine, sine].map(Interval::point);
+        let length = dot(&direction, &direction).power(0.5).unwrap_or(Interval::WHOLE);
+        let within = |radius: f64| (Interval::point(radius) * length).upper();
         bounds.push((vec![0.0, 0.0, cosine, sine, 0.0, 0.0, 0.0], within(fastest.upper())));
         bounds.push((vec![0.0, 0.0, 0.0, 0.0, cosine, sine, 0.0], within(error)));
     }

@@ -18,6 +18,7 @@
 use pleach_guards::Interval;
 
 use super::exponential::exponential;
+use super::rounding::plus_up;
 use super::set::StateSet;
 use super::vector::{IntervalMatrix, dot};
 use super::zonotope::Zonotope;
@@ -153,7 +154,7 @@ impl<'a> Steps<'a> {
         track.input_bound = self.flow.inputs.support(&track.direction);
         let both = Interval::point(first_input) + Interval::point(track.input_bound);
         let gained = length * both / Interval::point(2.0) + input_bend;
-        track.added = (Interval::point(added) + gained).upper();
+        track.added = plus_up(added, gained.upper());
         let after = track.value();
         let sag = Interval::point(first_input) - Interval::point(track.input_bound);
         let sag = (length * sag / Interval::point(8.0)).upper().max(0.0);
@@ -196,7 +197,7 @@ pub struct Track {
 impl Track {
     /// At least ℓ · x now.
     pub fn value(&self) -> f64 {
-        (self.state_bound + self.added).next_up()
+        plus_up(self.state_bound, self.added)
     }
 }
 
@@ -207,4 +208,95 @@ pub struct StepBounds {
     pub during: f64,
     /// At its end.
     pub after: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reach::exact::{FAINT, fraction, points};
+
+    /// ẋ₁ = x₂ + v₁, ẋ₂ = x₃ + v₂, ẋ₃ = v₃: solutions are polynomials in time.
+    fn chain(inputs: [f64; 3]) -> AffineFlow {
+        let mut matrix = IntervalMatrix::zero(3, 3);
+        matrix[(0, 1)] = Interval::point(1.0);
+        matrix[(1, 2)] = Interval::point(1.0);
+        AffineFlow::new(matrix, Zonotope::from_box(&points(&inputs)))
+    }
+
+    /// The bounds on x₁ in the first step, which lasts a second.
+    fn first_step(start: [f64; 3], inputs: [f64; 3]) -> StepBounds {
+        let (flow, start) = (chain(inputs), StateSet::from_box(points(&start)));
+        let mut steps = Steps::new(&flow, &start, 1.0);
+        steps.reserve(1);
+        steps.advance(&mut steps.track(&[1.0, 0.0, 0.0]))
+    }
+
+    #[test]
+    fn what_inputs_add_is_rounded_up() {
+        let (flow, start) = (chain([0.0; 3]), StateSet::from_box(points(&[0.0; 3])));
+        let track = Steps::new(&flow, &start, 1.0).track(&[1.0, 0.0, 0.0]);
+        let track = Track { state_bound: 1.0, added: FAINT, ..track };
+        assert!(fraction(track.value()) >= fraction(1.0) + fraction(FAINT));
+        // What is added in a step comes to what was added before.
+        let flow = chain([FAINT, 0.0, 0.0]);
+        let mut steps = Steps::new(&flow, &start, 1.0);
+        steps.reserve(1);
+        let mut track = Track { added: 1.0, ..steps.track(&[1.0, 0.0, 0.0]) };
+        steps.advance(&mut track);
+        assert!(fraction(track.added) >= fraction(1.0) + fraction(FAINT));
+    }
+
+    /// t/2 − t²/2 is 0 at both ends of the step, and 1/8 in its middle.
+    #[test]
+    fn states_bend_between_the_ends_of_a_step() {
+        let bounds = first_step([0.0, 0.5, -1.0], [0.0; 3]);
+        assert!((0.125..0.13).contains(&bounds.during), "{bounds:?}");
+        assert!((0.0..1e-12).contains(&bounds.after), "{bounds:?}");
+    }
+
+    /// The rate 1/2 − t: what it adds is 0 at both ends of the step, and 1/8 in its middle.
+    #[test]
+    fn inputs_add_more_on_the_way_than_at_the_ends() {
+        let bounds = first_step([0.0; 3], [0.5, -1.0, 0.0]);
+        assert!((0.125..0.13).contains(&bounds.during), "{bounds:?}");
+        assert!((0.0..1e-12).contains(&bounds.after), "{bounds:?}");
+    }
+
+    /// The rate −1/12 + t/2 − t²/2 adds 0 over the whole step, more than its values at the ends say,
+    /// and most of it after 0.789 s.
+    #[test]
+    fn what_inputs_add_bends() {
+        let bounds = first_step([0.0; 3], [-1.0 / 12.0, 0.5, -1.0]);
+        let added = |t: f64| -t / 12.0 + t * t / 4.0 - t * t * t / 6.0;
+        assert!(bounds.during >= added(0.789), "{bounds:?}");
+        assert!(bounds.after >= added(1.0), "{bounds:?}");
+    }
+
+    /// A set that moves by an input for an uncertain time.
+    #[test]
+    fn sets_after_a_duration_hold_every_end() {
+        let flow = AffineFlow::new(
+            IntervalMatrix::zero(1, 1),
+            Zonotope::from_box(&[Interval::new(-0.7, 0.3).expect("in order")]),
+        );
+        let start = Zonotope::from_box(&points(&[1.0]));
+        let after = flow.after(&start, Interval::new(0.1, 0.9).expect("in order"), 8).hull()[0];
+        assert!(fraction(after.lower()) <= fraction(1.0) - fraction(0.7) * fraction(0.9));
+        assert!(fraction(after.upper()) >= fraction(1.0) + fraction(0.3) * fraction(0.9));
+    }
+
+    /// ẋ = x + v comes from 0 to (eᵗ − 1) v: of inputs in a segment and in a box.
+    #[test]
+    fn what_inputs_add_grows_with_the_flow() {
+        let mut matrix = IntervalMatrix::zero(1, 1);
+        matrix[(0, 0)] = Interval::point(1.0);
+        let mut inputs = Zonotope::from_box(&points(&[2.0]));
+        inputs.widen(&[1.0]);
+        let flow = AffineFlow::new(matrix, inputs);
+        let start = Zonotope::from_box(&points(&[0.0]));
+        let after = flow.after(&start, Interval::point(1.0), 8).hull()[0];
+        let exact = 1f64.exp_m1();
+        assert!(after.lower() <= exact && 3.0 * exact <= after.upper(), "{after}");
+        assert!(after.width() <= 2.01 * exact, "{after}");
+    }
 }

@@ -232,7 +232,7 @@ impl Search<'_> {
             self.cross(jump, elapsed, &entering, &mut crossings[at]);
         }
 
-        let remaining = self.settings.horizon - elapsed.lower();
+        let remaining = self.settings.time_left(elapsed);
         let template = self.prepared[location].template.clone();
         let exit = self.timed_exit(location, &flowing);
         let mut pipe = FlowPipe::new(

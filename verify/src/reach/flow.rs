@@ -65,7 +65,7 @@ impl<'a> FlowPipe<'a> {
                 let count = (until / settings.step).ceil();
                 let length = if count.is_finite() && count > 0.0 {
                     // Whole steps up to the end, and not less for rounding.
-                    (until / count).next_up()
+                    (Interval::point(until) / Interval::point(count)).upper()
                 } else {
                     settings.step
                 };
@@ -122,6 +122,36 @@ impl<'a> FlowPipe<'a> {
         match self {
             FlowPipe::Affine { taken, length, .. } => *length * *taken as f64 >= duration,
             FlowPipe::Formulas { integration, .. } => integration.time() >= duration,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reach::affine::AffineFlow;
+    use crate::reach::exact::{fraction, points};
+    use crate::reach::vector::IntervalMatrix;
+    use crate::reach::zonotope::Zonotope;
+
+    /// Whatever the duration, the steps cover it, and each says when it may be at least.
+    #[test]
+    fn steps_cover_the_duration() {
+        let still = AffineFlow::new(IntervalMatrix::zero(1, 1), Zonotope::from_box(&points(&[0.0])));
+        let (still, start) = (Dynamics::Affine(still), StateSet::from_box(points(&[1.0])));
+        let template = Arc::new(Template::boxes(1));
+        for number in 1..200 {
+            let until = f64::from(number) / 7.0;
+            let settings = Settings { step: 0.3, ..Settings::default() };
+            let names = ["x".to_owned()];
+            let mut pipe = FlowPipe::new(&still, &names, &start, &template, &settings, until, None);
+            let FlowPipe::Affine { length, count, .. } = pipe else { panic!("it is affine") };
+            assert!(fraction(length) * fraction(count as f64) >= fraction(until), "{until}");
+            let stretches = pipe.advance().expect("it is enclosed");
+            for (step, stretch) in stretches.iter().enumerate() {
+                assert!(fraction(stretch.from) <= fraction(length) * fraction(step as f64));
+                assert!(fraction(stretch.to) >= fraction(length) * fraction(step as f64 + 1.0));
+            }
         }
     }
 }

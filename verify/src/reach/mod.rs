@@ -15,6 +15,8 @@
 pub mod affine;
 pub mod confirm;
 pub mod containment;
+#[cfg(test)]
+mod exact;
 pub mod explore;
 pub mod exponential;
 pub mod falsify;
@@ -23,6 +25,7 @@ pub mod model;
 pub mod polytope;
 pub mod question;
 pub mod region;
+pub mod rounding;
 pub mod search;
 mod series;
 pub mod set;
@@ -48,5 +51,6 @@ pub use search::{Effort, Run, runs};
 pub use set::StateSet;
 pub use settings::{Directions, InvalidSetting, Settings};
 pub use temporal::{RobustnessProof, TemporalAnswer, Violation, prove_formula, verify_formula};
-pub use vector::{IntervalMatrix, dot, dot_numbers, sum_up};
+pub use rounding::sum_up;
+pub use vector::{IntervalMatrix, dot, dot_numbers};
 pub use zonotope::Zonotope;

@@ -336,3 +336,60 @@ pub fn over_box(direction: &[f64], sides: &[Interval]) -> f64 {
         _ => dot_numbers(sides, direction).upper(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::reach::exact::{fraction, points};
+
+    /// Whole numbers up to a million, over 1024: sums of products of three of them are exact.
+    fn short() -> impl Strategy<Value = f64> {
+        (-1_000_000i32..1_000_000).prop_map(|number| f64::from(number) / 1024.0)
+    }
+
+    proptest! {
+        /// At a vertex nothing is to spare: multipliers are off by rounding, and what they leave of the
+        /// direction has to count.
+        #[test]
+        fn bounds_hold_at_vertices(
+            normals in proptest::collection::vec(proptest::collection::vec(short(), 3), 3),
+            vertex in proptest::collection::vec(short(), 3),
+            weights in proptest::collection::vec(0.1..1.0f64, 3),
+        ) {
+            let along = |direction: &[f64]| direction.iter().zip(&vertex).map(|(d, x)| d * x).sum::<f64>();
+            let mut template = Template::boxes(3);
+            let tight: Vec<Option<usize>> = normals.iter().map(|n| template.add(n.clone())).collect();
+            let bounds = template.directions().iter().enumerate().map(|(place, direction)| {
+                along(direction) + if tight.contains(&Some(place)) { 0.0 } else { 1e6 }
+            });
+            let polytope = Polytope::new(template.clone().into(), bounds.collect());
+            let combined: Vec<f64> = (0..3)
+                .map(|axis| normals.iter().zip(&weights).map(|(n, weight)| weight * n[axis]).sum())
+                .collect();
+            let exact = |direction: &[f64]| {
+                let terms = direction.iter().zip(&vertex).map(|(d, x)| fraction(*d) * fraction(*x));
+                terms.reduce(|sum, term| sum + term).unwrap()
+            };
+            let Bound::AtMost(bound) = polytope.support(&points(&combined)) else {
+                return Err(TestCaseError::fail("it has a vertex"));
+            };
+            prop_assert!(fraction(bound) >= exact(&combined));
+            prop_assert!(fraction(over_box(&combined, &points(&vertex))) >= exact(&combined));
+        }
+    }
+
+    /// Multipliers that are wrong make a bound worse, and never false.
+    #[test]
+    fn wrong_multipliers_prove_less() {
+        let sides = [(0.1, 0.3), (-0.7, 0.9)].map(|(l, u)| Interval::new(l, u).expect("in order"));
+        let square = Polytope::around(Template::boxes(2), &sides);
+        let direction = points(&[1.1, 0.7]);
+        let exact = fraction(1.1) * fraction(0.3) + fraction(0.7) * fraction(0.9);
+        for multipliers in [vec![], vec![(0, 1.1)], vec![(0, 2.0), (2, 0.7)], vec![(1, 0.3)]] {
+            let bound = square.certified(&direction, &multipliers, &sides);
+            assert!(fraction(bound) >= exact, "{multipliers:?}: {bound}");
+        }
+    }
+}

@@ -4,7 +4,7 @@ use pleach_guards::{Comparison, Expression, Interval, Predicate, Ranges, Relatio
 use thiserror::Error;
 
 use super::polytope::{Polytope, Template, over_box};
-use super::vector::{around_zero, magnitude, radius, sum_up};
+use super::vector::{around_zero, dot, radius};
 
 /// How many alternatives the disjunctive form of a predicate may have.
 const ALTERNATIVES: usize = 256;
@@ -14,8 +14,8 @@ const ALTERNATIVES: usize = 256;
 pub struct HalfSpace {
     /// d.
     pub direction: Vec<f64>,
-    /// How far the entries of d can be from those given.
-    spread: Vec<f64>,
+    /// What has to be added to the entries given, to make them those of d.
+    spread: Vec<Interval>,
     /// b.
     bound: Interval,
     /// Whether the boundary is left out.
@@ -192,7 +192,7 @@ impl HalfSpace {
         let is_finite = |entry: &Interval| entry.lower().is_finite() && entry.upper().is_finite();
         (entries.iter().all(is_finite) && is_finite(&bound)).then(|| HalfSpace {
             direction: entries.iter().map(Interval::midpoint).collect(),
-            spread: entries.iter().map(|entry| radius(*entry)).collect(),
+            spread: entries.iter().map(|entry| around_zero(radius(*entry))).collect(),
             bound,
             is_open: comparison.relation.is_strict(),
         })
@@ -200,12 +200,7 @@ impl HalfSpace {
 
     /// What d · x is at most, for the states of a box that are in it.
     pub fn bound_over(&self, sides: &[Interval]) -> f64 {
-        if self.spread.iter().all(|spread| *spread == 0.0) {
-            return self.bound.upper();
-        }
-        let spread = self.spread.iter().zip(sides).filter(|(spread, _)| **spread > 0.0);
-        let spread = spread.map(|(spread, side)| (spread * magnitude(*side)).next_up());
-        (self.bound.upper() + sum_up(spread)).next_up()
+        (self.bound + dot(&self.spread, sides)).upper()
     }
 
     /// d · x ≤ b is the opposite of d · x > b: the half-space with the other side, closed.
@@ -226,9 +221,7 @@ impl HalfSpace {
         };
         let opposite: Vec<f64> = self.direction.iter().map(|entry| -entry).collect();
         let along = Interval::new(-most(&opposite), most(&self.direction));
-        let spread = self.spread.iter().zip(sides).filter(|(spread, _)| **spread > 0.0);
-        let spread = spread.map(|(spread, side)| (spread * magnitude(*side)).next_up());
-        self.bound - along.unwrap_or(Interval::WHOLE) + around_zero(sum_up(spread))
+        self.bound - along.unwrap_or(Interval::WHOLE) + dot(&self.spread, sides)
     }
 
     /// Adds its direction and the opposite one to a template.
@@ -283,5 +276,49 @@ fn margin(comparison: &Comparison) -> Expression {
     match comparison.relation {
         Relation::AtMost | Relation::LessThan => &comparison.right - &comparison.left,
         Relation::AtLeast | Relation::MoreThan => &comparison.left - &comparison.right,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_rational::BigRational;
+
+    use super::*;
+    use crate::reach::exact::{FAINT, fraction, points};
+
+    fn half_space(text: &str) -> HalfSpace {
+        let predicate: Predicate = text.parse().expect("a predicate");
+        let Predicate::Comparison(comparison) = predicate else { panic!("it is one comparison") };
+        HalfSpace::of(&comparison, &["x".to_owned()]).expect("it is affine")
+    }
+
+    /// The points where a · x is at most 1, a being the product of two numbers and no number: they lie
+    /// within the bound on d · x, whether d is above a or below.
+    #[test]
+    fn coefficients_that_are_no_numbers_are_covered() {
+        for (one, other) in [(0.1, 3.0), (0.7, 3.0), (1.1, 1.1), (0.3, 0.7), (0.9, 1.3)] {
+            let half_space = half_space(&format!("{one} * ({other} * x) <= 1"));
+            let gain = fraction(one) * fraction(other);
+            let farthest = gain.recip();
+            let along = fraction(half_space.direction[0]) * &farthest;
+            let sides = [Interval::new(0.0, 20.0).expect("in order")];
+            assert!(fraction(half_space.bound_over(&sides)) >= along, "{one} · {other}");
+            // 1 − a x at x = 3, of which d · 3 is not all.
+            let set = Polytope::around(Template::boxes(1), &points(&[3.0]));
+            let exact = BigRational::from_integer(1.into()) - gain * fraction(3.0);
+            let found = half_space.distance(&set, &points(&[3.0]));
+            assert!(crate::reach::exact::holds(found, &exact), "{one} · {other}: {found}");
+        }
+    }
+
+    /// From 1 to 2⁻⁶⁰ it is less than 1.
+    #[test]
+    fn clearances_are_rounded_down() {
+        let region: Predicate = format!("x <= {FAINT}").parse().expect("a predicate");
+        let variables = ["x".to_owned()];
+        let region = Region::of(&region, &variables).expect("it is affine");
+        let set = Polytope::around(Template::boxes(1), &points(&[1.0]));
+        let clearance = region.alternatives[0].clearance(&set, &variables);
+        assert!(fraction(clearance) <= fraction(1.0) - fraction(FAINT));
     }
 }

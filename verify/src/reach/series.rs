@@ -155,3 +155,62 @@ impl Function {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use num_rational::BigRational;
+    use pleach_guards::Expression;
+
+    use super::*;
+    use crate::reach::exact::{fraction, holds};
+
+    /// The coefficients of x and y, from 1 and 0, for the rates 1 and `rate`.
+    fn coefficients(rate: &str, order: usize) -> Vec<Interval> {
+        let names = ["x", "y"].map(str::to_owned);
+        let rates = ["1", rate].map(|rate| rate.parse::<Expression>().expect("a formula"));
+        let program = SeriesProgram::compile(&rates, &names).expect("it is smooth");
+        let start = [1.0, 0.0].map(Interval::point);
+        program.solve(&start, order, ()).expect("it has values")[1].clone()
+    }
+
+    /// Thirds, sevenths and elevenths are no numbers.
+    #[test]
+    fn coefficients_hold_the_exact_fractions() {
+        // Of ln(1 + t), integrated: (−1)ⁿ ÷ (n (n − 1)).
+        for (n, found) in coefficients("ln(x)", 12).iter().enumerate().skip(2) {
+            let sign = if n % 2 == 0 { 1 } else { -1 };
+            let exact = BigRational::new(sign.into(), (n * (n - 1)).into());
+            assert!(holds(*found, &exact), "{n}: {found}");
+        }
+        // Of 1 ÷ (1 + t), integrated: (−1)ⁿ⁻¹ ÷ n.
+        for (n, found) in coefficients("1 / x", 12).iter().enumerate().skip(1) {
+            let sign = if n % 2 == 0 { -1 } else { 1 };
+            assert!(holds(*found, &BigRational::new(sign.into(), n.into())), "{n}: {found}");
+        }
+        // Of 0.1 · x, integrated: the number 0.1 is not the fraction.
+        let found = coefficients("0.1 * (x * x * x)", 4);
+        assert!(holds(found[3], &fraction(0.1)), "{}", found[3]);
+    }
+
+    /// Derivatives by factorials, at 3, where reciprocals are no numbers.
+    #[test]
+    fn coefficients_of_functions_hold_the_exact_fractions() {
+        let three = BigRational::from_integer(3.into());
+        let mut power = three.clone();
+        for order in 0..6 {
+            let found = Function::Reciprocal.coefficient(order, Interval::point(3.0));
+            let exact = if order % 2 == 0 { power.recip() } else { -power.recip() };
+            assert!(holds(found.expect("it is not 0"), &exact), "{order}");
+            power *= &three;
+        }
+        let exponential = Function::Exponential.coefficient(3, Interval::point(0.0));
+        let exponential = exponential.expect("it has values");
+        assert!(holds(exponential, &BigRational::new(1.into(), 6.into())));
+        // The coefficient of order 2 of x^0.5 at 1 is −1/8, and of order 3 of x^2.5 that of 5·3·1 ÷ 48.
+        for (exponent, order, numerator, denominator) in [(0.5, 2, -1, 8), (2.5, 3, 15, 48)] {
+            let found = Function::Power(exponent).coefficient(order, Interval::point(1.0));
+            let exact = BigRational::new(numerator.into(), denominator.into());
+            assert!(holds(found.expect("1 is positive"), &exact));
+        }
+    }
+}

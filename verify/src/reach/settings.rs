@@ -1,6 +1,9 @@
 //! How an enclosure is computed.
 
+use pleach_guards::Interval;
 use thiserror::Error;
+
+use super::rounding::plus_up;
 
 /// The directions in which sets are bounded, beside those of guards, invariants and questions.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -74,6 +77,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// How long runs can go on that have lasted for `elapsed`, at least.
+    pub(super) fn time_left(&self, elapsed: Interval) -> f64 {
+        plus_up(self.horizon, -elapsed.lower())
+    }
+
     /// Says which setting makes no sense, if one does.
     pub(super) fn check(&self, dimension: usize) -> Result<(), InvalidSetting> {
         let wrong =
@@ -106,5 +114,23 @@ impl Settings {
             );
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reach::exact::fraction;
+
+    #[test]
+    fn the_time_left_is_rounded_up() {
+        for tenths in 1..40 {
+            let (horizon, elapsed) = (f64::from(tenths) * 0.3, f64::from(tenths) * 0.1);
+            let settings = Settings { horizon, ..Settings::default() };
+            let left = settings.time_left(Interval::point(elapsed));
+            assert!(fraction(left) >= fraction(horizon) - fraction(elapsed), "{tenths}");
+        }
+        let endless = Settings { horizon: f64::INFINITY, ..Settings::default() };
+        assert_eq!(endless.time_left(Interval::point(3.0)), f64::INFINITY);
     }
 }

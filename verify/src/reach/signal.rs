@@ -152,6 +152,22 @@ mod tests {
         (0..grid.len()).map(value).collect()
     }
 
+    /// An instant and the begin or end of a window add up to what is no number.
+    #[test]
+    fn windows_are_rounded_to_the_safe_side() {
+        // 0.1 + 0.2 is rounded up, and 0.1 + 0.7 down.
+        let (above, below) = (0.1 + 0.2, 0.1 + 0.7);
+        let grid = Grid::new(vec![0.1, above, below, 2.0]);
+        let [start, at_above, at_below] = [0.1, above, below].map(|t| grid.at(t));
+        let window = |start, end| within(start, end).unwrap();
+        // It begins before the number that the sum is rounded to, and ends after it.
+        assert_eq!(grid.reached(start, window(0.2, 1.0)).0, at_above - 1);
+        assert_eq!(grid.reached(start, window(0.1, 0.7)).1, at_below + 1);
+        // From no instant of the cell it surely has what is not in it from one.
+        assert_eq!(grid.certain(start, window(0.7, 1.0)).unwrap().0, at_below + 1);
+        assert_eq!(grid.certain(start, window(0.0, 0.2)).unwrap().1, at_above - 1);
+    }
+
     /// What is −1 up to 1 s and rises to 1 by 2 s: the goal is reached from 2 s on.
     #[test]
     fn windows_take_the_least_and_the_most() {

@@ -108,7 +108,8 @@ impl Integration {
 
     /// The next step, at most up to `until`; `None` where there is no enclosure.
     pub fn step(&mut self, template: &Arc<Template>, until: f64) -> Option<Stretch> {
-        let most = (until - self.time.lower()).next_up();
+        // A little beyond the end is no harm, and the clock has to go on.
+        let most = (until - self.time.lower()).max(2.0 * f64::EPSILON * self.time.lower());
         let step = self.enclosed(most)?;
         let directions = template.directions();
         let during = directions.iter().map(|direction| step.bound_along(direction));
@@ -324,5 +325,73 @@ impl Step {
             group[0].0.range() * over_time.fold(Interval::point(0.0), |sum, term| sum + term)
         });
         ranges.fold(rest, |sum, term| sum + term).upper()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reach::exact::{fraction, points};
+
+    fn integration(rate: &str, start: f64, settings: &Settings) -> Integration {
+        let rates = [rate.parse::<Expression>().expect("a formula")];
+        let start = StateSet::from_box(points(&[start]));
+        Integration::new(&rates, &["x".to_owned()], &start, settings)
+    }
+
+    fn template() -> Arc<Template> {
+        Arc::new(Template::boxes(1))
+    }
+
+    /// From x = 1, of ẋ = x²: 1 ÷ (1 − t), which the first terms of its series are far below.
+    #[test]
+    fn the_last_term_of_the_series_counts() {
+        let settings = Settings { order: 2, tolerance: 1.0, step: 0.1, ..Settings::default() };
+        let mut growing = integration("x * x", 1.0, &settings);
+        growing.next_step = 0.1;
+        let bounds = growing.step(&template(), 0.1).expect("it is enclosed");
+        let end = 1.0 / (1.0 - 0.1);
+        assert!(bounds.after[0] >= end && -bounds.after[1] <= end, "{:?}", bounds.after);
+        assert!(bounds.during[0] >= end && -bounds.during[1] <= 1.0, "{:?}", bounds.during);
+    }
+
+    /// Squares of the symbol are beyond degree 1: from [0.9, 1.1] the largest solution is above what the
+    /// polynomials say.
+    #[test]
+    fn remainders_count_during_a_step() {
+        let settings = Settings { degree: 1, tolerance: 1.0, step: 0.1, ..Settings::default() };
+        let rates = ["x * x".parse::<Expression>().expect("a formula")];
+        let start = StateSet::from_box(vec![Interval::new(0.9, 1.1).expect("in order")]);
+        let mut growing = Integration::new(&rates, &["x".to_owned()], &start, &settings);
+        growing.next_step = 0.1;
+        let bounds = growing.step(&template(), 0.1).expect("it is enclosed");
+        let end = 1.1 / (1.0 - 0.11);
+        assert!(bounds.during[0] >= end && bounds.after[0] >= end, "{bounds:?}", bounds = bounds.during);
+    }
+
+    /// Three steps of the number 0.1 are less than what the sum of these numbers is rounded to.
+    #[test]
+    fn the_clock_is_rounded_outward() {
+        let settings = Settings { step: 0.1, tolerance: 1.0, ..Settings::default() };
+        let mut resting = integration("0 * x", 1.0, &settings);
+        resting.next_step = 0.1;
+        for number in 1..=20 {
+            let stretch = resting.step(&template(), 9.0).expect("it is enclosed");
+            let end = fraction(0.1) * fraction(f64::from(number));
+            assert!(fraction(stretch.to) >= end, "{number}");
+            assert!(fraction(stretch.from) <= end - fraction(0.1), "{number}");
+        }
+    }
+
+    /// The time that is left is covered, though it is no number.
+    #[test]
+    fn the_end_is_reached() {
+        for until in [0.3, 1.0, 2.7, 1e3 + 0.1] {
+            let settings = Settings { step: 0.1 * until, tolerance: 1.0, ..Settings::default() };
+            let mut resting = integration("0 * x", 1.0, &settings);
+            while resting.time() < until {
+                resting.step(&template(), until).expect("it is enclosed");
+            }
+        }
     }
 }

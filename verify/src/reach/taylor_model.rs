@@ -8,7 +8,8 @@
 
 use pleach_guards::Interval;
 
-use super::vector::{around_zero, magnitude, sum_up};
+use super::rounding::{UNDERFLOW, UNIT_ROUNDOFF, enclosed_sum, sum_up};
+use super::vector::{around_zero, magnitude, radius};
 
 /// Which terms are kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,6 +89,14 @@ impl Monomial {
     }
 }
 
+/// At least what products add up to that are not kept, and what rounding may have changed of the `count`
+/// that are: all magnitudes add up to `all` at most, those kept were computed to add up to `kept`.
+fn left_over(all: Interval, kept: f64, count: usize) -> f64 {
+    // γₙ of the sum of magnitudes, as much of the coefficients, and 4 u for what is of second order.
+    let least_kept = kept * (1.0 - (2.0 * count as f64 + 4.0) * UNIT_ROUNDOFF);
+    (all - Interval::point(least_kept)).upper().max(0.0)
+}
+
 /// Every sum of the polynomial and a number of the remainder.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TaylorModel {
@@ -155,9 +164,7 @@ impl TaylorModel {
                 upper += spread;
             }
         }
-        let error = (size * (self.terms.len() as f64 + 2.0) * f64::EPSILON).next_up();
-        Interval::new((lower - error).next_down(), (upper + error).next_up())
-            .unwrap_or(Interval::WHOLE)
+        enclosed_sum(lower, upper, size, self.terms.len())
     }
 
     /// Moves the terms that `leaves` says into the remainder.
@@ -201,11 +208,11 @@ impl TaylorModel {
         sum_up(self.terms.iter().map(|(_, coefficient)| coefficient.abs()))
     }
 
-    /// Adds to the remainder what rounding each coefficient once or twice may have changed.
+    /// Adds to the remainder what rounding each coefficient once may have changed.
     fn rounded(mut self) -> Self {
-        let tiny = (self.terms.len() + 1) as f64 * f64::MIN_POSITIVE;
-        let error = (self.norm() * f64::EPSILON + tiny).next_up();
-        self.rest = self.rest + around_zero(error);
+        let error = self.norm() * UNIT_ROUNDOFF;
+        let underflow = (self.terms.len() + 1) as f64 * UNDERFLOW;
+        self.rest = self.rest + around_zero(error) + around_zero(underflow);
         self
     }
 
@@ -253,8 +260,9 @@ impl TaylorModel {
 
     /// The product with a number of `factor`.
     pub fn scaled(&self, factor: Interval) -> Self {
-        let (middle, spread) = (factor.midpoint(), super::vector::radius(factor));
-        let rest = self.rest * factor + around_zero((self.norm() * spread).next_up());
+        let middle = factor.midpoint();
+        let spread = Interval::point(self.norm()) * around_zero(radius(factor));
+        let rest = self.rest * factor + spread;
         let terms = self.terms.iter().map(|(monomial, a)| (*monomial, a * middle));
         TaylorModel { terms: terms.collect(), rest, limits: self.limits }.rounded()
     }
@@ -279,36 +287,27 @@ impl TaylorModel {
         ranked.sort_by(|(_, one), (_, another)| another.abs().total_cmp(&one.abs()));
         for (left, a) in &self.terms {
             let room = degree.saturating_sub(left.counted(self.limits));
-            let large = ranked.iter().take_while(|(_, b)| (a * b).abs() >= least);
+            let large = ranked.iter().take_while(|(_, b)| (a * b).abs() >= least.max(UNDERFLOW));
             for (right, b) in large.filter(|(right, _)| right.counted(self.limits) <= room) {
                 let product = a * b;
                 kept += product.abs();
                 products.push((left.times(*right), product));
             }
         }
-        // What is not kept, by the difference of the sums of magnitudes: an upper bound less a lower.
         let all = Interval::point(self.norm()) * Interval::point(other.norm());
-        let least_kept = kept * (1.0 - (products.len() as f64 + 4.0) * f64::EPSILON);
-        let left_over = (all - Interval::point(least_kept)).upper().max(0.0);
-        let dropped = around_zero(left_over);
+        let left_over = around_zero(left_over(all, kept, products.len()));
         products.sort_unstable_by_key(|(monomial, _)| *monomial);
-        let (mut longest, mut length) = (1.0f64, 1.0);
         products.dedup_by(|next, sum| {
             let is_same = next.0 == sum.0;
-            length = if is_same { length + 1.0 } else { 1.0 };
-            longest = longest.max(length);
             if is_same {
                 sum.1 += next.1;
             }
             is_same
         });
-        // Each coefficient is a sum of at most `longest` rounded products.
-        let rounding = around_zero((kept * (longest + 2.0) * f64::EPSILON).next_up());
         let rest = self.polynomial_range() * other.rest
             + other.polynomial_range() * self.rest
             + self.rest * other.rest;
-        let rest = rest + dropped + rounding;
-        TaylorModel { terms: products, rest, limits: self.limits }
+        TaylorModel { terms: products, rest: rest + left_over, limits: self.limits }
     }
 
     /// f(self) = Σ cₖ (self − m)ᵏ + r (self − m)ⁿ, where m is the constant term, for a function with
@@ -326,5 +325,170 @@ impl TaylorModel {
             value = value.times(&varying).plus(&TaylorModel::constant(constant, self.limits));
         }
         Some(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_rational::BigRational;
+    use num_traits::{One, Zero};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::reach::exact::{FAINT, fraction, holds};
+    use crate::reach::series::{Coefficient, Function};
+
+    const SYMBOLS: usize = 3;
+
+    fn limits(degree: usize, least: f64) -> Limits {
+        Limits { degree, first_error: SYMBOLS, least }
+    }
+
+    /// The polynomial where the symbols have these values.
+    fn polynomial(model: &TaylorModel, at: &[f64]) -> BigRational {
+        let value = |(monomial, coefficient): &(Monomial, f64)| {
+            let factors = monomial.symbols().map(|symbol| fraction(at[usize::from(symbol)]));
+            factors.fold(fraction(*coefficient), |product, factor| product * factor)
+        };
+        model.terms.iter().map(value).fold(BigRational::zero(), |sum, term| sum + term)
+    }
+
+    /// Whether the model has this value where the symbols have these.
+    fn has(model: &TaylorModel, at: &[f64], value: &BigRational) -> bool {
+        holds(model.rest, &(value - polynomial(model, at))) && holds(model.range(), value)
+    }
+
+    /// Numbers of different sizes, none of which has few digits.
+    fn number() -> impl Strategy<Value = f64> {
+        (any::<i32>(), -40i32..-20).prop_map(|(digits, power)| f64::from(digits) * 2f64.powi(power) / 3.0)
+    }
+
+    /// A polynomial of degree 2 in three symbols, without a remainder.
+    fn model() -> impl Strategy<Value = Vec<f64>> {
+        proptest::collection::vec(number(), 7)
+    }
+
+    fn built(numbers: &[f64], limits: Limits) -> TaylorModel {
+        let slopes = (0u8..).zip(&numbers[1..4]).map(|(symbol, slope)| (symbol, *slope));
+        let mut model = TaylorModel::affine(numbers[0], slopes, limits);
+        let squares = [(0, 0), (0, 1), (1, 2)].map(|(one, other)| Monomial::symbol(one).times(Monomial::symbol(other)));
+        model.terms.extend(squares.into_iter().zip(numbers[4..].iter().copied()));
+        model.terms.retain(|(_, coefficient)| *coefficient != 0.0);
+        model.terms.sort_by_key(|(monomial, _)| *monomial);
+        model
+    }
+
+    /// Values of symbols: ends and points between them.
+    fn places() -> impl Strategy<Value = Vec<f64>> {
+        let corner = prop_oneof![Just(-1.0), Just(1.0), Just(0.5), Just(0.0), Just(-0.75)];
+        proptest::collection::vec(corner, SYMBOLS)
+    }
+
+    proptest! {
+        #[test]
+        fn operations_hold_the_exact_results(
+            left in model(), right in model(), factor in number(), width in 0.0..1.0f64, at in places(),
+        ) {
+            let limits = limits(3, 0.0);
+            let (one, other) = (built(&left, limits), built(&right, limits));
+            let (p, q) = (polynomial(&one, &at), polynomial(&other, &at));
+            prop_assert!(has(&one, &at, &p));
+            prop_assert!(has(&one.plus(&other), &at, &(p.clone() + &q)));
+            prop_assert!(has(&one.minus(&other), &at, &(p.clone() - &q)));
+            prop_assert!(has(&one.times(&other), &at, &(p.clone() * &q)));
+            let wide = Interval::new(factor, factor + width).unwrap();
+            for end in [wide.lower(), wide.upper()] {
+                prop_assert!(has(&one.scaled(wide), &at, &(p.clone() * fraction(end))));
+                prop_assert!(has(&TaylorModel::constant(wide, limits), &at, &fraction(end)));
+            }
+        }
+
+        /// Remainders of the operands, each at an end.
+        #[test]
+        fn operations_hold_the_remainders(
+            left in model(), right in model(), ends in (number(), number()), at in places(), factor in number(),
+        ) {
+            let limits = limits(2, 1e-3);
+            let (mut one, mut other) = (built(&left, limits), built(&right, limits));
+            (one.rest, other.rest) = (around_zero(ends.0), around_zero(ends.1));
+            let p = polynomial(&one, &at) + fraction(ends.0);
+            let q = polynomial(&other, &at) + fraction(ends.1);
+            prop_assert!(has(&one.plus(&other), &at, &(p.clone() + &q)));
+            prop_assert!(has(&one.minus(&other), &at, &(p.clone() - &q)));
+            prop_assert!(has(&one.times(&other), &at, &(p.clone() * &q)));
+            let factor = Interval::point(factor);
+            prop_assert!(has(&one.scaled(factor), &at, &(p * fraction(factor.lower()))));
+        }
+
+        /// 1 ÷ p, which is a fraction: for polynomials that stay away from 0.
+        #[test]
+        fn reciprocals_hold_the_exact_ones(slopes in model(), at in places()) {
+            let limits = limits(2, 0.0);
+            let share = 0.5 / slopes[1..].iter().map(|slope| slope.abs()).sum::<f64>().max(1e-9);
+            let numbers: Vec<f64> = slopes.iter().map(|slope| slope * share).collect();
+            let model = built(&[&[1.0], &numbers[1..]].concat(), limits);
+            let exact = BigRational::one() / polynomial(&model, &at);
+            let found = model.function(Function::Reciprocal).expect("it is not 0");
+            prop_assert!(has(&found, &at, &exact));
+        }
+
+        /// A remainder that becomes a symbol is between −1 and 1 times its coefficient.
+        #[test]
+        fn named_remainders_are_covered(numbers in model(), lower in number(), width in 0.0..1.0f64, at in places()) {
+            let mut named = built(&numbers, limits(2, 0.0));
+            let exact = polynomial(&named, &at);
+            named.rest = Interval::new(lower, lower + width).unwrap();
+            let ends = [named.rest.lower(), named.rest.upper()].map(fraction);
+            prop_assert!(named.name_rest(SYMBOLS as u8));
+            let [low, high] = [-1.0, 1.0].map(|end| polynomial(&named, &[&at[..], &[end]].concat()));
+            prop_assert!(low <= exact.clone() + &ends[0] && exact + &ends[1] <= high);
+        }
+    }
+
+    #[test]
+    fn given_up_terms_are_in_the_remainder() {
+        let mut model = built(&[1.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6], limits(2, 0.0));
+        let places = [[1.0, -1.0, 1.0], [-1.0, 1.0, 1.0], [0.0, 0.0, 0.0], [1.0, 1.0, 1.0]];
+        let exact = places.map(|at| polynomial(&model, &at));
+        model.give_up(|monomial, _| monomial.degree() == 2);
+        assert_eq!(model.terms.len(), 4);
+        for (at, exact) in places.iter().zip(exact) {
+            assert!(has(&model, at, &exact));
+        }
+    }
+
+    /// A coefficient that is too small for its digits.
+    #[test]
+    fn underflow_counts() {
+        let limits = limits(2, 0.0);
+        let small = TaylorModel::affine(0.0, [(0, 5e-324)], limits);
+        let half = small.scaled(Interval::point(0.5));
+        let exact = fraction(5e-324) * fraction(0.5);
+        assert!(has(&half, &[1.0, 0.0, 0.0], &exact));
+        let square = small.times(&small);
+        assert!(has(&square, &[1.0, 0.0, 0.0], &(fraction(5e-324) * fraction(5e-324))));
+        // Three products that are each rounded up, to the smallest number.
+        let factor = 0.8 * 2f64.powi(-537);
+        let sum = TaylorModel::affine(0.0, [0, 1, 2].map(|symbol| (symbol, factor)), limits);
+        let product = sum.times(&TaylorModel::affine(factor, [], limits));
+        let exact = fraction(factor) * fraction(factor) * fraction(3.0);
+        assert!(has(&product, &[1.0, 1.0, 1.0], &exact));
+    }
+
+    /// Four products that add up to 1 may be off by 4 units of roundoff, and so may each coefficient.
+    #[test]
+    fn what_is_left_over_counts_rounding() {
+        let left_over = left_over(Interval::point(1.0), 1.0, 4);
+        assert!((8.0 * UNIT_ROUNDOFF..20.0 * UNIT_ROUNDOFF).contains(&left_over), "{left_over}");
+    }
+
+    /// The sum of 1 and 2⁻⁶⁰ is no number, and the remainder has what is missing.
+    #[test]
+    fn sums_of_coefficients_are_rounded_outward() {
+        let limits = limits(2, 0.0);
+        let [one, faint] = [1.0, FAINT].map(|slope| TaylorModel::affine(0.0, [(0, slope)], limits));
+        let sum = one.plus(&faint);
+        assert!(has(&sum, &[1.0, 0.0, 0.0], &(fraction(1.0) + fraction(FAINT))));
+        assert!(has(&sum, &[-1.0, 0.0, 0.0], &-(fraction(1.0) + fraction(FAINT))));
     }
 }

@@ -1,16 +1,10 @@
 //! Vectors and matrices of intervals.
-//!
-//! Sums of products are added in ordinary floating-point numbers, and what rounding can have done
-//! is bounded afterwards: of n products it is at most γₙ₊₂ times the sum of their magnitudes
-//! (Higham 2002, *Accuracy and Stability of Numerical Algorithms*, section 3.1). That is several
-//! times faster than rounding each operation outward, and hardly wider.
 
 use std::ops::{Index, IndexMut};
 
 use pleach_guards::Interval;
 
-/// Half the distance from 1 to the next number.
-const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+use super::rounding::{enclosed_sum, sum_up};
 
 /// From −`radius` to `radius`.
 pub fn around_zero(radius: f64) -> Interval {
@@ -25,30 +19,18 @@ pub fn magnitude(interval: Interval) -> f64 {
 
 /// At least how far any number of `interval` is from its midpoint.
 pub fn radius(interval: Interval) -> f64 {
-    let middle = Interval::point(interval.midpoint());
-    (interval - middle).upper().max((middle - interval).upper())
+    magnitude(interval - Interval::point(interval.midpoint()))
 }
 
-/// At least the sum of numbers that are not negative.
-pub fn sum_up(terms: impl IntoIterator<Item = f64>) -> f64 {
-    let (mut sum, mut count) = (0.0, 2.0);
-    for term in terms {
-        sum += term;
-        count += 1.0;
-    }
-    inflated(sum, count)
-}
-
-/// At least what a sum of `count` terms that are not negative, computed as `sum`, is exactly.
-fn inflated(sum: f64, count: f64) -> f64 {
-    let bound = sum * (1.0 + 2.0 * count * UNIT_ROUNDOFF);
-    if bound.is_nan() { f64::INFINITY } else { bound.next_up() }
+/// Whether it is the number 0 alone.
+pub fn is_zero(interval: Interval) -> bool {
+    interval.lower() == 0.0 && interval.upper() == 0.0
 }
 
 /// Σ aᵢ bᵢ for vectors of intervals of one length.
 pub fn dot(left: &[Interval], right: &[Interval]) -> Interval {
-    let (mut lower, mut upper, mut size) = (0.0, 0.0, 0.0);
-    for (a, b) in left.iter().zip(right) {
+    let (mut lower, mut upper, mut size, mut count) = (0.0, 0.0, 0.0, 0);
+    for (a, b) in left.iter().zip(right).filter(|(a, b)| !is_zero(**a) && !is_zero(**b)) {
         let corners = [
             a.lower() * b.lower(),
             a.lower() * b.upper(),
@@ -60,31 +42,22 @@ pub fn dot(left: &[Interval], right: &[Interval]) -> Interval {
         lower += least;
         upper += most;
         size += least.abs().max(most.abs());
+        count += 1;
     }
-    rounded_outward(lower, upper, size, left.len())
+    enclosed_sum(lower, upper, size, count)
 }
 
 /// Σ aᵢ bᵢ for a vector of intervals and one of numbers.
 pub fn dot_numbers(left: &[Interval], right: &[f64]) -> Interval {
-    let (mut lower, mut upper, mut size) = (0.0, 0.0, 0.0);
-    for (a, &b) in left.iter().zip(right) {
+    let (mut lower, mut upper, mut size, mut count) = (0.0, 0.0, 0.0, 0);
+    for (a, &b) in left.iter().zip(right).filter(|(a, b)| !is_zero(**a) && **b != 0.0) {
         let (one, other) = (a.lower() * b, a.upper() * b);
         lower += one.min(other);
         upper += one.max(other);
         size += one.abs().max(other.abs());
+        count += 1;
     }
-    rounded_outward(lower, upper, size, left.len())
-}
-
-/// Sums of `count` products, computed as these, with magnitudes that add up to `size`.
-fn rounded_outward(lower: f64, upper: f64, size: f64, count: usize) -> Interval {
-    if size == 0.0 && count == 0 {
-        return Interval::point(0.0);
-    }
-    let count = count as f64;
-    // The second term is for products too small to be numbers.
-    let error = inflated(size, count) * (count + 3.0) * UNIT_ROUNDOFF + count * f64::MIN_POSITIVE;
-    Interval::new((lower - error).next_down(), (upper + error).next_up()).unwrap_or(Interval::WHOLE)
+    enclosed_sum(lower, upper, size, count)
 }
 
 /// A matrix of intervals: every matrix with entries in them.

@@ -2,7 +2,8 @@
 
 use pleach_guards::Interval;
 
-use super::vector::{IntervalMatrix, dot_numbers, magnitude, radius, sum_up};
+use super::rounding::{plus_up, sum_up};
+use super::vector::{IntervalMatrix, around_zero, dot, dot_numbers, magnitude, radius};
 
 /// The points c + Σ ξᵢ gᵢ + s with ξᵢ from −1 to 1 and s in a box around 0.
 ///
@@ -31,15 +32,13 @@ impl Zonotope {
 
     /// All c + Σ ξᵢ gᵢ with c in `center` and gᵢ in `generators`.
     pub fn from_intervals(center: &[Interval], generators: &[Vec<Interval>]) -> Self {
-        let mut slack: Vec<f64> = center.iter().map(|entry| radius(*entry)).collect();
-        for generator in generators {
-            for (slack, entry) in slack.iter_mut().zip(generator) {
-                *slack = (*slack + radius(*entry)).next_up();
-            }
-        }
-        let middles = |entries: &[Interval]| entries.iter().map(Interval::midpoint).collect();
-        let generators = generators.iter().map(|generator| middles(generator)).collect();
-        Zonotope { center: middles(center), generators, slack }
+        let mut zonotope = Zonotope {
+            center: center.iter().map(Interval::midpoint).collect(),
+            generators: Vec::with_capacity(generators.len()),
+            slack: center.iter().map(|entry| radius(*entry)).collect(),
+        };
+        generators.iter().for_each(|generator| zonotope.push(generator));
+        zonotope
     }
 
     /// How many coordinates points have.
@@ -67,9 +66,8 @@ impl Zonotope {
         let center = dot_numbers(direction, &self.center).upper();
         let generators = self.generators.iter();
         let spread = generators.map(|generator| magnitude(dot_numbers(direction, generator)));
-        let boxed = direction.iter().zip(&self.slack);
-        let boxed = boxed.map(|(entry, slack)| (magnitude(*entry) * slack).next_up());
-        (center + sum_up(spread.chain(boxed))).next_up()
+        let slack: Vec<Interval> = self.slack.iter().map(|half| around_zero(*half)).collect();
+        plus_up(plus_up(center, sum_up(spread)), dot(direction, &slack).upper())
     }
 
     /// The smallest box around it.
@@ -77,7 +75,7 @@ impl Zonotope {
         let side = |axis: usize| {
             let spread = self.generators.iter().map(|generator| generator[axis].abs());
             let half = sum_up(spread.chain([self.slack[axis]]));
-            Interval::point(self.center[axis]) + super::vector::around_zero(half)
+            Interval::point(self.center[axis]) + around_zero(half)
         };
         (0..self.dimension()).map(side).collect()
     }
@@ -102,16 +100,15 @@ impl Zonotope {
 
     /// Adds a generator.
     pub fn push(&mut self, generator: &[Interval]) {
-        for (slack, entry) in self.slack.iter_mut().zip(generator) {
-            *slack = (*slack + radius(*entry)).next_up();
-        }
+        let radii: Vec<f64> = generator.iter().map(|entry| radius(*entry)).collect();
+        self.widen(&radii);
         self.generators.push(generator.iter().map(Interval::midpoint).collect());
     }
 
     /// Adds a box with these half widths.
     pub fn widen(&mut self, half_widths: &[f64]) {
         for (slack, half_width) in self.slack.iter_mut().zip(half_widths) {
-            *slack = (*slack + half_width).next_up();
+            *slack = plus_up(*slack, *half_width);
         }
     }
 
@@ -147,5 +144,96 @@ impl Zonotope {
             self.widen(&magnitudes);
         }
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reach::exact::{FAINT, fraction, holds, points};
+
+    fn over(lower: f64, upper: f64) -> Interval {
+        Interval::new(lower, upper).expect("in order")
+    }
+
+    /// Numbers that are seen together only: 1 and twice half a unit in its last place.
+    #[test]
+    fn hulls_are_rounded_outward() {
+        let half = f64::EPSILON / 2.0;
+        let generators = [1.0, half, half].map(|generator| points(&[generator]));
+        let side = Zonotope::from_intervals(&points(&[0.0]), &generators).hull()[0];
+        let exact = fraction(1.0) + fraction(2.0 * half);
+        assert!(holds(side, &exact) && holds(side, &-exact));
+        let side = Zonotope::from_intervals(&points(&[1.0]), &[points(&[FAINT])]).hull()[0];
+        assert!(holds(side, &(fraction(1.0) + fraction(FAINT))));
+        assert!(holds(side, &(fraction(1.0) - fraction(FAINT))));
+    }
+
+    /// Of one dimension: from where to where it reaches at least, in fractions.
+    fn reaches(zonotope: &Zonotope, lower: f64, upper: f64) -> bool {
+        let spread = zonotope.generators().iter().map(|generator| fraction(generator[0].abs()));
+        let half = spread.fold(fraction(zonotope.slack()[0]), |sum, term| sum + term);
+        let center = fraction(zonotope.center()[0]);
+        center.clone() - &half <= fraction(lower) && fraction(upper) <= center + half
+    }
+
+    #[test]
+    fn boxes_and_uncertain_centers_are_covered() {
+        for (lower, upper) in [(-FAINT, 1.0), (-1.0, FAINT), (0.1, 0.3)] {
+            assert!(reaches(&Zonotope::from_box(&[over(lower, upper)]), lower, upper));
+            assert!(reaches(&Zonotope::from_intervals(&[over(lower, upper)], &[]), lower, upper));
+        }
+    }
+
+    /// 1 and 2⁻⁶⁰ add up to what is no number.
+    #[test]
+    fn what_is_added_to_the_box_is_rounded_up() {
+        let mut zonotope = Zonotope::from_box(&points(&[0.0]));
+        zonotope.widen(&[1.0]);
+        zonotope.widen(&[FAINT]);
+        assert!(fraction(zonotope.slack()[0]) >= fraction(1.0) + fraction(FAINT));
+
+        let mut zonotope = Zonotope::from_box(&points(&[0.0]));
+        zonotope.push(&[over(1.0, 3.0)]);
+        assert_eq!((zonotope.generators()[0][0], zonotope.slack()[0]), (2.0, 1.0));
+    }
+
+    #[test]
+    fn sums_hold_the_sums_of_points() {
+        let one = Zonotope::from_intervals(&points(&[1.0]), &[points(&[0.5])]);
+        let other = Zonotope::from_intervals(&[over(FAINT, 3.0 * FAINT)], &[]);
+        let sum = one.plus(&other);
+        let half = fraction(0.5) + fraction(sum.slack()[0]);
+        let exact = fraction(1.5) + fraction(3.0 * FAINT);
+        assert!(fraction(sum.center()[0]) + &half >= exact);
+        assert!(fraction(sum.center()[0]) - half <= fraction(0.5) + fraction(FAINT));
+        // The boxes of both are in that of the sum.
+        let boxed = |half: f64| Zonotope::from_intervals(&[over(-half, half)], &[]);
+        assert!(reaches(&boxed(1.0).plus(&boxed(2.0)), -3.0, 3.0));
+    }
+
+    #[test]
+    fn images_hold_the_images_of_points() {
+        let mut matrix = IntervalMatrix::zero(1, 1);
+        matrix[(0, 0)] = Interval::point(0.1);
+        let mut zonotope = Zonotope::from_intervals(&points(&[0.7]), &[points(&[0.3])]);
+        zonotope.widen(&[1.1]);
+        let image = zonotope.mapped(&matrix, &points(&[0.9]));
+        let gain = fraction(0.1);
+        let center = gain.clone() * fraction(0.7) + fraction(0.9);
+        let spread = gain * (fraction(0.3) + fraction(1.1));
+        assert!(holds(image.hull()[0], &(center.clone() + &spread)));
+        assert!(holds(image.hull()[0], &(center - spread)));
+    }
+
+    /// The bound in a direction holds the center, every generator and the box.
+    #[test]
+    fn supports_hold_every_part() {
+        let mut zonotope = Zonotope::from_intervals(&points(&[0.7]), &[points(&[0.3])]);
+        zonotope.widen(&[1.1]);
+        let exact = fraction(0.1) * (fraction(0.7) + fraction(0.3) + fraction(1.1));
+        assert!(fraction(zonotope.support(&points(&[0.1]))) >= exact);
+        let reduced = zonotope.reduced(0);
+        assert!(fraction(reduced.support(&points(&[0.1]))) >= exact);
     }
 }

@@ -5,6 +5,7 @@ mod confirmed;
 mod exact;
 mod oracle;
 mod robot;
+mod rounding;
 mod runs;
 mod support;
 mod temporal;

@@ -10,6 +10,7 @@ use crate::reach::flow::Exit;
 use crate::reach::model::{Assignments, Dynamics, Jump};
 use crate::reach::polytope::{Bound, Polytope, over_box};
 use crate::reach::region::{Conjunction, Named};
+use crate::reach::rounding::plus_up;
 use crate::reach::set::StateSet;
 use crate::reach::vector::{IntervalMatrix, dot, radius};
 use crate::reach::zonotope::Zonotope;
@@ -173,7 +174,7 @@ impl Search<'_> {
         let bound = |direction: &Vec<f64>| {
             let direction: Vec<Interval> = direction.iter().map(|d| Interval::point(*d)).collect();
             let brought = start.support(&moved.apply(&direction));
-            (Interval::point(brought) + Interval::point(added.support(&direction))).upper()
+            plus_up(brought, added.support(&direction))
         };
         let bounds = template.directions().iter().map(bound).collect();
         Some(Polytope::new(template, bounds))
@@ -267,4 +268,23 @@ fn reached(
             .unwrap_or(Interval::WHOLE);
         Exit { until }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reach::exact::{fraction, holds, points};
+
+    /// A clock of rate 3 comes from 0.1 to 1 after an instant that is no number.
+    #[test]
+    fn the_instant_of_a_clock_is_covered() {
+        let matrix = IntervalMatrix::zero(1, 1);
+        for rate in [3.0, 0.7] {
+            let inputs = Zonotope::from_box(&points(&[rate]));
+            let start = StateSet::from_box(points(&[0.1]));
+            let exit = reached(&matrix, &inputs, &[1.0], 1.0, &start).expect("it rises");
+            let exact = (fraction(1.0) - fraction(0.1)) / fraction(rate);
+            assert!(holds(exit.until, &exact), "{}", exit.until);
+        }
+    }
 }
