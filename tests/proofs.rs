@@ -2,6 +2,8 @@
 
 #[path = "../examples/planted_faults/catalogue.rs"]
 pub mod catalogue;
+#[path = "../examples/planted_faults/rounding.rs"]
+pub mod rounding;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -201,6 +203,31 @@ fn the_document_names_every_fault_and_each_applies() {
         let filter = fault.command.rsplit([' ', ':']).next().unwrap();
         assert!(names_a_test(filter), "{}: no test is called {filter}", fault.name);
     }
+}
+
+/// Every place of the list is in the sources, and the document counts them.
+#[test]
+fn the_document_counts_the_places_of_rounding_and_each_applies() {
+    let places = rounding::places(root()).unwrap();
+    let sources = rounding::with_choices(root(), &places).unwrap();
+    let choices: usize =
+        sources.values().map(|it| it.matches("if crate::is_unrounded(").count()).sum();
+    assert_eq!(choices, places.len());
+    let unseen = places.iter().filter(|place| place.unseen.is_some()).count();
+    let sentence = format!("{} places, a test fails at all but {unseen}", places.len());
+    assert!(document().contains(&sentence), "it should say: {sentence}");
+    for place in &places {
+        let filter = place.test.rsplit([' ', ':']).find(|part| !part.is_empty()).unwrap();
+        assert!(names_a_test(filter) || names_a_file(filter), "no test is called {filter}");
+    }
+}
+
+/// Whether a source has this name.
+fn names_a_file(name: &str) -> bool {
+    let folders =
+        ["guards", "verify"].iter().flat_map(|package| ["src", "tests"].map(|it| (package, it)));
+    let mut files = folders.flat_map(|(package, it)| files_below(root().join(package).join(it)));
+    files.any(|file| file.file_stem().is_some_and(|stem| stem == name))
 }
 
 /// Whether some test, or a file of tests, has a name that begins like this or contains it. A

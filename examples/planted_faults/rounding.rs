@@ -5,7 +5,6 @@
 //! environment makes when a test runs.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use serde::Deserialize;
@@ -108,18 +107,4 @@ fn decision() -> String {
          LazyLock::new(|| std::env::var(\"{CHOICE}\").ok()?.parse().ok());\n    \
          *PLACE == Some(place)\n}}\n"
     )
-}
-
-/// Writes changed sources below a folder, those that differ.
-///
-/// # Errors
-/// When a file cannot be written.
-pub fn write(folder: &Path, sources: &BTreeMap<String, String>) -> std::io::Result<()> {
-    for (file, source) in sources {
-        let path = folder.join(file);
-        if fs::read_to_string(&path).ok().as_ref() != Some(source) {
-            fs::write(path, source)?;
-        }
-    }
-    Ok(())
 }

@@ -6,7 +6,7 @@ use super::vector::{IntervalMatrix, around_zero};
 
 /// Terms of the Taylor series beyond the first; with matrices of norm up to a half the rest is
 /// below rounding.
-const TERMS: u32 = 14;
+pub(super) const TERMS: u32 = 14;
 
 /// Every e^{M} for matrices M in `matrix`, which is square.
 ///
@@ -42,7 +42,7 @@ fn series(matrix: &IntervalMatrix, terms: u32) -> IntervalMatrix {
 
 /// What the terms after number k, which is `terms`, add to any entry, for a matrix of this norm:
 /// at most ‖M‖ᵏ⁺¹ ÷ (k + 1)! ÷ (1 − ‖M‖ ÷ (k + 2)).
-fn remainder(norm: f64, terms: u32) -> Interval {
+pub(super) fn remainder(norm: f64, terms: u32) -> Interval {
     let norm = Interval::point(norm);
     let next = (1..=terms + 1).fold(Interval::point(1.0), |product, order| {
         product * norm / Interval::point(f64::from(order))

@@ -137,7 +137,8 @@ mod tests {
     /// Whatever the duration, the steps cover it, and each says when it may be at least.
     #[test]
     fn steps_cover_the_duration() {
-        let still = AffineFlow::new(IntervalMatrix::zero(1, 1), Zonotope::from_box(&points(&[0.0])));
+        let still =
+            AffineFlow::new(IntervalMatrix::zero(1, 1), Zonotope::from_box(&points(&[0.0])));
         let (still, start) = (Dynamics::Affine(still), StateSet::from_box(points(&[1.0])));
         let template = Arc::new(Template::boxes(1));
         for number in 1..200 {

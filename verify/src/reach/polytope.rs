@@ -380,6 +380,28 @@ mod tests {
         }
     }
 
+    /// What a multiplier proves is rounded up, and so is what it leaves of a direction.
+    #[test]
+    fn certificates_are_rounded_up() {
+        let three = points(&[3.0]);
+        let bound = Polytope::around(Template::boxes(1), &three).certified(
+            &points(&[0.7]),
+            &[(0, 0.7)],
+            &three,
+        );
+        assert!(fraction(bound) >= fraction(0.7) * fraction(3.0));
+        // In direction (0.7, −ℓ), where ℓ is 3 · 0.7 rounded down, (3, 1) is farther than 0.
+        let mut template = Template::boxes(2);
+        let place = template.add(vec![1.0, -3.0]).expect("it is new");
+        let sides = points(&[3.0, 1.0]);
+        let mut polytope = Polytope::around(template, &sides);
+        polytope.cut(place, 0.0);
+        let product = 0.7 * 3.0;
+        assert!(fraction(product) < fraction(0.7) * fraction(3.0));
+        let bound = polytope.certified(&points(&[0.7, -product]), &[(place, 0.7)], &sides);
+        assert!(fraction(bound) >= fraction(0.7) * fraction(3.0) - fraction(product));
+    }
+
     /// Multipliers that are wrong make a bound worse, and never false.
     #[test]
     fn wrong_multipliers_prove_less() {

@@ -281,10 +281,8 @@ fn margin(comparison: &Comparison) -> Expression {
 
 #[cfg(test)]
 mod tests {
-    use num_rational::BigRational;
-
     use super::*;
-    use crate::reach::exact::{FAINT, fraction, points};
+    use crate::reach::exact::{FAINT, fraction, holds, points};
 
     fn half_space(text: &str) -> HalfSpace {
         let predicate: Predicate = text.parse().expect("a predicate");
@@ -303,11 +301,21 @@ mod tests {
             let along = fraction(half_space.direction[0]) * &farthest;
             let sides = [Interval::new(0.0, 20.0).expect("in order")];
             assert!(fraction(half_space.bound_over(&sides)) >= along, "{one} · {other}");
-            // 1 − a x at x = 3, of which d · 3 is not all.
-            let set = Polytope::around(Template::boxes(1), &points(&[3.0]));
-            let exact = BigRational::from_integer(1.into()) - gain * fraction(3.0);
-            let found = half_space.distance(&set, &points(&[3.0]));
-            assert!(crate::reach::exact::holds(found, &exact), "{one} · {other}: {found}");
+        }
+    }
+
+    /// −a · x at x = 4, where −d · x is a number, and known.
+    #[test]
+    fn margins_count_what_coefficients_are_off_by() {
+        for (one, other) in [(0.1, 3.0), (0.7, 3.0), (1.1, 1.1), (0.3, 0.7), (0.9, 1.3)] {
+            let half_space = half_space(&format!("{one} * ({other} * x) <= 0"));
+            let mut template = Template::boxes(1);
+            half_space.add_to(&mut template);
+            let bounds = template.directions().iter().map(|direction| 4.0 * direction[0]).collect();
+            let set = Polytope::new(template.into(), bounds);
+            let found = half_space.distance(&set, &points(&[4.0]));
+            let exact = -(fraction(one) * fraction(other) * fraction(4.0));
+            assert!(holds(found, &exact), "{one} · {other}: {found}");
         }
     }
 

@@ -72,7 +72,8 @@ mod tests {
     #[test]
     fn sums_of_products_are_rounded_outward() {
         for (left, right) in [([0.1, 0.2], [0.7, 1.1]), ([1.0, 0.3], [-1.0, 0.9])] {
-            let exact = fraction(left[0]) * fraction(right[0]) + fraction(left[1]) * fraction(right[1]);
+            let exact =
+                fraction(left[0]) * fraction(right[0]) + fraction(left[1]) * fraction(right[1]);
             assert!(holds(dot(&points(&left), &points(&right)), &exact));
             assert!(holds(dot_numbers(&points(&left), &right), &exact));
         }

@@ -366,7 +366,11 @@ mod tests {
         growing.next_step = 0.1;
         let bounds = growing.step(&template(), 0.1).expect("it is enclosed");
         let end = 1.1 / (1.0 - 0.11);
-        assert!(bounds.during[0] >= end && bounds.after[0] >= end, "{bounds:?}", bounds = bounds.during);
+        assert!(
+            bounds.during[0] >= end && bounds.after[0] >= end,
+            "{bounds:?}",
+            bounds = bounds.during
+        );
     }
 
     /// Three steps of the number 0.1 are less than what the sum of these numbers is rounded to.

@@ -360,7 +360,8 @@ mod tests {
 
     /// Numbers of different sizes, none of which has few digits.
     fn number() -> impl Strategy<Value = f64> {
-        (any::<i32>(), -40i32..-20).prop_map(|(digits, power)| f64::from(digits) * 2f64.powi(power) / 3.0)
+        (any::<i32>(), -40i32..-20)
+            .prop_map(|(digits, power)| f64::from(digits) * 2f64.powi(power) / 3.0)
     }
 
     /// A polynomial of degree 2 in three symbols, without a remainder.
@@ -371,7 +372,8 @@ mod tests {
     fn built(numbers: &[f64], limits: Limits) -> TaylorModel {
         let slopes = (0u8..).zip(&numbers[1..4]).map(|(symbol, slope)| (symbol, *slope));
         let mut model = TaylorModel::affine(numbers[0], slopes, limits);
-        let squares = [(0, 0), (0, 1), (1, 2)].map(|(one, other)| Monomial::symbol(one).times(Monomial::symbol(other)));
+        let squares = [(0, 0), (0, 1), (1, 2)]
+            .map(|(one, other)| Monomial::symbol(one).times(Monomial::symbol(other)));
         model.terms.extend(squares.into_iter().zip(numbers[4..].iter().copied()));
         model.terms.retain(|(_, coefficient)| *coefficient != 0.0);
         model.terms.sort_by_key(|(monomial, _)| *monomial);

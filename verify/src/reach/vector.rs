@@ -29,8 +29,13 @@ pub fn is_zero(interval: Interval) -> bool {
 
 /// Σ aᵢ bᵢ for vectors of intervals of one length.
 pub fn dot(left: &[Interval], right: &[Interval]) -> Interval {
+    sum_of_products(left.iter().copied().zip(right.iter().copied()))
+}
+
+/// Σ a b over pairs of intervals.
+pub(super) fn sum_of_products(pairs: impl Iterator<Item = (Interval, Interval)>) -> Interval {
     let (mut lower, mut upper, mut size, mut count) = (0.0, 0.0, 0.0, 0);
-    for (a, b) in left.iter().zip(right).filter(|(a, b)| !is_zero(**a) && !is_zero(**b)) {
+    for (a, b) in pairs.filter(|(a, b)| !is_zero(*a) && !is_zero(*b)) {
         let corners = [
             a.lower() * b.lower(),
             a.lower() * b.upper(),

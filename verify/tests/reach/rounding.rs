@@ -32,7 +32,9 @@ fn inputs_times_their_gains_are_covered() {
     }
     // Half the width of this interval is no number, and its middle neither.
     let faint = f64::EPSILON / 256.0;
-    for (lower, upper) in [(-faint, 1.0), (-1.0, faint)] {
+    // Beyond 2⁵³ numbers are two apart.
+    let large = 2f64.powi(53);
+    for (lower, upper) in [(-faint, 1.0), (-1.0, faint), (large, large + 2.0)] {
         let found = inputs("u", &[("u", over(lower, upper))]);
         assert!(holds(found, &fraction(lower)) && holds(found, &fraction(upper)), "{found}");
     }

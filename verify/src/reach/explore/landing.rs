@@ -90,7 +90,7 @@ impl Search<'_> {
                         direction.iter().map(|d| Interval::point(*d)).collect();
                     match part.support(&transposed.apply(&direction)) {
                         Bound::AtMost(bound) => {
-                            Some((Interval::point(bound) + dot(&direction, offset)).upper())
+                            Some(plus_up(bound, dot(&direction, offset).upper()))
                         }
                         Bound::Empty => None,
                     }
