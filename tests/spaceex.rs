@@ -117,6 +117,22 @@ fn what_is_not_supported_is_refused_with_its_line() {
             changed("d1=\"1\"", "d1=\"2\""),
             "line 4 of the model: `x` is no number (d1 is not 1): use one parameter for each entry",
         ),
+        (
+            changed("dynamics=\"const\"", "dynamics=\"constant\""),
+            "line 6 of the model: `g` has the dynamics `constant`: known are any and const",
+        ),
+        (
+            changed("<location id=\"1\"", "<location id=\"1\"></location><location id=\"1\""),
+            "line 9 of the model: two locations have the id 1: change one",
+        ),
+        (
+            changed("<map key=\"v\">v", "<map key=\"x\">v"),
+            "line 26 of the model: `one` binds `x` twice: leave one out",
+        ),
+        (
+            "<html></html>".to_owned(),
+            "line 1 of the model: there is no <component>: this is no model of SpaceEx",
+        ),
     ];
     for (model, expected) in cases {
         let found = refusal(&model, configuration);
@@ -130,11 +146,32 @@ fn what_is_not_supported_is_refused_with_its_line() {
     );
     assert_eq!(
         asked("10 <= x <= 10.2 &", ""),
-        "line 3 of the configuration: `initially` does not bound `x` from both sides"
+        "line 3 of the configuration: `initially` does not bound `x` from both sides, or allows no value \
+         of it"
     );
     assert_eq!(
         asked("directions = \"box\"", "directions = \"stars\""),
         "line 7 of the configuration: directions `stars` are not known: box, oct or uni with a number"
+    );
+    assert_eq!(
+        asked("directions = \"box\"", "directions = \"box"),
+        "line 7 of the configuration: `\"box` has a single quotation mark: add the other"
+    );
+    assert_eq!(
+        asked("forbidden = \"x", "forbidden = \"z"),
+        "line 4 of the configuration: `z` is no variable or constant of the system"
+    );
+    assert_eq!(
+        asked("\"t,x\"", "\"t,q\""),
+        "line 8 of the configuration: `q` cannot be shown: there are t, v, x"
+    );
+    assert_eq!(
+        asked("time-horizon = 6", "time-horizon = -6"),
+        "line 5 of the configuration: -6 is no duration: write 0 or more"
+    );
+    assert_eq!(
+        asked("sampling-time = 0.01", "sampling-time = 0"),
+        "line 6 of the configuration: 0 is no step: write more than 0"
     );
     assert_eq!(
         asked("system = \"system\"", "system = \"ball2\""),

@@ -17,7 +17,7 @@ pub(super) struct Options {
     pub step: Option<f64>,
     pub directions: Option<Line<String>>,
     pub jumps: Option<usize>,
-    pub shown: Vec<String>,
+    pub shown: Line<Vec<String>>,
 }
 
 impl Options {
@@ -32,7 +32,7 @@ impl Options {
             let Some((key, value)) = content.split_once('=') else {
                 return Err(wrong(format!("`{content}` is no line `key = value`")));
             };
-            let value = value.trim().trim_matches('"').trim();
+            let value = unquoted(value).map_err(wrong)?;
             let number = || -> Result<f64, SpaceExError> {
                 let number: f64 =
                     value.parse().map_err(|_| wrong(format!("`{value}` is no number")))?;
@@ -47,8 +47,14 @@ impl Options {
                 "forbidden" => {
                     options.forbidden = (line, formula::alternatives(value).map_err(wrong)?);
                 }
-                "time-horizon" => options.horizon = Some(number()?),
-                "sampling-time" | "flowpipe-tolerance-step" => options.step = Some(number()?),
+                "time-horizon" => match number()? {
+                    horizon if horizon >= 0.0 => options.horizon = Some(horizon),
+                    _ => return Err(wrong(format!("{value} is no duration: write 0 or more"))),
+                },
+                "sampling-time" | "flowpipe-tolerance-step" => match number()? {
+                    step if step > 0.0 && step.is_finite() => options.step = Some(step),
+                    _ => return Err(wrong(format!("{value} is no step: write more than 0"))),
+                },
                 "directions" => options.directions = Some((line, value.to_owned())),
                 "iter-max" | "max-iterations" => {
                     let limit = number()?;
@@ -56,7 +62,8 @@ impl Options {
                     options.jumps = (limit >= 0.0).then_some(limit as usize);
                 }
                 "output-variables" => {
-                    options.shown = value.split(',').map(|name| name.trim().to_owned()).collect();
+                    let shown = value.split(',').map(|name| name.trim().to_owned());
+                    options.shown = (line, shown.filter(|name| !name.is_empty()).collect());
                 }
                 // Of other tools' methods and outputs.
                 "scenario"
@@ -81,5 +88,15 @@ impl Options {
             }
         }
         Ok(options)
+    }
+}
+
+/// What stands between quotes, or all if there are none.
+fn unquoted(text: &str) -> Result<&str, String> {
+    let text = text.trim();
+    match (text.strip_prefix('"'), text.strip_suffix('"')) {
+        (Some(_), Some(_)) if text.len() > 1 => Ok(text[1..text.len() - 1].trim()),
+        (None, None) => Ok(text),
+        _ => Err(format!("`{text}` has a single quotation mark: add the other")),
     }
 }

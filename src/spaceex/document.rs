@@ -65,14 +65,17 @@ pub(super) fn read(text: &str) -> Result<Vec<Component>, SpaceExError> {
         let line = 1 + text.bytes().take(at).filter(|byte| *byte == b'\n').count();
         let wrong = |problem: String| SpaceExError::Model { line, problem };
         match reader.read_event().map_err(|error| wrong(error.to_string()))? {
+            Event::Eof if document.components.is_empty() => {
+                return Err(wrong("there is no <component>: this is no model of SpaceEx".into()));
+            }
             Event::Eof => return Ok(document.components),
             Event::Start(element) => document.open(&element, line).map_err(wrong)?,
             Event::Empty(element) => {
                 document.open(&element, line).map_err(wrong)?;
                 let name = element.name().as_ref().to_owned();
-                document.close(&name);
+                document.close(&name).map_err(wrong)?;
             }
-            Event::End(element) => document.close(element.name().as_ref()),
+            Event::End(element) => document.close(element.name().as_ref()).map_err(wrong)?,
             Event::Text(text) => {
                 document.content.push_str(&text);
             }
@@ -143,9 +146,15 @@ impl Document {
                         "`{name}` is of type `{kind}`: known are real, int and label"
                     ));
                 }
+                let dynamics = attribute("dynamics")?.unwrap_or_else(|| "any".into());
+                if !["any", "const"].contains(&dynamics.as_str()) {
+                    return Err(format!(
+                        "`{name}` has the dynamics `{dynamics}`: known are any and const"
+                    ));
+                }
                 component.parameters.push(Parameter {
                     is_label: kind == "label",
-                    is_constant: attribute("dynamics")?.is_some_and(|it| it == "const"),
+                    is_constant: dynamics == "const",
                     is_local: attribute("local")?.is_some_and(|it| it == "true"),
                     is_controlled: attribute("controlled")?.is_none_or(|it| it != "false"),
                     name,
@@ -155,6 +164,9 @@ impl Document {
             "location" => {
                 let id = needed("id")?;
                 let name = attribute("name")?.unwrap_or_else(|| format!("location {id}"));
+                if component.locations.iter().any(|other| other.id == id) {
+                    return Err(format!("two locations have the id {id}: change one"));
+                }
                 component.locations.push(Place { id, name, line, ..Place::default() });
             }
             "transition" => {
@@ -179,17 +191,17 @@ impl Document {
         Ok(())
     }
 
-    fn close(&mut self, name: &str) {
+    fn close(&mut self, name: &str) -> Result<(), String> {
         let content = std::mem::take(&mut self.content);
-        let Some(component) = self.components.last_mut() else { return };
+        let Some(component) = self.components.last_mut() else { return Ok(()) };
         let transition = component.transitions.last_mut();
         match name {
             "invariant" | "flow" => {
-                let Some(place) = component.locations.last_mut() else { return };
+                let Some(place) = component.locations.last_mut() else { return Ok(()) };
                 *(if name == "flow" { &mut place.flow } else { &mut place.invariant }) = content;
             }
             "label" | "guard" | "assignment" => {
-                let Some(transition) = transition else { return };
+                let Some(transition) = transition else { return Ok(()) };
                 *(match name {
                     "label" => &mut transition.label,
                     "guard" => &mut transition.guard,
@@ -198,12 +210,16 @@ impl Document {
             }
             "map" => {
                 let (Some(key), Some(bind)) = (self.key.take(), component.binds.last_mut()) else {
-                    return;
+                    return Ok(());
                 };
+                if bind.maps.iter().any(|(known, _)| *known == key) {
+                    return Err(format!("`{}` binds `{key}` twice: leave one out", bind.name));
+                }
                 bind.maps.push((key, content.trim().to_owned()));
             }
             _ => {}
         }
+        Ok(())
     }
 }
 

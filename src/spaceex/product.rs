@@ -76,6 +76,12 @@ impl<'a> Product<'a> {
         Ok(product)
     }
 
+    /// Whether a name is that of a coordinate, an input or a constant.
+    fn is_number(&self, name: &str) -> bool {
+        let others = self.constants.iter().chain(&self.inputs).map(|(name, _)| name);
+        self.variables.iter().chain(others).any(|known| known == name)
+    }
+
     fn wrong<T>(&self, problem: String) -> Result<T> {
         Err(SpaceExError::Model { line: self.line, problem })
     }
@@ -186,7 +192,7 @@ impl<'a> Product<'a> {
             initial,
             forbidden: self.forbidden(options)?,
             settings: settings(options)?,
-            shown: options.shown.clone(),
+            shown: self.shown(options)?,
         })
     }
 

@@ -4,7 +4,8 @@
 use super::Interval;
 
 /// By how many units in the last place the functions of the standard library may be off. Those of
-/// the usual platforms stay below one; the margin covers others.
+/// the usual platforms stay below three: of Linux, the hyperbolic tangent below two and others below
+/// one (*Known Maximum Errors in Math Functions*, manual of the GNU C Library). The rest is margin.
 const LIBRARY_ERROR: usize = 4;
 
 /// Below this magnitude the error of a product may itself be too small to be a number, so that a

@@ -81,7 +81,9 @@ impl Product<'_> {
                 let side = fixed(std::slice::from_ref(clauses), name)
                     .filter(|side| side.width().is_finite());
                 sides.push(side.ok_or_else(|| {
-                    wrong(format!("`initially` does not bound `{name}` from both sides"))
+                    wrong(format!(
+                        "`initially` does not bound `{name}` from both sides, or allows no value of it"
+                    ))
                 })?);
             }
             // Comparisons of several variables cut the box.
@@ -112,6 +114,22 @@ impl Product<'_> {
         Ok(initial)
     }
 
+    /// The variables to be shown.
+    pub(super) fn shown(&self, options: &Options) -> Result<Vec<String>> {
+        let (line, shown) = &options.shown;
+        let is_known = |name: &&String| *name == "t" || self.is_number(name);
+        match shown.iter().find(|name| !is_known(name)) {
+            Some(stranger) => Err(SpaceExError::Configuration {
+                line: *line,
+                problem: format!(
+                    "`{stranger}` cannot be shown: there are t, {}",
+                    self.variables.join(", ")
+                ),
+            }),
+            None => Ok(shown.clone()),
+        }
+    }
+
     pub(super) fn forbidden(&self, options: &Options) -> Result<Vec<Forbidden>> {
         let (line, alternatives) = &options.forbidden;
         let mut forbidden = Vec::new();
@@ -121,6 +139,11 @@ impl Product<'_> {
                 states.extend(predicate(clause, *line)?);
             }
             let states = Predicate::all(states);
+            let known = |name: &&str| self.is_number(name);
+            if let Some(stranger) = states.variables().into_iter().find(|name| !known(name)) {
+                let problem = format!("`{stranger}` is no variable or constant of the system");
+                return Err(SpaceExError::Configuration { line: *line, problem });
+            }
             let is_local = clauses.iter().any(|clause| matches!(clause, Clause::Location { .. }));
             if is_local {
                 for location in self.names_of(&self.allowed(clauses, *line)?) {

@@ -30,7 +30,7 @@ pub fn sum_up(terms: impl IntoIterator<Item = f64>) -> f64 {
         count += 1.0;
     }
     // n − 1 sums and this product are rounded, each by a share of u at most; twice that is added.
-    let bound = sum * (1.0 + 2.0 * count * UNIT_ROUNDOFF);
+    let bound = if count > 1.0 { sum * (1.0 + 2.0 * count * UNIT_ROUNDOFF) } else { sum };
     if bound.is_nan() { f64::INFINITY } else { bound }
 }
 
