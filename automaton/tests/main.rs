@@ -23,3 +23,4 @@ mod sampled_rooms;
 mod semantics;
 mod sets;
 mod sliding;
+mod two_forms;

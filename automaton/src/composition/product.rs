@@ -87,7 +87,7 @@ impl<'a> Product<'a> {
         let renaming = |component: &super::Component| {
             let own = component.blueprint.coordinates.iter().zip(&component.slots);
             Substitution::new(
-                own.map(|(name, slot)| (*name, variable(&*composition.variables[*slot]))),
+                own.map(|(name, slot)| (*name, variable(&composition.variables[*slot]))),
             )
         };
         let mut product = Product {

@@ -2,7 +2,8 @@
 //!
 //! A beacon is a copy of its sender's public state. Every agreement of the network works by
 //! repeating such copies and taking maxima: a message that is copied or late does no harm,
-//! and the message after a lost one contains the same or newer information.
+//! and the message after a lost one contains the same or newer information. A beacon that stays the
+//! same is repeated a few times and then no more, until the next control period begins.
 
 use std::sync::Arc;
 

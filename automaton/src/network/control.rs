@@ -16,7 +16,7 @@ macro_rules! stages {
         pub struct $name { $($(#[$what])* pub $count: usize)? })+
 
         impl Control {
-            /// Which round or iteration this is; 0 in other stages.
+            /// Which iteration of the routes this is; 0 in other stages.
             pub const fn count(&self) -> usize {
                 match self {
                     $(Control::$name($name { $($count)? }) => stages!(@ $($count)?)),+
@@ -32,8 +32,7 @@ stages! {
     /// It moves until the next sample.
     Moving,
     /// It waits for beacons.
-    Beacons(round: /// The round, from 1.
-    ),
+    Beacons,
     /// It waits for the flows of the period before.
     OldFlows,
     /// It waits for multipliers.

@@ -1,13 +1,12 @@
 //! A tree of boxes over edges: the questions that are asked of outlines with thousands of edges.
 
-use std::cell::Cell;
+use parry2d_f64::bounding_volume::Aabb;
+use parry2d_f64::math::Vector;
+use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhLeafCost, BvhNode, TraversalAction};
 
 use super::Segment;
 use super::segment::side;
 use crate::Point;
-
-/// Edges below one leaf of the tree: few enough that testing them all is cheaper than descending.
-const LEAF_EDGES: usize = 4;
 
 /// Relative rounding error that the test of a box against a path allows for: more than its dozen
 /// operations can sum up to.
@@ -16,35 +15,16 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// Edges under a hierarchy of bounding boxes.
 #[derive(Debug, Clone)]
 pub(super) struct EdgeTree {
-    edges: Vec<TaggedEdge>,
-    /// In the order of a walk that visits parents before children.
-    nodes: Vec<Node>,
-}
-
-/// An edge and the index it had in the list that the tree was built from.
-#[derive(Debug, Clone, Copy)]
-struct TaggedEdge {
-    edge: Segment,
-    index: usize,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    bounds: Bounds,
-    /// The node that follows when this one, with all below it, is left out.
-    next: usize,
-    /// Edges of a leaf, as a range; empty for inner nodes.
-    first: usize,
-    last: usize,
+    edges: Vec<Segment>,
+    boxes: Bvh,
 }
 
 impl EdgeTree {
     pub(super) fn new(edges: impl IntoIterator<Item = Segment>) -> EdgeTree {
-        let mut edges: Vec<TaggedEdge> =
-            edges.into_iter().enumerate().map(|(index, edge)| TaggedEdge { edge, index }).collect();
-        let mut nodes = Vec::new();
-        grow(&mut edges, 0, &mut nodes);
-        EdgeTree { edges, nodes }
+        let edges: Vec<Segment> = edges.into_iter().collect();
+        let leaves = edges.iter().map(|edge| Bounds::of(edge).into()).enumerate();
+        let boxes = Bvh::from_iter(BvhBuildStrategy::Binned, leaves);
+        EdgeTree { edges, boxes }
     }
 
     /// Whether `path` passes from one side of some edge to the other.
@@ -67,7 +47,7 @@ impl EdgeTree {
         let holds = |bounds: &Bounds| {
             (0..2).all(|axis| bounds.low[axis] <= point[axis] && point[axis] <= bounds.high[axis])
         };
-        self.nodes.first().is_some_and(|root| holds(&root.bounds))
+        !self.edges.is_empty() && holds(&self.boxes.root_aabb().into())
     }
 
     /// Visits every edge that a ray from `point` to the right crosses, by its index. Exact, but for
@@ -96,35 +76,21 @@ impl EdgeTree {
 
     /// The nearest edge, by its index, and its point nearest to `point`.
     pub(super) fn nearest(&self, point: Point) -> Option<(usize, Point)> {
-        // No farther than the nearest in the leaf that seems nearest: so most boxes are left out.
-        let bound = self.leaf_near(point).iter().map(|entry| entry.edge.distance_squared(point));
-        let best = Cell::new((bound.fold(f64::INFINITY, f64::min).next_up(), None));
-        self.any(
-            |bounds| bounds.distance_squared(point) < best.get().0,
-            |index, edge| {
+        let nearest = self.best(
+            |bounds| bounds.distance_squared(point),
+            |edge| {
                 let nearest = edge.nearest(point);
-                let distance_squared = (nearest - point).norm_squared();
-                if distance_squared < best.get().0 {
-                    best.set((distance_squared, Some((index, nearest))));
-                }
-                false
+                ((nearest - point).norm_squared(), nearest)
             },
         );
-        best.get().1
+        nearest.map(|(index, (_, nearest))| (index, nearest))
     }
 
     /// Distance from `path` to the nearest edge; 0 if they meet, infinite without edges.
     pub(super) fn distance_to_segment(&self, path: &Segment) -> f64 {
         let around = Bounds::of(path);
-        let best = Cell::new(f64::INFINITY);
-        self.any(
-            |bounds| bounds.gap(&around) < best.get(),
-            |_, edge| {
-                best.set(best.get().min(edge.distance_to(path)));
-                best.get() == 0.0
-            },
-        );
-        best.get()
+        let nearest = self.best(|bounds| bounds.gap(&around), |edge| edge.distance_to(path));
+        nearest.map_or(f64::INFINITY, |(_, distance)| distance)
     }
 
     /// Whether `path` meets an edge or comes closer to one than `distance`.
@@ -173,63 +139,41 @@ impl EdgeTree {
         );
     }
 
-    /// The edges of a leaf near `point`: the one reached by way of the boxes that are nearer.
-    fn leaf_near(&self, point: Point) -> &[TaggedEdge] {
-        let distance = |node: usize| self.nodes[node].bounds.distance_squared(point);
-        let mut at = 0;
-        while let Some(node) = self.nodes.get(at) {
-            if node.last > node.first {
-                return &self.edges[node.first..node.last];
-            }
-            let (one, other) = (at + 1, self.nodes[at + 1].next);
-            at = if distance(one) <= distance(other) { one } else { other };
-        }
-        &[]
+    /// The edge of least cost, by its index, with its cost; that of a box is no more than the cost
+    /// of any edge in it.
+    fn best<C: BvhLeafCost>(
+        &self,
+        of_box: impl Fn(&Bounds) -> f64,
+        of_edge: impl Fn(&Segment) -> C,
+    ) -> Option<(usize, C)> {
+        let best = self.boxes.find_best(
+            f64::MAX,
+            |node, _| of_box(&node.into()),
+            |leaf, _| Some(of_edge(&self.edges[leaf as usize])),
+        );
+        best.map(|(leaf, cost)| (leaf as usize, cost))
     }
 
-    /// Walks the tree below every box that `enter` admits, until `visit` says that an edge settles
+    /// Visits the edges below every box that `enter` admits, until `visit` says that one settles
     /// the question; tells whether one did.
     fn any(
         &self,
         mut enter: impl FnMut(&Bounds) -> bool,
         mut visit: impl FnMut(usize, &Segment) -> bool,
     ) -> bool {
-        let mut at = 0;
-        while let Some(node) = self.nodes.get(at) {
-            if !enter(&node.bounds) {
-                at = node.next;
-                continue;
+        let mut is_settled = false;
+        self.boxes.traverse(|node| {
+            if !enter(&node.into()) {
+                return TraversalAction::Prune;
             }
-            if self.edges[node.first..node.last].iter().any(|entry| visit(entry.index, &entry.edge))
-            {
-                return true;
-            }
-            at += 1;
-        }
-        false
+            is_settled = node.leaf_data().is_some_and(|leaf| {
+                let index = leaf as usize;
+                visit(index, &self.edges[index])
+            });
+            if is_settled { TraversalAction::EarlyExit } else { TraversalAction::Continue }
+        });
+        is_settled
     }
-}
-
-/// Appends the tree over `edges`, which begin at `offset` in the whole list, to `nodes`: halves
-/// them at the median along the longer side of their box until few are left.
-fn grow(edges: &mut [TaggedEdge], offset: usize, nodes: &mut Vec<Node>) {
-    let Some(bounds) = edges.iter().map(|entry| Bounds::of(&entry.edge)).reduce(Bounds::joined)
-    else {
-        return;
-    };
-    let own = nodes.len();
-    let last = if edges.len() <= LEAF_EDGES { offset + edges.len() } else { offset };
-    nodes.push(Node { bounds, next: 0, first: offset, last });
-    if edges.len() > LEAF_EDGES {
-        let axis = usize::from(bounds.high.y - bounds.low.y > bounds.high.x - bounds.low.x);
-        let half = edges.len() / 2;
-        let middle = |entry: &TaggedEdge| entry.edge.from[axis] + entry.edge.to[axis];
-        edges.sort_by(|one, other| middle(one).total_cmp(&middle(other)));
-        let (low, high) = edges.split_at_mut(half);
-        grow(low, offset, nodes);
-        grow(high, offset + half, nodes);
-    }
-    nodes[own].next = nodes.len();
 }
 
 /// A box with sides along the axes.
@@ -239,13 +183,27 @@ struct Bounds {
     high: Point,
 }
 
+impl From<&BvhNode> for Bounds {
+    fn from(node: &BvhNode) -> Bounds {
+        node.aabb().into()
+    }
+}
+
+impl From<Aabb> for Bounds {
+    fn from(Aabb { mins, maxs }: Aabb) -> Bounds {
+        Bounds { low: Point::new(mins.x, mins.y), high: Point::new(maxs.x, maxs.y) }
+    }
+}
+
+impl From<Bounds> for Aabb {
+    fn from(Bounds { low, high }: Bounds) -> Aabb {
+        Aabb::new(Vector::new(low.x, low.y), Vector::new(high.x, high.y))
+    }
+}
+
 impl Bounds {
     fn of(segment: &Segment) -> Bounds {
         Bounds { low: segment.from.inf(&segment.to), high: segment.from.sup(&segment.to) }
-    }
-
-    fn joined(self, other: Bounds) -> Bounds {
-        Bounds { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
     fn distance_squared(&self, point: Point) -> f64 {

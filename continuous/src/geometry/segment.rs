@@ -65,11 +65,6 @@ impl Segment {
         }
     }
 
-    /// Square of the distance to the nearest point of the segment.
-    pub(super) fn distance_squared(&self, point: Point) -> f64 {
-        (point - self.nearest(point)).norm_squared()
-    }
-
     /// Distance to the nearest point of the segment.
     pub fn distance(&self, point: Point) -> f64 {
         (point - self.nearest(point)).norm()

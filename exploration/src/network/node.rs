@@ -33,6 +33,19 @@ impl Node {
         }
     }
 
+    /// The clock ticks. In the rounds that are explored everyone speaks, as in the first ones of a
+    /// control period.
+    fn tick(&mut self) -> Result<(), RobotError> {
+        if let Node::Robot(robot) = self {
+            robot.count_rounds_anew();
+        }
+        self.step(Input::Tick { passed: 0 })?;
+        if let Node::AccessPoint(access_point) = self {
+            access_point.forget_round();
+        }
+        Ok(())
+    }
+
     /// The robot, unless it is an access point.
     pub fn robot(&self) -> Option<RobotView<'_>> {
         match self {
@@ -199,7 +212,7 @@ impl Nodes {
             (Node::AccessPoint(access_point), Stimulus::Period(_) | Stimulus::Announce) => {
                 Ok(access_point.attend_to_user()?)
             }
-            (node, Stimulus::Round(_)) => node.step(Input::Tick { passed: 0 }),
+            (node, Stimulus::Round(_)) => node.tick(),
             _ => Ok(()),
         }
     }

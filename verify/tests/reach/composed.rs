@@ -62,7 +62,7 @@ fn a_composition_stays_between_its_bounds() {
     assert_eq!(names, ["off, watching", "on, watching"]);
     let settings = Settings { horizon: 4.0, step: 0.02, ..Settings::default() };
     let start = boxed(&[(19.0, 21.0), (0.0, 0.0)]);
-    let temperature = pleach_guards::variable(&*model.variables()[0]);
+    let temperature = pleach_guards::variable(&model.variables()[0]);
     let ask = |forbidden| {
         let forbidden = [Forbidden::anywhere(forbidden)];
         verify(&product, &[], &[start.clone()], &forbidden, &settings, &Effort::default()).unwrap()

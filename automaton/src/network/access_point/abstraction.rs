@@ -15,7 +15,16 @@ impl AccessPoint {
     /// # Errors
     /// When a guard cannot be evaluated.
     pub fn think_over(&mut self) -> Result<(), TransitionError> {
-        self.think()
+        self.think()?;
+        self.heard.clear();
+        Ok(())
+    }
+
+    /// In the next round everyone speaks again: what it has processed is not needed any more.
+    pub fn forget_round(&mut self) {
+        if self.round() > 1 {
+            self.heard.clear();
+        }
     }
 
     /// In place of serving the user at the end of each round.

@@ -44,6 +44,7 @@ pub struct AccessPoint {
     number: usize,
     site: Arc<Site>,
     position: Point,
+    /// The beacons that it has heard in this control period, by their senders.
     heard: Vec<Arc<Beacon>>,
     bulletin: Bulletin,
     /// The newest bulletin that it has heard and not taken up.
@@ -144,8 +145,16 @@ impl AccessPoint {
         self.hear_notices()?;
         self.find_route();
         self.call_roll();
-        self.heard.clear();
         Ok(())
+    }
+
+    /// Takes in a beacon. One that arrives after a newer one of its sender is ignored.
+    fn hear(&mut self, beacon: &Arc<Beacon>) {
+        match self.heard.binary_search_by_key(&beacon.sender, |held| held.sender) {
+            Ok(at) if beacon.is_older_than(&self.heard[at]) => {}
+            Ok(at) => self.heard[at] = Arc::clone(beacon),
+            Err(at) => self.heard.insert(at, Arc::clone(beacon)),
+        }
     }
 
     /// The first access point sends the user the newest notice.
@@ -299,7 +308,7 @@ impl Node for AccessPoint {
     ) -> Result<(), RobotError> {
         match input {
             Input::Heard { message: Message::Beacon(beacon), .. } => {
-                self.heard.push(Arc::clone(beacon));
+                self.hear(beacon);
             }
             Input::Heard { message: Message::Request(tasks), .. } => {
                 self.requested = Some(Arc::clone(tasks));

@@ -31,6 +31,8 @@ pub enum RoundAct {
     TellUser,
     /// It sends its public state.
     TellBeacon,
+    /// What it has heard in this control period is not needed any more.
+    Forget,
 }
 
 /// What an access point does when it takes a row, in this order.
@@ -43,6 +45,7 @@ impl Act for RoundAct {
             RoundAct::Think => "deliberate, serve",
             RoundAct::TellUser => "tell the user",
             RoundAct::TellBeacon => "tell beacon",
+            RoundAct::Forget => "forget beacons",
         }
     }
 }
@@ -82,6 +85,7 @@ impl AccessPoint {
         for act in std::mem::take(&mut self.acts) {
             match act {
                 RoundAct::RestartClock => self.clock = 0.0,
+                RoundAct::Forget => self.heard.clear(),
                 RoundAct::Think => {
                     let known = self.bulletin.id();
                     self.think()?;
@@ -113,7 +117,7 @@ fn row<A: DataOf<Rounds>, B: DataOf<Rounds>>(
 /// # Errors
 /// Never with the table and guards of this crate; they are checked all the same.
 pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
-    use RoundAct::{RestartClock, TellBeacon, TellUser, Think};
+    use RoundAct::{Forget, RestartClock, TellBeacon, TellUser, Think};
     let wait = |point: &mut AccessPoint, duration: f64| point.clock += duration;
     Automaton::builder(ROUNDS, Round::Resting)
         .observing()
@@ -134,7 +138,7 @@ pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
         .carried_out(row(
             RoundEvent::RoundsOver,
             guards::rounds_over(),
-            &[Think],
+            &[Think, Forget],
             |_: &Listening| Resting,
         ))
         .build()

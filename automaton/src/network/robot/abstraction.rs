@@ -75,6 +75,11 @@ impl Robot {
         self.jump()
     }
 
+    /// The next round is taken for the first one of a control period, in which everyone speaks.
+    pub fn count_rounds_anew(&mut self) {
+        self.round_count.restart();
+    }
+
     /// In place of the last stages of a control period and the beginning of the next: the robot
     /// has made no progress for `still_periods` control periods.
     ///
@@ -138,6 +143,7 @@ impl Robot {
             is_unspoken: _,
             is_unmeasured: _,
             voice: _,
+            beacon_told: _,
             heard_up_to: _,
             desired_parent: _,
             reattaches_to: _,

@@ -51,7 +51,7 @@ acts! {
     Consider = "consider post and partner",
     /// It puts together what it has heard.
     Deliberate = "deliberate",
-    /// It tells its public state.
+    /// It tells its public state, unless it has told it often enough.
     TellBeacon = "tell beacon",
     /// The links over which it can route.
     SurveyLinks = "survey links",
@@ -123,6 +123,7 @@ impl Robot {
         for act in std::mem::take(&mut self.acts) {
             self.perform(*act, outputs)?;
         }
+        self.tell_observers(outputs);
         Ok(())
     }
 
@@ -139,7 +140,7 @@ impl Robot {
                 self.end_round();
                 self.deliberate()?;
             }
-            Act::TellBeacon => outputs.broadcast(Message::Beacon(self.next_beacon())),
+            Act::TellBeacon => self.tell_beacon(outputs),
             Act::SurveyLinks => {
                 self.is_new = false;
                 self.survey_links();
@@ -189,14 +190,14 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(
             On::SampleDue,
             guards::sample_due(),
-            &[RestartClock, Jump, Consider, TellBeacon],
-            |_: &Moving| Beacons { round: 1 },
+            &[RestartClock, CountRounds, Jump, Consider, TellBeacon],
+            |_: &Moving| Beacons {},
         ))
         .carried_out(row(
             On::NextRound,
             guards::next_round(),
             &[Deliberate, Jump, TellBeacon],
-            |beacons: &Beacons| Beacons { round: beacons.round + 1 },
+            |_: &Beacons| Beacons {},
         ))
         .carried_out(row(
             On::RoutesDue,

@@ -118,7 +118,7 @@ facts! {
             /// By how much rounding may take it outside.
             rounding: FEASIBILITY_TOLERANCE,
             /// The number of this round of beacons.
-            round: robot.control.count() as f64,
+            round: robot.round_count.count() as f64,
             /// The number of rounds in this control period.
             rounds: robot.rounds_of_this_period() as f64,
             /// The number of this iteration of the routes.

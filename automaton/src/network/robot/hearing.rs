@@ -13,21 +13,24 @@ use super::Robot;
 
 /// A node that the robot hears, R_ij > 0.
 #[derive(Clone, Debug)]
+#[repr(align(64))] // a cache line
 pub(super) struct Neighbour {
     pub beacon: Arc<Beacon>,
     pub distance: f64,
     pub reliability: f64,
     walk: OnceLock<f64>,
-    measured: (Point, Point),
+    /// Where the robot stood when it measured the link.
+    measured_at: Point,
     /// Whether it has been heard in this round.
     is_heard: bool,
     /// Rounds since it was heard.
     silent_rounds: u8,
 }
 
-/// A neighbour that is not heard for more rounds than this is out of range. That many messages in
-/// succession may be lost without effect; a control period has more rounds.
-const PATIENCE_WITH_SILENCE: u8 = 2;
+/// A beacon is told in this many rounds, at the beginning of a control period and whenever it has
+/// changed, so that all but one of them may be lost. A neighbour that is not heard in any round at
+/// the beginning of a period is out of range.
+pub(super) const ROUNDS_TO_BE_HEARD: usize = 3;
 
 impl Neighbour {
     /// A node as heard from `own`.
@@ -38,7 +41,7 @@ impl Neighbour {
             distance,
             reliability: site.link.reliability(distance),
             walk: OnceLock::new(),
-            measured: (own, beacon.position),
+            measured_at: own,
             is_heard: true,
             silent_rounds: 0,
         }
@@ -78,7 +81,7 @@ impl Robot {
         let expected = self.neighbours.get_mut(self.heard_up_to);
         if let Some(known) = expected
             && Arc::ptr_eq(&known.beacon, beacon)
-            && known.measured.0 == self.position
+            && known.measured_at == self.position
         {
             (known.is_heard, known.silent_rounds) = (true, 0);
             self.heard_up_to += 1;
@@ -109,7 +112,7 @@ impl Robot {
             return;
         }
         (known.is_heard, known.silent_rounds) = (true, 0);
-        if known.measured != (self.position, beacon.position) {
+        if (known.measured_at, known.position()) != (self.position, beacon.position) {
             *known = Neighbour::new(beacon, self.position, &self.site);
         } else if !is_same {
             known.beacon = Arc::clone(beacon);
@@ -119,18 +122,15 @@ impl Robot {
         self.receive_news();
     }
 
-    /// A round of beacons is over.
-    ///
-    /// A message may be lost: a neighbour that is not heard for a round or two is taken to be
-    /// where it was.
+    /// A round of beacons is over. Everyone speaks in the first rounds of a period; later on,
+    /// silence says nothing.
     pub(super) fn end_round(&mut self) {
         self.heard_up_to = 0;
+        let counts_silence = self.round_count.count() <= ROUNDS_TO_BE_HEARD;
         let mut at = 0;
         while at < self.neighbours.len() {
-            at = match std::mem::take(&mut self.neighbours[at].is_heard) {
-                true => at + 1,
-                false => self.miss(at),
-            };
+            let is_heard = std::mem::take(&mut self.neighbours[at].is_heard);
+            at = if is_heard || !counts_silence { at + 1 } else { self.miss(at) };
         }
     }
 
@@ -138,11 +138,11 @@ impl Robot {
     fn miss(&mut self, at: usize) -> usize {
         let known = &mut self.neighbours[at];
         let silent_rounds = known.silent_rounds + 1;
-        if known.measured.0 != self.position {
+        if known.measured_at != self.position {
             *known = known.seen_from(self.position, &self.site);
         }
         known.silent_rounds = silent_rounds;
-        if silent_rounds > PATIENCE_WITH_SILENCE || known.reliability <= 0.0 {
+        if usize::from(silent_rounds) >= ROUNDS_TO_BE_HEARD || known.reliability <= 0.0 {
             self.neighbours.remove(at);
             self.receive_news();
             return at;

@@ -58,24 +58,41 @@ pub use view::RobotView;
 
 use crate::automaton::TransitionError;
 use crate::located::Current;
+use crate::node::Outputs;
 
 use super::beacon::{Beacon, Bulletin, Notice, TeamReport, Voice};
 use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Hop, Standby, Station};
+use super::message::Message;
 use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
 use super::shared::Shared;
 use super::site::Site;
 use duties::Label;
-use hearing::Neighbour;
+use hearing::{Neighbour, ROUNDS_TO_BE_HEARD};
 use lineage::HeardWay;
 use rounds::Rounds;
 
 /// A robot of the network.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))] // in this order, from the beginning of a cache line
 pub struct Robot {
-    // What it knows from the beginning.
+    // What most messages touch stands together at the beginning: its place, its neighbours and its
+    // links.
     id: NodeId,
+    /// x.
+    position: Point,
+    neighbours: Vec<Neighbour>,
+    /// Where in the table of neighbours the next beacon is expected.
+    heard_up_to: usize,
+    /// The link whose other end is expected to tell its multiplier next.
+    expected_link: usize,
+    links: Vec<RouteLink>,
+    /// The robots that send their demand here in a sweep, ascending, each with what has been heard
+    /// of it.
+    demands: Vec<(NodeId, Option<f64>)>,
+
+    // What it knows from the beginning.
     rate: f64,
     site: Arc<Site>,
 
@@ -86,8 +103,7 @@ pub struct Robot {
     acts: Acts,
     is_new: bool,
 
-    // Its continuous state: x, u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
-    position: Point,
+    // The rest of its continuous state: u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
     velocity: Vector,
     clock: f64,
 
@@ -103,6 +119,8 @@ pub struct Robot {
     is_unspoken: bool,
     is_unmeasured: bool,
     voice: Voice,
+    /// In how many rounds of this period it has told its beacon as it is now.
+    beacon_told: usize,
 
     // The exchange of duties that it is engaged in.
     deal: Current<Deal>,
@@ -114,10 +132,7 @@ pub struct Robot {
     /// The number of the offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, u32>,
 
-    // What it receives, and its place in the tree.
-    neighbours: Vec<Neighbour>,
-    /// Where in the table of neighbours the next beacon is expected.
-    heard_up_to: usize,
+    // Its place in the tree.
     parent: Option<NodeId>,
     place: Current<PlaceInTree>,
     heard_way: HeardWay,
@@ -146,16 +161,10 @@ pub struct Robot {
 
     // Communication variables.
     routing: routing::RoutingState,
-    links: Vec<RouteLink>,
     /// The parent to which it sends its demand in this period.
     upstream: Option<NodeId>,
-    /// The link whose other end is expected to tell its multiplier next.
-    expected_link: usize,
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
-    /// The robots that send their demand here in a sweep, ascending, each with what has been heard
-    /// of it.
-    demands: Vec<(NodeId, Option<f64>)>,
     residual: f64,
     has_swept: bool,
     is_frugal: bool,
@@ -215,6 +224,7 @@ impl Robot {
             is_unspoken: true,
             is_unmeasured: true,
             voice: Voice::default(),
+            beacon_told: 0,
             deal: Current::new(Deal::Free(dealing::Free(Dealings::new()))),
             partner: None,
             taking_over: None,
@@ -268,6 +278,21 @@ impl Robot {
         }
     }
 
+    /// Tells its public state. One that stays the same is told in as many rounds of a period as it
+    /// takes to be heard if some are lost, and then no more.
+    fn tell_beacon(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        let beacon = self.next_beacon();
+        if !self.has_told_beacon() {
+            self.beacon_told += 1;
+            outputs.broadcast(Message::Beacon(beacon));
+        }
+    }
+
+    /// Whether it has told its public state often enough in this period.
+    fn has_told_beacon(&self) -> bool {
+        self.beacon_told == ROUNDS_TO_BE_HEARD
+    }
+
     /// The beacon that the robot sends now: the very same as before unless something
     /// in it has changed.
     fn next_beacon(&mut self) -> Arc<Beacon> {
@@ -277,7 +302,9 @@ impl Robot {
             return beacon;
         }
         let (beacon, is_new) = self.voice.say(self.public_state());
-        self.has_news |= is_new;
+        if is_new {
+            (self.has_news, self.beacon_told) = (true, 0);
+        }
         beacon
     }
 
@@ -326,6 +353,7 @@ impl Robot {
 
     /// A control period begins: what is looked at once a period.
     fn begin_period(&mut self) -> Result<(), TransitionError> {
+        self.beacon_told = 0;
         self.stir();
         self.count_barren_periods();
         self.consider_exchange();

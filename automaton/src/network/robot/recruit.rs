@@ -105,10 +105,15 @@ impl Robot {
         Some(Hop { robot: self.id, post: station.post, place, crossing })
     }
 
+    /// Whether it counts the rounds of an election of a recruit.
+    pub(super) fn counts_rounds(&self) -> bool {
+        self.phase() == Phase::RecruitElection
+    }
+
     /// Counts one more round of an election of a recruit; returns whether a wait is over, so that the
     /// robot may do what it might not do before.
     pub(super) fn count_round(&mut self) -> bool {
-        if self.phase() != Phase::RecruitElection {
+        if !self.counts_rounds() {
             return false;
         }
         self.waited_rounds += 1;

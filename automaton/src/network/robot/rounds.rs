@@ -1,11 +1,12 @@
-//! Rounds of sweeps and of the negotiation: the discrete clock of a robot.
+//! Rounds of beacons, of sweeps and of the negotiation: the discrete clock of a robot.
 //!
-//! Both have a fixed number of rounds, which all robots count alike. Where a robot has nothing to do
+//! All have a fixed number of rounds, which all robots count alike. Where a robot has nothing to do
 //! until it hears something, it lets rounds pass; its count goes on, as τ does while time passes.
 
 use pleach_discrete::network::Stage;
 
 use super::Robot;
+use super::hearing::ROUNDS_TO_BE_HEARD;
 
 /// Sweeps until the routes are feasible: with each, overloaded robots are relieved of what does
 /// not come over the tree, and a tree that can carry the rates needs few.
@@ -27,8 +28,8 @@ pub(super) enum SweepRound {
     Reliefs,
 }
 
-/// The number of the round of sweeps or of the negotiation that is over at this tick, from 1; 0
-/// before the first.
+/// The number of the round of beacons, of sweeps or of the negotiation that is over at this tick,
+/// from 1; 0 before the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Rounds(usize);
 
@@ -47,6 +48,10 @@ impl Rounds {
     /// Further rounds pass.
     pub const fn pass(&mut self, rounds: usize) {
         self.0 += rounds;
+    }
+
+    pub const fn count(self) -> usize {
+        self.0
     }
 
     pub const fn of_sweep(self) -> SweepRound {
@@ -74,28 +79,25 @@ impl Rounds {
     pub const fn is_last_chance(self) -> bool {
         self.0 >= 2 * ATTEMPTS
     }
-
-    /// Rounds of `stage` that may pass before its last one.
-    const fn before_last_of(self, stage: Stage) -> usize {
-        let last = match stage {
-            Stage::Sweeps => Self::LAST_OF_SWEEPS,
-            Stage::Negotiation => Self::LAST_OF_NEGOTIATION,
-            _ => 0,
-        };
-        last.saturating_sub(self.0 + 1)
-    }
 }
 
 impl Robot {
     /// Rounds that the robot lets pass before its next tick, counted from its last one: up to the
-    /// last round of sweeps or of the negotiation while it has nothing to tell or to judge.
+    /// last of its stage while it has nothing to tell or to judge.
     pub(super) fn rounds_to_pass(&self) -> usize {
-        let stage = self.stage();
-        let has_nothing_to_do = match stage {
-            Stage::Sweeps => self.routes_stand(),
-            Stage::Negotiation => self.has_no_moves_to_judge(),
-            _ => false,
+        let (has_nothing_to_do, last) = match self.stage() {
+            Stage::Beacons => (self.needs_no_round(), self.rounds_of_this_period()),
+            Stage::Sweeps => (self.routes_stand(), Rounds::LAST_OF_SWEEPS),
+            Stage::Negotiation => (self.has_no_moves_to_judge(), Rounds::LAST_OF_NEGOTIATION),
+            _ => return 0,
         };
-        if has_nothing_to_do { self.round_count.before_last_of(stage) } else { 0 }
+        if has_nothing_to_do { last.saturating_sub(self.round_count.count() + 1) } else { 0 }
+    }
+
+    /// Whether it has heard nothing new, told its beacon often enough, and counts no rounds: of
+    /// silence or of an election.
+    fn needs_no_round(&self) -> bool {
+        let counts_silence = self.round_count.count() < ROUNDS_TO_BE_HEARD;
+        !self.has_news && self.has_told_beacon() && !counts_silence && !self.counts_rounds()
     }
 }

@@ -106,6 +106,7 @@ impl Robot {
                 told: 0.0,
             });
         }
+        self.expected_link = 0;
         self.upstream = self.tree_parent();
         self.inflow = 0.0;
         self.inflows.clear();
@@ -150,21 +151,29 @@ impl Robot {
         report: NeighbourReport,
         parent: Option<NodeId>,
     ) {
-        // Multipliers of an iteration mostly come in the order of their senders.
-        if self.links.get(self.expected_link).is_none_or(|link| link.to != from) {
-            self.expected_link = self.links.partition_point(|link| link.to < from);
-        }
-        if let Some(link) = self.links.get_mut(self.expected_link)
-            && link.to == from
-        {
+        if let Some(link) = self.link_to(from) {
             link.report = Some(report);
-            self.expected_link += 1;
         }
         if parent == Some(self.id)
             && let Err(at) = self.demands.binary_search_by_key(&from, |&(child, _)| child)
         {
             self.demands.insert(at, (from, None));
         }
+    }
+
+    /// The link over which the robot may send to `node`. Multipliers of an iteration mostly come in
+    /// the order of their senders.
+    fn link_to(&mut self, node: NodeId) -> Option<&mut RouteLink> {
+        let at = self.expected_link;
+        let follows = at.checked_sub(1).and_then(|last| self.links.get(last));
+        let comes_next = follows.is_none_or(|last| last.to < node)
+            && self.links.get(at).is_none_or(|link| node <= link.to);
+        if !comes_next {
+            self.expected_link = self.links.partition_point(|link| link.to < node);
+        }
+        let link = self.links.get_mut(self.expected_link).filter(|link| link.to == node)?;
+        self.expected_link += 1;
+        Some(link)
     }
 
     /// The primal iteration (13), or that of ADAL.

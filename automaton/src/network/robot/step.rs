@@ -75,6 +75,7 @@ impl Node for Robot {
     type Body = Point;
     type Error = RobotError;
 
+    #[inline]
     fn step(
         &mut self,
         input: Input<'_, Message, Sense>,
@@ -83,17 +84,11 @@ impl Node for Robot {
         match input {
             Input::Heard { from, message } => {
                 self.hear(from, message, outputs);
-                return Ok(());
+                Ok(())
             }
-            Input::Sensed(Sense::Position(position)) => {
-                self.find_itself_at(position);
-                self.jump()?;
-            }
-            Input::Sensed(Sense::Tasks(_)) => {}
-            Input::Tick { passed } => self.tick(passed, outputs)?,
+            Input::Sensed(sensed) => self.sense(sensed, outputs),
+            Input::Tick { passed } => self.tick(passed, outputs),
         }
-        self.log.drain(..).for_each(|event| outputs.report(event));
-        Ok(())
     }
 
     fn time_to_tick(&self) -> Option<f64> {
@@ -124,6 +119,20 @@ impl Node for Robot {
 }
 
 impl Robot {
+    fn sense(&mut self, sensed: Sense, outputs: &mut Out) -> Result<(), RobotError> {
+        if let Sense::Position(position) = sensed {
+            self.find_itself_at(position);
+            self.jump()?;
+            self.tell_observers(outputs);
+        }
+        Ok(())
+    }
+
+    /// Tells observers what has happened.
+    pub(super) fn tell_observers(&mut self, outputs: &mut Out) {
+        self.log.drain(..).for_each(|event| outputs.report(event));
+    }
+
     /// The robot stands at `position`, and has not got on for `still_periods` control periods.
     pub(super) fn stand_at(&mut self, position: Point, still_periods: u32) {
         (self.position, self.arrival) = (position, position);

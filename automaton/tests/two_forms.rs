@@ -1,0 +1,293 @@
+//! One model as a composition of automata with channels and as an ensemble of nodes with a medium:
+//! both give one trace.
+//!
+//! Nodes in a ring have clocks of unlike rates. Every period a node tells its successor what its
+//! clock reads; a clock that hears of a greater reading takes it over, so that all follow the
+//! fastest. Where messages take no time, each is passed on until it has gone round the ring.
+//!
+//! All numbers are multiples of powers of two, so that instants and readings are exact, and nodes
+//! often jump at the same instant. Such jumps have no order in either form; so the trace of each node
+//! is compared. Messages with a delay never arrive when a clock is due: an ensemble then delivers
+//! first, and in a composition the order of the components decides.
+
+use std::collections::VecDeque;
+use std::convert::Infallible;
+
+use pleach_automaton::composition::Channel;
+use pleach_automaton::node::{
+    Delivery, Destination, Ensemble, Envelope, Input, Medium, Node, NodeId, Observed, Outputs,
+};
+use pleach_automaton::{Automaton, Composition, Executor, Reason, coordinates, from};
+use pleach_discrete::vocabulary;
+use pleach_guards::always;
+use proptest::prelude::*;
+
+/// A node of the ring, with its channel to the next.
+#[derive(Clone, Copy, Debug)]
+struct Station {
+    /// Of its clock, in seconds a second.
+    rate: f64,
+    /// Between its messages, in seconds.
+    period: f64,
+    /// Of its messages, in seconds.
+    delay: f64,
+}
+
+/// How often a message is passed on.
+fn hops(ring: &[Station]) -> usize {
+    if ring.iter().all(|station| station.delay == 0.0) { ring.len() - 1 } else { 0 }
+}
+
+/// What a node does, when, and what its clock reads after it.
+type Deed = (f64, Kind, f64);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Tells,
+    Hears,
+}
+
+const HORIZON: f64 = 12.0;
+/// Far more messages than a channel ever holds.
+const CAPACITY: usize = 16;
+
+// ---- Automata and channels ---------------------------------------------------------------------
+
+vocabulary! {
+    enum Duty: Location { Resting = "resting", Passing = "passing" }
+    enum Action: Event { Tell = "tell", Hear = "hear" }
+}
+
+coordinates! {
+    struct State { clock = "C", timer = "τ", hops = "h", reading = "C′", left = "h′" }
+}
+
+fn automaton(station: Station, most: usize) -> Automaton<Duty, Action, State> {
+    use Duty::{Passing, Resting};
+    let most = most as f64;
+    let State { clock, timer, hops, reading, left } = State::coordinates();
+    let mut automaton = Automaton::starting_in(Resting)
+        .initially(State { hops: most, ..State::default() })
+        .flow(Resting, [clock.rate(station.rate), timer.rate(1.0)])
+        .flow(Passing, [clock.rate(station.rate), timer.rate(1.0)]);
+    for place in [Resting, Passing] {
+        let take_over = || clock.becomes(clock.max(&reading));
+        let hear = |target| from(place).on(Action::Hear).to(target);
+        let pass_on = [take_over(), hops.becomes(&left - 1.0)];
+        automaton = automaton
+            .transition(hear(Passing).may(left.at_least(1.0)).then(pass_on))
+            .transition(hear(place).may(always()).then(take_over()));
+    }
+    automaton
+        .transition(
+            from(Passing).on(Action::Tell).to(Resting).must(always()).then(hops.becomes(most)),
+        )
+        .transition(
+            from(Resting)
+                .on(Action::Tell)
+                .to(Resting)
+                .must(timer.at_least(station.period))
+                .then(timer.becomes(0.0)),
+        )
+        .build()
+        .expect("the automaton is sound")
+}
+
+fn composition(ring: &[Station]) -> Composition {
+    let mut parts = Composition::builder();
+    for (id, &station) in ring.iter().enumerate() {
+        parts = parts.add(&id.to_string(), &automaton(station, hops(ring)));
+    }
+    for (id, station) in ring.iter().enumerate() {
+        let next = (id + 1) % ring.len();
+        let channel = Channel::new(&format!("{id}.tell"), &format!("{next}.hear"))
+            .carrying(&format!("{id}.C"), &format!("{next}.C′"))
+            .carrying(&format!("{id}.h"), &format!("{next}.h′"))
+            .taking(station.delay, station.delay)
+            .holding(CAPACITY);
+        parts = parts.channel(channel);
+    }
+    parts.build().expect("the parts fit")
+}
+
+/// What each node does in a run of the composition.
+fn deeds_of_automata(ring: &[Station]) -> Vec<Vec<Deed>> {
+    let trajectory = composition(ring).run(HORIZON).expect("it can be run");
+    assert_eq!(trajectory.ending().reason, Reason::Horizon);
+    let clock = |id: usize| {
+        let name = format!("{id}.C");
+        trajectory.variables().iter().position(|variable| *variable == name).expect("its clock")
+    };
+    let clocks: Vec<usize> = (0..ring.len()).map(clock).collect();
+    let mut deeds = vec![Vec::new(); ring.len()];
+    for (jump, after) in trajectory.jumps().iter().zip(trajectory.intervals().skip(1)) {
+        let (node, deed) = jump.label.split_once('.').expect("node and event");
+        let id: usize = node.parse().expect("a number");
+        let kind = if deed == "tell" { Kind::Tells } else { Kind::Hears };
+        deeds[id].push((jump.at.t, kind, after.samples[0].values[clocks[id]]));
+    }
+    deeds
+}
+
+// ---- Nodes and a medium ------------------------------------------------------------------------
+
+/// A reading, and how often it is to be passed on.
+#[derive(Clone, Copy, Debug)]
+struct Reading {
+    clock: f64,
+    hops: usize,
+}
+
+struct Keeper {
+    station: Station,
+    next: NodeId,
+    most: usize,
+    clock: f64,
+    timer: f64,
+    /// What is left of the way of a message that is to be passed on.
+    passing: Option<usize>,
+    now: f64,
+    deeds: Vec<Deed>,
+}
+
+impl Node for Keeper {
+    type Message = Reading;
+    type Sense = Infallible;
+    type Report = Infallible;
+    type Body = ();
+    type Error = Infallible;
+
+    fn step(
+        &mut self,
+        input: Input<'_, Reading, Infallible>,
+        outputs: &mut Outputs<Reading, Infallible>,
+    ) -> Result<(), Infallible> {
+        let kind = match input {
+            Input::Heard { message, .. } => {
+                self.clock = self.clock.max(message.clock);
+                self.passing = message.hops.checked_sub(1).or(self.passing);
+                Kind::Hears
+            }
+            Input::Tick { .. } => {
+                let hops = self.passing.take().unwrap_or_else(|| {
+                    self.timer = 0.0;
+                    self.most
+                });
+                outputs.send(self.next, Reading { clock: self.clock, hops });
+                Kind::Tells
+            }
+        };
+        self.deeds.push((self.now, kind, self.clock));
+        Ok(())
+    }
+
+    fn time_to_tick(&self) -> Option<f64> {
+        let left = (self.station.period - self.timer).max(0.0);
+        Some(if self.passing.is_some() { 0.0 } else { left })
+    }
+
+    fn flow(&mut self, duration: f64) {
+        self.clock += self.station.rate * duration;
+        self.timer += duration;
+        self.now += duration;
+    }
+
+    fn body(&self) {}
+}
+
+impl Observed for Keeper {
+    type View<'a> = &'a [Deed];
+
+    fn view(&self) -> &[Deed] {
+        &self.deeds
+    }
+}
+
+/// Messages take a time that depends on their sender.
+struct Post {
+    delays: Vec<f64>,
+    /// With the time that is left.
+    on_the_way: VecDeque<(f64, Envelope<Reading>)>,
+}
+
+impl Medium<Reading, ()> for Post {
+    fn update(&mut self, _: &[()]) {}
+
+    fn send(&mut self, envelope: Envelope<Reading>) {
+        self.on_the_way.push_back((self.delays[envelope.from], envelope));
+    }
+
+    fn time_to_arrival(&self) -> Option<f64> {
+        self.on_the_way.iter().map(|(left, _)| *left).reduce(f64::min)
+    }
+
+    fn flow(&mut self, duration: f64) {
+        self.on_the_way.iter_mut().for_each(|(left, _)| *left -= duration);
+    }
+
+    fn deliver<E>(
+        &mut self,
+        mut hand_over: impl FnMut(Delivery<'_, Reading>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (due, later) = self.on_the_way.drain(..).partition(|(left, _)| *left <= 0.0);
+        self.on_the_way = later;
+        VecDeque::into_iter(due).try_for_each(|(_, Envelope { from, to, message })| match to {
+            Destination::One(to) => hand_over(Delivery { from, to, message: &message }),
+            Destination::Everyone => unreachable!("nodes tell their successors"),
+        })
+    }
+}
+
+/// What each node does in a run of the ensemble.
+fn deeds_of_nodes(ring: &[Station]) -> Vec<Vec<Deed>> {
+    let keepers = ring.iter().enumerate().map(|(id, &station)| Keeper {
+        station,
+        next: (id + 1) % ring.len(),
+        most: hops(ring),
+        clock: 0.0,
+        timer: 0.0,
+        passing: None,
+        now: 0.0,
+        deeds: Vec::new(),
+    });
+    let delays = ring.iter().map(|station| station.delay).collect();
+    let post = Post { delays, on_the_way: VecDeque::new() };
+    let mut ensemble = Ensemble::new(keepers.collect(), post);
+    let executor = Executor::new(HORIZON, 1000).expect("a horizon");
+    let ending = executor.run(&mut ensemble, &mut ()).expect("nothing can fail");
+    assert_eq!(ending.reason, Reason::Horizon);
+    ensemble.views().map(<[Deed]>::to_vec).collect()
+}
+
+// ---- The comparison ----------------------------------------------------------------------------
+
+/// Every node does something that the test can miss: it tells, and takes over a reading.
+fn shows_something(deeds: &[Vec<Deed>]) -> bool {
+    let kinds = |kind| deeds.iter().flatten().filter(move |deed| deed.1 == kind).count();
+    kinds(Kind::Tells) > 0 && kinds(Kind::Hears) > 0
+}
+
+fn stations(delay: impl Strategy<Value = f64>) -> impl Strategy<Value = Vec<Station>> {
+    let eighths = |from: u32, to: u32| (from..=to).prop_map(|eighths| f64::from(eighths) / 8.0);
+    let station = (eighths(4, 12), eighths(4, 20), delay)
+        .prop_map(|(rate, period, delay)| Station { rate, period, delay });
+    prop::collection::vec(station, 2..=5)
+}
+
+proptest! {
+    #![proptest_config(cases::usually(64))]
+
+    #[test]
+    fn messages_with_delays(ring in stations((0..=16_u32).prop_map(|n| f64::from(2 * n + 1) / 16.0))) {
+        let deeds = deeds_of_automata(&ring);
+        prop_assert!(shows_something(&deeds));
+        prop_assert_eq!(deeds, deeds_of_nodes(&ring));
+    }
+
+    #[test]
+    fn messages_that_take_no_time(ring in stations(Just(0.0))) {
+        let deeds = deeds_of_automata(&ring);
+        prop_assert!(shows_something(&deeds));
+        prop_assert_eq!(deeds, deeds_of_nodes(&ring));
+    }
+}
