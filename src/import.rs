@@ -5,7 +5,7 @@
 //! | `*.yaml` with its image | a map of the ROS map server: cells that are free |
 //! | `*.map` | a MovingAI benchmark map: cells that can be passed |
 //! | `*.geojson`, `*.json` | polygons are floor; those with the property `"kind": "wall"` are taken out of it |
-//! | `*.svg` | closed paths, filled by the even-odd rule: the outermost bounds the floor |
+//! | `*.svg` | closed shapes, filled by the even-odd rule: the outermost bounds the floor |
 //!
 //! A map of cells is traced and simplified within a tolerance of whole cells. **No robot gets
 //! through a wall by it**: first the floor is narrowed by the tolerance, then its outline may
@@ -98,6 +98,11 @@ pub enum ImportError {
         /// What is wrong, with the place.
         problem: String,
     },
+}
+
+/// A number of things in words.
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }
 
 /// Reads a map; the ending of its name says of which kind it is.

@@ -20,8 +20,8 @@ use crate::verify::network::{Extremes, Instant, Judge, Property, Violation};
 pub enum Verdict {
     /// Everything in it is as it should be.
     Sound {
-        /// The number of the last control period.
-        steps: usize,
+        /// How many control periods it tells of.
+        periods: usize,
         /// How the mission ended.
         end: End,
         /// How near it came to its bounds.
@@ -51,6 +51,7 @@ pub fn judge<R: BufRead>(trace: TraceReader<R>) -> Result<Verdict, JudgeError> {
     let mut reading = Reading {
         judge: Judge::new(&scenario, may_follow),
         now: Instant { step: 0, time: 0.0 },
+        periods: 0,
         events: Vec::new(),
         end: None,
     };
@@ -67,6 +68,7 @@ struct Reading<'a> {
     judge: Judge<'a>,
     /// The last step.
     now: Instant,
+    periods: usize,
     /// The events since then, each with the step for which it is recorded.
     events: Vec<(usize, MissionEvent)>,
     end: Option<End>,
@@ -81,6 +83,7 @@ impl Reading<'_> {
             TraceEntry::Event { step, event } => self.events.push((step, event)),
             TraceEntry::Step(snapshot) => {
                 self.now = Instant::of(&snapshot);
+                self.periods += 1;
                 if let Some((step, _)) = self.events.iter().find(|(k, _)| *k != snapshot.step) {
                     let sentence = format!("an event of step {step} stands before this step");
                     return Err(self.fault(Property::Record, &sentence));
@@ -103,7 +106,7 @@ impl Reading<'_> {
         match self.end {
             Some(end) => {
                 let extremes = self.judge.extremes().clone();
-                Verdict::Sound { steps: self.now.step, end, extremes }
+                Verdict::Sound { periods: self.periods, end, extremes }
             }
             None => Verdict::Violated(
                 self.fault(Property::Outcome, "the trace breaks off: it does not say how it ends"),

@@ -62,7 +62,7 @@ pub enum MissionError {
         reason: String,
     },
     /// A watcher cannot write what it has to.
-    #[error("cannot write what the mission shows: {0}")]
+    #[error("cannot write: {0}")]
     Watcher(#[from] io::Error),
 }
 

@@ -3,7 +3,7 @@
 //! | topic | schema | holds |
 //! | --- | --- | --- |
 //! | `/plan` | `foxglove.SceneUpdate` | the walls, access points and tasks, once |
-//! | `/network` | `foxglove.SceneUpdate` | robots as discs of radius ρ, coloured by role; the tree; links as wide as their traffic |
+//! | `/network` | `foxglove.SceneUpdate` | robots as discs of radius ρ, in the colours of their marks in figures; the tree; links as wide as their traffic |
 //! | `/log` | `foxglove.Log` | each event as a sentence |
 //! | `/numbers` | `pleach.Numbers` | residuals, multipliers and the phase, for plots |
 //!
@@ -65,12 +65,12 @@ struct Log {
 /// `INFO` of Foxglove's levels.
 const INFO: u8 = 2;
 
-/// Writes a trace as a recording; the number of messages.
+/// Writes a trace as a recording, one whose last line is torn up to there; the number of messages.
 ///
 /// # Errors
 /// When the trace cannot be read or the recording cannot be written.
 pub fn write<R: BufRead, W: Write + Seek>(
-    trace: TraceReader<R>,
+    mut trace: TraceReader<R>,
     output: W,
 ) -> Result<u64, RecordingError> {
     let scenario = trace.scenario().clone();
@@ -78,8 +78,12 @@ pub fn write<R: BufRead, W: Write + Seek>(
     recording.write(Topic::Plan, 0.0, &scene::plan(&scenario))?;
     let mut log: Vec<String> = Vec::new();
     let mut time = 0.0;
-    for entry in trace {
-        match entry? {
+    while let Some(entry) = trace.next() {
+        let entry = match entry {
+            Err(error) if error.is_torn() && trace.next().is_none() => break,
+            entry => entry?,
+        };
+        match entry {
             // Events stand before the step of their instant.
             TraceEntry::Event { event, .. } => log.push(story::tell(&event)),
             TraceEntry::Step(snapshot) => {

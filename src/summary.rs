@@ -34,6 +34,55 @@ pub struct TaskSummary {
     pub holder: Option<usize>,
 }
 
+impl TaskSummary {
+    /// By which robot it was serviced, and which holds it now if that is another one.
+    pub(crate) fn robots(&self) -> Option<String> {
+        let (_, robot) = self.serviced?;
+        let other = self.holder.filter(|holder| *holder != robot);
+        let held = other.map(|holder| format!(", held by robot {holder} at the end"));
+        Some(format!("by robot {robot}{}", held.unwrap_or_default()))
+    }
+}
+
+/// How near a mission came to a bound.
+pub(crate) struct Measured {
+    pub name: &'static str,
+    /// The value, rounded for people.
+    pub value: String,
+    /// The control period.
+    pub step: usize,
+    /// The robots concerned.
+    pub robots: String,
+    /// The bound with its symbol.
+    pub bound: String,
+}
+
+/// How near a mission came to each of its bounds.
+pub(crate) fn measured(extremes: &Extremes, settings: &Settings) -> Vec<Measured> {
+    let Settings { clearance, residual_tolerance, .. } = *settings;
+    let rows = [
+        ("smallest distance", &extremes.pair_distance, "2ρ", 2.0 * clearance),
+        ("smallest clearance", &extremes.clearance, "ρ", clearance),
+        ("smallest residual", &extremes.residual, "−c_min", 0.0 - residual_tolerance),
+        ("largest load", &extremes.load, "at most", 1.0),
+    ];
+    let measured = rows.into_iter().filter_map(|(name, extreme, symbol, bound)| {
+        let Extreme { value, instant, robots } = extreme.as_ref()?;
+        let numbers: Vec<String> = robots.iter().map(usize::to_string).collect();
+        let noun = if robots.len() == 1 { "robot" } else { "robots" };
+        // What rounds to zero has no sign.
+        let value = (value * 1e6).round() / 1e6 + 0.0;
+        Some(Measured {
+            name,
+            value: format!("{value:.6}"),
+            step: instant.step,
+            robots: format!("{noun} {}", numbers.join(" and ")),
+            bound: format!("{symbol} {}", quantity(bound)),
+        })
+    });
+    measured.collect()
+}
+
 impl Summary {
     /// The summary of a mission that has not begun.
     pub fn new(scenario: &Scenario) -> Self {
@@ -150,21 +199,15 @@ impl Summary {
 
     fn write_tasks(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (number, task) in self.tasks.iter().enumerate() {
-            let TaskSummary { position: [x, y], serviced, holder } = task;
+            let [x, y] = task.position;
             let place = format!("({x}, {y})");
             let label = format!("task {number}");
             write!(formatter, "  {label:<19} {place:<14} ")?;
-            match serviced {
-                Some((step, robot)) => {
-                    write!(formatter, "serviced at k = {step} by robot {robot}")?
+            match task.serviced.zip(task.robots()) {
+                Some(((step, _), robots)) => {
+                    writeln!(formatter, "serviced at k = {step} {robots}")?;
                 }
-                None => write!(formatter, "not serviced")?,
-            }
-            match (serviced, holder) {
-                (Some((_, robot)), Some(holder)) if robot != holder => {
-                    writeln!(formatter, ", held by robot {holder} at the end")?;
-                }
-                _ => writeln!(formatter)?,
+                None => writeln!(formatter, "not serviced")?,
             }
         }
         Ok(())
@@ -175,26 +218,8 @@ impl Summary {
         extremes: &Extremes,
         formatter: &mut fmt::Formatter<'_>,
     ) -> fmt::Result {
-        let Settings { clearance, residual_tolerance, .. } = self.settings;
-        let rows = [
-            ("smallest distance", &extremes.pair_distance, "2ρ", 2.0 * clearance),
-            ("smallest clearance", &extremes.clearance, "ρ", clearance),
-            ("smallest residual", &extremes.residual, "−c_min", 0.0 - residual_tolerance),
-            ("largest load", &extremes.load, "at most", 1.0),
-        ];
-        for (label, extreme, symbol, bound) in rows {
-            let Some(Extreme { value, instant, robots }) = extreme else { continue };
-            let concerned: Vec<String> = robots.iter().map(usize::to_string).collect();
-            let noun = if robots.len() == 1 { "robot" } else { "robots" };
-            // What rounds to zero has no sign.
-            let value = (value * 1e6).round() / 1e6 + 0.0;
-            writeln!(
-                formatter,
-                "  {label:<19} {value:.6} at k = {} ({noun} {}); {symbol} {}",
-                instant.step,
-                concerned.join(" and "),
-                quantity(bound),
-            )?;
+        for Measured { name, value, step, robots, bound } in measured(extremes, &self.settings) {
+            writeln!(formatter, "  {name:<19} {value} at k = {step} ({robots}); {bound}")?;
         }
         Ok(())
     }

@@ -189,3 +189,10 @@ pub enum TraceError {
     #[error("line {line}: {wrong}")]
     Uneven { line: usize, wrong: String },
 }
+
+impl TraceError {
+    /// Whether a line stops before its end, as the last one of a run that was killed.
+    pub(crate) fn is_torn(&self) -> bool {
+        matches!(self, TraceError::NotALine { source, .. } if source.is_eof())
+    }
+}

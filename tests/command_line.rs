@@ -1,7 +1,10 @@
 //! The program as a person or another program starts it.
 
 use pleach::automaton::network::record::Outcome;
+use pleach::summary::Summary;
 use pleach::trace::{TraceEntry, TraceReader};
+use pleach::verify::network::Extremes;
+use pleach::{mission, scenario_file};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -85,7 +88,7 @@ fn a_trace_is_judged_from_its_file() {
     let sound = pleach(&["judge", path]);
     assert_eq!(sound.status.code(), Some(0));
     let verdict =
-        format!("{path}: sound, 275 control periods; the outcome is: insufficient robots");
+        format!("{path}: sound, 276 control periods; the outcome is: insufficient robots");
     assert_eq!(said(&sound.stdout).trim_end(), verdict);
 
     let text = std::fs::read_to_string(&trace).unwrap();
@@ -129,6 +132,58 @@ fn a_sweep_gives_a_table_and_the_worst_status() {
     }
     assert_eq!(pleach(&arguments).stdout, output.stdout, "the same on any number of threads");
     assert!(said(&output.stderr).contains("step limit"), "the table for people goes elsewhere");
+}
+
+/// Each column of the table holds what the run itself says.
+#[test]
+fn tables_hold_what_the_runs_are() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let [csv, json] = ["runs.csv", "runs.json"].map(|name| folder.join(name));
+    let scenarios = ["scenarios/leaf-leader.toml", "scenarios/unreachable.toml"];
+    let tables = ["--csv", csv.to_str().unwrap(), "--json", json.to_str().unwrap(), "--quiet"];
+    let output = pleach(&[&["run"][..], &scenarios, &tables].concat());
+    assert_eq!(output.status.code(), Some(3));
+    let rows: Vec<serde_json::Value> =
+        serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
+    for (row, path) in rows.iter().zip(scenarios) {
+        let scenario = scenario_file::read(Path::new(path)).unwrap();
+        let mut summary = Summary::new(&scenario);
+        let completed = mission::run(&scenario, &mut [&mut summary]).unwrap();
+        assert_eq!(row["outcome"], completed.end.outcome.name());
+        let counts = [
+            ("tasks", scenario.task.len()),
+            ("serviced", summary.serviced()),
+            ("periods", summary.periods()),
+            ("recruits", summary.recruits()),
+            ("stationary_points", summary.stationary_points()),
+        ];
+        for (name, count) in counts {
+            assert_eq!(row[name].as_u64(), Some(count as u64), "{name} of {path}");
+        }
+        let Extremes { pair_distance, clearance, residual, load } = completed.extremes;
+        let extremes = [
+            ("smallest_distance", pair_distance),
+            ("smallest_clearance", clearance),
+            ("smallest_residual", residual),
+            ("largest_load", load),
+        ];
+        for (name, extreme) in extremes {
+            assert_eq!(row[name].as_f64(), extreme.map(|one| one.value), "{name} of {path}");
+        }
+    }
+
+    let mut table = csv::Reader::from_path(&csv).unwrap();
+    let names: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
+    for (record, row) in table.records().map(Result::unwrap).zip(&rows) {
+        for (name, cell) in names.iter().zip(&record) {
+            let same = match &row[name] {
+                serde_json::Value::String(text) => cell == text,
+                serde_json::Value::Null => cell.is_empty(),
+                number => cell.parse().ok() == number.as_f64(),
+            };
+            assert!(same, "{name}: {cell} is not {}", row[name]);
+        }
+    }
 }
 
 #[test]
@@ -204,6 +259,50 @@ fn an_interrupted_run_ends_in_order() {
     let entries: Vec<_> = TraceReader::new(file).unwrap().map(Result::unwrap).collect();
     let Some(TraceEntry::End(end)) = entries.last() else { panic!("the trace has no end") };
     assert_eq!(end.outcome, Outcome::Interrupted);
+}
+
+// ---- Maps --------------------------------------------------------------------------------------
+
+/// Every option of `pleach import` is heeded.
+#[test]
+fn a_map_becomes_the_scenario_that_is_asked_for() {
+    let import = |options: &[&str]| {
+        let output = pleach(&[&["import", "tests/maps/cellar.map"][..], options].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output.stderr));
+        scenario_file::parse(&said(&output.stdout), Path::new("cellar.toml")).unwrap()
+    };
+    let plain = import(&[]);
+    assert_eq!((&*plain.name, plain.robot.len(), plain.task.len()), ("cellar", 8, 1));
+    assert!(!plain.workspace.boundary.contains(&[1.0, 1.0]), "narrowed by a cell");
+
+    let chosen = import(&[
+        "--tolerance",
+        "0",
+        "--scale",
+        "2",
+        "--name",
+        "vault",
+        "--robots",
+        "3",
+        "--far-tasks",
+        "2",
+        "--full-range",
+        "14",
+        "--max-range",
+        "18",
+        "--clearance",
+        "0.25",
+    ]);
+    assert_eq!((&*chosen.name, chosen.robot.len(), chosen.task.len()), ("vault", 3, 2));
+    assert!(chosen.workspace.boundary.contains(&[2.0, 2.0]), "{:?}", chosen.workspace.boundary);
+    assert_eq!((chosen.link.full_range, chosen.link.max_range), (14.0, 18.0));
+    assert_eq!(chosen.control.clearance, Some(0.25));
+
+    let place = |position: [f64; 2]| format!("{},{}", position[0], position[1]);
+    let [access_point, task] = [plain.task[0].position, plain.access_point[0].position];
+    let placed = import(&["--access-point", &place(access_point), "--task", &place(task)]);
+    assert_eq!(placed.access_point[0].position, access_point);
+    assert_eq!(placed.task[0].position, task);
 }
 
 // ---- Checks ------------------------------------------------------------------------------------

@@ -108,6 +108,8 @@ fn degrees_become_metres_and_touching_polygons_one_floor() {
     let walls = 0.2 * 2.1 + 0.2 * 2.0; // in the hall, and in the annexe
     assert!((floor - (600.0 - 24.0 + 80.0 - walls)).abs() < 0.5, "{floor}");
     let (scenario, _) = import::skeleton(&plan, &Choices::named("hall")).unwrap();
+    let digits = format!("{:?}", scenario.task[0].position);
+    assert!(digits.len() < 24, "places have as many digits as the outline: {digits}");
     assert_eq!((scenario.access_point.len(), scenario.task.len()), (1, 1));
     let planar = Reading { planar: true, ..Reading::default() };
     assert!(corners(&self::plan("hall.geojson", &planar)) == corners(&plan));
@@ -127,6 +129,58 @@ fn shapes_of_a_drawing_bound_the_floor() {
     assert!((highest - 2.0).abs() < 1e-6, "the vertical axis points up");
     let bevel = plan.workspace.boundary.iter().filter(|corner| corner[0] > 2.4 && corner[1] > 1.4);
     assert!(bevel.count() > 5, "the rounded corner is at the top right");
+}
+
+/// Only closed shapes that are seen bound the floor; other lines are told.
+#[test]
+fn of_a_drawing_only_closed_shapes_are_taken() {
+    let room = "<path d='M0,0 H40 V20 H0 Z'/>";
+    let read = |name: &str, drawn: &str| {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        std::fs::write(&path, format!("<svg>{drawn}</svg>")).unwrap();
+        import::read(&path, &Reading::default()).unwrap()
+    };
+    let alone = read("room.svg", room);
+    assert_eq!((corners(&alone), &*alone.notes), (4, &[][..]));
+    for unseen in [
+        "<defs><rect width='400' height='400'/></defs>",
+        "<clipPath><circle r='9'/></clipPath>",
+        "<g display='none'><rect x='3' y='3' width='4' height='4'/></g>",
+        "<rect x='3' y='3' width='4' height='4' style='fill: red; display: none'/>",
+    ] {
+        assert_eq!(read("unseen.svg", &format!("{room}{unseen}")), alone, "{unseen}");
+    }
+    let lines = "<path d='M5,5 H9 V9'/><line x1='1' y1='1' x2='9' y2='1'/>\
+                 <polyline points='12,12 15,12 15,15'/>";
+    let drawn = read("lines.svg", &format!("{room}{lines}"));
+    assert_eq!(drawn.workspace, alone.workspace);
+    assert_eq!(drawn.notes, ["left out: 3 lines that are not closed, and bound no floor"]);
+    let pillar = "<polyline points='12,12 15,12 15,15 12,12'/>";
+    assert_eq!(read("pillar.svg", &format!("{room}{pillar}")).workspace.holes.len(), 1);
+}
+
+/// What would take for ever, or make no sense, is refused.
+#[test]
+fn lengths_that_are_none_are_refused() {
+    let plan = plan("cellar.map", &Reading::default());
+    let named = || Choices::named("cellar");
+    for (choices, said) in [
+        (Choices { clearance: Some(0.0), ..named() }, "the clearance is 0: it must be"),
+        (Choices { full_range: Some(-1.0), ..named() }, "the full range is -1: it must be"),
+        (Choices { max_range: Some(f64::NAN), ..named() }, "the maximal range is NaN: it must be"),
+    ] {
+        let error = import::skeleton(&plan, &choices).unwrap_err().to_string();
+        assert!(error.starts_with(said), "{error}");
+    }
+    let huge = Reading { scale: 1e200, ..Reading::default() };
+    let error = import::skeleton(&self::plan("flat.yaml", &huge), &named()).unwrap_err();
+    assert!(error.to_string().contains("at most 1e100"), "{error}");
+    let fine = Reading { tolerance: Some(1e-12), ..Reading::default() };
+    let error = import::read(Path::new("tests/maps/gallery.svg"), &fine).unwrap_err().to_string();
+    assert!(
+        error.contains("the tolerance of curves is 0.000000000001: at least 0.0003"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -160,6 +214,10 @@ fn maps_that_are_none_are_refused() {
         ("e.geojson", "{}", "e.geojson: "),
         ("f.svg", "<svg><path d='M0,0 Q1'/></svg>", "path: "),
         ("g.svg", "<svg></svg>", "no floor"),
+        ("i.svg", "<svg><rect width='9' height='9' transform='scale(0)'/></svg>", "no floor"),
+        ("j.svg", "<svg><rect width='9' height='9'/>", "it is cut off"),
+        ("k.svg", "<svg><rect width='1e300' height='1e300'/></svg>", "a coordinate is 1e300"),
+        ("l.map", "type octile\nheight 1\nwidth 2\nmap\n@T\n", "no cell of the map is free"),
         ("h.txt", "", "the ending says no kind of map"),
     ] {
         let path = folder.join(name);

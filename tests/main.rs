@@ -30,6 +30,7 @@ mod records;
 mod scenario_faults;
 mod spaceex;
 mod story;
+mod streams;
 mod stressed;
 mod studies;
 mod summary;

@@ -233,9 +233,9 @@ impl FromStr for Spot {
 /// The arguments of `pleach page`.
 #[derive(Debug, Args)]
 pub struct PageArguments {
-    /// The trace, a file of JSON lines
+    /// The trace, a file of JSON lines, or `-` for the standard input
     pub trace: PathBuf,
-    /// Write the page to FILE [default: the trace with the ending .html]
+    /// Write the page to FILE, `-` for the standard output [default: the trace with the ending .html]
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
@@ -243,7 +243,7 @@ pub struct PageArguments {
 /// The arguments of `pleach judge`.
 #[derive(Debug, Args)]
 pub struct JudgeArguments {
-    /// The trace, as `pleach run --trace FILE` writes it
+    /// The trace, as `pleach run --trace FILE` writes it, or `-` for the standard input
     pub trace: PathBuf,
 }
 

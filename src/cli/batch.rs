@@ -3,7 +3,7 @@
 use super::interrupt::Interrupt;
 use super::plan::Planned;
 use super::record::Record;
-use super::{table, terminal};
+use super::{output, table, terminal};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -72,7 +72,7 @@ impl Display {
     fn show(&mut self, record: &Record) {
         match self {
             Display::Quiet => {}
-            Display::Lines => eprintln!("{}", table::line(record)),
+            Display::Lines => output::tell(table::line(record)),
             Display::Live(bar) => {
                 bar.inc(1);
                 bar.println(table::line(record));

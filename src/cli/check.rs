@@ -1,7 +1,7 @@
 //! `pleach check`: whether a mission can start, and how it would.
 
 use super::arguments::CheckArguments;
-use super::job;
+use super::output;
 use super::plan::Planned;
 use super::source::Source;
 use super::status::{Failure, Status};
@@ -12,7 +12,7 @@ use pleach::automaton::network::scenario::{Remark, ValidScenario};
 use pleach::figures::{Plan, Scene, quantity};
 use pleach::mission::{self, Watcher};
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::PathBuf;
 
 /// Checks scenarios one after another, and draws their starts.
@@ -34,7 +34,7 @@ pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
             let remarks = planned.scenario.remarks();
             let told = report(&planned, &remarks, drawing);
             let told = terminal::wrapped(&told, terminal::width(), terminal::SUMMARY_INDENT);
-            io::stdout().lock().write_all(told.as_bytes())?;
+            output::say(&told)?;
             if remarks.iter().any(|remark| matches!(remark, Remark::Task { .. })) {
                 worst = Status::Unserviced;
             }
@@ -97,7 +97,7 @@ fn draw(scenario: &ValidScenario, arguments: &CheckArguments) -> Result<Option<P
     }
     let default = || PathBuf::from("figures").join(&scenario.name);
     let folder = arguments.figures.clone().unwrap_or_else(default);
-    job::create_folder(&folder)?;
+    output::create_folder(&folder)?;
     let mut opening = Opening::default();
     mission::run(scenario, &mut [&mut opening])?;
     let Some(snapshot) = opening.snapshot else { return Ok(None) };

@@ -1,6 +1,7 @@
 //! `pleach diagram`.
 
 use super::arguments::{Automaton as Which, DiagramArguments, DiagramFormat};
+use super::output;
 use super::status::{Failure, Status};
 use pleach::automaton::network::Automata;
 use pleach::automaton::{Automaton, diagram};
@@ -21,7 +22,7 @@ pub fn print(arguments: &DiagramArguments) -> Result<Status, Failure> {
         Which::Rounds => draw(&automata.rounds, format),
         Which::Request => draw(&automata.request, format),
     };
-    println!("{}", drawing.trim_end());
+    output::say(&format!("{}\n", drawing.trim_end()))?;
     Ok(Status::Done)
 }
 

@@ -1,21 +1,20 @@
 //! `pleach export`: traces as recordings.
 
-use super::job;
 use super::status::{Failure, Status};
+use super::{output, source};
 use pleach::recording::{self, RecordingError};
 use pleach::scenario_file::ScenarioError;
 use pleach::trace::TraceReader;
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
 /// Turns a trace into a recording.
 pub fn export(trace: &Path, recording: &Path) -> Result<Status, Failure> {
     let failed = |source: RecordingError| Failure::Recording { path: trace.into(), source };
-    let file = File::open(trace)
+    output::check_places([&trace.to_owned()], [&recording.to_owned()])?;
+    let input = source::open(trace)
         .map_err(|source| ScenarioError::Unreadable { path: trace.into(), source })?;
-    let reader = TraceReader::new(BufReader::new(file)).map_err(|error| failed(error.into()))?;
-    let messages = recording::write(reader, job::create_file(recording)?).map_err(failed)?;
-    println!("{}: {messages} messages", recording.display());
+    let reader = TraceReader::new(input).map_err(|error| failed(error.into()))?;
+    let messages = recording::write(reader, output::create_file(recording)?).map_err(failed)?;
+    output::say(&format!("{}: {messages} messages\n", recording.display()))?;
     Ok(Status::Done)
 }

@@ -1,15 +1,15 @@
 //! `pleach import`: maps of other programs as scenarios.
 
 use super::arguments::ImportArguments;
-use super::job;
+use super::output;
 use super::source::STANDARD;
 use super::status::{Failure, Status};
 use pleach::import::{self, Choices, Reading};
-use std::io::{self, Write};
 use std::path::Path;
 
 /// Reads a map and writes a scenario.
 pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
+    output::check_places([&arguments.map], &arguments.output)?;
     let reading = Reading {
         tolerance: arguments.tolerance,
         scale: arguments.scale,
@@ -29,21 +29,14 @@ pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
     let (scenario, more) = import::skeleton(&plan, &choices)?;
     let notes: Vec<String> = plan.notes.iter().cloned().chain(more).collect();
     for note in &notes {
-        eprintln!("{}: {note}", arguments.map.display());
+        output::tell(format_args!("{}: {note}", arguments.map.display()));
     }
     for remark in scenario.remarks() {
-        eprintln!("{}: {}: {remark}", arguments.map.display(), remark.key());
+        output::tell(format_args!("{}: {}: {remark}", arguments.map.display(), remark.key()));
     }
     let origin = arguments.map.file_name().unwrap_or_default().to_string_lossy();
     let text = import::text(&scenario, &origin, &notes);
-    match arguments.output.as_deref() {
-        Some(path) if path.as_os_str() != STANDARD => {
-            let mut file = job::create_file(path)?;
-            file.write_all(text.as_bytes())?;
-            file.flush()?;
-        }
-        _ => io::stdout().lock().write_all(text.as_bytes())?,
-    }
+    output::write(arguments.output.as_deref().unwrap_or(Path::new(STANDARD)), &text)?;
     Ok(Status::Done)
 }
 

@@ -1,12 +1,11 @@
 //! One run with everything that it writes.
 
 use super::interrupt::Interrupt;
+use super::output;
 use super::plan::Planned;
 use super::progress::Progress;
 use super::record::Record;
-use super::source::STANDARD;
 use super::status::Failure;
-use pleach::automaton::network::scenario::ValidScenario;
 #[cfg(feature = "pdf")]
 use pleach::figures::ANIMATION;
 use pleach::figures::Album;
@@ -15,9 +14,7 @@ use pleach::mission::{self, Watcher};
 use pleach::pdf::Printer;
 use pleach::summary::Summary;
 use pleach::trace::TraceWriter;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// What a run writes besides its record.
@@ -54,9 +51,12 @@ pub fn run(
     let scenario = &planned.scenario;
     let mut interrupt = interrupt.clone();
     let mut summary = Summary::new(scenario);
-    let mut trace = outputs.trace.as_deref().map(|path| start_trace(path, scenario)).transpose()?;
+    let mut trace = match &outputs.trace {
+        Some(path) => Some(TraceWriter::new(output::open(path)?, scenario)?),
+        None => None,
+    };
     if let Some(folder) = &outputs.figures {
-        create_folder(folder)?;
+        output::create_folder(folder)?;
     }
     #[cfg(feature = "pdf")]
     let printer = outputs.pdf.then(Printer::new).transpose()?;
@@ -93,26 +93,4 @@ fn with_pdf(printer: &Printer, figures: Vec<PathBuf>) -> Result<Vec<PathBuf>, Fa
         pictures.map(|picture| printer.print_beside(picture)).collect::<Result<Vec<_>, _>>()?;
     all.extend(figures);
     Ok(all)
-}
-
-fn start_trace(
-    path: &Path,
-    scenario: &ValidScenario,
-) -> Result<TraceWriter<Box<dyn Write>>, Failure> {
-    let output: Box<dyn Write> = match path.as_os_str() == STANDARD {
-        true => Box::new(io::stdout().lock()),
-        false => Box::new(create_file(path)?),
-    };
-    Ok(TraceWriter::new(output, scenario)?)
-}
-
-/// A new file, buffered.
-pub fn create_file(path: &Path) -> Result<BufWriter<File>, Failure> {
-    let file = File::create(path);
-    file.map(BufWriter::new).map_err(|source| Failure::Creation { path: path.to_owned(), source })
-}
-
-/// A folder that cannot be written is told before the mission, not after it.
-pub fn create_folder(path: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(path).map_err(|source| Failure::Creation { path: path.to_owned(), source })
 }

@@ -2,27 +2,28 @@
 
 use super::arguments::JudgeArguments;
 use super::status::{Failure, Status};
+use super::{output, source};
 use pleach::judge::{Verdict, judge};
 use pleach::trace::TraceReader;
-use std::fs::File;
-use std::io::BufReader;
 
 /// Judges a trace and says what is wrong with it.
 pub fn run(arguments: &JudgeArguments) -> Result<Status, Failure> {
     let path = &arguments.trace;
     let unreadable =
         |what: String| Failure::Judge(format!("{}: {what}; nothing was judged", path.display()));
-    let file = File::open(path).map_err(|error| unreadable(format!("cannot be read: {error}")))?;
-    let reader =
-        TraceReader::new(BufReader::new(file)).map_err(|error| unreadable(error.to_string()))?;
+    let input =
+        source::open(path).map_err(|error| unreadable(format!("cannot be read: {error}")))?;
+    let reader = TraceReader::new(input).map_err(|error| unreadable(error.to_string()))?;
     match judge(reader).map_err(|error| unreadable(error.to_string()))? {
-        Verdict::Sound { steps, end, .. } => {
-            let name = end.outcome.name().replace('_', " ");
-            println!("{}: sound, {steps} control periods; the outcome is: {name}", path.display());
+        Verdict::Sound { periods, end, .. } => {
+            let (trace, name) = (path.display(), end.outcome.name().replace('_', " "));
+            output::say(&format!(
+                "{trace}: sound, {periods} control periods; the outcome is: {name}\n"
+            ))?;
             Ok(Status::Done)
         }
         Verdict::Violated(violation) => {
-            println!("{}: {violation}", path.display());
+            output::say(&format!("{}: {violation}\n", path.display()))?;
             Ok(Status::InvariantViolated)
         }
     }

@@ -11,6 +11,7 @@ mod interrupt;
 mod job;
 mod judge;
 mod manual;
+mod output;
 mod page;
 mod plan;
 mod progress;
@@ -44,7 +45,7 @@ pub fn carry_out(arguments: Arguments) -> ExitCode {
         Command::Reach(reach) => reach::reach(&reach),
     };
     let status = result.unwrap_or_else(|failure| {
-        eprintln!("error: {failure}");
+        output::tell(format_args!("error: {failure}"));
         failure.status()
     });
     status.into()

@@ -1,26 +1,31 @@
 //! `pleach page`.
 
 use super::arguments::PageArguments;
+use super::output;
+use super::source::{self, STANDARD};
 use super::status::{Failure, Status};
 use pleach::page::{self, PageError};
-use std::fs::{self, File};
-use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Makes the page of a trace.
 pub fn write(arguments: &PageArguments) -> Result<Status, Failure> {
     let path = &arguments.trace;
-    let unreadable =
-        |error: PageError| Failure::Trace { path: path.clone(), error: Box::new(error) };
-    let file = File::open(path).map_err(|error| unreadable(PageError::Unreadable(error)))?;
-    let page = page::of_trace(BufReader::new(file)).map_err(unreadable)?;
-    let output = arguments.output.clone().unwrap_or_else(|| path.with_extension("html"));
-    fs::write(&output, page)
-        .map_err(|source| Failure::Creation { path: output.clone(), source })?;
-    println!("{}", shown(&output));
+    let place = arguments.output.clone().unwrap_or_else(|| beside(path));
+    output::check_places([path], [&place])?;
+    let page = source::open(path).map_err(PageError::Unreadable).and_then(page::of_trace);
+    let page =
+        page.map_err(|error| Failure::Trace { path: path.clone(), error: Box::new(error) })?;
+    output::write(&place, &page)?;
+    if place.as_os_str() != STANDARD {
+        output::say(&format!("page: open {}\n", place.display()))?;
+    }
     Ok(Status::Done)
 }
 
-fn shown(path: &Path) -> String {
-    format!("page: open {}", path.display())
+/// Where the page of a trace goes by itself: that of the standard input to the standard output.
+fn beside(trace: &Path) -> PathBuf {
+    match trace.as_os_str() == STANDARD {
+        true => STANDARD.into(),
+        false => trace.with_extension("html"),
+    }
 }

@@ -3,7 +3,7 @@
 //! On a terminal the telling events scroll by above a line that says where the mission stands.
 //! Elsewhere only the events are written, one a line.
 
-use super::terminal;
+use super::{output, terminal};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pleach::automaton::network::record::{End, MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::Scenario;
@@ -59,7 +59,7 @@ impl Watcher for Progress {
             let line = terminal::wrapped(&line, terminal::error_width(), terminal::STORY_INDENT);
             match &self.display {
                 Display::Quiet => {}
-                Display::Lines => eprintln!("{line}"),
+                Display::Lines => output::tell(line),
                 Display::Live(bar) => bar.println(line),
             }
         }

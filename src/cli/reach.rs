@@ -11,7 +11,7 @@ use pleach::spaceex::{self, Problem, Solution, Verdict};
 use pleach::verify::reach::Effort;
 use serde_json::json;
 
-use super::job;
+use super::output;
 use super::status::{Failure, Status};
 
 /// The arguments of `pleach reach`.
@@ -75,18 +75,13 @@ pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
         let runs = problem.runs(arguments.runs);
         let picture = solution.picture(&problem.system, [&axes[0], &axes[1]], &runs);
         let picture = picture.map_err(Failure::Usage)?.to_svg();
-        job::create_file(path)?.write_all(picture.as_bytes())?;
+        output::write(path, &picture)?;
     }
     if let Some(path) = &arguments.json {
-        let text = format!("{:#}\n", result(&problem, &solution));
-        if path.as_os_str() == "-" {
-            io::stdout().lock().write_all(text.as_bytes())?;
-        } else {
-            job::create_file(path)?.write_all(text.as_bytes())?;
-        }
+        output::write(path, &format!("{:#}\n", result(&problem, &solution)))?;
     }
     if !arguments.quiet {
-        eprintln!("{}", verdict(&problem, &solution, seconds));
+        output::tell(verdict(&problem, &solution, seconds));
     }
     Ok(match solution.verdict() {
         Verdict::Holds => Status::Done,
@@ -102,13 +97,14 @@ fn solve(problem: &Problem, is_quiet: bool) -> Result<Solution, Failure> {
     let mut progress = |time: Interval| {
         segments += 1;
         if shows && segments % 256 == 0 {
-            eprint!("\r{segments} sets, at {:.3} of {} s", time.upper(), problem.settings.horizon);
+            let (now, end) = (time.upper(), problem.settings.horizon);
+            let _ = write!(io::stderr(), "\r{segments} sets, at {now:.3} of {end} s");
         }
         ControlFlow::Continue(())
     };
     let solution = problem.solve(&Effort::default(), &mut progress);
     if shows {
-        eprint!("\r\x1b[K");
+        let _ = write!(io::stderr(), "\r\x1b[K");
     }
     solution.map_err(|error| Failure::Usage(error.to_string()))
 }

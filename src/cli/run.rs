@@ -4,18 +4,19 @@ use super::arguments::RunArguments;
 use super::batch;
 use super::interrupt::Interrupt;
 use super::job::{self, Finished, Outputs};
+use super::output;
 use super::plan::{Planned, plan};
 use super::progress::Progress;
 use super::record::{Record, write_csv, write_json};
 use super::source::STANDARD;
 use super::status::{Failure, Status};
 use super::{table, terminal};
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Runs the missions that the arguments ask for.
 pub fn run(arguments: &RunArguments) -> Result<Status, Failure> {
-    check_standard_output(arguments)?;
+    output::check_places(&arguments.scenarios, data_outputs(arguments))?;
     let runs = plan(arguments)?;
     check_tables(arguments)?;
     let interrupt = Interrupt::listen()?;
@@ -63,7 +64,7 @@ fn run_many(
     interrupt: &Interrupt,
 ) -> Result<Status, Failure> {
     for folder in [&arguments.trace, &arguments.figures].into_iter().flatten() {
-        job::create_folder(folder)?;
+        output::create_folder(folder)?;
     }
     let outputs = |run: &Planned| {
         let name = run.file_name(runs.len());
@@ -109,56 +110,43 @@ fn warn_of_tasks(run: &Planned) {
     use pleach::automaton::network::scenario::Remark;
     let remarks = run.scenario.remarks();
     for remark in remarks.iter().filter(|remark| matches!(remark, Remark::Task { .. })) {
-        eprintln!("warning: {}: {}: {remark}", run.source, remark.key());
+        output::tell(format_args!("warning: {}: {}: {remark}", run.source, remark.key()));
     }
 }
 
 /// Whether the standard output carries data, so that what people read goes to the error output.
 fn carries_data(arguments: &RunArguments) -> bool {
-    standard_outputs(arguments).count() > 0
+    data_outputs(arguments).any(|path| path.as_os_str() == STANDARD)
 }
 
-fn standard_outputs(arguments: &RunArguments) -> impl Iterator<Item = &PathBuf> {
-    let files = [&arguments.trace, &arguments.csv, &arguments.json].into_iter().flatten();
-    files.filter(|path| path.as_os_str() == STANDARD)
-}
-
-fn check_standard_output(arguments: &RunArguments) -> Result<(), Failure> {
-    match standard_outputs(arguments).count() {
-        0 | 1 => Ok(()),
-        _ => Err(Failure::Usage("only one of --trace, --csv and --json can go to `-`".into())),
-    }
+/// Where data go, apart from figures.
+fn data_outputs(arguments: &RunArguments) -> impl Iterator<Item = &PathBuf> {
+    [&arguments.trace, &arguments.csv, &arguments.json].into_iter().flatten()
 }
 
 fn say(arguments: &RunArguments, text: &str) -> io::Result<()> {
     let wrapped = |width| terminal::wrapped(text, width, terminal::SUMMARY_INDENT);
-    match carries_data(arguments) {
-        true => io::stderr().lock().write_all(wrapped(terminal::error_width()).as_bytes()),
-        false => io::stdout().lock().write_all(wrapped(terminal::width()).as_bytes()),
+    if carries_data(arguments) {
+        output::tell(wrapped(terminal::error_width()).trim_end());
+        return Ok(());
     }
+    output::say(&wrapped(terminal::width()))
 }
 
 /// A table that cannot be written is told before the missions, not after them.
 fn check_tables(arguments: &RunArguments) -> Result<(), Failure> {
     for path in [&arguments.csv, &arguments.json].into_iter().flatten() {
-        output(path)?;
+        output::open(path)?;
     }
     Ok(())
 }
 
 fn write_tables(arguments: &RunArguments, records: &[Record]) -> Result<(), Failure> {
     if let Some(path) = &arguments.csv {
-        write_csv(records, output(path)?)?;
+        write_csv(records, output::open(path)?)?;
     }
     if let Some(path) = &arguments.json {
-        write_json(records, output(path)?)?;
+        write_json(records, output::open(path)?)?;
     }
     Ok(())
-}
-
-fn output(path: &Path) -> Result<Box<dyn Write>, Failure> {
-    match path.as_os_str() == STANDARD {
-        true => Ok(Box::new(io::stdout().lock())),
-        false => Ok(Box::new(job::create_file(path)?)),
-    }
 }

@@ -1,13 +1,22 @@
-//! Where scenarios come from: files, folders of files, and the standard input.
+//! What the program reads: files, for scenarios also folders of them, and the standard input.
 
 use super::status::Failure;
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::scenario_file::{self, ScenarioError, Setting};
-use std::io::{self, Read};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 /// The name that stands for standard input or output.
 pub const STANDARD: &str = "-";
+
+/// What `path` names, to be read: a file, or for `-` the standard input.
+pub fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
+    match path.as_os_str() == STANDARD {
+        true => Ok(Box::new(io::stdin().lock())),
+        false => Ok(Box::new(BufReader::new(File::open(path)?))),
+    }
+}
 
 /// The text of a scenario, and what messages call it.
 #[derive(Clone, Debug)]

@@ -130,7 +130,7 @@ pub enum Failure {
     #[error("{0}")]
     Judge(String),
     /// The trace, the progress or a figure cannot be written.
-    #[error("cannot write what the mission shows: {0}")]
+    #[error("cannot write: {0}")]
     Output(#[from] io::Error),
     /// The mission could not be run to an end.
     #[error(transparent)]
@@ -166,7 +166,11 @@ impl Failure {
             | Failure::Judge(_)
             | Failure::Creation { .. } => Status::BadInput,
             #[cfg(feature = "mcap")]
-            Failure::Recording { .. } => Status::BadInput,
+            Failure::Recording { source: pleach::recording::RecordingError::Trace(_), .. } => {
+                Status::BadInput
+            }
+            #[cfg(feature = "mcap")]
+            Failure::Recording { .. } => Status::Failed,
             #[cfg(feature = "pdf")]
             Failure::Pdf(_) => Status::Failed,
             Failure::Output(_) | Failure::Mission(_) | Failure::Internal(_) => Status::Failed,
@@ -188,5 +192,15 @@ mod tests {
         assert_eq!(status(Outcome::Blocked), 3);
         assert_eq!(status(Outcome::Interrupted), 3);
         assert_eq!(status(Outcome::InvariantViolated), 4);
+    }
+
+    #[test]
+    fn the_worst_status_is_that_of_the_help() {
+        let mut all = [0, 1, 2, 3, 4].map(Status::of_number);
+        assert_eq!(all.map(|status| status as u8), [0, 1, 2, 3, 4]);
+        all.sort_by_key(|status| std::cmp::Reverse(status.severity()));
+        // Nothing is run where an input is wrong, so that 2 meets no other.
+        let worst = all.iter().map(|status| *status as u8).filter(|&number| number != 2);
+        assert_eq!(worst.collect::<Vec<_>>(), [1, 4, 3, 0]);
     }
 }

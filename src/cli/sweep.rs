@@ -52,19 +52,22 @@ struct Range {
 }
 
 impl Range {
-    /// The range that a value is, if it looks like one.
+    /// The range that a value is, if it looks like one: dots stand before or behind a number.
     fn of(value: &str) -> Result<Option<Self>, String> {
         let Some((from, rest)) = value.split_once("..") else { return Ok(None) };
+        let (to, count) = rest.split_once(':').unwrap_or((rest, ""));
+        let [from, to]: [Option<f64>; 2] = [from, to].map(|text| text.trim().parse().ok());
+        if from.or(to).is_none() {
+            return Ok(None);
+        }
         let wrong = || {
             format!(
                 "{value:?} is no range: write FROM..TO:COUNT with two numbers and the count of \
-                 values, at least 2, such as 0.01..0.03:5"
+                 values, from 2 to {MOST_VALUES}, such as 0.01..0.03:5"
             )
         };
-        let (to, count) = rest.split_once(':').ok_or_else(wrong)?;
-        let number =
-            |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
-        let (from, to) = (number(from).ok_or_else(wrong)?, number(to).ok_or_else(wrong)?);
+        let [from, to] = [from, to].map(|end| end.filter(|end| end.is_finite()));
+        let (from, to) = from.zip(to).ok_or_else(wrong)?;
         let count = count.trim().parse().ok().filter(|count| (2..=MOST_VALUES).contains(count));
         Ok(Some(Self { from, to, count: count.ok_or_else(wrong)? }))
     }
@@ -105,6 +108,7 @@ mod tests {
         assert_eq!(values("control.max_steps=100..500:5")[1], "200");
         assert_eq!(values("control.period=-1..1:3"), ["-1", "0", "1"]);
         assert_eq!(values("control.routing_method=dual"), ["dual"]);
+        assert_eq!(values("description=a..b: dots"), ["a..b: dots"]);
     }
 
     #[test]

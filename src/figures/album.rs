@@ -106,13 +106,15 @@ impl Album {
     }
 
     /// Writes the pictures, the curves, an animation and the page, `index.html`, into a folder, which it
-    /// creates, and returns the paths in the order of the story, the page last.
+    /// creates, and returns the paths in the order of the story, the page last. Pictures that an earlier
+    /// mission has left there are removed.
     ///
     /// # Errors
     ///
     /// When the folder or a file cannot be written; the error of the system is passed on.
     pub fn write(&self, folder: &Path, end: &End) -> io::Result<Vec<PathBuf>> {
         fs::create_dir_all(folder)?;
+        remove_pictures(folder)?;
         let mut pictures = self.pictures.clone();
         if let Some(last) = &self.last {
             self.add_end(&mut pictures, last, end);
@@ -133,7 +135,10 @@ impl Album {
         let mut written = Vec::new();
         for (name, text) in drawn.chain(curves).chain([film, page]) {
             let path = folder.join(name);
-            fs::write(&path, text)?;
+            let named = |error: io::Error| {
+                io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+            };
+            fs::write(&path, text).map_err(named)?;
             written.push(path);
         }
         Ok(written)
@@ -257,6 +262,31 @@ impl Album {
             is_plain: self.plan.is_plain,
         }
     }
+}
+
+/// Removes the pictures of moments from a folder.
+fn remove_pictures(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.file_name().and_then(|name| name.to_str()).is_some_and(is_picture) {
+            fs::remove_file(path)?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether a file is called as pictures of moments are, `08-k00290-task-0-serviced.svg`, or the PDF
+/// beside one is.
+fn is_picture(name: &str) -> bool {
+    let is_number = |text: &str, digits: usize| {
+        text.len() >= digits && text.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    let stem = name.strip_suffix(".svg").or_else(|| name.strip_suffix(".pdf"));
+    let mut parts = stem.unwrap_or_default().splitn(3, '-');
+    let (number, step, slug) = (parts.next(), parts.next(), parts.next());
+    number.is_some_and(|number| is_number(number, 2))
+        && step.and_then(|step| step.strip_prefix('k')).is_some_and(|step| is_number(step, 5))
+        && slug.is_some_and(|slug| !slug.is_empty())
 }
 
 impl Picture {

@@ -119,7 +119,8 @@ impl Reel<'_> {
                 self.shown(group, &states, state, || state.draw(spot, 8.0, state.name()))
             });
             let words = format!("task {task}");
-            let place = [spot[0] + 13.0, spot[1] - 9.0];
+            // Above the number of the robot that services the task.
+            let place = [spot[0] + 13.0, spot[1] - 14.0];
             group.add(text(words, place, 12.0, palette::TASK).set("font-weight", "600"))
         })
     }

@@ -247,6 +247,23 @@ fn an_album_tells_its_mission_in_order_and_to_the_byte() {
 }
 
 #[test]
+fn pictures_of_an_earlier_mission_do_not_stay() {
+    let folder = folder("again");
+    let kept = ["notes.txt", "08-k0290-x.svg", "8-k00290-x.svg", "08-k00290-.svg", "start.svg"];
+    let gone = ["07-k00275-task-0-recruit-10-joined.svg", "123-k123456-end.pdf"];
+    std::fs::create_dir_all(&folder).expect("created");
+    for name in kept.iter().chain(&gone) {
+        std::fs::write(folder.join(name), "").expect("written");
+    }
+    let files = mission().write(&folder, &end()).expect("written");
+    assert!(kept.iter().all(|name| folder.join(name).exists()));
+    assert!(!gone.iter().any(|name| folder.join(name).exists()));
+    let there = std::fs::read_dir(&folder).expect("readable").count();
+    assert_eq!(there, files.len() + kept.len());
+    std::fs::remove_dir_all(&folder).expect("removable");
+}
+
+#[test]
 fn an_album_without_a_single_period_is_written_too() {
     let folder = folder("empty");
     let files = empty_album(&study_one()).write(&folder, &end()).expect("written");

@@ -1,7 +1,8 @@
 //! Floor plans in GeoJSON (RFC 7946).
 
 use super::outline::{Ring, floor, oriented, scaled};
-use super::{MapPlaces, Plan, Reading};
+use super::{MapPlaces, Plan, Reading, counted};
+use crate::figures::quantity;
 use geojson::{Feature, FeatureCollection, GeoJson, Geometry, GeometryValue, Position};
 use i_overlay::core::fill_rule::FillRule;
 
@@ -41,11 +42,14 @@ pub(super) fn read(text: &str, reading: &Reading) -> Result<Plan, String> {
     };
     if let Some(Projection { longitude, latitude, .. }) = &projection {
         notes.push(format!(
-            "degrees became metres around longitude {longitude}, latitude {latitude}"
+            "degrees became metres around longitude {}, latitude {}",
+            quantity(*longitude),
+            quantity(*latitude)
         ));
     }
     if found.ignored > 0 {
-        notes.push(format!("{} geometries are neither polygons nor points", found.ignored));
+        let ignored = counted(found.ignored, "geometry that is", "geometries that are");
+        notes.push(format!("left out: {ignored} no polygon and no point of a known kind"));
     }
     let Found { floors, walls, places, .. } = found;
     let [floors, walls] =

@@ -1,8 +1,9 @@
 //! Maps of cells, each free or not, and how they become outlines.
 
 use super::outline::{Ring, scaled};
-use super::{MapPlaces, Plan, Reading, cells};
+use super::{MapPlaces, Plan, Reading, cells, counted};
 use crate::automaton::network::scenario::WorkspaceOutline;
+use crate::figures::quantity;
 
 /// The most cells of a map.
 const MOST_CELLS: usize = 100_000_000;
@@ -54,24 +55,30 @@ impl Grid {
         floor.narrow(margin);
         floor.part_diagonals();
         let dropped = floor.keep_largest_piece();
-        let traced = floor.outline().ok_or_else(|| {
-            format!("no floor is left of {stated} free cells; choose a smaller tolerance")
+        let traced = floor.outline().ok_or_else(|| match stated {
+            0 => "no cell of the map is free".to_owned(),
+            _ => format!(
+                "no floor is left of {}; choose a smaller tolerance",
+                counted(stated, "free cell", "free cells")
+            ),
         })?;
         let (rings, deviation) = cells::simplified(&traced, margin as f64);
 
         let corners = |rings: &[Ring]| rings.iter().map(Vec::len).sum::<usize>();
         let mut notes = self.notes;
-        notes.push(format!("{stated} cells of side {cell} are free"));
+        let free = counted(stated, "free cell", "free cells");
+        notes.push(format!("{free} of side {}", quantity(cell)));
         notes.push(format!(
             "walls are {} thicker, and the outline deviates by at most {}: it stays in free \
              cells; {} corners became {}",
-            margin as f64 * cell,
-            deviation * cell,
+            quantity(margin as f64 * cell),
+            quantity(deviation * cell),
             corners(&traced),
             corners(&rings)
         ));
         if dropped > 0 {
-            notes.push(format!("separate pieces of floor with {dropped} cells are left out"));
+            let dropped = counted(dropped, "cell", "cells");
+            notes.push(format!("left out: separate pieces of floor, {dropped} together"));
         }
         let (sin, cos) = self.yaw.sin_cos();
         let placed = |[x, y]: [f64; 2]| {

@@ -1,9 +1,14 @@
 //! Polygons from drawings and surveys, put together to one floor.
 
+use super::counted;
 use crate::automaton::network::scenario::WorkspaceOutline;
+use crate::figures::quantity;
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
+
+/// Coordinates farther from 0 are none of a floor plan.
+const FARTHEST: f64 = 1e100;
 
 /// The corners of a polygon, not closed twice.
 pub type Ring = Vec<[f64; 2]>;
@@ -38,6 +43,10 @@ pub(super) fn floor(
     walls: &[Ring],
     rule: FillRule,
 ) -> Result<(WorkspaceOutline, Vec<String>), String> {
+    let mut coordinates = rings.iter().chain(walls).flatten().flatten();
+    if let Some(wrong) = coordinates.find(|value| value.is_nan() || value.abs() > FARTHEST) {
+        return Err(format!("a coordinate is {wrong:e}: they are numbers up to {FARTHEST:e}"));
+    }
     let pieces = rings.to_vec().overlay_as::<i64>(&walls.to_vec(), OverlayRule::Difference, rule);
     let area = |piece: &Vec<Ring>| {
         let areas = piece.iter().map(|ring| double_area(ring).abs() / 2.0);
@@ -53,8 +62,9 @@ pub(super) fn floor(
     let notes = match left_out.len() {
         0 => Vec::new(),
         count => vec![format!(
-            "{count} separate pieces of floor, {:.4} square units together, are left out",
-            left_out.iter().sum::<f64>()
+            "left out: {}, {} square units together",
+            counted(count, "separate piece of floor", "separate pieces of floor"),
+            quantity(left_out.iter().sum())
         )],
     };
     let mut rings = largest.into_iter();

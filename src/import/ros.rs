@@ -47,7 +47,10 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Grid, ImportError> {
         .with_guessed_format()
         .map_err(unreadable)?
         .decode()
-        .map_err(|error| ImportError::Malformed { path: file.clone(), problem: error.to_string() })?
+        .map_err(|error| ImportError::Malformed {
+            path: file.clone(),
+            problem: format!("no image that can be read: {error}"),
+        })?
         .to_luma8();
     let occupied = |shade: u8| {
         let light = f64::from(shade) / 255.0;

@@ -1,7 +1,7 @@
 //! From a floor plan to a scenario that runs.
 
-use super::Plan;
 use super::gaps;
+use super::{MapPlaces, Plan};
 use crate::automaton::network::Site;
 use crate::automaton::network::scenario::{
     AccessPoint, Control, InvalidScenario, LinkRanges, RobotStart, Scenario, Settings, Task,
@@ -76,6 +76,14 @@ pub enum SkeletonError {
         /// The greatest coordinates of the floor.
         high: [f64; 2],
     },
+    /// A length that was chosen is none.
+    #[error("the {name} is {length}: it must be a finite length above 0")]
+    NoLength {
+        /// What it is the length of.
+        name: &'static str,
+        /// What was chosen.
+        length: f64,
+    },
     /// There is no room.
     #[error(
         "no place was found for {0}: the clearance may be too large for this floor, or the links \
@@ -104,13 +112,14 @@ pub fn skeleton(
     plan: &Plan,
     choices: &Choices,
 ) -> Result<(ValidScenario, Vec<String>), SkeletonError> {
+    lengths_are_positive(choices)?;
     let mut scenario = outline(plan, choices);
-    let settings = Settings::resolve(&scenario);
-    let mut notes = narrow_passages(&scenario, &settings);
-
     let site = Site::new(&scenario)?;
+    let mut notes = narrow_passages(&scenario, &site.settings);
+
+    let named = places_named(plan, &scenario);
     let places = Lattice::of(&site);
-    let access_points = first_of([&choices.access_points, &plan.places.access_points]);
+    let access_points = first_of([&choices.access_points, &named.access_points]);
     scenario.access_point = match access_points.is_empty() {
         false => access_points,
         true => vec![places.widest(&site).ok_or(SkeletonError::NoRoom("an access point"))?],
@@ -120,8 +129,8 @@ pub fn skeleton(
     .collect();
     let site = Site::new(&scenario)?;
     access_points_are_on_the_floor(&scenario, &site)?;
-    let starts = match plan.places.robots.is_empty() {
-        false => plan.places.robots.clone(),
+    let starts = match named.robots.is_empty() {
+        false => named.robots,
         true => (0..STARTS)
             .find_map(|draft| starts::places(&site, choices.robots, &mut Dice::new(1, draft)))
             .ok_or(SkeletonError::NoRoom("the robots"))?,
@@ -134,7 +143,7 @@ pub fn skeleton(
             rate: rounded_rate(rate),
         })
         .collect();
-    let tasks = first_of([&choices.tasks, &plan.places.tasks]);
+    let tasks = first_of([&choices.tasks, &named.tasks]);
     scenario.task = match tasks.is_empty() {
         false => tasks,
         true => places.far_apart(&site, choices.far_tasks),
@@ -147,6 +156,15 @@ pub fn skeleton(
         notes.push(format!("robots cannot reach {:.1} % of the floor", 100.0 * unreached));
     }
     Ok((ValidScenario::new(scenario)?, notes))
+}
+
+fn lengths_are_positive(choices: &Choices) -> Result<(), SkeletonError> {
+    let Choices { full_range, max_range, clearance, .. } = *choices;
+    let lengths =
+        [("full range", full_range), ("maximal range", max_range), ("clearance", clearance)];
+    let chosen = lengths.into_iter().filter_map(|(name, length)| Some((name, length?)));
+    let mut wrong = chosen.filter(|(_, length)| !(length.is_finite() && *length > 0.0));
+    wrong.next().map_or(Ok(()), |(name, length)| Err(SkeletonError::NoLength { name, length }))
 }
 
 fn access_points_are_on_the_floor(scenario: &Scenario, site: &Site) -> Result<(), SkeletonError> {
@@ -196,6 +214,14 @@ fn outline(plan: &Plan, choices: &Choices) -> Scenario {
 
 fn first_of(lists: [&Vec<[f64; 2]>; 2]) -> Vec<[f64; 2]> {
     lists.into_iter().find(|list| !list.is_empty()).cloned().unwrap_or_default()
+}
+
+/// The places that the map names, with as many digits as the outline has.
+fn places_named(plan: &Plan, scenario: &Scenario) -> MapPlaces {
+    let MapPlaces { access_points, robots, tasks } = &plan.places;
+    let [access_points, robots, tasks] = [access_points, robots, tasks]
+        .map(|places| places.iter().map(|&place| rounded(place, scenario)).collect());
+    MapPlaces { access_points, robots, tasks }
 }
 
 /// The passages that are too narrow, the widest by their places: a robot that is a little smaller

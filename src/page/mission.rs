@@ -6,13 +6,13 @@ use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach_automaton::network::scenario::{Scenario, Settings, ValidScenario};
 use pleach_continuous::geometry::{Destination, FreeSpace};
 use pleach_discrete::network::activity::may_follow;
-use pleach_verify::network::{Extreme, Monitor, Violation};
+use pleach_verify::network::{Monitor, Violation};
 use serde_json::{Map, Value, json};
 
 use crate::figures::{self, Mark, TaskState, Walls};
 use crate::mission::Watcher;
 use crate::story;
-use crate::summary::Summary;
+use crate::summary::{self, Measured, Summary};
 use crate::trace;
 
 use super::document::{Document, Outcome as Shown, Row};
@@ -171,7 +171,7 @@ impl MissionPage {
 /// The summary.
 impl MissionPage {
     fn outcome(&self) -> Shown {
-        let serviced = self.summary.tasks().iter().filter(|task| task.serviced.is_some()).count();
+        let serviced = self.summary.serviced();
         let tally = format!("{serviced} of {} tasks serviced", self.scenario.task.len());
         let periods = self.steps.count();
         match &self.end {
@@ -201,31 +201,17 @@ impl MissionPage {
             .map(|(number, task)| {
                 let [x, y] = task.position;
                 let name = format!("task {number} at ({x}, {y})");
-                match task.serviced {
-                    Some((step, robot)) => {
-                        Row::at(name, format!("serviced by robot {robot}"), step)
-                    }
+                match task.serviced.zip(task.robots()) {
+                    Some(((step, _), robots)) => Row::at(name, format!("serviced {robots}"), step),
                     None => Row::new(name, "not serviced".to_owned()),
                 }
             })
             .collect();
         rows.push(Row::new("recruits elected", self.summary.recruits().to_string()));
         rows.push(Row::new("stationary points", self.summary.stationary_points().to_string()));
-        let extremes = self.monitor.extremes();
-        let Settings { clearance, residual_tolerance, .. } = self.settings;
-        let measured = [
-            ("smallest distance of two robots", &extremes.pair_distance, "2ρ =", 2.0 * clearance),
-            ("smallest distance from a wall", &extremes.clearance, "ρ =", clearance),
-            ("smallest residual", &extremes.residual, "−c_min =", 0.0 - residual_tolerance),
-            ("largest load", &extremes.load, "at most", 1.0),
-        ];
-        rows.extend(measured.into_iter().filter_map(|(name, extreme, symbol, bound)| {
-            let Extreme { value, instant, robots } = extreme.as_ref()?;
-            let robots: Vec<String> = robots.iter().map(usize::to_string).collect();
-            let noun = if robots.len() == 1 { "robot" } else { "robots" };
-            let bound = figures::quantity(bound);
-            let text = format!("{value:.5} ({noun} {}); {symbol} {bound}", robots.join(" and "));
-            Some(Row::at(name, text, instant.step))
+        let measured = summary::measured(self.monitor.extremes(), &self.settings);
+        rows.extend(measured.into_iter().map(|Measured { name, value, step, robots, bound }| {
+            Row::at(name, format!("{value} ({robots}); {bound}"), step)
         }));
         rows.extend(
             self.violation

@@ -46,16 +46,9 @@ pub fn of_trace(trace: impl BufRead) -> Result<String, PageError> {
                 events.clear();
             }
             Ok(TraceEntry::End(end)) => page.end(&end).map_err(PageError::Step)?,
-            Err(error) => match is_torn(&error) && reader.next().is_none() {
-                true => break,
-                false => return Err(error.into()),
-            },
+            Err(error) if error.is_torn() && reader.next().is_none() => break,
+            Err(error) => return Err(error.into()),
         }
     }
     Ok(page.render())
-}
-
-/// Whether a line stops before its end.
-fn is_torn(error: &TraceError) -> bool {
-    matches!(error, TraceError::NotALine { source, .. } if source.is_eof())
 }

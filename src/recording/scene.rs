@@ -2,7 +2,7 @@
 
 use crate::automaton::network::record::Snapshot;
 use crate::automaton::network::scenario::{Scenario, Settings};
-use crate::discrete::network::Role;
+use crate::figures::Mark;
 use serde::Serialize;
 
 /// The frame of all coordinates.
@@ -119,19 +119,15 @@ const WALL: Colour = Colour { r: 0.35, g: 0.36, b: 0.4, a: 1.0 };
 const TREE: Colour = Colour { r: 0.8, g: 0.2, b: 0.2, a: 1.0 };
 const LINK: Colour = Colour { r: 0.2, g: 0.6, b: 0.3, a: 0.6 };
 const TASK: Colour = Colour { r: 0.1, g: 0.35, b: 0.8, a: 1.0 };
-const ACCESS_POINT: Colour = Colour { r: 0.1, g: 0.1, b: 0.1, a: 1.0 };
 const LABEL: Colour = Colour { r: 0.0, g: 0.0, b: 0.0, a: 1.0 };
 
-fn colour_of(role: Role) -> Colour {
-    let [r, g, b] = match role {
-        Role::Redundant => [0.6, 0.6, 0.6],
-        Role::Recruit => [0.95, 0.6, 0.1],
-        Role::Node => [0.3, 0.5, 0.8],
-        Role::Junction => [0.5, 0.3, 0.7],
-        Role::Leaf => [0.15, 0.6, 0.4],
-        Role::Leader => [0.85, 0.15, 0.2],
+/// The colour of a mark in figures, `#rrggbb`.
+fn colour_of(mark: Mark) -> Colour {
+    let part = |at: usize| {
+        let digits = mark.colour().get(at..at + 2).and_then(|hex| u8::from_str_radix(hex, 16).ok());
+        f64::from(digits.unwrap_or_default()) / 255.0
     };
-    Colour { r, g, b, a: 1.0 }
+    Colour { r: part(1), g: part(3), b: part(5), a: 1.0 }
 }
 
 fn at([x, y]: [f64; 2], z: f64) -> Pose {
@@ -192,7 +188,8 @@ pub(super) fn plan(scenario: &Scenario) -> Scene {
         })
         .collect();
     for access_point in &scenario.access_point {
-        plan.cylinders.push(disc(access_point.position, clearance, ACCESS_POINT));
+        let colour = colour_of(Mark::AccessPoint);
+        plan.cylinders.push(disc(access_point.position, clearance, colour));
     }
     for (number, task) in scenario.task.iter().enumerate() {
         plan.cylinders.push(disc(task.position, clearance / 2.0, TASK));
@@ -216,10 +213,10 @@ impl<'a> Frame<'a> {
     /// Robots, tree and links.
     pub fn scene(&self) -> Scene {
         let mut network = entity("network", self.snapshot.time);
-        let robots = self.snapshot.positions.iter().zip(&self.snapshot.roles).enumerate();
-        for (robot, (place, role)) in robots {
+        for (robot, place) in self.snapshot.positions.iter().enumerate() {
             let place = [place.x, place.y];
-            network.cylinders.push(disc(place, self.clearance, colour_of(*role)));
+            let colour = colour_of(Mark::of(self.snapshot, robot));
+            network.cylinders.push(disc(place, self.clearance, colour));
             network.texts.push(label(place, 2.0 * self.clearance, robot.to_string()));
         }
         let ends =

@@ -86,6 +86,12 @@ impl Page {
         self.call("Emulation.setEmulatedMedia", json!({ "features": features }));
     }
 
+    /// Lays the page out as on paper.
+    pub fn lay_out_for_paper(&mut self) {
+        self.value("dispatchEvent(new Event('beforeprint'))");
+        self.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
+    }
+
     /// The value of an expression, after what it promises.
     pub fn value(&mut self, expression: &str) -> Value {
         let arguments = json!({

@@ -6,8 +6,8 @@ use pleach::automaton::network::scenario::ValidScenario;
 use pleach::discrete::Location as _;
 use pleach::mission::{self, Watcher};
 use pleach::page::{self, MissionPage};
-use pleach::scenario_file;
 use pleach::trace::{TraceEntry, TraceReader, TraceWriter};
+use pleach::{scenario_file, story};
 use std::path::{Path, PathBuf};
 
 const DESKTOP: [u32; 2] = [1360, 900];
@@ -38,6 +38,16 @@ impl Run {
             _ => None,
         };
         entries.filter_map(snapshot).collect()
+    }
+
+    /// The events, each with the control period for which it is recorded.
+    fn events(&self) -> Vec<(usize, MissionEvent)> {
+        let entries = TraceReader::new(self.trace.as_bytes()).unwrap();
+        let event = |entry| match entry {
+            Ok(TraceEntry::Event { step, event }) => Some((step, event)),
+            _ => None,
+        };
+        entries.filter_map(event).collect()
     }
 }
 
@@ -122,6 +132,125 @@ fn study_one_says_what_its_trace_says() {
         assert_numbers(&mut page, snapshot);
     }
     assert_content(&page);
+}
+
+/// The story and the time line have the events of the trace, each at its control period.
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn events_stand_where_the_trace_has_them() {
+    let run = Run::of("study-1");
+    let last = run.snapshots().len() - 1;
+    let mut page = open("study-1-events", &run.trace);
+    let told = page
+        .value("[...document.querySelectorAll('#story .told')].map(entry => entry.textContent)");
+    let mut expected: Vec<String> = (run.events().iter())
+        .map(|(step, event)| format!("k = {step} {}", story::tell(event)))
+        .collect();
+    expected.push(format!("k = {last} the mission ends: serviced"));
+    assert_eq!(told, serde_json::json!(expected));
+
+    // The middles of the marks, and the ends of the line, in pixels.
+    let middles = page.value(
+        "[...document.querySelectorAll('.line .event')].map(mark => { \
+           const { left, width } = mark.getBoundingClientRect(); return left + width / 2; })",
+    );
+    let middles: Vec<f64> = serde_json::from_value(middles).unwrap();
+    let [left, width]: [f64; 2] = serde_json::from_value(page.value(
+        "(({ left, width }) => [left, width])(\
+         document.getElementById('scrubber').getBoundingClientRect())",
+    ))
+    .unwrap();
+    let moments: Vec<usize> = (run.events().iter())
+        .filter(|(_, event)| story::caption(event).is_some())
+        .map(|(step, _)| *step)
+        .collect();
+    assert_eq!(middles.len(), moments.len());
+    for (middle, step) in middles.iter().zip(moments) {
+        let place = left + width * step as f64 / last as f64;
+        assert!((middle - place).abs() < 0.5, "the mark of k = {step} is at {middle}, not {place}");
+    }
+    // The tasks, each over the stretch in which it is pursued.
+    let bands = page.value(
+        "[...document.querySelectorAll('.line .band')].map(band => [band.textContent, \
+           Math.round((band.getBoundingClientRect().left - document.getElementById('scrubber') \
+             .getBoundingClientRect().left) / document.getElementById('scrubber').clientWidth \
+             * pleach.player.end)])",
+    );
+    let begins =
+        |task| run.snapshots().iter().position(|snapshot| snapshot.task == Some(task)).unwrap();
+    let expected: Vec<_> = (0..3).map(|task| (format!("task {task}"), begins(task))).collect();
+    assert_eq!(bands, serde_json::json!(expected));
+    assert_content(&page);
+}
+
+/// On paper the drawings keep their proportions, and none lies on another one: Chromium prints a
+/// canvas with white where nothing is drawn.
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn everything_is_seen_on_paper() {
+    let run = Run::of("too-few");
+    let mut page = open("too-few-paper", &run.trace);
+    page.lay_out_for_paper();
+    let canvases = page.value(
+        "[...document.querySelectorAll('canvas')].map(canvas => { \
+           const { left, top, width, height } = canvas.getBoundingClientRect(); \
+           return [left, top, width, height, canvas.width, canvas.height]; })",
+    );
+    let canvases: Vec<[f64; 6]> = serde_json::from_value(canvases).unwrap();
+    let shown: Vec<_> = canvases.iter().filter(|[_, _, width, ..]| *width > 0.0).collect();
+    assert!(shown.len() >= 13, "the plan, eight marks and four charts: {shown:?}");
+    for [_, _, width, height, columns, rows] in &shown {
+        assert!((width * rows / columns - height).abs() < 1.0, "{width} by {height} is stretched");
+    }
+    for (number, [left, top, width, height, ..]) in shown.iter().enumerate() {
+        for [x, y, w, h, ..] in &shown[..number] {
+            let apart = x + w <= *left || left + width <= *x || y + h <= *top || top + height <= *y;
+            assert!(apart, "two drawings lie on each other at ({left}, {top})");
+        }
+    }
+    // The cursor, which is a surface of its own on screens, is drawn too.
+    let dark = page.number(
+        "(() => { const canvas = document.querySelectorAll('.plot canvas:not(.over)')[1]; \
+           const { data } = canvas.getContext('2d') \
+             .getImageData(0, canvas.height / 2, canvas.width, 1); \
+           let dark = 0; \
+           for (let i = 0; i < data.length; i += 4) dark += data[i] + data[i + 1] + data[i + 2] < 200 && data[i + 3] > 100; \
+           return dark; })()",
+    );
+    assert!(dark >= 1.0, "the cursor is missing");
+    assert_content(&page);
+}
+
+/// In a crowd on a small screen the numbers of robots without duty give way, and no other does.
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn labels_do_not_cover_each_other() {
+    let run = Run::of("study-1");
+    let mut page = open("study-1-labels", &run.trace);
+    page.resize(PHONE);
+    page.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
+    for step in [0, 128, 358, 700] {
+        let boxes = page.value(&format!(
+            "(() => {{ pleach.player.seek({step}); return pleach.plan.places.boxes; }})()"
+        ));
+        let boxes: Vec<(serde_json::Value, [f64; 4])> = serde_json::from_value(boxes).unwrap();
+        let keys: Vec<_> = boxes.iter().map(|(key, _)| key).collect();
+        for node in 0..=13 {
+            let is_idle =
+                page.value(&format!("pleach.mission.markOf({node}, {step}).key === 'redundant'"));
+            let is_named = keys.contains(&&serde_json::json!(node));
+            assert!(is_named || is_idle == true, "node {node} has no label at k = {step}");
+        }
+        for (number, (key, one)) in boxes.iter().enumerate() {
+            for (other, two) in &boxes[..number] {
+                let along =
+                    |axis: usize| one[axis + 2].min(two[axis + 2]) - one[axis].max(two[axis]);
+                let covered = along(0).max(0.0) * along(1).max(0.0);
+                let size = (one[2] - one[0]) * (one[3] - one[1]);
+                assert!(covered <= 0.31 * size, "{key} lies on {other} at k = {step}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -204,8 +204,8 @@ fn a_trace_is_judged_alone() {
         let record = Record::of(mission);
         let text = trace(&mission.scenario, &record);
         let verdict = judge(TraceReader::new(text.as_slice()).unwrap()).unwrap();
-        let steps = mission.periods.len() - 1;
-        assert!(matches!(verdict, Verdict::Sound { steps: judged, .. } if judged == steps));
+        let run = mission.periods.len();
+        assert!(matches!(verdict, Verdict::Sound { periods, .. } if periods == run));
     }
 }
 
@@ -262,5 +262,5 @@ fn an_interrupted_mission_is_sound_as_far_as_it_goes() {
     let end = End { outcome: Outcome::Interrupted, reason, task: Some(0) };
     let text = trace(&mission.scenario, &Record { end, ..Record::of(&mission) });
     let verdict = judge(TraceReader::new(text.as_slice()).unwrap()).unwrap();
-    assert!(matches!(verdict, Verdict::Sound { steps: 100, .. }));
+    assert!(matches!(verdict, Verdict::Sound { periods: 101, .. }));
 }

@@ -25,7 +25,13 @@ const colours = {
   curve(number) { return this.get(`curve-${number % 12}`); },
 };
 
-/** A drawing surface that is as sharp as the screen. `draw` paints it whenever its size changes. */
+/** How wide surfaces are on paper, in pixels. */
+const PAPER_WIDTH = 700;
+
+/**
+ * A drawing surface that is as sharp as the screen. `draw` paints it whenever its size changes, and
+ * for paper, of which it is told.
+ */
 class Surface {
   constructor(parent, height, draw) {
     this.canvas = element("canvas");
@@ -33,14 +39,17 @@ class Surface {
     this.height = height;
     this.draw = draw;
     parent.append(this.canvas);
-    new ResizeObserver(() => this.fit()).observe(parent);
+    new ResizeObserver(() => this.fit(this.isOnPaper)).observe(parent);
+    addEventListener("beforeprint", () => this.fit(true));
+    addEventListener("afterprint", () => this.fit());
     this.parent = parent;
     this.fit();
   }
 
-  fit() {
+  fit(isOnPaper = false) {
     const density = window.devicePixelRatio || 1;
-    const width = Math.max(1, this.parent.clientWidth);
+    const width = isOnPaper ? PAPER_WIDTH : Math.max(1, this.parent.clientWidth);
+    this.isOnPaper = isOnPaper;
     const height = Math.max(1, typeof this.height === "function" ? this.height(width) : this.height);
     this.size = [width, height];
     this.canvas.style.height = `${height}px`;
@@ -54,7 +63,7 @@ class Surface {
 
   paint() {
     this.context.clearRect(0, 0, ...this.size);
-    this.draw(this.context, this.size);
+    this.draw(this.context, this.size, this.isOnPaper);
   }
 }
 

@@ -37,6 +37,17 @@ function timeScale(player, width) {
   return { x: at => left + at / end * room, at: x => (x - left) / room * end };
 }
 
+/** A surface, and one over it for what changes often. On paper canvases hide what is below them, so there is one. */
+function layered(parent, height, drawBase, drawTop) {
+  const base = new Surface(parent, height, (context, size, isOnPaper) => {
+    drawBase(context, size);
+    if (isOnPaper) drawTop(context, size);
+  });
+  const top = new Surface(parent, height, drawTop);
+  top.canvas.classList.add("over");
+  return [base, top];
+}
+
 /** A press or a drag on a surface moves the run there. */
 function seekOn(canvas, player) {
   const seek = event => player.seek(timeScale(player, canvas.clientWidth).at(placeOf(event)[0]));
@@ -82,9 +93,8 @@ class Chart {
       element("figcaption", {}, element("h3", {}, title), note && element("p", {}, note), this.reading),
       this.plot, curves.length > 1 && curves.length <= FEW_CURVES ? legendOf(curves) : null));
     this.range = this.measure();
-    this.base = new Surface(this.plot, CHART_HEIGHT, (context, size) => this.drawBase(context, size));
-    this.top = new Surface(this.plot, CHART_HEIGHT, (context, size) => this.drawTop(context, size));
-    this.top.canvas.classList.add("over");
+    [this.base, this.top] = layered(this.plot, CHART_HEIGHT, (context, size) => this.drawBase(context, size),
+      (context, size) => this.drawTop(context, size));
     seekOn(this.top.canvas, player);
     player.onChange(() => this.show());
     selection.onChange(() => { this.base.paint(); this.show(); });

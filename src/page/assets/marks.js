@@ -5,13 +5,21 @@ const LABEL_DIRECTIONS = [1, 7, 0, 2, 3, 5, 4, 6];
 /** What a label pays for standing on a wall, and what it saves by staying in its direction. */
 const WALL_PRICE = 30, LOYALTY = 12;
 
+/** The share of a label that may lie on others before one that is of little use is left out. */
+const MOST_COVERED = 0.3;
+
 /** Writes labels, each in the first free direction; a label keeps its direction where it can. */
 class LabelPlaces {
   constructor() {
     this.directions = new Map();
+    /** What was drawn last: keys and boxes. */
+    this.boxes = [];
   }
 
-  /** A label has a `text`, a `key` that stays the same, a `spot` and how far away it stands. */
+  /**
+   * The labels in the order of their importance. A label has a `text`, a `key` that stays the same, a
+   * `spot`, how far away it stands, and whether it `mayGo` where there is no room.
+   */
   draw(context, labels, floor, radius) {
     const taken = labels.map(({ spot: [x, y] }) => [x - radius, y - radius, x + radius, y + radius]);
     const size = labels.length > 36 ? 9.5 : 11;
@@ -22,6 +30,7 @@ class LabelPlaces {
     context.lineJoin = "round";
     context.lineWidth = 3;
     context.strokeStyle = colours.get("floor");
+    this.boxes = [];
     for (const label of labels) {
       const half = [context.measureText(label.text).width / 2 + 1, size * 0.45];
       const priced = LABEL_DIRECTIONS.map((direction, rank) => {
@@ -30,11 +39,13 @@ class LabelPlaces {
         const [x, y] = place.centre.map(length => length * devicePixelRatio);
         const wall = context.isPointInPath(floor, x, y, "evenodd") ? 0 : WALL_PRICE;
         const loyalty = this.directions.get(label.key) === direction ? LOYALTY : 0;
-        return { ...place, direction, price: covered + rank + wall - loyalty };
+        return { ...place, direction, covered, price: covered + rank + wall - loyalty };
       });
       const best = priced.reduce((one, other) => other.price < one.price ? other : one);
+      if (label.mayGo && best.covered > MOST_COVERED * 4 * half[0] * half[1]) continue;
       this.directions.set(label.key, best.direction);
       taken.push(best.box);
+      this.boxes.push([label.key, best.box]);
       context.strokeText(label.text, ...best.centre);
       context.fillStyle = colours.get(label.colour);
       context.fillText(label.text, ...best.centre);

@@ -285,8 +285,9 @@ function layerPanel(parent, mission, plan) {
     theme.listeners.push(paint);
     return element("span", {}, canvas, mark.name);
   });
+  const moments = mission.moments.map(moment => element("span", {}, momentGlyph(moment.strokes), moment.name));
   parent.append(
-    element("details", { open: true }, element("summary", {}, "Marks"), element("div", { class: "boxes" }, ...marks)),
+    element("details", { open: true }, element("summary", {}, "Marks"), element("div", { class: "boxes" }, ...marks, ...moments)),
     element("details", { open: true }, element("summary", {}, "Layers"), element("div", { class: "boxes" }, ...boxes),
       element("p", { class: "quiet" }, "Links reach through walls; robots do not.")));
 }

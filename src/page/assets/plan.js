@@ -327,12 +327,14 @@ class Plan {
     context.restore();
   }
 
-  /** What is written beside nodes and tasks. */
-  labels({ view, spots, radius }) {
+  /** What is written beside nodes and tasks, the most telling first. */
+  labels({ view, step, spots, radius }) {
     const { mission } = this;
-    const nodes = spots.map((spot, node) => ({
-      key: node, spot, colour: node < mission.robots ? "ink" : "access-point",
+    const order = spots.map((_, node) => node).sort((one, other) => mission.rank(one, step) - mission.rank(other, step));
+    const nodes = order.map(node => ({
+      key: node, spot: spots[node], colour: node < mission.robots ? "ink" : "access-point",
       text: node < mission.robots ? String(node) : `AP ${node}`, reach: radius * 1.5,
+      mayGo: mission.markOf(node, step).key === "redundant" && node !== this.selection.shown,
     }));
     const tasks = mission.scenario.task.map(({ position }, number) => ({
       key: `task ${number}`, spot: view.spot(position), colour: "task", text: `task ${number}`, reach: radius * 2.1,

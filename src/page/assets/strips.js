@@ -14,9 +14,8 @@ class Strips {
       element("figcaption", {}, element("h3", {}, title), note && element("p", {}, note), this.reading),
       this.plot, legend.length ? legendOf(legend) : null));
     const height = this.row * rows.length + 4;
-    this.base = new Surface(this.plot, height, (context, size) => this.drawBase(context, size));
-    this.top = new Surface(this.plot, height, (context, size) => this.drawTop(context, size));
-    this.top.canvas.classList.add("over");
+    [this.base, this.top] = layered(this.plot, height, (context, size) => this.drawBase(context, size),
+      (context, size) => this.drawTop(context, size));
     seekOn(this.top.canvas, player);
     this.top.canvas.addEventListener("pointermove", event => selection.point(this.numberAt(event)));
     this.top.canvas.addEventListener("pointerleave", () => selection.point(null));

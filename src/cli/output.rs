@@ -1,0 +1,100 @@
+//! What the program writes: files, which errors name, and the standard streams.
+
+use super::source::STANDARD;
+use super::status::Failure;
+use std::fmt::Display;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// Writes lines to the error output. If it cannot be written, because nobody reads it any more for
+/// example, the lines are lost, and the program goes on.
+pub fn tell(lines: impl Display) {
+    let _ = writeln!(io::stderr().lock(), "{lines}");
+}
+
+/// Writes a text to the standard output.
+pub fn say(text: &str) -> io::Result<()> {
+    let mut output = standard();
+    output.write_all(text.as_bytes())?;
+    output.flush()
+}
+
+/// Writes a text to a file, or for `-` to the standard output.
+pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    let mut output = open(path)?;
+    output.write_all(text.as_bytes())?;
+    Ok(output.flush()?)
+}
+
+/// A new file, or for `-` the standard output.
+pub fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
+    match path.as_os_str() == STANDARD {
+        true => Ok(Box::new(standard())),
+        false => Ok(Box::new(create_file(path)?)),
+    }
+}
+
+/// A new file, buffered.
+pub fn create_file(path: &Path) -> Result<BufWriter<Named<File>>, Failure> {
+    let name = path.display().to_string();
+    let file = File::create(path).map(|output| BufWriter::new(Named { name, output }));
+    file.map_err(|source| Failure::Creation { path: path.to_owned(), source })
+}
+
+/// A folder, created if it is missing: one that cannot be written is told before a run, not after.
+pub fn create_folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(|source| Failure::Creation { path: path.to_owned(), source })
+}
+
+/// Refuses outputs that would take the place of an input or of each other. Folders and devices hold
+/// many.
+pub fn check_places<'a>(
+    inputs: impl IntoIterator<Item = &'a PathBuf>,
+    outputs: impl IntoIterator<Item = &'a PathBuf>,
+) -> Result<(), Failure> {
+    let place = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let inputs = inputs.into_iter().filter(|path| path.is_file());
+    let mut taken: Vec<PathBuf> = inputs.map(|path| place(path)).collect();
+    for output in outputs.into_iter().filter(|path| path.is_file() || !path.exists()) {
+        let here = place(output);
+        if taken.contains(&here) {
+            let what = "would take the place of another file of this call; choose another path";
+            return Err(Failure::Usage(format!("what goes to {} {what}", output.display())));
+        }
+        taken.push(here);
+    }
+    Ok(())
+}
+
+fn standard() -> Named<io::StdoutLock<'static>> {
+    Named { name: "the standard output".into(), output: io::stdout().lock() }
+}
+
+/// An output whose errors say which it is.
+pub struct Named<W> {
+    name: String,
+    output: W,
+}
+
+impl<W> Named<W> {
+    fn told(&self, error: io::Error) -> io::Error {
+        io::Error::new(error.kind(), format!("{}: {error}", self.name))
+    }
+}
+
+impl<W: Write> Write for Named<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.output.write(bytes).map_err(|error| self.told(error))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.output.flush().map_err(|error| self.told(error))
+    }
+}
+
+impl<W: Seek> Seek for Named<W> {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.output.seek(place).map_err(|error| self.told(error))
+    }
+}
