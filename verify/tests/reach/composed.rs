@@ -65,7 +65,15 @@ fn a_composition_stays_between_its_bounds() {
     let temperature = pleach_guards::variable(&model.variables()[0]);
     let ask = |forbidden| {
         let forbidden = [Forbidden::anywhere(forbidden)];
-        verify(&product, &[], &[start.clone()], &forbidden, &settings, &Effort::default()).unwrap()
+        verify(
+            &product,
+            &[],
+            std::slice::from_ref(&start),
+            &forbidden,
+            &settings,
+            &Effort::default(),
+        )
+        .unwrap()
     };
     assert!(matches!(
         ask(temperature.at_most(17.9) | temperature.at_least(22.1)),
