@@ -128,9 +128,10 @@ const CONTROL: &str = "\
 Time passes in one location only, by the flow of equation (23), and while its invariant holds: the
 robot stays in the region that the motion problem (21) has given it. At the sample it goes through
 the other locations, which take no time (Algorithm 5). In each it waits for what its neighbours say,
-up to the next tick of its clock; the reset lists what it does then, in this order. Rounds of sweeps
-and of the negotiation are counted from 1 (n := 0); a robot with nothing to tell or to judge does not
-tick in them.
+up to the next tick of its clock; the reset lists what it does then, in this order. Rounds of beacons,
+of sweeps and of the negotiation are counted from 1 (n := 0); a robot that has nothing to send or to
+judge in them does not tick. In rounds of beacons it sends its public state three times, and three
+times more whenever that changes.
 ";
 
 const SERVICE: &str = "\

@@ -12,6 +12,7 @@ mod endings;
 mod error_messages;
 mod faulty_models;
 mod guarantees;
+mod literature;
 mod many_components;
 mod messages;
 mod models;

@@ -1,9 +1,9 @@
 //! One model as a composition of automata with channels and as an ensemble of nodes with a medium:
 //! both give one trace.
 //!
-//! Nodes in a ring have clocks of unlike rates. Every period a node tells its successor what its
-//! clock reads; a clock that hears of a greater reading takes it over, so that all follow the
-//! fastest. Where messages take no time, each is passed on until it has gone round the ring.
+//! Nodes in a ring have clocks of unlike rates. Every period a node sends its reading to its
+//! successor; a node that receives a greater reading adopts it, so that all follow the fastest clock.
+//! Messages that take no time are passed on until they have gone round the ring.
 //!
 //! All numbers are multiples of powers of two, so that instants and readings are exact, and nodes
 //! often jump at the same instant. Such jumps have no order in either form; so the trace of each node
@@ -25,7 +25,7 @@ use proptest::prelude::*;
 /// A node of the ring, with its channel to the next.
 #[derive(Clone, Copy, Debug)]
 struct Station {
-    /// Of its clock, in seconds a second.
+    /// Of its clock, in seconds per second.
     rate: f64,
     /// Between its messages, in seconds.
     period: f64,
@@ -39,7 +39,7 @@ fn hops(ring: &[Station]) -> usize {
 }
 
 /// What a node does, when, and what its clock reads after it.
-type Deed = (f64, Kind, f64);
+type Step = (f64, Kind, f64);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
@@ -111,7 +111,7 @@ fn composition(ring: &[Station]) -> Composition {
 }
 
 /// What each node does in a run of the composition.
-fn deeds_of_automata(ring: &[Station]) -> Vec<Vec<Deed>> {
+fn steps_of_automata(ring: &[Station]) -> Vec<Vec<Step>> {
     let trajectory = composition(ring).run(HORIZON).expect("it can be run");
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
     let clock = |id: usize| {
@@ -119,14 +119,14 @@ fn deeds_of_automata(ring: &[Station]) -> Vec<Vec<Deed>> {
         trajectory.variables().iter().position(|variable| *variable == name).expect("its clock")
     };
     let clocks: Vec<usize> = (0..ring.len()).map(clock).collect();
-    let mut deeds = vec![Vec::new(); ring.len()];
+    let mut steps = vec![Vec::new(); ring.len()];
     for (jump, after) in trajectory.jumps().iter().zip(trajectory.intervals().skip(1)) {
-        let (node, deed) = jump.label.split_once('.').expect("node and event");
+        let (node, step) = jump.label.split_once('.').expect("node and event");
         let id: usize = node.parse().expect("a number");
-        let kind = if deed == "tell" { Kind::Tells } else { Kind::Hears };
-        deeds[id].push((jump.at.t, kind, after.samples[0].values[clocks[id]]));
+        let kind = if step == "tell" { Kind::Tells } else { Kind::Hears };
+        steps[id].push((jump.at.t, kind, after.samples[0].values[clocks[id]]));
     }
-    deeds
+    steps
 }
 
 // ---- Nodes and a medium ------------------------------------------------------------------------
@@ -138,7 +138,7 @@ struct Reading {
     hops: usize,
 }
 
-struct Keeper {
+struct ClockNode {
     station: Station,
     next: NodeId,
     most: usize,
@@ -147,10 +147,10 @@ struct Keeper {
     /// What is left of the way of a message that is to be passed on.
     passing: Option<usize>,
     now: f64,
-    deeds: Vec<Deed>,
+    steps: Vec<Step>,
 }
 
-impl Node for Keeper {
+impl Node for ClockNode {
     type Message = Reading;
     type Sense = Infallible;
     type Report = Infallible;
@@ -177,7 +177,7 @@ impl Node for Keeper {
                 Kind::Tells
             }
         };
-        self.deeds.push((self.now, kind, self.clock));
+        self.steps.push((self.now, kind, self.clock));
         Ok(())
     }
 
@@ -195,42 +195,42 @@ impl Node for Keeper {
     fn body(&self) {}
 }
 
-impl Observed for Keeper {
-    type View<'a> = &'a [Deed];
+impl Observed for ClockNode {
+    type View<'a> = &'a [Step];
 
-    fn view(&self) -> &[Deed] {
-        &self.deeds
+    fn view(&self) -> &[Step] {
+        &self.steps
     }
 }
 
 /// Messages take a time that depends on their sender.
-struct Post {
+struct Delays {
     delays: Vec<f64>,
     /// With the time that is left.
-    on_the_way: VecDeque<(f64, Envelope<Reading>)>,
+    in_flight: VecDeque<(f64, Envelope<Reading>)>,
 }
 
-impl Medium<Reading, ()> for Post {
+impl Medium<Reading, ()> for Delays {
     fn update(&mut self, _: &[()]) {}
 
     fn send(&mut self, envelope: Envelope<Reading>) {
-        self.on_the_way.push_back((self.delays[envelope.from], envelope));
+        self.in_flight.push_back((self.delays[envelope.from], envelope));
     }
 
     fn time_to_arrival(&self) -> Option<f64> {
-        self.on_the_way.iter().map(|(left, _)| *left).reduce(f64::min)
+        self.in_flight.iter().map(|(left, _)| *left).reduce(f64::min)
     }
 
     fn flow(&mut self, duration: f64) {
-        self.on_the_way.iter_mut().for_each(|(left, _)| *left -= duration);
+        self.in_flight.iter_mut().for_each(|(left, _)| *left -= duration);
     }
 
     fn deliver<E>(
         &mut self,
         mut hand_over: impl FnMut(Delivery<'_, Reading>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (due, later) = self.on_the_way.drain(..).partition(|(left, _)| *left <= 0.0);
-        self.on_the_way = later;
+        let (due, later) = self.in_flight.drain(..).partition(|(left, _)| *left <= 0.0);
+        self.in_flight = later;
         VecDeque::into_iter(due).try_for_each(|(_, Envelope { from, to, message })| match to {
             Destination::One(to) => hand_over(Delivery { from, to, message: &message }),
             Destination::Everyone => unreachable!("nodes tell their successors"),
@@ -239,8 +239,8 @@ impl Medium<Reading, ()> for Post {
 }
 
 /// What each node does in a run of the ensemble.
-fn deeds_of_nodes(ring: &[Station]) -> Vec<Vec<Deed>> {
-    let keepers = ring.iter().enumerate().map(|(id, &station)| Keeper {
+fn steps_of_nodes(ring: &[Station]) -> Vec<Vec<Step>> {
+    let clocks = ring.iter().enumerate().map(|(id, &station)| ClockNode {
         station,
         next: (id + 1) % ring.len(),
         most: hops(ring),
@@ -248,22 +248,22 @@ fn deeds_of_nodes(ring: &[Station]) -> Vec<Vec<Deed>> {
         timer: 0.0,
         passing: None,
         now: 0.0,
-        deeds: Vec::new(),
+        steps: Vec::new(),
     });
     let delays = ring.iter().map(|station| station.delay).collect();
-    let post = Post { delays, on_the_way: VecDeque::new() };
-    let mut ensemble = Ensemble::new(keepers.collect(), post);
+    let medium = Delays { delays, in_flight: VecDeque::new() };
+    let mut ensemble = Ensemble::new(clocks.collect(), medium);
     let executor = Executor::new(HORIZON, 1000).expect("a horizon");
     let ending = executor.run(&mut ensemble, &mut ()).expect("nothing can fail");
     assert_eq!(ending.reason, Reason::Horizon);
-    ensemble.views().map(<[Deed]>::to_vec).collect()
+    ensemble.views().map(<[Step]>::to_vec).collect()
 }
 
 // ---- The comparison ----------------------------------------------------------------------------
 
-/// Every node does something that the test can miss: it tells, and takes over a reading.
-fn shows_something(deeds: &[Vec<Deed>]) -> bool {
-    let kinds = |kind| deeds.iter().flatten().filter(move |deed| deed.1 == kind).count();
+/// The run is worth comparing: messages are sent, and heard.
+fn shows_something(steps: &[Vec<Step>]) -> bool {
+    let kinds = |kind| steps.iter().flatten().filter(move |step| step.1 == kind).count();
     kinds(Kind::Tells) > 0 && kinds(Kind::Hears) > 0
 }
 
@@ -279,15 +279,15 @@ proptest! {
 
     #[test]
     fn messages_with_delays(ring in stations((0..=16_u32).prop_map(|n| f64::from(2 * n + 1) / 16.0))) {
-        let deeds = deeds_of_automata(&ring);
-        prop_assert!(shows_something(&deeds));
-        prop_assert_eq!(deeds, deeds_of_nodes(&ring));
+        let steps = steps_of_automata(&ring);
+        prop_assert!(shows_something(&steps));
+        prop_assert_eq!(steps, steps_of_nodes(&ring));
     }
 
     #[test]
     fn messages_that_take_no_time(ring in stations(Just(0.0))) {
-        let deeds = deeds_of_automata(&ring);
-        prop_assert!(shows_something(&deeds));
-        prop_assert_eq!(deeds, deeds_of_nodes(&ring));
+        let steps = steps_of_automata(&ring);
+        prop_assert!(shows_something(&steps));
+        prop_assert_eq!(steps, steps_of_nodes(&ring));
     }
 }

@@ -1,16 +1,20 @@
 //! The vector field of a group: the flows of its components in their locations, as one.
 
 use std::cell::RefCell;
+use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
-use pleach_continuous::flow::VectorField;
+use nalgebra::DMatrix;
+use pleach_continuous::flow::{InvalidFlow, LinearField, VectorField};
 
 use super::blueprint::{Place, PlaceMotion, RateProgram, Solution};
 use super::group::Group;
+use super::linear::LinearPart;
 use super::{Component, Composition};
 
-/// The most variables for which the matrix exponential is cheaper than an integrator.
+/// The most moving variables for which the matrix exponential is cheaper than an integrator.
 const LARGEST_LINEAR: usize = 16;
+/// The same, with those that rest and are read.
+const LARGEST_MATRIX: usize = 64;
 
 /// How a variable moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,13 +41,8 @@ pub(super) struct Field<'a> {
     places: RefCell<Vec<Vec<f64>>>,
 }
 
-/// ẋ = A x + b of some variables.
-pub(super) struct LinearPart {
-    /// The variables, by their place in the group.
-    pub(super) variables: Vec<usize>,
-    pub(super) matrix: DMatrix<f64>,
-    pub(super) offset: DVector<f64>,
-}
+/// A coefficient of a linear rate: its row, its column and its value.
+type Entry = (usize, usize, f64);
 
 impl<'a> Field<'a> {
     pub(super) fn of(
@@ -101,11 +100,38 @@ impl<'a> Field<'a> {
     }
 
     /// The variables with curved rows and what they read, if all their rates are linear and they
-    /// are few. What rests is no variable of it.
-    pub(super) fn linear(&self) -> Option<LinearPart> {
-        let mut entries = Vec::new();
-        let mut offsets = vec![0.0; self.rows.len()];
-        let mut is_read = vec![false; self.rows.len()];
+    /// are few. It depends on the locations alone, and not on the state.
+    ///
+    /// # Errors
+    ///
+    /// If a coefficient is not finite.
+    pub(super) fn linear(&self) -> Result<Option<LinearPart>, InvalidFlow> {
+        let curved = self.rows.iter().filter(|row| **row == Row::Curved).count();
+        if curved > LARGEST_LINEAR {
+            return Ok(None);
+        }
+        let Some((offsets, entries)) = self.entries() else { return Ok(None) };
+        let mut belongs: Vec<bool> = self.rows.iter().map(|row| *row == Row::Curved).collect();
+        entries.iter().for_each(|(_, column, _)| belongs[*column] = true);
+        let variables: Arc<[usize]> = (0..belongs.len()).filter(|&place| belongs[place]).collect();
+        let moving = variables.iter().filter(|&&place| self.rows[place] != Row::Line(0.0));
+        if moving.count() > LARGEST_LINEAR || variables.len() > LARGEST_MATRIX {
+            return Ok(None);
+        }
+        let number = |place: usize| variables.partition_point(|one| *one < place);
+        let mut matrix = DMatrix::zeros(variables.len(), variables.len());
+        for (row, column, coefficient) in entries {
+            // Several inputs may read one coordinate.
+            matrix[(number(row), number(column))] += coefficient;
+        }
+        let offset: Vec<f64> = variables.iter().map(|&place| offsets[place]).collect();
+        let field = Arc::new(LinearField::new(&matrix, &offset)?);
+        Ok(Some(LinearPart { variables, field }))
+    }
+
+    /// What the rates of the group are if all are linear: their constants, and the coefficients.
+    fn entries(&self) -> Option<(Vec<f64>, Vec<Entry>)> {
+        let (mut offsets, mut entries) = (vec![0.0; self.rows.len()], Vec::new());
         for (component, place) in &self.moving {
             let PlaceMotion::Rates(rates) = &place.motion else { return None };
             for rate in rates {
@@ -114,33 +140,15 @@ impl<'a> Field<'a> {
                 for (name, coefficient) in form.coefficients() {
                     let names = &component.blueprint.coordinates;
                     let column = component.places[names.iter().position(|one| *one == name)?];
-                    match self.rows[column] {
-                        Row::Line(0.0) => offsets[row] += coefficient * self.start[column],
+                    if self.rows[column] == Row::Solved {
                         // It changes in a way that no matrix knows.
-                        Row::Solved => return None,
-                        Row::Line(_) | Row::Curved => {
-                            is_read[column] = true;
-                            entries.push((row, column, *coefficient));
-                        }
+                        return None;
                     }
+                    entries.push((row, column, *coefficient));
                 }
             }
         }
-        let belongs = |&place: &usize| self.rows[place] == Row::Curved || is_read[place];
-        let variables: Vec<usize> = (0..self.rows.len()).filter(belongs).collect();
-        if variables.len() > LARGEST_LINEAR {
-            return None;
-        }
-        let number = |place: usize| variables.partition_point(|one| *one < place);
-        let size = variables.len();
-        let mut matrix = DMatrix::zeros(size, size);
-        for (row, column, coefficient) in entries {
-            // Several inputs may read one coordinate.
-            matrix[(number(row), number(column))] += coefficient;
-        }
-        let offset = variables.iter().map(|&place| offsets[place]);
-        let offset = DVector::from_iterator(size, offset);
-        Some(LinearPart { variables, matrix, offset })
+        Some((offsets, entries))
     }
 
     fn add_rates(&self, state: &[f64], rates: &mut [f64]) {

@@ -74,6 +74,7 @@ mod field;
 mod flight;
 mod group;
 mod jumps;
+mod linear;
 mod models;
 mod picture;
 mod product;

@@ -14,6 +14,7 @@ pub use failure::{Failure, Halt, SimulationError};
 use super::Composition;
 use super::chance::Chance;
 use super::flight::Flight;
+use super::linear::LinearFlows;
 use super::record::Record;
 use super::settings::{Policy, Settings};
 use super::tension::Readiness;
@@ -86,6 +87,8 @@ struct GroupState {
     /// may be outside an invariant by as much. It is a rounding error of the instant of the event.
     allowance: f64,
     zeno: ZenoDetector,
+    /// What is known of its linear flows.
+    linear: LinearFlows,
 }
 
 /// When a group's flight ends.
@@ -133,6 +136,7 @@ impl<'a> Simulation<'a> {
             compelled: None,
             allowance: 0.0,
             zeno: ZenoDetector::new(horizon),
+            linear: LinearFlows::default(),
         };
         Ok(Simulation {
             composition,

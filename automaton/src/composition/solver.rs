@@ -1,9 +1,14 @@
 //! The solution of a group's flow, piece by piece.
 
-use pleach_continuous::flow::{Curve, IntegrationFailure, Integrator, LinearFlow, Piece};
+use std::sync::Arc;
+
+use pleach_continuous::flow::{
+    Curve, IntegrationFailure, Integrator, InvalidFlow, LinearFlow, Piece,
+};
 use pleach_guards::Enclosure;
 
-use super::field::{Field, LinearPart, Row};
+use super::field::{Field, Row};
+use super::linear::LinearPart;
 use super::settings::Settings;
 use crate::moment::Moment;
 use crate::trajectory::Why;
@@ -32,33 +37,28 @@ enum Method<'a> {
     /// All variables move along lines.
     Lines,
     /// The curved ones by the matrix exponential.
-    Linear(LinearFlow, Vec<usize>),
+    Linear(LinearFlow, Arc<[usize]>),
     Steps(Box<Integrator<'a, Field<'a>>>),
 }
 
 impl<'a> Solver<'a> {
-    /// The solution for at most `limit` seconds.
+    /// The solution for at most `limit` seconds, where `linear` is the linear part of the field, if
+    /// it has one.
     pub(super) fn new(
         field: &'a Field<'a>,
+        linear: Option<LinearPart>,
         settings: &Settings,
         limit: f64,
-    ) -> Result<Self, String> {
-        let steps = || {
-            let integrator = Integrator::new(field, 0.0, &field.start, settings.tolerances());
-            Method::Steps(Box::new(integrator.with_method(settings.method)))
-        };
-        let method = if field.is_straight() {
-            Method::Lines
-        } else {
-            match field.linear() {
-                Some(LinearPart { variables, matrix, offset }) => {
-                    let start: Vec<f64> =
-                        variables.iter().map(|&place| field.start[place]).collect();
-                    let flow = LinearFlow::new(&matrix, offset.as_slice(), &start, limit)
-                        .map_err(|fault| fault.to_string())?;
-                    Method::Linear(flow, variables)
-                }
-                None => steps(),
+    ) -> Result<Self, InvalidFlow> {
+        let method = match linear {
+            _ if field.is_straight() => Method::Lines,
+            Some(LinearPart { variables, field: linear }) => {
+                let start: Vec<f64> = variables.iter().map(|&place| field.start[place]).collect();
+                Method::Linear(LinearFlow::of(&linear, &start, limit)?, variables)
+            }
+            None => {
+                let integrator = Integrator::new(field, 0.0, &field.start, settings.tolerances());
+                Method::Steps(Box::new(integrator.with_method(settings.method)))
             }
         };
         let (pieces, enclosures) = (Vec::new(), Vec::new());
@@ -114,6 +114,8 @@ impl<'a> Solver<'a> {
         if let Some(last) = self.pieces.pop() {
             self.pieces.push(last.within(0.0, time));
         }
+        // A record keeps them, of each of very many flights.
+        self.pieces.shrink_to_fit();
         Ok(self.pieces)
     }
 

@@ -1,25 +1,23 @@
-//! Differential equations with their true answers.
+//! Differential equations.
 
 use std::f64::consts::TAU;
 
+use pleach_automaton::{Coordinates, Vector};
 use pleach_guards::{Expression, variable};
 
-/// A problem with its true answer.
+/// A problem with its answers.
 pub struct Problem<const N: usize> {
     pub name: &'static str,
     pub field: fn(&[f64; N]) -> [f64; N],
     pub formulas: [Expression; N],
     pub start: [f64; N],
     pub end: f64,
-    pub answer: [f64; N],
-}
-
-pub fn names<const N: usize>() -> [String; N] {
-    std::array::from_fn(|index| format!("x{index}"))
+    /// The states at some instants, as another library computes them with its smallest tolerance.
+    pub answers: Vec<(f64, [f64; N])>,
 }
 
 fn variables<const N: usize>() -> [Expression; N] {
-    names::<N>().map(|name| variable(&name))
+    std::array::from_fn(|index| variable(Vector::<N>::NAMES[index]))
 }
 
 /// Lorenz's equations at his parameters.
@@ -77,7 +75,7 @@ pub fn chain() -> Problem<50> {
     Problem::new("linear chain", field, formulas, start, 20.0)
 }
 
-/// A body on an ellipse of eccentricity 0.6 about one of unit weight: back at its start after 2π.
+/// A body on an ellipse of eccentricity 0.6 about one of unit weight, for three turns.
 pub fn orbit() -> Problem<4> {
     let field = |x: &[f64; 4]| {
         let squared = x[0] * x[0] + x[1] * x[1];
@@ -88,6 +86,5 @@ pub fn orbit() -> Problem<4> {
     let squared = x * x + y * y;
     let cubed = &squared * squared.square_root();
     let formulas = [u.clone(), v.clone(), -x / &cubed, -y / &cubed];
-    let start = [0.4, 0.0, 0.0, 2.0];
-    Problem { answer: start, ..Problem::new("orbit", field, formulas, start, 3.0 * TAU) }
+    Problem::new("orbit", field, formulas, [0.4, 0.0, 0.0, 2.0], 3.0 * TAU)
 }

@@ -5,10 +5,12 @@ use std::cell::RefCell;
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod, OdeSolverStopReason, Vector};
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Dopri5, SVector, System};
+use pleach_automaton::{Composition, Coordinates, Settings, Vector as State};
 use pleach_continuous::flow::{Integrator, Tolerances, VectorField};
 use pleach_guards::{Expression, Tape};
 
-use crate::problems::{Problem, names};
+use crate::events::{Place::Here, here};
+use crate::problems::Problem;
 
 /// The absolute tolerance, as a fraction of the relative one: that of the defaults.
 const ABSOLUTE_PER_RELATIVE: f64 = 1e-3;
@@ -26,12 +28,12 @@ impl<const N: usize> System<f64, SVector<f64, N>> for Dop<N> {
 /// Integrates by a method of `ode_solvers`: all its defaults, but with the states at the ends of
 /// steps as its only output, which is its fastest way.
 macro_rules! dop {
-    ($stepper:ident, $problem:ident, $relative:ident, $beta:literal, $least:literal, $most:literal) => {{
+    ($stepper:ident, $problem:ident, $relative:ident, $end:ident, $beta:literal, $least:literal, $most:literal) => {{
         let mut stepper = $stepper::from_param(
             Dop($problem.field),
             0.0,
-            $problem.end,
-            $problem.end,
+            $end,
+            $end,
             SVector::from($problem.start),
             $relative,
             $relative * ABSOLUTE_PER_RELATIVE,
@@ -39,7 +41,7 @@ macro_rules! dop {
             $beta,
             $least,
             $most,
-            $problem.end,
+            $end,
             0.0,
             100_000,
             1000,
@@ -60,6 +62,10 @@ macro_rules! diffsol {
     }};
 }
 
+/// At how many instants of a problem errors are compared: at a single one a solver may be right by
+/// chance.
+const INSTANTS: u32 = 8;
+
 impl<const N: usize> Problem<N> {
     pub fn new(
         name: &'static str,
@@ -68,50 +74,71 @@ impl<const N: usize> Problem<N> {
         start: [f64; N],
         end: f64,
     ) -> Self {
-        let mut problem = Problem { name, field, formulas, start, end, answer: [0.0; N] };
-        problem.answer = problem.pleach(1e-14);
+        let mut problem = Problem { name, field, formulas, start, end, answers: Vec::new() };
+        let instants = (1..=INSTANTS).map(|k| end * f64::from(k) / f64::from(INSTANTS));
+        problem.answers = instants.map(|time| (time, problem.dop853(1e-13, time))).collect();
         problem
     }
 
-    fn integrate(&self, field: &impl VectorField, relative: f64) -> [f64; N] {
+    fn integrate(&self, field: &impl VectorField, relative: f64, end: f64) -> [f64; N] {
         let tolerances =
             Tolerances::new(relative, relative * ABSOLUTE_PER_RELATIVE).expect("they are positive");
         let mut integrator = Integrator::new(field, 0.0, &self.start, tolerances);
-        while integrator.time() < self.end {
-            integrator.step(self.end).expect("a smooth flow");
+        while integrator.time() < end {
+            integrator.step(end).expect("a smooth flow");
         }
         integrator.state().try_into().expect("the dimension of the problem")
     }
 
-    pub fn pleach(&self, relative: f64) -> [f64; N] {
+    pub fn by_function(&self, relative: f64, end: f64) -> [f64; N] {
         let field = |_: f64, state: &[f64], rates: &mut [f64]| {
             let state: &[f64; N] = state.try_into().expect("the dimension of the problem");
             rates.copy_from_slice(&(self.field)(state));
         };
-        self.integrate(&field, relative)
+        self.integrate(&field, relative, end)
     }
 
     pub fn tape(&self) -> Tape {
-        Tape::compile(&self.formulas, &names::<N>()).expect("these are the names")
+        Tape::compile(&self.formulas, State::<N>::NAMES).expect("these are the names")
     }
 
-    pub fn by_formulas(&self, tape: &Tape, relative: f64) -> [f64; N] {
+    pub fn by_formulas(&self, tape: &Tape, relative: f64, end: f64) -> [f64; N] {
         let places = RefCell::new(tape.places());
         let field = |_: f64, state: &[f64], rates: &mut [f64]| {
             tape.evaluate(state, &mut places.borrow_mut(), rates);
         };
-        self.integrate(&field, relative)
+        self.integrate(&field, relative, end)
     }
 
-    pub fn dopri5(&self, relative: f64) -> [f64; N] {
-        dop!(Dopri5, self, relative, 0.04, 0.2, 10.0)
+    /// The flow as the only one of an automaton.
+    pub fn automaton(&self) -> Composition {
+        let rates = State::<N>::coordinates().into_iter().zip(&self.formulas);
+        let flow: Vec<_> = rates.map(|(x, formula)| x.rate(formula)).collect();
+        let automaton = here(State::from(self.start)).flow(Here, flow).build();
+        let automaton = automaton.expect("it is sound");
+        Composition::builder().add("problem", &automaton).build().expect("it fits")
     }
 
-    pub fn dop853(&self, relative: f64) -> [f64; N] {
-        dop!(Dop853, self, relative, 0.0, 0.333, 6.0)
+    pub fn by_run(&self, automaton: &Composition, relative: f64, end: f64) -> [f64; N] {
+        let settings = Settings {
+            relative_tolerance: relative,
+            absolute_tolerance: relative * ABSOLUTE_PER_RELATIVE,
+            ..Settings::default()
+        };
+        let trajectory = automaton.run_with(settings, end).expect("it can be run");
+        let last = trajectory.values_at(end).expect("it lasts");
+        last.try_into().expect("the dimension of the problem")
     }
 
-    pub fn tsit45(&self, relative: f64) -> [f64; N] {
+    pub fn dopri5(&self, relative: f64, end: f64) -> [f64; N] {
+        dop!(Dopri5, self, relative, end, 0.04, 0.2, 10.0)
+    }
+
+    pub fn dop853(&self, relative: f64, end: f64) -> [f64; N] {
+        dop!(Dop853, self, relative, end, 0.0, 0.333, 6.0)
+    }
+
+    pub fn tsit45(&self, relative: f64, end: f64) -> [f64; N] {
         let (field, start) = (self.field, self.start);
         let problem = OdeBuilder::<NalgebraMat<f64>>::new()
             .rtol(relative)
@@ -122,21 +149,24 @@ impl<const N: usize> Problem<N> {
             .init(move |_p: &[f64], _t: f64, x: &mut [f64]| x.copy_from_slice(&start), N)
             .build()
             .expect("a problem");
-        let end = diffsol!(problem.tsit45(), self.end);
-        end.try_into().expect("the dimension of the problem")
+        let last = diffsol!(problem.tsit45(), end);
+        last.try_into().expect("the dimension of the problem")
     }
 
-    pub fn error(&self, end: [f64; N]) -> f64 {
-        let differences = end.iter().zip(&self.answer).map(|(x, y)| (x - y).abs());
-        differences.fold(0.0, f64::max)
+    /// The largest error at any of the instants.
+    pub fn error(&self, relative: f64, solve: &dyn Fn(f64, f64) -> [f64; N]) -> f64 {
+        let largest = |(time, answer): &(f64, [f64; N])| {
+            let state = solve(relative, *time);
+            state.iter().zip(answer).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+        };
+        self.answers.iter().map(largest).fold(0.0, f64::max)
     }
+}
 
-    /// The loosest relative tolerance, on a grid of twenty per decade, that gives this error.
-    pub fn tolerance_for(&self, error: f64, solve: fn(&Self, f64) -> [f64; N]) -> f64 {
-        let grid = (60..280).map(|step| 10f64.powf(-f64::from(step) / 20.0));
-        let good = |relative: &f64| self.error(solve(self, *relative)) <= error;
-        grid.into_iter().find(good).unwrap_or(1e-14)
-    }
+/// The loosest relative tolerance, on a grid of twenty per decade, whose error is no larger.
+pub fn tolerance_for(error: f64, error_with: impl Fn(f64) -> f64) -> f64 {
+    let mut grid = (60..275).map(|step| 10f64.powf(-f64::from(step) / 20.0));
+    grid.find(|relative| error_with(*relative) <= error).unwrap_or(1e-14)
 }
 
 /// The parameter of van der Pol's oscillator that makes it stiff.

@@ -15,12 +15,28 @@ pub(super) struct Explicit {
     stages: [Vec<f64>; 11],
     /// The state at which stage 12 is evaluated, which is at the end of the step.
     end_of_twelfth: Vec<f64>,
+    /// By component: the square of its error, as a fraction of what is allowed and per second.
+    fractions: Vec<f64>,
+}
+
+/// A motion λ of a flow, as two states near each other show it during a step of length h.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    /// |h λ|.
+    pub(super) speed: f64,
+    /// By how much the states approach each other: about |h λ| if λ is real and negative, and 0 if it
+    /// is imaginary.
+    pub(super) decay: f64,
 }
 
 impl Explicit {
     pub(super) fn new(dimension: usize) -> Self {
         let zeros = || vec![0.0; dimension];
-        Explicit { stages: std::array::from_fn(|_| zeros()), end_of_twelfth: zeros() }
+        Explicit {
+            stages: std::array::from_fn(|_| zeros()),
+            end_of_twelfth: zeros(),
+            fractions: zeros(),
+        }
     }
 
     /// Computes all stages of a step and the state at its end, and its error as a fraction of what
@@ -62,22 +78,27 @@ impl Explicit {
         field.rates(end, probe, k12);
         let stages = [k1, k6, k7, k8, k9, k10, k11, k12].map(Vec::as_slice);
         combine(&mut trial.state, state, step, SOLUTION, stages);
-        estimate(tolerances, state, &trial.state, step, stages)
+        estimate(tolerances, state, &trial.state, step, stages, &mut self.fractions)
     }
 
-    /// |h λ| for the fastest motion λ that the last stages show.
+    /// The fastest motion that the last stages show.
     ///
     /// Stages 12 and 13 are evaluated at the same instant at two states: Hairer and Wanner, *Solving
     /// Ordinary Differential Equations II*, 2nd ed., section IV.2, doi:10.1007/978-3-642-05221-7.
-    pub(super) fn stiffness(&self, step: f64, trial: &Trial) -> f64 {
-        let distance = |one: &[f64], another: &[f64]| -> f64 {
-            one.iter().zip(another).map(|(one, another)| (one - another).powi(2)).sum()
-        };
-        let apart = distance(&trial.state, &self.end_of_twelfth);
+    pub(super) fn motion(&self, step: f64, trial: &Trial) -> Motion {
+        let states = trial.state.iter().zip(&self.end_of_twelfth);
+        let rates = trial.rates.iter().zip(&self.stages[10]);
+        let (mut apart, mut along, mut faster) = (0.0, 0.0, 0.0);
+        for ((x, other_x), (rate, other_rate)) in states.zip(rates) {
+            let (state, rate) = (x - other_x, rate - other_rate);
+            apart += state * state;
+            along += state * rate;
+            faster += rate * rate;
+        }
         if apart > 0.0 {
-            step * (distance(&trial.rates, &self.stages[10]) / apart).sqrt()
+            Motion { speed: step * (faster / apart).sqrt(), decay: -step * along / apart }
         } else {
-            0.0
+            Motion { speed: 0.0, decay: 0.0 }
         }
     }
 
@@ -126,13 +147,13 @@ fn estimate(
     after: &[f64],
     step: f64,
     stages: [&[f64]; 8],
+    fractions: &mut [f64],
 ) -> f64 {
     let dimension = after.len();
     let before = &before[..dimension];
+    let fractions = &mut fractions[..dimension];
     let stages = stages.map(|stage| &stage[..dimension]);
     let [first, _, _, _, ninth, _, _, twelfth] = stages;
-    // `max` ignores NaN; the sum does not.
-    let (mut largest, mut sum) = (0.0_f64, 0.0);
     for i in 0..dimension {
         let (mut solution, mut fifth) = (0.0, 0.0);
         for stage in 0..8 {
@@ -141,12 +162,18 @@ fn estimate(
         }
         let [one, nine, twelve] = THIRD_ORDER;
         let third = solution - one * first[i] - nine * ninth[i] - twelve * twelfth[i];
+        let allowed = 1.0 / tolerances.allowed(before[i].abs().max(after[i].abs()));
+        let (fifth, third) = (fifth * allowed, third * allowed);
         let squared = fifth * fifth;
-        let divisor = squared + 0.01 * third * third;
-        let error = if divisor > 0.0 { step.abs() * squared / divisor.sqrt() } else { 0.0 };
-        let fraction = error / tolerances.allowed(before[i].abs().max(after[i].abs()));
-        largest = largest.max(fraction);
-        sum += fraction + 0.0 * after[i] + 0.0 * fifth;
+        // Not 0 ÷ 0 where there is no error.
+        fractions[i] = squared * squared / (squared + 0.01 * third * third + f64::MIN_POSITIVE);
     }
+    // `max` ignores NaN; the sum does not.
+    let (mut largest, mut sum) = (0.0_f64, 0.0);
+    for (fraction, after) in fractions.iter().zip(after) {
+        largest = largest.max(*fraction);
+        sum += fraction + 0.0 * after;
+    }
+    let largest = step.abs() * largest.sqrt();
     if sum.is_finite() { largest } else { sum }
 }

@@ -10,6 +10,7 @@ use super::controller::Controller;
 use super::explicit::Explicit;
 use super::implicit::Implicit;
 use super::step::{Inside, Stages, Step};
+use super::suspicion::{Advice, Suspicion};
 use super::{Tolerances, VectorField};
 
 /// How an [`Integrator`] makes its steps.
@@ -29,8 +30,8 @@ pub enum Method {
 /// Flows that are not stiff are solved by Dormand and Prince's explicit Runge–Kutta method of order
 /// 8 with error estimates of orders 5 and 3 (doi:10.1016/0771-050X(81)90010-3), stiff ones by
 /// Steinebach's Rosenbrock method Rodas5P of order 5 (doi:10.1007/s10543-023-00967-x), which solves
-/// eight systems of linear equations per step. A flow is *stiff* where stability and not accuracy
-/// limits explicit steps. Inside, a [`Step`] is the continuous extension of its method. The length
+/// eight systems of linear equations per step. A flow is *stiff* where fast motions that have faded,
+/// and not those that last, limit explicit steps. Inside, a [`Step`] is the continuous extension of its method. The length
 /// of the steps keeps the error within the tolerances. At a kink of the field the steps become
 /// short.
 ///
@@ -50,7 +51,7 @@ pub enum Method {
 /// # Ok::<(), pleach_continuous::flow::IntegrationFailure>(())
 /// ```
 ///
-/// Memory is taken at construction, and when the method first becomes implicit; a step takes none.
+/// Memory is taken at construction, and when an implicit step is first tried; other steps take none.
 #[derive(Debug)]
 pub struct Integrator<'f, F: ?Sized> {
     field: &'f F,
@@ -71,9 +72,7 @@ pub struct Integrator<'f, F: ?Sized> {
     implicit: Option<Implicit>,
     /// Whether steps are implicit.
     is_implicit: bool,
-    /// How many steps have spoken for the other method, and how many since then have not.
-    objections: u32,
-    calm: u32,
+    suspicion: Suspicion,
     inside: RefCell<Inside>,
 }
 
@@ -94,19 +93,11 @@ const SMALLEST_STEP: f64 = 4.0 * f64::EPSILON;
 /// A step that falls short of the limit by less than this fraction is stretched to end there, so
 /// that no tiny step follows.
 const STRETCH: f64 = 0.01;
-/// |h λ| near the boundary of the region in which the explicit method is stable, which is at 6.1.
-const STABLE: f64 = 5.0;
-/// This many steps near the boundary make a flow stiff, and this many others in a row clear it of the
-/// suspicion: Hairer and Wanner's numbers.
-const STIFF_STEPS: u32 = 15;
-const CALM_STEPS: u32 = 6;
 /// With |h λ| from here on, the continuous extension of an explicit step may magnify the errors of
 /// its stages.
 const SUSPECT: f64 = 2.0;
-/// Implicit steps with |h λ| below this are as long as explicit ones would be.
-const HARMLESS: f64 = 1.0;
-/// The number of these in a row after which steps are explicit again.
-const HARMLESS_STEPS: u32 = 25;
+/// Steps that are longer by this factor are worth an implicit method.
+const MUCH_LONGER: f64 = 4.0;
 
 impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
     /// The solution that is in `state` at `start_time`, in seconds since the start of the flow, by
@@ -126,8 +117,7 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
             explicit: Explicit::new(state.len()),
             implicit: None,
             is_implicit: false,
-            objections: 0,
-            calm: 0,
+            suspicion: Suspicion::default(),
             inside: RefCell::new(Inside::new(state.len())),
         }
     }
@@ -186,7 +176,7 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
             if error <= 1.0 {
                 let next = step * self.controller.accept(error);
                 self.proposal = Some(if lands { next.max(proposal) } else { next });
-                return Ok(self.accept(step));
+                return Ok(self.accept(step, limit));
             }
             step *= self.controller.reject(error);
             if step < self.smallest_step() {
@@ -252,23 +242,28 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
     }
 
     /// Makes the trial the present.
-    fn accept(&mut self, step: f64) -> Step<'_, F> {
+    fn accept(&mut self, step: f64, limit: f64) -> Step<'_, F> {
         let was_implicit = self.is_implicit;
-        let motion = match &mut self.implicit {
+        let (advice, is_suspect) = match &mut self.implicit {
             Some(implicit) if was_implicit => {
-                let motion = implicit.stiffness(step);
+                let advice = self.suspicion.after_implicit(implicit.stiffness(step));
                 implicit.forget();
-                motion
+                (advice, false)
             }
-            _ => self.explicit.stiffness(step, &self.trial),
+            _ => {
+                let motion = self.explicit.motion(step, &self.trial);
+                (self.suspicion.after_explicit(motion), motion.speed > SUSPECT)
+            }
         };
         mem::swap(&mut self.past, &mut self.present);
         mem::swap(&mut self.present, &mut self.trial);
         self.inside.get_mut().forget();
-        self.judge(motion);
+        if self.method == Method::Automatic {
+            self.heed(advice, step, limit);
+        }
         let stages = match &self.implicit {
             Some(implicit) if was_implicit => Stages::Implicit(implicit),
-            _ => Stages::Explicit { explicit: &self.explicit, is_suspect: motion > SUSPECT },
+            _ => Stages::Explicit { explicit: &self.explicit, is_suspect },
         };
         Step {
             field: self.field,
@@ -283,33 +278,38 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
         }
     }
 
-    /// Turns to the other method after enough steps that speak for it.
-    fn judge(&mut self, motion: f64) {
-        let (objects, most) = if self.is_implicit {
-            (motion < HARMLESS, HARMLESS_STEPS)
-        } else {
-            (motion > STABLE, STIFF_STEPS)
-        };
-        if objects {
-            self.objections += 1;
-            self.calm = 0;
-        } else {
-            self.calm += 1;
-            if self.is_implicit || self.calm >= CALM_STEPS {
-                self.objections = 0;
+    /// Turns to the other method if that is advised.
+    fn heed(&mut self, advice: Advice, step: f64, limit: f64) {
+        match advice {
+            Advice::Stay => {}
+            Advice::Turn => self.turn(!self.is_implicit),
+            Advice::Try => {
+                let much = MUCH_LONGER * step;
+                if self.present.time + much <= limit && self.can_be_implicit(much) {
+                    self.turn(true);
+                    self.proposal = Some(much);
+                }
             }
-        }
-        if self.objections >= most && self.method == Method::Automatic {
-            self.turn(!self.is_implicit);
         }
     }
 
+    /// Whether an implicit step of this length is accurate enough.
+    fn can_be_implicit(&mut self, step: f64) -> bool {
+        let dimension = self.present.state.len();
+        let implicit = self.implicit.get_or_insert_with(|| Implicit::new(dimension));
+        implicit.forget();
+        self.trial.time = self.present.time + step;
+        let (field, tolerances) = (self.field, &self.tolerances);
+        implicit.attempt(field, tolerances, &self.present, step, &mut self.trial) <= 1.0
+    }
+
     fn turn(&mut self, to_implicit: bool) {
-        if to_implicit && self.implicit.is_none() {
-            self.implicit = Some(Implicit::new(self.present.state.len()));
+        let dimension = self.present.state.len();
+        if to_implicit {
+            self.implicit.get_or_insert_with(|| Implicit::new(dimension)).forget();
         }
         self.is_implicit = to_implicit;
-        self.objections = 0;
+        self.suspicion = Suspicion::default();
         self.controller = Controller::new(self.order());
     }
 

@@ -100,6 +100,28 @@ fn methods_change_where_the_flow_does() {
     assert!(early && late, "implicit early: {early}, explicit late: {late}");
 }
 
+/// ẋ = −λ (x − cos t) − sin t is cos t. With λ = 1000 the explicit method follows the fast motion at
+/// |h λ| ≈ 2, far from the boundary of its stability, because its stages are off the slow solution.
+#[test]
+fn a_decay_that_has_faded_is_noticed_before_it_limits_stability() {
+    for (lambda, is_stiff) in [(1000.0, true), (300.0, true), (1.0, false)] {
+        let field = |time: f64, x: &[f64], rates: &mut [f64]| {
+            rates[0] = -lambda * (x[0] - time.cos()) - time.sin();
+        };
+        let mut integrator = Integrator::new(&field, 0.0, &[1.0], Tolerances::default());
+        let mut steps = 0;
+        while integrator.time() < 100.0 {
+            integrator.step(100.0).expect("the solution goes on");
+            steps += 1;
+            if integrator.time() > 1.0 {
+                assert_eq!(integrator.is_implicit(), is_stiff, "λ = {lambda}");
+            }
+        }
+        assert!(steps < if is_stiff { 10_000 } else { 300 }, "λ = {lambda}: {steps} steps");
+        assert!((integrator.state()[0] - 100f64.cos()).abs() < 1e-8);
+    }
+}
+
 #[test]
 fn a_field_that_knows_its_slopes_is_not_asked_for_differences() {
     struct Known(Cell<u32>);

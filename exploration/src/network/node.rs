@@ -33,8 +33,8 @@ impl Node {
         }
     }
 
-    /// The clock ticks. In the rounds that are explored everyone speaks, as in the first ones of a
-    /// control period.
+    /// The clock ticks. In every round that is explored all nodes send, as they do in the first
+    /// rounds of a control period.
     fn tick(&mut self) -> Result<(), RobotError> {
         if let Node::Robot(robot) = self {
             robot.count_rounds_anew();

@@ -44,6 +44,7 @@ impl<'a> Simulation<'a> {
     fn fly(&mut self, group: usize, policy: Policy) -> Result<Flight, Halt> {
         let parts = &self.composition.groups[group];
         let left = Moment::from(self.horizon) - self.now;
+        let mut linear = std::mem::take(&mut self.groups[group].linear);
         let plan = Plan {
             group: parts,
             standing: Standing { is_local: true, ..self.standing() },
@@ -54,10 +55,12 @@ impl<'a> Simulation<'a> {
             start: parts.slots.iter().map(|&slot| self.values[slot]).collect(),
             // A little more, for what happens at the instant nearest to the horizon.
             limit: left.seconds() + f64::EPSILON * self.horizon,
+            linear: &mut linear,
         };
         let mut steps = self.steps;
         let flight = plan.fly(&mut steps);
         self.steps = steps;
+        self.groups[group].linear = linear;
         flight
     }
 

@@ -20,7 +20,7 @@ impl AccessPoint {
         Ok(())
     }
 
-    /// In the next round everyone speaks again: what it has processed is not needed any more.
+    /// In the next round all nodes send again: beacons that are processed are not needed any more.
     pub fn forget_round(&mut self) {
         if self.round() > 1 {
             self.heard.clear();

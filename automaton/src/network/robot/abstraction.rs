@@ -75,7 +75,7 @@ impl Robot {
         self.jump()
     }
 
-    /// The next round is taken for the first one of a control period, in which everyone speaks.
+    /// The next round counts as the first one of a control period, in which all robots send.
     pub fn count_rounds_anew(&mut self) {
         self.round_count.restart();
     }

@@ -27,9 +27,9 @@ pub(super) struct Neighbour {
     silent_rounds: u8,
 }
 
-/// A beacon is told in this many rounds, at the beginning of a control period and whenever it has
-/// changed, so that all but one of them may be lost. A neighbour that is not heard in any round at
-/// the beginning of a period is out of range.
+/// A beacon is sent in this many rounds, at the beginning of a control period and whenever it has
+/// changed, so that all of these messages but one may be lost. A neighbour that is silent in as many
+/// of the rounds in which all robots send is out of range.
 pub(super) const ROUNDS_TO_BE_HEARD: usize = 3;
 
 impl Neighbour {
@@ -122,8 +122,8 @@ impl Robot {
         self.receive_news();
     }
 
-    /// A round of beacons is over. Everyone speaks in the first rounds of a period; later on,
-    /// silence says nothing.
+    /// A round of beacons is over. In the first rounds of a period all robots send; only in these is
+    /// silence counted.
     pub(super) fn end_round(&mut self) {
         self.heard_up_to = 0;
         let counts_silence = self.round_count.count() <= ROUNDS_TO_BE_HEARD;

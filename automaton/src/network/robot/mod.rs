@@ -96,7 +96,7 @@ pub struct Robot {
     rate: f64,
     site: Arc<Site>,
 
-    // Where it stands in its control period, rounds of sweeps or negotiation, what it does now, and
+    // Where it stands in its control period, rounds of beacons, sweeps or negotiation, what it does now, and
     // whether that is its first period.
     control: Current<Control>,
     round_count: Rounds,

@@ -2,15 +2,14 @@
 //!
 //! A polynomial is its own only piece. A solution by exponentials is cut into pieces of a fraction
 //! of a turn of its fastest mode that has not faded. Each is the Taylor polynomial of the solution,
-//! with a proven bound on the rest: with |M| the matrix of magnitudes and a the magnitudes of the
-//! next term, if |M| a ≤ λ a in every component, the terms that follow shrink at least as those of
-//! a geometric series. Where a mode is so fast that it has faded but rules the series, as in stiff
+//! with a proven bound on the rest: with |M| the matrix of magnitudes, s the sum of the magnitudes of
+//! the terms up to the k-th, and times in units of the length of the piece, let |M| s ≤ λ s in every
+//! component. If the k-th term is at most μ s, the one after it is at most μ s λ ÷ (k + 1), and so on: they
+//! shrink at least as those of a geometric series. Where a mode is so fast that it has faded but rules the series, as in stiff
 //! systems, the piece is instead a polynomial [through](Piece::through) the solution, with an
 //! estimate of its error.
 
-use nalgebra::DVector;
-
-use super::{Exponential, LinearFlow, Solution};
+use super::{Exponential, LinearFlow};
 use crate::flow::{Curve, Piece};
 
 /// How much of a radian of the fastest lasting mode a piece is long.
@@ -25,22 +24,20 @@ const HALVINGS: u32 = 4;
 impl LinearFlow {
     pub(super) fn piece_from(&self, time: f64) -> Piece {
         let start = time.clamp(0.0, self.duration);
-        match &self.solution {
-            Solution::Polynomial(coefficients) => {
-                let mut piece = Piece::new(0.0, self.duration, 0.0, 1.0);
-                for component in 0..self.dimension {
-                    piece.push(coefficients.iter().map(|term| term[component]), 0.0);
-                }
-                piece
-            }
-            Solution::Exponential(exponential) => self.piece_of(exponential, start),
+        let Some(coefficients) = &self.polynomial else {
+            return self.piece_of(self.field.exponential(), start);
+        };
+        let mut piece = Piece::new(0.0, self.duration, 0.0, 1.0);
+        for component in 0..self.dimension() {
+            piece.push(coefficients.iter().map(|term| term[component]), 0.0);
         }
+        piece
     }
 
     fn piece_of(&self, exponential: &Exponential, start: f64) -> Piece {
         let left = self.duration - start;
         let wanted = (LENGTH / std::f64::consts::PI * exponential.time_scale(start)).min(left);
-        let mut state = vec![0.0; self.dimension];
+        let mut state = vec![0.0; self.dimension()];
         self.state_at(start, &mut state);
         let mut length = wanted;
         for _ in 0..=HALVINGS {
@@ -49,7 +46,7 @@ impl LinearFlow {
             }
             length *= 0.5;
         }
-        Piece::through(start, wanted, self.dimension, |time, state| self.state_at(time, state))
+        Piece::through(start, wanted, self.dimension(), |time, state| self.state_at(time, state))
     }
 }
 
@@ -57,43 +54,58 @@ impl Exponential {
     /// The Taylor polynomial of the solution from `state` on, if few terms suffice over `length`.
     fn taylor(&self, state: &[f64], start: f64, length: f64) -> Option<Piece> {
         let dimension = state.len();
-        let magnitudes = self.generator.abs();
-        let mut term = DVector::from_column_slice(state).push(self.initial[dimension]);
-        let mut most = term.abs();
+        let mut term: Vec<f64> = state.iter().copied().chain([self.constant]).collect();
+        let mut most: Vec<f64> = term.iter().map(|x| x.abs()).collect();
         let mut sums = most.clone();
-        let mut terms = Vec::with_capacity(MOST_TERMS);
-        for degree in 1..=MOST_TERMS {
+        let mut moved = vec![0.0; most.len()];
+        let (mut next, mut next_most) = (term.clone(), most.clone());
+        let mut terms = state.to_vec();
+        for degree in 1..=MOST_TERMS + 1 {
             let step = length / degree as f64;
-            let next = &self.generator * &term * step;
-            terms.push(std::mem::replace(&mut term, next));
-            most = &magnitudes * &most * step;
-            sums += &most;
-            let Some(rest) = remainder(&magnitudes, &most, length / (degree + 1) as f64) else {
-                continue;
-            };
-            let is_enough = |i: usize| rest * most[i] <= NEGLIGIBLE * sums[i];
-            if (0..dimension).all(is_enough) {
+            for ((row, next), next_most) in self.generator.iter().zip(&mut next).zip(&mut next_most)
+            {
+                let (mut sum, mut bound) = (0.0, 0.0);
+                for &(column, entry) in row {
+                    sum += entry * term[column];
+                    bound += entry.abs() * most[column];
+                }
+                (*next, *next_most) = (sum * step, bound * step);
+            }
+            moved
+                .iter_mut()
+                .zip(&next_most)
+                .for_each(|(moved, most)| *moved += degree as f64 * most);
+            // `most` bounds the last term, which would be the first that is left out.
+            if degree > 1
+                && let Some(rest) = remainder(&most, &sums, &moved, degree)
+                && rest <= NEGLIGIBLE
+            {
                 let mut piece = Piece::new(start, start + length, start, length);
-                for i in 0..dimension {
-                    piece.push(terms.iter().map(|term| term[i]), rest * most[i]);
+                let terms = &terms[..(degree - 1) * dimension];
+                for (i, sum) in sums[..dimension].iter().enumerate() {
+                    piece.push(terms.iter().copied().skip(i).step_by(dimension), rest * sum);
                 }
                 return Some(piece);
             }
+            std::mem::swap(&mut term, &mut next);
+            std::mem::swap(&mut most, &mut next_most);
+            terms.extend(&term[..dimension]);
+            sums.iter_mut().zip(&most).for_each(|(sum, most)| *sum += most);
         }
         None
     }
 }
 
-/// By how much all terms from this one on are more than it, at most; none where no bound is seen.
-fn remainder(magnitudes: &nalgebra::DMatrix<f64>, most: &DVector<f64>, step: f64) -> Option<f64> {
-    let next = magnitudes * most * step;
-    let mut ratio: f64 = 0.0;
-    for (next, this) in next.iter().zip(most) {
-        if *next > 0.0 {
-            ratio = ratio.max(next / this);
-        }
-    }
-    // Rounding of the products is far below this margin.
-    let ratio = ratio * (1.0 + 1e-12);
-    (ratio < 0.5).then(|| 1.0 / (1.0 - ratio))
+/// All terms from one on, as a part of the sum s of the magnitudes up to it, at most; none where no
+/// bound is seen. `most` are the magnitudes of that term, whose degree is `next` − 1, and `moved` is
+/// |M| s, for the length of the piece.
+fn remainder(most: &[f64], sums: &[f64], moved: &[f64], next: usize) -> Option<f64> {
+    let largest = |parts: &[f64]| {
+        let ratios =
+            parts.iter().zip(sums).map(|(part, sum)| if *part > 0.0 { part / sum } else { 0.0 });
+        // Rounding of the sums is far below this margin.
+        ratios.fold(0.0, f64::max) * (1.0 + 1e-12)
+    };
+    let ratio = largest(moved) / next as f64;
+    (ratio < 0.5).then(|| largest(most) / (1.0 - ratio))
 }

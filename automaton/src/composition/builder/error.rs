@@ -1,0 +1,121 @@
+//! What can be wrong with parts that are put side by side.
+
+use pleach_guards::EvaluationError;
+use thiserror::Error;
+
+/// Why the parts do not make a composition.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum CompositionError {
+    /// Two components have one name.
+    #[error("two components are called `{name}`: rename one")]
+    NameTwice {
+        /// The name.
+        name: String,
+    },
+    /// Nothing says in which state a component starts.
+    #[error(
+        "component `{component}` has no initial state: give its automaton one with `initially`, \
+         or add it with `add_in`"
+    )]
+    NoInitialState {
+        /// The component.
+        component: String,
+    },
+    /// A formula names a variable that the state does not have.
+    #[error("component `{component}`: {source}")]
+    Formula {
+        /// The component.
+        component: String,
+        /// What is wrong with the formula.
+        source: EvaluationError,
+    },
+    /// No component has an event of a name that is asked for.
+    #[error("label `{label}` is an event of no component")]
+    UnknownLabel {
+        /// The label.
+        label: String,
+    },
+    /// An event is spoken of before any component is added, or the component has no such event.
+    #[error("the component added last has no event `{event}`")]
+    UnknownEvent {
+        /// The name before.
+        event: String,
+    },
+    /// A connection begins or ends at a variable that does not exist.
+    #[error("no component has the variable `{variable}`: write `component.coordinate`")]
+    UnknownVariable {
+        /// The variable.
+        variable: String,
+    },
+    /// An input is connected twice, or reads something that is an input itself.
+    #[error("input `{input}` cannot be connected to `{output}`: {reason}")]
+    Connection {
+        /// What was to be read.
+        output: String,
+        /// The reader.
+        input: String,
+        /// What stands against it.
+        reason: &'static str,
+    },
+    /// A component changes what it only reads.
+    #[error(
+        "component `{component}` changes `{coordinate}` in location `{location}`, but reads it \
+         from another component"
+    )]
+    InputChanged {
+        /// The component.
+        component: String,
+        /// The coordinate.
+        coordinate: &'static str,
+        /// The location with the flow or the transition that does.
+        location: &'static str,
+    },
+    /// A channel begins or ends at an event that does not exist.
+    #[error("no component has the event `{event}`: write `component.event`")]
+    UnknownMessage {
+        /// The event.
+        event: String,
+    },
+    /// Two channels end at one event.
+    #[error("`{event}` is the end of two channels: give the receiver an event for each sender")]
+    HeardTwice {
+        /// The event.
+        event: String,
+    },
+    /// A message that has to arrive in time would find its receiver unable to take it.
+    #[error(
+        "messages have to arrive at `{event}` in time, but component `{component}` has no \
+         transition with that event from location `{location}`: add one, if only to ignore them"
+    )]
+    NotReceptive {
+        /// The receiver.
+        component: String,
+        /// Its event.
+        event: String,
+        /// Where it cannot take a message.
+        location: &'static str,
+    },
+    /// A channel cannot be.
+    #[error("channel `{channel}`: {reason}")]
+    Channel {
+        /// Its name.
+        channel: String,
+        /// What stands against it.
+        reason: &'static str,
+    },
+    /// A component slides along a surface that depends on what it only reads.
+    #[error(
+        "component `{component}` slides along a surface that depends on `{coordinate}`, but reads it \
+         from another component: of its rate nothing is known there"
+    )]
+    SurfaceReads {
+        /// The component.
+        component: String,
+        /// The coordinate.
+        coordinate: &'static str,
+    },
+    /// There is no component at all.
+    #[error("a composition needs at least one component")]
+    Empty,
+}

@@ -1,0 +1,228 @@
+//! The search for the end of a flight: the first instant at which something has to happen.
+
+use pleach_continuous::flow::{Curve, Doubt, Finding, Lost, Onset, Uncertainty, isolate};
+use pleach_guards::Course;
+
+use crate::composition::group::Group;
+use crate::composition::jumps::Standing;
+use crate::composition::settings::Settings;
+use crate::composition::simulation::{Failure, Halt};
+use crate::composition::solver::Solver;
+use crate::composition::tension::{Conditions, Tension};
+use crate::executor::Limit;
+use crate::moment::Moment;
+
+/// Where a flight ends.
+pub(super) enum End {
+    /// Something has to happen, exactly at this time.
+    At(Moment),
+    /// Something begins to have to happen.
+    Onset(Onset),
+    /// Nothing happens.
+    Never,
+}
+
+/// Why a flight ends early: how far it goes, and why.
+pub(super) struct Stop {
+    pub(super) at: f64,
+    pub(super) halt: Halt,
+}
+
+/// Why a flow cannot be followed, and up to when it can.
+pub(super) struct Fault {
+    pub(super) text: String,
+    pub(super) at: Option<f64>,
+}
+
+impl From<String> for Fault {
+    fn from(text: String) -> Fault {
+        Fault { text, at: None }
+    }
+}
+
+pub(super) fn flow_failure(
+    standing: Standing<'_>,
+    group: &Group,
+    since: Moment,
+    reason: Fault,
+) -> Halt {
+    let (from, to) = (since.seconds(), reason.at.map(|at| (since + Moment::from(at)).seconds()));
+    let reason = match to {
+        Some(to) => format!("{} at {to} s", reason.text),
+        None => format!("{} in the flow that begins at {from} s", reason.text),
+    };
+    Failure::Flow { locations: standing.names(&group.components), reason }.into()
+}
+
+/// A flight that is being looked for.
+pub(super) struct Search<'a, 'f> {
+    pub(super) tension: Tension<'a>,
+    pub(super) solver: Solver<'f>,
+    pub(super) settings: &'a Settings,
+    pub(super) since: Moment,
+    pub(super) doubts: Vec<Doubt>,
+    pub(super) steps: &'a mut u64,
+}
+
+impl<'a> Search<'a, '_> {
+    /// Where the flight ends: at a time at which something switches, or between two of them.
+    pub(super) fn run(&mut self, limit: f64) -> Result<End, Stop> {
+        let zero = Moment::default();
+        let last = Moment::from(limit);
+        let switches = self.tension.switches();
+        let mut from = zero;
+        for to in switches.into_iter().filter(|time| *time <= last).chain([last]) {
+            if to > from {
+                self.tension.set_window(from, to);
+                match self.tension.known_course() {
+                    Course::Never => {}
+                    Course::Always => {
+                        if let Some(onset) = self.right_after(from, to)? {
+                            return Ok(End::Onset(onset));
+                        }
+                    }
+                    _ => {
+                        if let Some(onset) = self.follow(from.seconds(), to.seconds())? {
+                            return Ok(End::Onset(onset));
+                        }
+                    }
+                }
+            }
+            // At the end that was asked for something happens only if it does by itself.
+            let state = self.state_at(to)?;
+            if self.holds(&state, to.seconds())? {
+                return Ok(End::At(to));
+            }
+            from = to;
+        }
+        Ok(End::Never)
+    }
+
+    /// Follows the flow from one time to another, piece by piece.
+    fn follow(&mut self, from: f64, to: f64) -> Result<Option<Onset>, Stop> {
+        let mut from = from;
+        while from < to {
+            self.spend(from)?;
+            let piece = match self.solver.piece_at(from, to) {
+                Ok(piece) => piece,
+                Err(reason) => return Err(self.lost_flow(reason)),
+            };
+            let end = piece.end().min(to);
+            let search = self.settings.search();
+            let found = isolate(piece, from, end, &search, &mut self.tension, self.steps);
+            let Finding { onset, doubts } = found.map_err(|lost| self.lost(lost))?;
+            doubts.into_iter().for_each(|doubt| self.doubt(doubt));
+            if onset.is_some() || end <= from {
+                return Ok(onset);
+            }
+            from = end;
+        }
+        Ok(None)
+    }
+
+    /// The first number of seconds after `from` at which floating-point numbers say, too, that
+    /// something has to happen; a strict guard is left on its boundary.
+    fn right_after(&mut self, from: Moment, to: Moment) -> Result<Option<Onset>, Stop> {
+        let start = from.seconds();
+        let mut before = start;
+        let least = self.spacing().max(f64::MIN_POSITIVE);
+        let mut step = (start.next_up() - start).max(least);
+        let mut after = loop {
+            let time = start + step;
+            if time >= to.seconds() {
+                return Ok(None);
+            }
+            if self.holds_at(time)? {
+                break time;
+            }
+            before = time;
+            step *= 2.0;
+        };
+        loop {
+            let middle = before + 0.5 * (after - before);
+            if after - before <= 2.0 * least || middle <= before || middle >= after {
+                return Ok(Some(Onset { before, time: after }));
+            }
+            if self.holds_at(middle)? { after = middle } else { before = middle }
+        }
+    }
+
+    fn holds_at(&mut self, time: f64) -> Result<bool, Stop> {
+        let state = self.state_at(Moment::from(time))?;
+        self.holds(&state, time)
+    }
+
+    fn holds(&mut self, state: &[f64], at: f64) -> Result<bool, Stop> {
+        let verdict = self.tension.conditions().tension(state);
+        verdict.map(|verdict| verdict.holds).map_err(|fault| Stop { at, halt: fault.into() })
+    }
+
+    fn state_at(&mut self, time: Moment) -> Result<Vec<f64>, Stop> {
+        while !self.solver.is_straight() && self.solver.reached() < time.seconds() {
+            let reached = self.solver.reached();
+            self.spend(reached)?;
+            if let Err(reason) = self.solver.piece_at(reached, time.seconds()) {
+                return Err(self.lost_flow(reason));
+            }
+        }
+        let state = self.solver.state_at(time);
+        state.map_err(|reason| self.lost_flow(reason))
+    }
+
+    fn spend(&mut self, at: f64) -> Result<(), Stop> {
+        let limit = Limit::Steps(self.settings.step_limit);
+        match self.steps.checked_sub(1) {
+            Some(left) => *self.steps = left,
+            None => return Err(Stop { at, halt: Halt::Limit(limit) }),
+        }
+        let memory = self.settings.memory_limit;
+        if 8 * self.solver.size() as u64 > memory {
+            return Err(Stop { at, halt: Halt::Limit(Limit::Memory(memory)) });
+        }
+        Ok(())
+    }
+
+    fn lost_flow(&self, reason: String) -> Stop {
+        let Conditions { standing, group, .. } = *self.tension.conditions();
+        let at = self.solver.reached();
+        let fault = Fault { text: reason, at: Some(at) };
+        Stop { at, halt: flow_failure(standing, group, self.since, fault) }
+    }
+
+    fn lost(&mut self, lost: Lost<Failure>) -> Stop {
+        match lost {
+            Lost::Endless { at } => {
+                Stop { at, halt: Halt::Limit(Limit::Steps(self.settings.step_limit)) }
+            }
+            Lost::Undefined { after, at, error } => {
+                Stop { at: self.last_defined(after, at), halt: error.into() }
+            }
+        }
+    }
+
+    /// The last time, from `defined` on, at which every formula has a value.
+    fn last_defined(&mut self, mut defined: f64, mut undefined: f64) -> f64 {
+        loop {
+            let middle = defined + 0.5 * (undefined - defined);
+            if middle <= defined || middle >= undefined {
+                return defined;
+            }
+            match self.holds_at(middle) {
+                Ok(_) => defined = middle,
+                Err(_) => undefined = middle,
+            }
+        }
+    }
+
+    /// Takes note of a doubt, together with one of the same kind just before it.
+    fn doubt(&mut self, doubt: Doubt) {
+        match self.doubts.last_mut() {
+            Some(last) if last.why == doubt.why && last.to >= doubt.from => last.to = doubt.to,
+            // A function is in doubt throughout; where is no news.
+            Some(last) if last.why == Uncertainty::Function && doubt.why == last.why => {
+                last.to = doubt.to;
+            }
+            _ => self.doubts.push(doubt),
+        }
+    }
+}

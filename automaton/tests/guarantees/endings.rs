@@ -1,0 +1,59 @@
+//! Every run returns.
+
+use pleach_automaton::{Automaton, Failure, Limit, Reason, Settings};
+
+use super::Place::Here;
+use super::{Machine, Plane, ball_and_table, built, go, metronome, run, x};
+
+#[test]
+fn a_flow_ends_where_it_is_singular() {
+    let Plane { px, py } = Plane::coordinates();
+    let singular = |rate: pleach_guards::Expression| {
+        let machine: Machine<Plane> = built(
+            Automaton::starting_in(Here)
+                .initially(Plane { px: 0.0, py: 0.0 })
+                .flow(Here, [px.rate(1.0), py.rate(rate)]),
+        );
+        run(&machine, 1.1)
+    };
+    for power in [-1.0, -2.0, -3.0] {
+        let trajectory = singular((&px - 1.0).power(power));
+        let Reason::Finished(Failure::Flow { reason, .. }) = &trajectory.ending().reason else {
+            panic!("{:?}", trajectory.ending())
+        };
+        assert!((trajectory.ending().at.t - 1.0).abs() < 1e-9, "{:?}", trajectory.ending());
+        assert!(!reason.is_empty());
+    }
+    let quotient = singular(1.0 / (&px - 1.0));
+    assert!((quotient.ending().at.t - 1.0).abs() < 1e-9, "{:?}", quotient.ending());
+    // What has no pole goes on.
+    assert_eq!(singular(1.0 / (&px + 1.0)).ending().reason, Reason::Horizon);
+}
+
+/// A table so fast that the ball comes to hop by one spacing of the numbers at a time.
+#[test]
+fn jumps_that_leave_no_time_end_the_run() {
+    let trajectory = run(&ball_and_table(200.0), 100.0);
+    let reason = &trajectory.ending().reason;
+    let ends = matches!(reason, Reason::JumpLimit | Reason::Zeno(_) | Reason::Horizon);
+    assert!(ends && trajectory.jumps().len() < 100_000, "{:?}", trajectory.ending());
+}
+
+#[test]
+fn limits_end_a_run_with_instant_and_reason() {
+    let few = Settings { jump_limit: 10, ..Settings::default() };
+    let trajectory = metronome(0.5, 1.0).run_with(few, 100.0).expect("it can be run");
+    assert_eq!(trajectory.ending().reason, Reason::Limit(Limit::Jumps(10)));
+    assert_eq!((trajectory.ending().at.t, trajectory.jumps().len()), (5.5, 10));
+
+    let small = Settings { memory_limit: 100_000, ..Settings::default() };
+    let trajectory = metronome(0.5, 1.0).run_with(small, 1e6).expect("it can be run");
+    assert_eq!(trajectory.ending().reason, Reason::Limit(Limit::Memory(100_000)));
+
+    let short = Settings { step_limit: 100, ..Settings::default() };
+    let touching = go((x().sin() + x().cos()).at_least(2f64.sqrt() + 1e-15));
+    let trajectory = touching.run_with(short, 1e6).expect("it can be run");
+    assert_eq!(trajectory.ending().reason, Reason::Limit(Limit::Steps(100)));
+    let at = trajectory.ending().at.t;
+    assert!(at < 1e6 && trajectory.value("x", at).is_some_and(|x| (x - at).abs() < 1e-9));
+}

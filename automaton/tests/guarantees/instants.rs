@@ -1,0 +1,77 @@
+//! Instants do not drift.
+
+use pleach_automaton::{Automaton, from};
+
+use super::Cue::Go;
+use super::Place::Here;
+use super::{Body, built, go, metronome, run, times, x};
+
+#[test]
+fn ticks_at_the_horizon_are_taken() {
+    for (period, horizon, ticks) in [(1.0, 1000.0, 1000), (0.1, 1.0, 10), (0.1, 100.0, 1000)] {
+        let trajectory = run(&metronome(period, 1.0), horizon);
+        assert_eq!(trajectory.jumps().len(), ticks, "{period} {horizon}");
+        assert_eq!(trajectory.ending().at.t, horizon);
+    }
+}
+
+#[test]
+fn a_million_ticks_happen_at_the_nearest_numbers() {
+    for (period, rate) in [(0.1, 1.0), (0.7, 3.0)] {
+        let trajectory = run(&metronome(period, rate), 1_000_000.5 * period / rate);
+        let found = times(&trajectory);
+        assert_eq!(found.len(), 1_000_000);
+        for (tick, found) in (1..).zip(found) {
+            let exact = nearest_multiple(tick, period, rate);
+            assert!(exact.contains(&found), "{found} {exact:?}, {tick} · {period} ÷ {rate}");
+        }
+    }
+}
+
+/// The number nearest to k · p ÷ r, by whole numbers: p = m · 2⁻ˢ. Of two that are equally near, the
+/// smaller and the larger.
+fn nearest_multiple(tick: u32, period: f64, rate: f64) -> [f64; 2] {
+    let shift = 58 - period.log2().floor() as i32;
+    let mantissa = (period * 2f64.powi(shift)) as u128;
+    let scaled = (u128::from(tick) * mantissa) << 20;
+    let (quotient, rest) = (scaled / rate as u128, scaled % rate as u128);
+    let spare = (128 - quotient.leading_zeros()).saturating_sub(53);
+    let (kept, dropped) = (quotient >> spare, quotient & ((1 << spare) - 1));
+    let half = 1u128 << (spare - 1);
+    let number = |kept: u128| kept as f64 * 2f64.powi(spare as i32 - shift - 20);
+    let is_half = dropped == half && rest == 0;
+    let up = number(kept + u128::from(dropped >= half));
+    [if is_half { number(kept) } else { up }, up]
+}
+
+/// A sampled controller: at every tick the force is set by what is measured, and the clock set back.
+#[test]
+fn sampled_controls_do_not_drift() {
+    let Body { h, v, clock } = Body::coordinates();
+    let machine = built(
+        Automaton::starting_in(Here)
+            .initially(Body { h: 1.0, v: 0.0, clock: 0.0 })
+            .flow(Here, [h.rate(&v), v.rate(-1.0 * &v - &h), clock.rate(1.0)])
+            .transition(
+                from(Here)
+                    .on(Go)
+                    .to(Here)
+                    .must(clock.at_least(0.01))
+                    .then([v.becomes(&v - 0.1 * &h), clock.becomes(0.0)]),
+            ),
+    );
+    let trajectory = run(&machine, 1000.0);
+    let found = times(&trajectory);
+    assert_eq!(found.len(), 100_000);
+    for (tick, found) in (1..).zip(found) {
+        assert!(nearest_multiple(tick, 0.01, 1.0).contains(&found), "tick {tick} at {found}");
+    }
+}
+
+#[test]
+fn early_events_are_as_exact_before_a_far_horizon() {
+    let found = times(&run(&go(x().at_least(0.1)), 1e9));
+    assert_eq!(found, [0.1]);
+    let found = times(&run(&go(x().power(3.0).at_least(0.001)), 1e9));
+    assert!((found[0] - 0.1).abs() < 1e-16, "{found:?}");
+}
