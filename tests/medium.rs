@@ -10,6 +10,7 @@ use pleach::automaton::network::scenario::{RobotStart, Scenario, ValidScenario};
 use pleach::continuous::Point;
 use pleach::discrete::network::NodeId;
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 fn study_one() -> &'static Mission {
@@ -200,6 +201,26 @@ fn jammed_from(begin: usize) -> impl Fn(Arrival) -> bool {
 /// One message of `n`.
 fn one_of(n: u64) -> impl Fn(Arrival) -> bool {
     move |message| message.number % n == n - 1
+}
+
+/// On each link the first two of every three beacons.
+fn beacons_but_every_third() -> impl FnMut(Arrival) -> bool {
+    let mut counts = BTreeMap::new();
+    move |Arrival { sender, receiver, is_beacon, .. }| {
+        let count = counts.entry((sender, receiver)).or_insert(0_u64);
+        *count += u64::from(is_beacon);
+        is_beacon && !count.is_multiple_of(3)
+    }
+}
+
+/// A beacon is repeated so often that all of these messages but one may be lost.
+#[test]
+fn the_mission_tolerates_the_loss_of_two_of_three_beacons() {
+    for name in ["study-2", "leaf-leader"] {
+        let mission =
+            run_over(shipped(name), |site| Filtered::new(site, beacons_but_every_third())).0;
+        mission.assert_serviced();
+    }
 }
 
 /// A robot that is never heard is in no roster, so that no election waits for it.

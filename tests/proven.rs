@@ -11,6 +11,7 @@ use std::collections::BTreeSet;
 /// A function, its file, the file that calls it, and the call.
 type Call = (&'static str, &'static str, &'static str, &'static str);
 
+const AFFINE: &str = "verify/src/reach/affine.rs";
 const AGREEMENT: &str = "discrete/src/network/agreement.rs";
 const BULLETIN: &str = "discrete/src/network/bulletin.rs";
 const CELL: &str = "continuous/src/geometry/cell.rs";
@@ -21,6 +22,7 @@ const ID_SET: &str = "discrete/src/network/id_set.rs";
 const LOCAL: &str = "continuous/src/network/routing/local.rs";
 const MOTION: &str = "continuous/src/network/motion/mod.rs";
 const PATH: &str = "discrete/src/network/path.rs";
+const ZONOTOPE: &str = "verify/src/reach/zonotope.rs";
 
 const ROBOT_DEALING: &str = "automaton/src/network/robot/dealing.rs";
 const ROBOT_EXCHANGE: &str = "automaton/src/network/robot/exchange.rs";
@@ -92,6 +94,8 @@ const CALLS: &[Call] = &[
     ("new", DUAL, ROBOT_ROUTING, "DualState::new("),
     ("multiplier", DUAL, ROBOT_ROUTING, "state.multiplier()"),
     ("projected", DUAL, DUAL, "projected(multiplier - step * (residual - reserve))"),
+    ("advance", AFFINE, "verify/src/reach/flow.rs", "steps.advance(track)"),
+    ("widen", ZONOTOPE, ZONOTOPE, "sum.widen(&self.slack)"),
     ("positive_part", LOCAL, LOCAL, "positive_part((link.value(multiplier) - budget_price)"),
 ];
 

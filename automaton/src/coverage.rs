@@ -251,8 +251,8 @@ impl ComponentCoverage {
 
     /// Marks what is left out, for diagrams.
     pub(crate) fn mark(&self, sketch: &mut Sketch) {
-        for (place, location) in sketch.places.iter_mut().zip(&self.locations) {
-            place.is_missed = location.entered == 0;
+        for (mode, location) in sketch.modes.iter_mut().zip(&self.locations) {
+            mode.is_missed = location.entered == 0;
         }
         for link in &mut sketch.links {
             let same =

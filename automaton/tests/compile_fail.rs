@@ -20,7 +20,7 @@ fn libraries() -> PathBuf {
 }
 
 /// The library of a crate. After a change of features there are several, of the same sources; the
-/// latest is as good as any.
+/// latest is as good as any, and names the libraries that it was built with.
 fn library(name: &str) -> PathBuf {
     let prefix = format!("lib{name}-");
     let entries = fs::read_dir(libraries()).expect("the folder can be read");
@@ -38,14 +38,13 @@ fn library(name: &str) -> PathBuf {
 /// What the compiler says about a program, one line for each error or warning; `None` if it
 /// compiles.
 fn complaint(program: &Path) -> Option<String> {
-    let crates = ["pleach_automaton", "pleach_discrete"];
-    let externs = crates.map(|name| format!("--extern={name}={}", library(name).display()));
+    let name = "pleach_automaton";
     let metadata = env::temp_dir().join(format!("pleach-{}.rmeta", std::process::id()));
     let output = Command::new(env::var_os("RUSTC").unwrap_or("rustc".into()))
         .args(["--edition=2024", "--crate-type=bin", "--error-format=short"])
         .arg(format!("--emit=metadata={}", metadata.display()))
         .arg(format!("-Ldependency={}", libraries().display()))
-        .args(externs)
+        .arg(format!("--extern={name}={}", library(name).display()))
         .arg(program)
         .output()
         .expect("the compiler starts");

@@ -19,7 +19,7 @@ use std::time::Instant;
 use std::{env, fmt, fs, io};
 
 use catalogue::{CatalogueError, Fault, faults};
-use rounding::{CHOICE, Place, places, with_choices};
+use rounding::{CHOICE, Rounding, places, with_choices};
 
 /// What is copied from the root of the workspace: all that the packages are built from.
 const SOURCES: [&str; 16] = [
@@ -153,7 +153,7 @@ impl<'a> Workshop<'a> {
     }
 
     /// Makes the copy one in which rounding can be left out at each place, and runs the tests without.
-    fn plant_choices(&self, places: &[Place]) -> Result<(), Error> {
+    fn plant_choices(&self, places: &[Rounding]) -> Result<(), Error> {
         let sources = with_choices(self.root, places)?;
         fs::create_dir_all(&self.copy)?;
         for path in SOURCES {
@@ -177,7 +177,7 @@ impl<'a> Workshop<'a> {
     }
 
     /// Whether the tests of a place fail where rounding is left out there.
-    fn fails_unrounded(&self, number: usize, place: &Place) -> Result<bool, Error> {
+    fn fails_unrounded(&self, number: usize, place: &Rounding) -> Result<bool, Error> {
         let mut command = self.cargo("test", &place.test);
         Ok(!command.env(CHOICE, number.to_string()).output()?.status.success())
     }

@@ -17,7 +17,7 @@ pub const CHOICE: &str = "PLEACH_UNROUNDED";
 /// A place where a number is rounded outward.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub struct Rounding {
     /// The file, from the root of the workspace.
     pub file: String,
     /// An expression that occurs there exactly once.
@@ -33,14 +33,14 @@ pub struct Place {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Places {
-    place: Vec<Place>,
+    place: Vec<Rounding>,
 }
 
 /// Every place of the list below `root`.
 ///
 /// # Errors
 /// When it cannot be read.
-pub fn places(root: &Path) -> Result<Vec<Place>, CatalogueError> {
+pub fn places(root: &Path) -> Result<Vec<Rounding>, CatalogueError> {
     let places: Places = toml::from_str(&read(root, "proofs/rounding.toml")?)?;
     Ok(places.place)
 }
@@ -51,9 +51,9 @@ pub fn places(root: &Path) -> Result<Vec<Place>, CatalogueError> {
 /// When one of them does not apply.
 pub fn with_choices(
     root: &Path,
-    places: &[Place],
+    places: &[Rounding],
 ) -> Result<BTreeMap<String, String>, CatalogueError> {
-    let mut by_file: BTreeMap<&str, Vec<(usize, &Place)>> = BTreeMap::new();
+    let mut by_file: BTreeMap<&str, Vec<(usize, &Rounding)>> = BTreeMap::new();
     for (number, place) in places.iter().enumerate() {
         by_file.entry(&place.file).or_default().push((number, place));
     }
@@ -74,7 +74,7 @@ pub fn with_choices(
         let mut found = found.by_ref().collect::<Result<Vec<_>, _>>()?;
         found.sort_by_key(|(at, ..)| *at);
         let (mut changed, mut end) = (String::new(), 0);
-        for (at, number, Place { before, after, .. }) in found {
+        for (at, number, Rounding { before, after, .. }) in found {
             let choice =
                 format!("(if crate::is_unrounded({number}) {{ {after} }} else {{ {before} }})");
             changed = changed + &source[end..at] + &choice;
@@ -90,8 +90,8 @@ pub fn with_choices(
 }
 
 /// The roots of the crates that have places.
-fn crate_roots(places: &[Place]) -> Vec<String> {
-    let package = |place: &Place| place.file.split("/src/").next().map(str::to_owned);
+fn crate_roots(places: &[Rounding]) -> Vec<String> {
+    let package = |place: &Rounding| place.file.split("/src/").next().map(str::to_owned);
     let mut roots: Vec<String> = places.iter().filter_map(package).collect();
     roots.sort();
     roots.dedup();

@@ -11,7 +11,7 @@ pub(super) struct Component {
     pub id: String,
     pub line: usize,
     pub parameters: Vec<Parameter>,
-    pub locations: Vec<Place>,
+    pub locations: Vec<Location>,
     pub transitions: Vec<Transition>,
     pub binds: Vec<Bind>,
 }
@@ -28,7 +28,7 @@ pub(super) struct Parameter {
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Place {
+pub(super) struct Location {
     pub id: String,
     pub name: String,
     pub line: usize,
@@ -167,7 +167,7 @@ impl Document {
                 if component.locations.iter().any(|other| other.id == id) {
                     return Err(format!("two locations have the id {id}: change one"));
                 }
-                component.locations.push(Place { id, name, line, ..Place::default() });
+                component.locations.push(Location { id, name, line, ..Location::default() });
             }
             "transition" => {
                 let asap = attribute("asap")?.is_some_and(|it| it == "true");

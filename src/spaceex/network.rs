@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use crate::guards::{Expression, Substitution, constant};
 
 use super::SpaceExError;
-use super::document::{Component, Place, Transition};
+use super::document::{Component, Location, Transition};
 use super::formula::{self, Clause, Relation, Side};
 
 /// A base component with its names bound.
@@ -195,7 +195,10 @@ impl Instance<'_> {
     }
 
     /// The rates that a location gives: `None` where no time passes.
-    pub fn rates(&self, place: &Place) -> Result<Option<Vec<(String, Expression)>>, SpaceExError> {
+    pub fn rates(
+        &self,
+        place: &Location,
+    ) -> Result<Option<Vec<(String, Expression)>>, SpaceExError> {
         let wrong = |problem: String| SpaceExError::Model { line: place.line, problem };
         let mut rates = Vec::new();
         for clause in self.clauses(&place.flow, place.line)? {

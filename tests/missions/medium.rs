@@ -18,6 +18,7 @@ pub struct Arrival {
     pub receiver: NodeId,
     /// The length of the link; none of a wire.
     pub distance: Option<f64>,
+    pub is_beacon: bool,
 }
 
 /// What happens to a message between the radio and a node that would hear it.
@@ -121,7 +122,8 @@ impl<F: FnMut(Arrival) -> bool> Passage for Filtered<F> {
         let distance = (!is_wire).then(length);
         let (number, period) = (self.messages, self.updates - 1);
         self.messages += 1;
-        let arrival = Arrival { number, period, sender, receiver, distance };
+        let is_beacon = matches!(delivery.message, Message::Beacon(_));
+        let arrival = Arrival { number, period, sender, receiver, distance, is_beacon };
         if (self.loses)(arrival) { Ok(()) } else { hand_over(delivery) }
     }
 }

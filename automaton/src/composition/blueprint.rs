@@ -19,7 +19,7 @@ use crate::reset::{NewValue, Reset};
 /// Locations and events are numbers here, in the order of `ALL`, and formulas are compiled against
 /// the coordinates of the automaton's own state.
 pub(crate) struct Blueprint {
-    pub(crate) places: Vec<Place>,
+    pub(crate) modes: Vec<Mode>,
     pub(crate) events: Vec<&'static str>,
     pub(crate) coordinates: Vec<&'static str>,
     pub(crate) initial: usize,
@@ -30,9 +30,9 @@ pub(crate) struct Blueprint {
 }
 
 /// A location.
-pub(crate) struct Place {
+pub(crate) struct Mode {
     pub(crate) name: &'static str,
-    pub(crate) motion: PlaceMotion,
+    pub(crate) motion: ModeMotion,
     /// The rates that are formulas, all together and in their order.
     pub(crate) rates: Tape,
     pub(crate) invariant: Option<Condition>,
@@ -50,7 +50,7 @@ pub(crate) struct Leaving {
 }
 
 /// A flow.
-pub(crate) enum PlaceMotion {
+pub(crate) enum ModeMotion {
     Rates(Vec<RateProgram>),
     Field(Arc<FieldFunction>),
     Exact(Arc<Solution>),
@@ -103,7 +103,7 @@ impl Blueprint {
         let automaton = &automaton.with_numbers();
         let (graph, names) = (automaton.graph(), automaton.names());
         let shape = automaton.initial_state();
-        let mut places = Vec::with_capacity(automaton.locations().len());
+        let mut modes = Vec::with_capacity(automaton.locations().len());
         let locations = automaton.locations().iter();
         for (node, (&location, mode)) in locations.zip(&automaton.modes).enumerate() {
             let leaving = automaton.leaving[node].iter().map(|&edge| {
@@ -117,12 +117,12 @@ impl Blueprint {
                     change: change(&transition.reset, names, shape)?,
                 })
             });
-            places.push(Place {
+            modes.push(Mode {
                 name: location.name(),
                 rates: tape(mode.flow.as_ref(), names)?,
                 motion: match &mode.flow {
                     Some(flow) => motion(flow, names, shape)?,
-                    None => PlaceMotion::Rates(Vec::new()),
+                    None => ModeMotion::Rates(Vec::new()),
                 },
                 invariant: mode
                     .invariant
@@ -135,7 +135,7 @@ impl Blueprint {
         let events = automaton.events().iter().map(|event| event.name()).collect();
         let initial = position(automaton.locations(), automaton.initial());
         let (coordinates, own) = (names.to_vec(), automaton.own.clone());
-        Ok(Blueprint { places, events, coordinates, initial, own, sketch })
+        Ok(Blueprint { modes, events, coordinates, initial, own, sketch })
     }
 }
 
@@ -217,24 +217,24 @@ fn motion<S: Coordinates>(
     flow: &Flow<S>,
     names: &[&'static str],
     shape: Option<&S>,
-) -> Result<PlaceMotion, EvaluationError> {
+) -> Result<ModeMotion, EvaluationError> {
     let shape = shape.cloned();
     Ok(match flow.motion() {
         Motion::Rates(rates) => {
             let compile = |rate: &crate::flow::Rate<S>| {
                 RateProgram::of(place_of(names, rate.coordinate())?, rate.rate(), names)
             };
-            PlaceMotion::Rates(rates.iter().map(compile).collect::<Result<_, EvaluationError>>()?)
+            ModeMotion::Rates(rates.iter().map(compile).collect::<Result<_, EvaluationError>>()?)
         }
         Motion::Field(_, field) => {
             let field = field.clone();
-            PlaceMotion::Field(Arc::new(move |values: &[f64], rates: &mut [f64]| {
+            ModeMotion::Field(Arc::new(move |values: &[f64], rates: &mut [f64]| {
                 field(&state_of(shape.as_ref(), values)).write(rates);
             }))
         }
         Motion::Exact(_, advance) => {
             let advance = advance.clone();
-            PlaceMotion::Exact(Arc::new(move |values: &mut [f64], duration: f64| {
+            ModeMotion::Exact(Arc::new(move |values: &mut [f64], duration: f64| {
                 let mut state = state_of(shape.as_ref(), values);
                 advance(&mut state, duration);
                 state.write(values);

@@ -264,7 +264,7 @@ impl<'a> Reached<'a> {
     pub fn locations(&self) -> impl Iterator<Item = &'static str> + use<'a> {
         let components = self.exploration.composition.components.iter();
         let locations = &*self.get().locations;
-        components.zip(locations).map(|(component, &location)| component.place(location).name)
+        components.zip(locations).map(|(component, &location)| component.mode(location).name)
     }
 
     /// The values of all variables in their order.

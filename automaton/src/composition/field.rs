@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 use pleach_continuous::flow::{InvalidFlow, LinearField, VectorField};
 
-use super::blueprint::{Place, PlaceMotion, RateProgram, Solution};
+use super::blueprint::{Mode, ModeMotion, RateProgram, Solution};
 use super::group::Group;
 use super::linear::LinearPart;
 use super::{Component, Composition};
@@ -29,8 +29,8 @@ pub(super) enum Row {
 
 /// The flow of a group in its locations, from a state on.
 pub(super) struct Field<'a> {
-    /// With their place, and whether they solve their flow themselves.
-    moving: Vec<(&'a Component, &'a Place)>,
+    /// Those that do not solve their flow themselves, each with its mode.
+    moving: Vec<(&'a Component, &'a Mode)>,
     solved: Vec<(&'a Component, &'a Solution)>,
     /// By variable of the group.
     pub(super) rows: Vec<Row>,
@@ -55,22 +55,22 @@ impl<'a> Field<'a> {
         let mut rows = vec![Row::Line(0.0); start.len()];
         for &index in &group.components {
             let component = &composition.components[index];
-            let place = component.place(locations[index]);
-            match &place.motion {
-                PlaceMotion::Exact(advance) => {
+            let mode = component.mode(locations[index]);
+            match &mode.motion {
+                ModeMotion::Exact(advance) => {
                     component.owned_places().for_each(|place| rows[place] = Row::Solved);
                     solved.push((component, &**advance));
                 }
-                PlaceMotion::Rates(rates) if rates.is_empty() => {}
-                PlaceMotion::Rates(rates) => {
+                ModeMotion::Rates(rates) if rates.is_empty() => {}
+                ModeMotion::Rates(rates) => {
                     for rate in rates {
                         rows[component.places[rate.coordinate]] = rate.row();
                     }
-                    moving.push((component, place));
+                    moving.push((component, mode));
                 }
-                PlaceMotion::Field(_) => {
+                ModeMotion::Field(_) => {
                     component.owned_places().for_each(|place| rows[place] = Row::Curved);
-                    moving.push((component, place));
+                    moving.push((component, mode));
                 }
             }
         }
@@ -96,7 +96,7 @@ impl<'a> Field<'a> {
 
     /// Whether the rates of a component are a function.
     pub(super) fn has_functions(&self) -> bool {
-        self.moving.iter().any(|(_, place)| matches!(place.motion, PlaceMotion::Field(_)))
+        self.moving.iter().any(|(_, mode)| matches!(mode.motion, ModeMotion::Field(_)))
     }
 
     /// The variables with curved rows and what they read, if all their rates are linear and they
@@ -132,8 +132,8 @@ impl<'a> Field<'a> {
     /// What the rates of the group are if all are linear: their constants, and the coefficients.
     fn entries(&self) -> Option<(Vec<f64>, Vec<Entry>)> {
         let (mut offsets, mut entries) = (vec![0.0; self.rows.len()], Vec::new());
-        for (component, place) in &self.moving {
-            let PlaceMotion::Rates(rates) = &place.motion else { return None };
+        for (component, mode) in &self.moving {
+            let ModeMotion::Rates(rates) = &mode.motion else { return None };
             for rate in rates {
                 let (form, row) = (rate.form.as_ref()?, component.places[rate.coordinate]);
                 offsets[row] = *form.constant();
@@ -154,28 +154,28 @@ impl<'a> Field<'a> {
     fn add_rates(&self, state: &[f64], rates: &mut [f64]) {
         let mut tapes = self.places.borrow_mut();
         tapes.resize(self.moving.len(), Vec::new());
-        for ((component, place), places) in self.moving.iter().zip(&mut *tapes) {
-            match &place.motion {
-                PlaceMotion::Rates(formulas) => {
+        for ((component, mode), places) in self.moving.iter().zip(&mut *tapes) {
+            match &mode.motion {
+                ModeMotion::Rates(formulas) => {
                     let [own, change, _] = &mut *self.scratch.borrow_mut();
                     component.gather(state, &component.places, own);
                     change.resize(formulas.len(), 0.0);
                     if places.is_empty() {
-                        *places = place.rates.places();
+                        *places = mode.rates.places();
                     }
-                    place.rates.evaluate(own, places, change);
+                    mode.rates.evaluate(own, places, change);
                     for (rate, change) in formulas.iter().zip(change) {
                         rates[component.places[rate.coordinate]] = *change;
                     }
                 }
-                PlaceMotion::Field(field) => {
+                ModeMotion::Field(field) => {
                     let [own, change, _] = &mut *self.scratch.borrow_mut();
                     component.gather(state, &component.places, own);
                     change.resize(own.len(), 0.0);
                     field(own, change);
                     component.scatter(change, &component.places, rates);
                 }
-                PlaceMotion::Exact(_) => {}
+                ModeMotion::Exact(_) => {}
             }
         }
     }
@@ -192,10 +192,10 @@ impl<'a> Field<'a> {
 
     /// Rates that could grow without bound, with where their variables are.
     pub(super) fn unbounded_rates(&self) -> impl Iterator<Item = (&'a Component, &'a RateProgram)> {
-        self.moving.iter().flat_map(|(component, place)| {
-            let rates: &[RateProgram] = match &place.motion {
-                PlaceMotion::Rates(rates) => rates,
-                PlaceMotion::Field(_) | PlaceMotion::Exact(_) => &[],
+        self.moving.iter().flat_map(|(component, mode)| {
+            let rates: &[RateProgram] = match &mode.motion {
+                ModeMotion::Rates(rates) => rates,
+                ModeMotion::Field(_) | ModeMotion::Exact(_) => &[],
             };
             rates.iter().filter(|rate| rate.tracker.is_some()).map(|rate| (*component, rate))
         })

@@ -39,7 +39,7 @@ impl<'a> Standing<'a> {
 
     /// The transitions that leave the location of `component`, in their total order.
     pub(super) fn leaving(self, component: usize) -> &'a [Leaving] {
-        &self.composition.components[component].place(self.locations[component]).leaving
+        &self.composition.components[component].mode(self.locations[component]).leaving
     }
 
     /// Those of them on an event.
@@ -166,7 +166,7 @@ impl<'a> Standing<'a> {
         let component = &self.composition.components[component];
         Failure::Formula {
             component: component.name.clone(),
-            location: component.place(location).name.to_owned(),
+            location: component.mode(location).name.to_owned(),
             part,
             reason: fault.to_string(),
         }
@@ -174,12 +174,12 @@ impl<'a> Standing<'a> {
 
     /// The locations of some components by name, for messages.
     pub(super) fn names(self, components: &[usize]) -> String {
-        let places = components.iter().map(|&index| {
+        let names = components.iter().map(|&index| {
             let component = &self.composition.components[index];
-            let place = component.place(self.locations[index]);
-            format!("`{}` of `{}`", place.name, component.name)
+            let mode = component.mode(self.locations[index]);
+            format!("`{}` of `{}`", mode.name, component.name)
         });
-        places.collect::<Vec<_>>().join(", ")
+        names.collect::<Vec<_>>().join(", ")
     }
 }
 

@@ -167,7 +167,7 @@ impl Composition {
     /// that does not exist.
     pub fn locations(&self, component: usize) -> impl Iterator<Item = &'static str> {
         let component = self.components.get(component);
-        component.into_iter().flat_map(|one| one.blueprint.places.iter().map(|place| place.name))
+        component.into_iter().flat_map(|one| one.blueprint.modes.iter().map(|mode| mode.name))
     }
 
     /// The labels, each with the components that take it together.
@@ -183,13 +183,13 @@ impl Composition {
     /// What the event of a move is called.
     fn event_of(&self, one: &Move) -> String {
         let component = &self.components[one.component];
-        let leaving = &component.place(one.source).leaving[one.transition];
+        let leaving = &component.mode(one.source).leaving[one.transition];
         component.events[leaving.event].clone()
     }
 }
 
 impl Component {
-    fn place(&self, location: usize) -> &blueprint::Place {
-        &self.blueprint.places[location]
+    fn mode(&self, location: usize) -> &blueprint::Mode {
+        &self.blueprint.modes[location]
     }
 }

@@ -164,7 +164,7 @@ impl<'a> Product<'a> {
 
     fn name(&self, combination: &[usize]) -> Name {
         let parts = self.models.iter().zip(combination);
-        let parts: Vec<&str> = parts.map(|(model, place)| model.modes[*place].name).collect();
+        let parts: Vec<&str> = parts.map(|(model, mode)| model.modes[*mode].name).collect();
         Name::new(&parts.join(", "))
     }
 
@@ -193,8 +193,8 @@ impl<'a> Product<'a> {
     ) -> Result<Builder<Name, Name, Record>, ProductError> {
         let name = self.name(combination);
         let (mut rates, mut invariant) = (Vec::new(), Vec::new());
-        for (component, place) in combination.iter().enumerate() {
-            let mode = &self.models[component].modes[*place];
+        for (component, mode) in combination.iter().enumerate() {
+            let mode = &self.models[component].modes[*mode];
             let renaming = &self.renamings[component];
             let Motion::Rates(listed) = &mode.motion else {
                 return Err(self.function(component, &format!("the flow of `{}`", mode.name)));

@@ -101,7 +101,7 @@ impl<'a> Conditions<'a> {
 
     fn invariant(&self, component: usize) -> Option<&'a Condition> {
         let location = self.standing.locations[component];
-        self.standing.composition.components[component].place(location).invariant.as_ref()
+        self.standing.composition.components[component].mode(location).invariant.as_ref()
     }
 
     /// The transitions that components take by themselves.

@@ -94,12 +94,12 @@ pub(super) struct Parts {
 
 impl Parts {
     pub(super) fn of(blueprint: &Blueprint, events: &[String]) -> Result<Parts, EvaluationError> {
-        let locations = blueprint.places.iter();
+        let locations = blueprint.modes.iter();
         let locations =
-            locations.map(|place| LocationCoverage { name: place.name, entered: 0 }).collect();
+            locations.map(|mode| LocationCoverage { name: mode.name, entered: 0 }).collect();
         let mut transitions = Vec::new();
-        for (source, place) in blueprint.places.iter().enumerate() {
-            for (rank, leaving) in place.leaving.iter().enumerate() {
+        for (source, mode) in blueprint.modes.iter().enumerate() {
+            for (rank, leaving) in mode.leaving.iter().enumerate() {
                 let mut conditions = Vec::new();
                 conditions_of(leaving.guard.predicate(), &mut conditions);
                 let boundaries = conditions.into_iter().map(|condition| {

@@ -16,8 +16,8 @@ pub fn dot<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) 
          initial [shape=point];\n",
     );
     let sketch = Sketch::of(automaton);
-    for (number, place) in sketch.places.iter().enumerate() {
-        text.push_str(&format!("    l{number} [label={}];\n", quoted(&place.lines())));
+    for (number, mode) in sketch.modes.iter().enumerate() {
+        text.push_str(&format!("    l{number} [label={}];\n", quoted(&mode.lines())));
     }
     if let Some(initial) = sketch.initial {
         text.push_str(&format!("    initial -> l{initial};\n"));

@@ -11,8 +11,8 @@ use crate::composition::Composition;
 pub fn mermaid<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     let mut text = String::from("stateDiagram-v2\n");
     let sketch = Sketch::of(automaton);
-    for (number, place) in sketch.places.iter().enumerate() {
-        for line in place.lines() {
+    for (number, mode) in sketch.modes.iter().enumerate() {
+        for line in mode.lines() {
             text.push_str(&format!("    l{number} : {}\n", escaped(&line)));
         }
     }
@@ -34,8 +34,8 @@ pub fn composition_mermaid(composition: &Composition) -> String {
     let mut text = String::from("flowchart LR\n");
     for (component, (name, sketch)) in composition.sketches().iter().enumerate() {
         text.push_str(&format!("    subgraph c{component}[\"{}\"]\n", escaped(name)));
-        for (number, place) in sketch.places.iter().enumerate() {
-            let lines: Vec<String> = place.lines().iter().map(|line| escaped(line)).collect();
+        for (number, mode) in sketch.modes.iter().enumerate() {
+            let lines: Vec<String> = mode.lines().iter().map(|line| escaped(line)).collect();
             let lines = lines.join("<br>");
             text.push_str(&format!("        c{component}l{number}(\"{lines}\")\n"));
         }

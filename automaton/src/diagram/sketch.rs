@@ -11,7 +11,7 @@ use crate::reset::Reset;
 #[derive(Clone, Debug)]
 pub(crate) struct Sketch {
     /// In the order of `L::ALL`.
-    pub places: Vec<Place>,
+    pub modes: Vec<Mode>,
     /// In the order of the rows of the table.
     pub links: Vec<Link>,
     /// The number of the initial location.
@@ -22,7 +22,7 @@ pub(crate) struct Sketch {
 
 /// A location.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub(crate) struct Mode {
     pub name: &'static str,
     /// The rates, each by itself; or the name of the flow.
     pub flow: Vec<String>,
@@ -58,7 +58,7 @@ pub(super) const MISSED: &str = "never taken";
 
 impl Sketch {
     pub fn of<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Sketch {
-        let place = |&location: &L| {
+        let mode = |&location: &L| {
             let mode = automaton.mode(location);
             let flow = mode.and_then(|mode| mode.flow.as_ref());
             let flow = flow.map_or_else(Vec::new, |flow| match flow.rates() {
@@ -71,7 +71,7 @@ impl Sketch {
                 .iter()
                 .map(|it| (format!("{} := {}", it.commanded, it.name), it.to_string()))
                 .collect();
-            Place { name: location.name(), flow, invariant, commands, is_missed: false }
+            Mode { name: location.name(), flow, invariant, commands, is_missed: false }
         };
         let rank = |edge| {
             let ranks = automaton
@@ -82,7 +82,7 @@ impl Sketch {
         };
         let edges = automaton.graph().edge_references();
         Sketch {
-            places: automaton.graph().node_weights().map(place).collect(),
+            modes: automaton.graph().node_weights().map(mode).collect(),
             links: edges
                 .map(|edge| {
                     let (source, target) = (edge.source().index(), edge.target().index());
@@ -106,7 +106,7 @@ impl Sketch {
     }
 }
 
-impl Place {
+impl Mode {
     /// The name, then the flow, the invariant, and what is chosen at samples, if there are any.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![self.name.to_owned()];

@@ -3,7 +3,7 @@
 use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;
 
-use super::sketch::{Place, Sketch};
+use super::sketch::{Mode, Sketch};
 use crate::automaton::{Automaton, Transition};
 
 /// The automaton in Markdown: the full location × event table; below it guard and reset, a row an
@@ -118,19 +118,19 @@ fn is_same<E, S>(one: &Transition<E, S>, other: &Transition<E, S>) -> bool {
 
 /// The locations, with what is said of any of them.
 fn modes(sketch: &Sketch) -> Columns {
-    let places = || sketch.places.iter();
-    let column = |cell: &dyn Fn(&Place) -> String| -> Vec<String> {
-        places().map(|place| or_nothing(cell(place))).collect()
+    let all = || sketch.modes.iter();
+    let column = |cell: &dyn Fn(&Mode) -> String| -> Vec<String> {
+        all().map(|mode| or_nothing(cell(mode))).collect()
     };
-    let mut columns: Columns = vec![("location", column(&|place| format!("**{}**", place.name)))];
-    if places().any(|place| !place.flow.is_empty() || place.invariant.is_some()) {
-        let invariant = |place: &Place| place.invariant.clone().unwrap_or_default();
-        columns.push(("flow", column(&|place| place.flow.join(", "))));
+    let mut columns: Columns = vec![("location", column(&|mode| format!("**{}**", mode.name)))];
+    if all().any(|mode| !mode.flow.is_empty() || mode.invariant.is_some()) {
+        let invariant = |mode: &Mode| mode.invariant.clone().unwrap_or_default();
+        columns.push(("flow", column(&|mode| mode.flow.join(", "))));
         columns.push(("time passes while", column(&invariant)));
     }
-    if places().any(|place| !place.commands.is_empty()) {
-        let chosen = |place: &Place| -> String {
-            let cases: Vec<&str> = place.commands.iter().map(|(_, case)| case.as_str()).collect();
+    if all().any(|mode| !mode.commands.is_empty()) {
+        let chosen = |mode: &Mode| -> String {
+            let cases: Vec<&str> = mode.commands.iter().map(|(_, case)| case.as_str()).collect();
             cases.join("; else ")
         };
         columns.push(("chosen at a sample", column(&chosen)));

@@ -1,7 +1,7 @@
 //! Flows belong to locations, not to events.
 
 use pleach_automaton::{Automaton, coordinates};
-use pleach_discrete::vocabulary;
+use pleach_automaton::discrete::vocabulary;
 
 vocabulary! {
     enum Motion: Location { Falling = "falling" }

@@ -1,7 +1,7 @@
 //! A transition leads to a location of its own model.
 
 use pleach_automaton::{Automaton, coordinates, from};
-use pleach_discrete::vocabulary;
+use pleach_automaton::discrete::vocabulary;
 
 vocabulary! {
     enum Motion: Location { Falling = "falling" }

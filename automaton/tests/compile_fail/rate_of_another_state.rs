@@ -1,7 +1,7 @@
 //! A flow gives rates to coordinates of its own state only.
 
 use pleach_automaton::{Automaton, coordinates};
-use pleach_discrete::vocabulary;
+use pleach_automaton::discrete::vocabulary;
 
 vocabulary! {
     enum Motion: Location { Falling = "falling" }

@@ -1,7 +1,7 @@
 //! Every transition says how urgent it is: an arrow alone is no edge.
 
 use pleach_automaton::{Automaton, coordinates, from};
-use pleach_discrete::vocabulary;
+use pleach_automaton::discrete::vocabulary;
 
 vocabulary! {
     enum Motion: Location { Falling = "falling" }

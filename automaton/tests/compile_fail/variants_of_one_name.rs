@@ -1,6 +1,6 @@
 //! Two locations have two names.
 
-use pleach_discrete::{Location, vocabulary};
+use pleach_automaton::discrete::{Location, vocabulary};
 
 vocabulary! {
     enum Heater: Location { Off = "off", On = "off" }

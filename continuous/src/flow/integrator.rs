@@ -31,9 +31,9 @@ pub enum Method {
 /// 8 with error estimates of orders 5 and 3 (doi:10.1016/0771-050X(81)90010-3), stiff ones by
 /// Steinebach's Rosenbrock method Rodas5P of order 5 (doi:10.1007/s10543-023-00967-x), which solves
 /// eight systems of linear equations per step. A flow is *stiff* where fast motions that have faded,
-/// and not those that last, limit explicit steps. Inside, a [`Step`] is the continuous extension of its method. The length
-/// of the steps keeps the error within the tolerances. At a kink of the field the steps become
-/// short.
+/// and not those that last, limit explicit steps. Inside, a [`Step`] is the continuous extension of
+/// its method. The length of the steps keeps the error within the tolerances. At a kink of the field
+/// the steps become short.
 ///
 /// ```
 /// use pleach_continuous::flow::{Curve, Integrator, Tolerances};

@@ -44,7 +44,7 @@ pub use containment::Escape;
 pub use explore::{Completion, Enclosure, Segment, Visit, explore};
 pub use exponential::exponential;
 pub use falsify::{Counterexample, TimedState, falsify, followed};
-pub use model::{Assignments, Dynamics, Jump, Model, ModelError, Place, Uncertain};
+pub use model::{Assignments, Dynamics, Jump, Mode, Model, ModelError, Uncertain};
 pub use polytope::{Bound, Polytope, Template};
 pub use question::{Answer, Doubt, Forbidden, Proof, ReachError, prove, verify};
 pub use region::{Conjunction, HalfSpace, Region, RegionError};

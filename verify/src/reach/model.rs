@@ -16,14 +16,14 @@ use super::vector::IntervalMatrix;
 #[derive(Clone, Debug)]
 pub struct Model {
     variables: Vec<String>,
-    locations: Vec<Place>,
+    locations: Vec<Mode>,
     /// Where a run begins, by number of the location.
     initial: Vec<usize>,
 }
 
 /// A location.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct Mode {
     /// Its name.
     pub name: String,
     /// What holds while time passes.
@@ -144,7 +144,7 @@ pub enum ModelError {
 
 impl Model {
     /// The model of these parts.
-    pub fn new(variables: Vec<String>, locations: Vec<Place>, initial: Vec<usize>) -> Self {
+    pub fn new(variables: Vec<String>, locations: Vec<Mode>, initial: Vec<usize>) -> Self {
         Model { variables, locations, initial }
     }
 
@@ -185,7 +185,7 @@ impl Model {
         let numbers = automaton.parameters().filter(|(name, _)| is_certain(name));
         let numbers = Substitution::new(numbers.map(|(name, value)| (name, constant(value))));
         let reader = Reader { automaton, variables: &variables, inputs, numbers };
-        let locations = automaton.locations().iter().map(|location| reader.place(*location));
+        let locations = automaton.locations().iter().map(|location| reader.mode(*location));
         let locations = locations.collect::<Result<Vec<_>, _>>()?;
         let initial = automaton.locations().iter().position(|it| *it == automaton.initial());
         Ok(Model { locations, initial: initial.into_iter().collect(), variables })
@@ -211,7 +211,7 @@ impl Model {
     }
 
     /// The locations.
-    pub fn locations(&self) -> &[Place] {
+    pub fn locations(&self) -> &[Mode] {
         &self.locations
     }
 
@@ -230,16 +230,16 @@ struct Reader<'a, L, E, S> {
 }
 
 impl<L: Location, E: Event, S: Coordinates> Reader<'_, L, E, S> {
-    fn place(&self, location: L) -> Result<Place, ModelError> {
+    fn mode(&self, location: L) -> Result<Mode, ModelError> {
         let name = location.name().to_owned();
-        let mode = self.automaton.mode(location);
-        let invariant = mode.and_then(|mode| mode.invariant.as_ref());
+        let own = self.automaton.mode(location);
+        let invariant = own.and_then(|own| own.invariant.as_ref());
         let invariant = match invariant {
             Some(invariant) => self.region(&name, invariant)?,
             None => Region { alternatives: vec![Default::default()] },
         };
         let mut rates = vec![constant(0.0); self.variables.len()];
-        if let Some(flow) = mode.and_then(|mode| mode.flow.as_ref()) {
+        if let Some(flow) = own.and_then(|own| own.flow.as_ref()) {
             let listed = flow.rates().ok_or_else(|| ModelError::Flow { location: name.clone() })?;
             for rate in listed {
                 if let Some(place) = self.place_of(rate.coordinate()) {
@@ -251,7 +251,7 @@ impl<L: Location, E: Event, S: Coordinates> Reader<'_, L, E, S> {
             self.inputs.iter().map(|input| (input.parameter.as_str(), input.values)).collect();
         let flow = Dynamics::of(&name, rates, self.variables, &inputs)?;
         let jumps = self.jumps(location, &name)?;
-        Ok(Place { name, invariant, flow, jumps })
+        Ok(Mode { name, invariant, flow, jumps })
     }
 
     fn region(&self, location: &str, predicate: &Predicate) -> Result<Region, ModelError> {

@@ -1,7 +1,7 @@
 //! How parts are joined: channels, connections, slots and labels.
 
 use super::{CompositionBuilder, CompositionError, Part};
-use crate::composition::blueprint::{Change, Place, PlaceMotion};
+use crate::composition::blueprint::{Change, Mode, ModeMotion};
 use crate::composition::{Component, Composition, Label};
 
 impl CompositionBuilder {
@@ -178,18 +178,18 @@ impl Part {
 
     /// In every location that is ever entered there is a transition with this event.
     fn check_receptive(&self, event: &str) -> Result<(), CompositionError> {
-        let (number, places) = (self.event(event), &self.blueprint.places);
-        let is_entered = |place: usize| {
-            let mut leaving = places.iter().flat_map(|place| &place.leaving);
-            place == self.blueprint.initial || leaving.any(|leaving| leaving.target == place)
+        let (number, modes) = (self.event(event), &self.blueprint.modes);
+        let is_entered = |location: usize| {
+            let mut leaving = modes.iter().flat_map(|mode| &mode.leaving);
+            location == self.blueprint.initial || leaving.any(|leaving| leaving.target == location)
         };
-        let is_deaf = |place: &Place| !place.leaving.iter().any(|it| Some(it.event) == number);
-        let mut numbered = places.iter().enumerate();
-        match numbered.find(|(number, place)| is_deaf(place) && is_entered(*number)) {
-            Some((_, place)) => Err(CompositionError::NotReceptive {
+        let is_deaf = |mode: &Mode| !mode.leaving.iter().any(|it| Some(it.event) == number);
+        let mut numbered = modes.iter().enumerate();
+        match numbered.find(|(number, mode)| is_deaf(mode) && is_entered(*number)) {
+            Some((_, mode)) => Err(CompositionError::NotReceptive {
                 component: self.name.clone(),
                 event: event.to_owned(),
-                location: place.name,
+                location: mode.name,
             }),
             None => Ok(()),
         }
@@ -213,12 +213,12 @@ impl Component {
             let component = self.name.clone();
             return Err(CompositionError::SurfaceReads { component, coordinate });
         }
-        for place in &self.blueprint.places {
-            let moved: Vec<usize> = match &place.motion {
-                PlaceMotion::Rates(rates) => rates.iter().map(|rate| rate.coordinate).collect(),
-                PlaceMotion::Field(_) | PlaceMotion::Exact(_) => Vec::new(),
+        for mode in &self.blueprint.modes {
+            let moved: Vec<usize> = match &mode.motion {
+                ModeMotion::Rates(rates) => rates.iter().map(|rate| rate.coordinate).collect(),
+                ModeMotion::Field(_) | ModeMotion::Exact(_) => Vec::new(),
             };
-            let set = place.leaving.iter().flat_map(|leaving| match &leaving.change {
+            let set = mode.leaving.iter().flat_map(|leaving| match &leaving.change {
                 Change::Assignments(assignments) => {
                     assignments.iter().map(|(coordinate, _)| *coordinate).collect()
                 }
@@ -228,7 +228,7 @@ impl Component {
                 return Err(CompositionError::InputChanged {
                     component: self.name.clone(),
                     coordinate: self.blueprint.coordinates[input],
-                    location: place.name,
+                    location: mode.name,
                 });
             }
         }

@@ -138,7 +138,7 @@ impl<'a> Simulation<'a> {
             return None;
         }
         let component = &self.composition.components[there.component];
-        let guard = &component.place(there.source).leaving[there.transition].guard;
+        let guard = &component.mode(there.source).leaving[there.transition].guard;
         let margins = |location: usize| -> Vec<f64> {
             let mut locations = self.locations.clone();
             locations[there.component] = location;

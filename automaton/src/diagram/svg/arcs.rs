@@ -11,7 +11,7 @@
 mod path;
 mod strokes;
 
-use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Place, Size, text_width};
+use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Pixel, Size, text_width};
 use super::{broken, stroke_class};
 use crate::diagram::sketch::{Link, Sketch};
 
@@ -42,7 +42,7 @@ const LOOP_GAP: f64 = 14.0;
 
 /// Whether the picture does not become a tangle.
 pub(super) fn suit(sketch: &Sketch) -> bool {
-    (1..=MOST_PLACES).contains(&sketch.places.len()) && sketch.links.len() <= MOST_LINKS
+    (1..=MOST_PLACES).contains(&sketch.modes.len()) && sketch.links.len() <= MOST_LINKS
 }
 
 /// Draws boxes and arcs; also says how large the picture is.
@@ -57,7 +57,7 @@ pub(super) fn draw(sketch: &Sketch) -> (Canvas, Size) {
     strokes::draw_key(&mut canvas, sketch, &mut extent);
 
     let mut picture = Canvas::new();
-    let corner = Place { x: MARGIN - extent.left, y: MARGIN - extent.top };
+    let corner = Pixel { x: MARGIN - extent.left, y: MARGIN - extent.top };
     picture.inset(canvas, corner);
     let width = extent.right - extent.left + 2.0 * MARGIN;
     (picture, Size { width, height: extent.bottom - extent.top + 2.0 * MARGIN })
@@ -118,7 +118,7 @@ struct Extent {
 }
 
 impl Extent {
-    fn include(&mut self, corner: Place, size: Size) {
+    fn include(&mut self, corner: Pixel, size: Size) {
         self.left = self.left.min(corner.x);
         self.top = self.top.min(corner.y);
         self.right = self.right.max(corner.x + size.width);
@@ -172,7 +172,7 @@ impl Arc {
 
 impl Row {
     fn of(sketch: &Sketch) -> Row {
-        let mut order: Vec<usize> = (0..sketch.places.len()).collect();
+        let mut order: Vec<usize> = (0..sketch.modes.len()).collect();
         order.sort_by_key(|&place| Some(place) != sketch.initial);
         let position = |place| order.iter().position(|&one| one == place).unwrap_or_default();
         let arcs: Vec<Arc> = sketch
@@ -185,7 +185,7 @@ impl Row {
                 class: format!("arrow {}", stroke_class(link.urgency, link.is_missed)),
             })
             .collect();
-        let boxes = order.iter().map(|&place| Box::of(&sketch.places[place])).collect();
+        let boxes = order.iter().map(|&place| Box::of(&sketch.modes[place])).collect();
         let mut row = Row { boxes, height: 0.0, arcs, start: sketch.start.clone() };
         row.set_sizes();
         row
@@ -247,7 +247,7 @@ impl Row {
 }
 
 impl Box {
-    fn of(place: &crate::diagram::sketch::Place) -> Box {
+    fn of(place: &crate::diagram::sketch::Mode) -> Box {
         let lines: Vec<String> =
             place.lines().iter().flat_map(|line| broken(line, LINE_LENGTH)).collect();
         let longest = lines.iter().map(|line| text_width(line)).fold(0.0, f64::max);

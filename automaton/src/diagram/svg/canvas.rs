@@ -59,7 +59,7 @@ const MORE_STYLE: &str = "
 
 /// A place in the picture, in pixels; y grows downwards.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct Pixel {
     pub x: f64,
     pub y: f64,
 }
@@ -105,7 +105,7 @@ impl Canvas {
     }
 
     /// Puts another picture here, with its upper left corner at `corner`.
-    pub fn inset(&mut self, picture: Canvas, corner: Place) {
+    pub fn inset(&mut self, picture: Canvas, corner: Pixel) {
         let shift = format!("translate({} {})", number(corner.x), number(corner.y));
         self.is_rich |= picture.is_rich;
         let group = picture.strokes.into_iter().fold(Group::new(), Group::add);
@@ -122,14 +122,14 @@ impl Canvas {
     }
 
     /// A line of text whose middle is at the height of `place`.
-    pub fn label(&mut self, place: Place, text: &str, class: &str) {
+    pub fn label(&mut self, place: Pixel, text: &str, class: &str) {
         let base = place.y + DESCENT * FONT_SIZE;
         self.add(drawing::text(text, [place.x, base]).set("class", class));
     }
 
     /// The box of a location. Its attribute `data-location` is the name, for scripts that show
     /// which location is active.
-    pub fn location(&mut self, corner: Place, size: Size, name: &str, is_missed: bool) {
+    pub fn location(&mut self, corner: Pixel, size: Size, name: &str, is_missed: bool) {
         self.is_rich |= is_missed;
         let class = if is_missed { "location missed" } else { "location" };
         let place = rectangle(corner, size).set("class", class).set("data-location", name);
@@ -137,33 +137,33 @@ impl Canvas {
     }
 
     /// The frame of a component.
-    pub fn frame(&mut self, corner: Place, size: Size) {
+    pub fn frame(&mut self, corner: Pixel, size: Size) {
         self.add(rectangle(corner, size).set("class", "frame").set("rx", 4));
     }
 
     /// The ground of a row.
-    pub fn stripe(&mut self, corner: Place, size: Size) {
+    pub fn stripe(&mut self, corner: Pixel, size: Size) {
         self.add(rectangle(corner, size).set("class", "stripe"));
     }
 
     /// The line below a location.
     pub fn column_line(&mut self, x: f64, top: f64, bottom: f64) {
-        let line = line(Place { x, y: top }, Place { x, y: bottom });
+        let line = line(Pixel { x, y: top }, Pixel { x, y: bottom });
         self.add(line.set("class", "column"));
     }
 
     /// Where a transition begins.
-    pub fn dot(&mut self, at: Place) {
+    pub fn dot(&mut self, at: Pixel) {
         self.dot_of(at, "dot");
     }
 
     /// A dot of another colour.
-    pub fn dot_of(&mut self, at: Place, class: &str) {
+    pub fn dot_of(&mut self, at: Pixel, class: &str) {
         self.add(disc([at.x, at.y], DOT).set("class", class));
     }
 
     /// An arrow with its head at `to`.
-    pub fn arrow(&mut self, from: Place, to: Place, class: &str) {
+    pub fn arrow(&mut self, from: Pixel, to: Pixel, class: &str) {
         let line = line(from, to).set("class", format!("arrow {class}"));
         self.add(line.set("marker-end", head_of(class)));
     }
@@ -175,10 +175,10 @@ impl Canvas {
     }
 
     /// From a dot above `at` round to `at`.
-    pub fn returning_arrow(&mut self, at: Place, class: &str) {
+    pub fn returning_arrow(&mut self, at: Pixel, class: &str) {
         let [reach, height] = LOOP;
         let above = at.y - height;
-        self.dot(Place { x: at.x, y: above });
+        self.dot(Pixel { x: at.x, y: above });
         let curve = format!(
             "M {x} {above} C {far} {above} {far} {y} {x} {y}",
             x = number(at.x),
@@ -191,10 +191,10 @@ impl Canvas {
     }
 
     /// The arrow from nowhere to the initial location, whose box is `length` below.
-    pub fn initial_arrow(&mut self, from: Place, length: f64) {
-        let start = Place { y: from.y + DOT, ..from };
+    pub fn initial_arrow(&mut self, from: Pixel, length: f64) {
+        let start = Pixel { y: from.y + DOT, ..from };
         self.dot(start);
-        self.arrow(start, Place { y: from.y + length, ..from }, "must");
+        self.arrow(start, Pixel { y: from.y + length, ..from }, "must");
     }
 }
 
@@ -221,10 +221,10 @@ fn head_of(class: &str) -> &'static str {
     }
 }
 
-fn rectangle(corner: Place, size: Size) -> Rectangle {
+fn rectangle(corner: Pixel, size: Size) -> Rectangle {
     drawing::rectangle([corner.x, corner.y], [size.width, size.height])
 }
 
-fn line(from: Place, to: Place) -> Line {
+fn line(from: Pixel, to: Pixel) -> Line {
     drawing::line([from.x, from.y], [to.x, to.y])
 }

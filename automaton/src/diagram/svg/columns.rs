@@ -9,7 +9,7 @@
 
 use pleach_discrete::Urgency;
 
-use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Place, Size, text_width};
+use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Pixel, Size, text_width};
 use super::{label_class, stroke_class, wrapped};
 use crate::diagram::sketch::Sketch;
 
@@ -46,7 +46,7 @@ pub(super) fn draw(sketch: &Sketch) -> (Canvas, Size) {
         draw_arrows(&mut canvas, row, &columns);
     }
     if let Some(initial) = sketch.initial.and_then(|number| columns.get(number)) {
-        canvas.initial_arrow(Place { x: initial.x, y: MARGIN }, ENTRANCE);
+        canvas.initial_arrow(Pixel { x: initial.x, y: MARGIN }, ENTRANCE);
     }
     (canvas, Size { width: right + MARGIN, height: bottom + LINE_HEIGHT + MARGIN })
 }
@@ -85,17 +85,17 @@ impl Row {
 
 fn columns(sketch: &Sketch, left: f64) -> Vec<Column> {
     let mut from = left;
-    let places = sketch.places.iter();
-    places
-        .map(|place| {
-            let lines = place.lines();
+    let modes = sketch.modes.iter();
+    modes
+        .map(|mode| {
+            let lines = mode.lines();
             let lines: Vec<String> =
                 lines.iter().flat_map(|line| wrapped(line, BOX_LINE_LENGTH)).collect();
             let longest = lines.iter().map(|line| text_width(line)).fold(0.0, f64::max);
             let width = longest + 2.0 * PADDING;
             let x = from + width / 2.0;
             from += width + GAP;
-            Column { name: place.name, lines, is_missed: place.is_missed, x, width }
+            Column { name: mode.name, lines, is_missed: mode.is_missed, x, width }
         })
         .collect()
 }
@@ -135,17 +135,17 @@ fn stack(rows: &mut [Row], mut top: f64) -> f64 {
 fn draw_labels(canvas: &mut Canvas, rows: &[Row], right: f64) {
     for (number, line) in KEY.iter().enumerate() {
         let y = MARGIN + ENTRANCE + (number as f64 + 0.5) * LINE_HEIGHT;
-        canvas.label(Place { x: MARGIN, y }, line, "key");
+        canvas.label(Pixel { x: MARGIN, y }, line, "key");
     }
     for (number, row) in rows.iter().enumerate() {
         if number % 2 == 0 {
-            let corner = Place { x: MARGIN / 2.0, y: row.top };
+            let corner = Pixel { x: MARGIN / 2.0, y: row.top };
             canvas.stripe(corner, Size { width: right, height: row.height() });
         }
         let first = row.middle() - (row.label.len() as f64 - 1.0) / 2.0 * LINE_HEIGHT;
         for (at, line) in row.label.iter().enumerate() {
             let class = label_class(at, line);
-            canvas.label(Place { x: MARGIN, y: first + at as f64 * LINE_HEIGHT }, line, class);
+            canvas.label(Pixel { x: MARGIN, y: first + at as f64 * LINE_HEIGHT }, line, class);
         }
     }
 }
@@ -161,13 +161,13 @@ fn draw_arrows(canvas: &mut Canvas, row: &Row, columns: &[Column]) {
     let [leftmost, rightmost] = [places().fold(target, f64::min), places().fold(target, f64::max)];
     for outermost in [leftmost, rightmost] {
         if outermost != target {
-            canvas.arrow(Place { x: outermost, y }, Place { x: target, y }, &class);
+            canvas.arrow(Pixel { x: outermost, y }, Pixel { x: target, y }, &class);
         }
     }
     for x in places() {
         match x == target {
-            true => canvas.returning_arrow(Place { x, y }, &class),
-            false => canvas.dot(Place { x, y }),
+            true => canvas.returning_arrow(Pixel { x, y }, &class),
+            false => canvas.dot(Pixel { x, y }),
         }
     }
 }
@@ -176,7 +176,7 @@ fn draw_arrows(canvas: &mut Canvas, row: &Row, columns: &[Column]) {
 fn draw_columns(canvas: &mut Canvas, columns: &[Column], bottom: f64) {
     let (top, height) = (MARGIN + ENTRANCE, box_height(columns));
     for column in columns {
-        let corner = Place { x: column.x - column.width / 2.0, y: top };
+        let corner = Pixel { x: column.x - column.width / 2.0, y: top };
         canvas.column_line(column.x, top + height, bottom);
         let size = Size { width: column.width, height };
         canvas.location(corner, size, column.name, column.is_missed);
@@ -184,11 +184,11 @@ fn draw_columns(canvas: &mut Canvas, columns: &[Column], bottom: f64) {
         let first = top + height / 2.0 - (lines - 1.0) / 2.0 * LINE_HEIGHT;
         for (at, line) in column.lines.iter().enumerate() {
             let class = if at == 0 { "name middle" } else { "middle" };
-            canvas.label(Place { x: column.x, y: first + at as f64 * LINE_HEIGHT }, line, class);
+            canvas.label(Pixel { x: column.x, y: first + at as f64 * LINE_HEIGHT }, line, class);
         }
         if let Some(name) = column.lines.first() {
             let y = bottom + LINE_HEIGHT / 2.0;
-            canvas.label(Place { x: column.x, y }, name, "name middle");
+            canvas.label(Pixel { x: column.x, y }, name, "name middle");
         }
     }
 }

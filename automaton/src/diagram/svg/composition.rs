@@ -2,7 +2,7 @@
 //! label, with a dot over every participant, and below them an arrow for each connection,
 //! from what is read to who reads it.
 
-use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Place, Size, number, text_width};
+use super::canvas::{Canvas, LINE_HEIGHT, MARGIN, Pixel, Size, number, text_width};
 use super::draw;
 use crate::composition::Composition;
 
@@ -84,13 +84,13 @@ impl Frame {
     }
 
     fn draw(&mut self, canvas: &mut Canvas, top: f64, height: f64) {
-        let corner = Place { x: self.left, y: top };
+        let corner = Pixel { x: self.left, y: top };
         canvas.frame(corner, Size { width: self.width, height });
         let y = top + PADDING + LINE_HEIGHT / 2.0;
-        canvas.label(Place { x: self.left + 2.0 * PADDING, y }, &self.name, "name");
+        canvas.label(Pixel { x: self.left + 2.0 * PADDING, y }, &self.name, "name");
         if let Some((picture, size)) = self.picture.take() {
             let x = self.left + (self.width - size.width) / 2.0;
-            canvas.inset(picture, Place { x, y: top + PADDING + LINE_HEIGHT });
+            canvas.inset(picture, Pixel { x, y: top + PADDING + LINE_HEIGHT });
         }
     }
 }
@@ -105,17 +105,17 @@ fn draw_label(canvas: &mut Canvas, places: &[f64], label: &str, [y, top]: [f64; 
     for &x in places {
         let (x_text, from, to) = (number(x), number(y), number(top));
         canvas.path(&format!("M {x_text} {from} V {to}"), "wire", false);
-        canvas.dot_of(Place { x, y: top }, "wire-dot");
+        canvas.dot_of(Pixel { x, y: top }, "wire-dot");
     }
-    let place = Place { x: first + PADDING, y: y - LINE_HEIGHT / 2.0 };
+    let place = Pixel { x: first + PADDING, y: y - LINE_HEIGHT / 2.0 };
     canvas.label(place, label, "wire-text");
 }
 
 /// From the frame at x = `from` down to `y`, across, and up into the other frame.
 fn draw_connection(canvas: &mut Canvas, [from, to]: [f64; 2], label: &str, [y, bottom]: [f64; 2]) {
-    canvas.dot_of(Place { x: from, y: bottom }, "pipe-dot");
+    canvas.dot_of(Pixel { x: from, y: bottom }, "pipe-dot");
     let [x, across, down, up] = [from, to, y, bottom].map(number);
     canvas.path(&format!("M {x} {up} V {down} H {across} V {up}"), "pipe", true);
-    let place = Place { x: from.min(to) + PADDING, y: y - LINE_HEIGHT / 2.0 };
+    let place = Pixel { x: from.min(to) + PADDING, y: y - LINE_HEIGHT / 2.0 };
     canvas.label(place, label, "pipe-text");
 }

@@ -58,6 +58,7 @@ impl AccessPoint {
             requested: _,
             // Between two stimuli an access point has nothing left to do.
             heard: _,
+            silent: _,
             newest: _,
             rounds: _,
             acts: _,

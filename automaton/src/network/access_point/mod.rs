@@ -6,6 +6,7 @@
 #[cfg(feature = "abstraction")]
 mod abstraction;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -19,7 +20,7 @@ use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
-use super::robot::{RobotError, RobotFault};
+use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election};
 use super::site::Site;
@@ -44,8 +45,10 @@ pub struct AccessPoint {
     number: usize,
     site: Arc<Site>,
     position: Point,
-    /// The beacons that it has heard in this control period, by their senders.
+    /// The beacon heard last of each node in range, by their senders.
     heard: Vec<Arc<Beacon>>,
+    /// The senders of which nothing has been heard in this control period yet.
+    silent: BTreeSet<NodeId>,
     bulletin: Bulletin,
     /// The newest bulletin that it has heard and not taken up.
     newest: Option<Bulletin>,
@@ -78,6 +81,7 @@ impl AccessPoint {
             position: site.access_points[number],
             site,
             heard: Vec::new(),
+            silent: BTreeSet::new(),
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             newest: None,
             election: None,
@@ -150,11 +154,27 @@ impl AccessPoint {
 
     /// Takes in a beacon. One that arrives after a newer one of its sender is ignored.
     fn hear(&mut self, beacon: &Arc<Beacon>) {
+        self.silent.remove(&beacon.sender);
         match self.heard.binary_search_by_key(&beacon.sender, |held| held.sender) {
             Ok(at) if beacon.is_older_than(&self.heard[at]) => {}
             Ok(at) => self.heard[at] = Arc::clone(beacon),
             Err(at) => self.heard.insert(at, Arc::clone(beacon)),
         }
+    }
+
+    /// A control period begins, in which all nodes send again.
+    fn expect_all(&mut self) {
+        self.silent = self.heard.iter().map(|beacon| beacon.sender).collect();
+    }
+
+    /// After the first rounds all nodes in range have sent: those that were silent are out of range.
+    fn forget_silent(&mut self) {
+        // The round that has begun is one more than those that are over; after the last, none has.
+        if (1..=ROUNDS_TO_BE_HEARD).contains(&self.round()) {
+            return;
+        }
+        let silent = std::mem::take(&mut self.silent);
+        self.heard.retain(|beacon| !silent.contains(&beacon.sender));
     }
 
     /// The first access point sends the user the newest notice.

@@ -31,7 +31,7 @@ pub enum RoundAct {
     TellUser,
     /// It sends its public state.
     TellBeacon,
-    /// What it has heard in this control period is not needed any more.
+    /// After the first rounds, the nodes of which it has heard nothing are out of range.
     Forget,
 }
 
@@ -45,7 +45,7 @@ impl Act for RoundAct {
             RoundAct::Think => "deliberate, serve",
             RoundAct::TellUser => "tell the user",
             RoundAct::TellBeacon => "tell beacon",
-            RoundAct::Forget => "forget beacons",
+            RoundAct::Forget => "forget silent nodes",
         }
     }
 }
@@ -84,8 +84,11 @@ impl AccessPoint {
         site.automata.rounds.step_in_place::<Rounds>(self)?;
         for act in std::mem::take(&mut self.acts) {
             match act {
-                RoundAct::RestartClock => self.clock = 0.0,
-                RoundAct::Forget => self.heard.clear(),
+                RoundAct::RestartClock => {
+                    self.clock = 0.0;
+                    self.expect_all();
+                }
+                RoundAct::Forget => self.forget_silent(),
                 RoundAct::Think => {
                     let known = self.bulletin.id();
                     self.think()?;
@@ -132,13 +135,13 @@ pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
         .carried_out(row(
             RoundEvent::NextRound,
             guards::next_round(),
-            &[Think, TellBeacon],
+            &[Forget, Think, TellBeacon],
             |listening: &Listening| Listening { round: listening.round + 1 },
         ))
         .carried_out(row(
             RoundEvent::RoundsOver,
             guards::rounds_over(),
-            &[Think, Forget],
+            &[Forget, Think],
             |_: &Listening| Resting,
         ))
         .build()

@@ -146,9 +146,9 @@ impl Robot {
         best.map(|(hops, _, anchor)| (hops, anchor))
     }
 
-    /// Whether no robot on the path contradicts it, by its own lineage or because redundant robots may not
-    /// attach to it: its own beacon is newer than what others know of it, so that robots that lose their
-    /// parent at once do not attach to one another.
+    /// Whether no robot on the path contradicts it, by its own lineage or because redundant robots
+    /// may not attach to it: its own beacon is newer than what others know of it, so that robots that
+    /// lose their parent at once do not attach to one another.
     fn confirms(&self, lineage: &Lineage) -> bool {
         self.neighbours.iter().all(|neighbour| {
             let place = neighbour

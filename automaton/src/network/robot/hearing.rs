@@ -30,7 +30,7 @@ pub(super) struct Neighbour {
 /// A beacon is sent in this many rounds, at the beginning of a control period and whenever it has
 /// changed, so that all of these messages but one may be lost. A neighbour that is silent in as many
 /// of the rounds in which all robots send is out of range.
-pub(super) const ROUNDS_TO_BE_HEARD: usize = 3;
+pub(in super::super) const ROUNDS_TO_BE_HEARD: usize = 3;
 
 impl Neighbour {
     /// A node as heard from `own`.

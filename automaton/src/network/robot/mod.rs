@@ -69,7 +69,8 @@ use super::record::MissionEvent;
 use super::shared::Shared;
 use super::site::Site;
 use duties::Label;
-use hearing::{Neighbour, ROUNDS_TO_BE_HEARD};
+use hearing::Neighbour;
+pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
 use rounds::Rounds;
 
@@ -96,8 +97,8 @@ pub struct Robot {
     rate: f64,
     site: Arc<Site>,
 
-    // Where it stands in its control period, rounds of beacons, sweeps or negotiation, what it does now, and
-    // whether that is its first period.
+    // Where it stands in its control period, rounds of beacons, sweeps or negotiation, what it does
+    // now, and whether that is its first period.
     control: Current<Control>,
     round_count: Rounds,
     acts: Acts,

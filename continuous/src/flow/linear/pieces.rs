@@ -4,10 +4,10 @@
 //! of a turn of its fastest mode that has not faded. Each is the Taylor polynomial of the solution,
 //! with a proven bound on the rest: with |M| the matrix of magnitudes, s the sum of the magnitudes of
 //! the terms up to the k-th, and times in units of the length of the piece, let |M| s ≤ λ s in every
-//! component. If the k-th term is at most μ s, the one after it is at most μ s λ ÷ (k + 1), and so on: they
-//! shrink at least as those of a geometric series. Where a mode is so fast that it has faded but rules the series, as in stiff
-//! systems, the piece is instead a polynomial [through](Piece::through) the solution, with an
-//! estimate of its error.
+//! component. If the k-th term is at most μ s, the one after it is at most μ s λ ÷ (k + 1), and so
+//! on: they shrink at least as those of a geometric series. Where a mode is so fast that it has faded
+//! but rules the series, as in stiff systems, the piece is instead a polynomial
+//! [through](Piece::through) the solution, with an estimate of its error.
 
 use super::{Exponential, LinearFlow};
 use crate::flow::{Curve, Piece};

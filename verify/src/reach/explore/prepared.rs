@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::reach::model::{Model, Place};
+use crate::reach::model::{Mode, Model};
 use crate::reach::polytope::Template;
 use crate::reach::region::{Conjunction, HalfSpace, Region};
 use crate::reach::settings::{Directions, Settings};
@@ -48,7 +48,7 @@ impl Prepared {
     }
 
     /// A jump that has to be taken where one affine comparison holds keeps flows out of there.
-    fn waiting(place: &Place) -> Vec<(usize, HalfSpace)> {
+    fn waiting(place: &Mode) -> Vec<(usize, HalfSpace)> {
         let forced = place.jumps.iter().enumerate().filter(|(_, jump)| jump.is_forced);
         let alone = forced.filter_map(|(number, jump)| match &jump.guard.alternatives[..] {
             [Conjunction { half_spaces, others }] if others.is_empty() => match &half_spaces[..] {

@@ -11,47 +11,94 @@ use crate::reach::zonotope::Zonotope;
 /// The coefficients of an affine formula: those of the variables, those of the inputs, the constant.
 type Coefficients = (Vec<Interval>, Vec<Interval>, Interval);
 
-fn coefficients(
-    formula: &Expression,
-    variables: &[String],
-    inputs: &[(&str, Interval)],
-) -> Option<Coefficients> {
-    let number = |value: f64| value.is_finite().then(|| Interval::point(value));
-    let form = formula.linear_form_over(&number)?;
-    let entry = |name: &str| form.coefficient(name).copied().unwrap_or(Interval::point(0.0));
-    let row = variables.iter().map(|name| entry(name)).collect();
-    let column = inputs.iter().map(|(name, _)| entry(name)).collect();
-    Some((row, column, *form.constant()))
+/// What the formulas of a location may read.
+struct Scope<'a> {
+    location: &'a str,
+    variables: &'a [String],
+    inputs: &'a [(&'a str, Interval)],
 }
 
-/// The coefficients of a new value: those between its two formulas, if it has two.
-fn new_coefficients(
-    value: &NewValue,
-    variables: &[String],
-    inputs: &[(&str, Interval)],
-) -> Option<Coefficients> {
-    let hulls = |one: Vec<Interval>, other: Vec<Interval>| {
-        one.into_iter().zip(other).map(|(one, other)| one.hull(other)).collect()
-    };
-    let mut forms = value.formulas().map(|formula| coefficients(formula, variables, inputs));
-    let first = forms.next()??;
-    forms.try_fold(first, |(row, column, constant), other| {
-        let (other_row, other_column, other_constant) = other?;
-        Some((hulls(row, other_row), hulls(column, other_column), constant.hull(other_constant)))
-    })
+impl Scope<'_> {
+    /// The coefficients of some values by `form`, where all are affine. Values that are not may read
+    /// no input. `formulas` are those of all values.
+    fn coefficients<V>(
+        &self,
+        values: &[V],
+        formulas: &[&Expression],
+        form: impl Fn(&V) -> Option<Coefficients>,
+    ) -> Result<Option<Vec<Coefficients>>, ModelError> {
+        let location = || self.location.to_owned();
+        if let Some(variable) = formulas.iter().find_map(|formula| self.stranger(formula)) {
+            return Err(ModelError::Variable { location: location(), variable });
+        }
+        if let Some(forms) = values.iter().map(form).collect() {
+            return Ok(Some(forms));
+        }
+        let read = |name: &str| formulas.iter().any(|formula| formula.variables().contains(name));
+        match self.inputs.iter().find(|(name, _)| read(name)) {
+            Some((input, _)) => {
+                Err(ModelError::Input { input: (*input).to_owned(), location: location() })
+            }
+            None => Ok(None),
+        }
+    }
+
+    /// The coefficients of an affine formula.
+    fn of_formula(&self, formula: &Expression) -> Option<Coefficients> {
+        let number = |value: f64| value.is_finite().then(|| Interval::point(value));
+        let form = formula.linear_form_over(&number)?;
+        let entry = |name: &str| form.coefficient(name).copied().unwrap_or(Interval::point(0.0));
+        let row = self.variables.iter().map(|name| entry(name)).collect();
+        let column = self.inputs.iter().map(|(name, _)| entry(name)).collect();
+        Some((row, column, *form.constant()))
+    }
+
+    /// The coefficients of a new value: those between its two formulas, if it has two.
+    fn of_new_value(&self, value: &NewValue) -> Option<Coefficients> {
+        let hulls = |one: Vec<Interval>, other: Vec<Interval>| {
+            one.into_iter().zip(other).map(|(one, other)| one.hull(other)).collect()
+        };
+        let mut forms = value.formulas().map(|formula| self.of_formula(formula));
+        let first = forms.next()??;
+        forms.try_fold(first, |(row, column, constant), other| {
+            let (other_row, other_column, other_constant) = other?;
+            let constant = constant.hull(other_constant);
+            Some((hulls(row, other_row), hulls(column, other_column), constant))
+        })
+    }
+
+    /// The first variable of a formula that is none of these.
+    fn stranger(&self, formula: &Expression) -> Option<String> {
+        let is_known = |name: &str| {
+            self.variables.iter().any(|known| known == name)
+                || self.inputs.iter().any(|(known, _)| *known == name)
+        };
+        formula.variables().into_iter().find(|name| !is_known(name)).map(str::to_owned)
+    }
+
+    /// The constants, with what every input adds to them by `part` of its values.
+    fn offsets(
+        &self,
+        forms: &[Coefficients],
+        part: impl Fn(Interval) -> Interval,
+    ) -> Vec<Interval> {
+        let offset = |(_, column, constant): &Coefficients| {
+            let terms = column.iter().zip(self.inputs);
+            terms.fold(*constant, |sum, (entry, (_, values))| sum + *entry * part(*values))
+        };
+        forms.iter().map(offset).collect()
+    }
 }
 
-/// The first variable of a formula that is none of these.
-fn stranger(
-    formula: &Expression,
-    variables: &[String],
-    inputs: &[(&str, Interval)],
-) -> Option<String> {
-    let is_known = |name: &str| {
-        variables.iter().any(|known| known == name)
-            || inputs.iter().any(|(known, _)| *known == name)
-    };
-    formula.variables().into_iter().find(|name| !is_known(name)).map(str::to_owned)
+/// The coefficients of the variables.
+fn matrix(forms: &[Coefficients], dimension: usize) -> IntervalMatrix {
+    let mut matrix = IntervalMatrix::zero(dimension, dimension);
+    for (row, (entries, ..)) in forms.iter().enumerate() {
+        for (column, entry) in entries.iter().enumerate() {
+            matrix[(row, column)] = *entry;
+        }
+    }
+    matrix
 }
 
 impl Dynamics {
@@ -67,34 +114,12 @@ impl Dynamics {
         variables: &[String],
         inputs: &[(&str, Interval)],
     ) -> Result<Self, ModelError> {
-        if let Some(variable) = rates.iter().find_map(|rate| stranger(rate, variables, inputs)) {
-            return Err(ModelError::Variable { location: location.to_owned(), variable });
-        }
-        let forms: Option<Vec<_>> =
-            rates.iter().map(|rate| coefficients(rate, variables, inputs)).collect();
-        let Some(forms) = forms else {
-            let read = |name: &str| rates.iter().any(|rate| rate.variables().contains(name));
-            return match inputs.iter().find(|(name, _)| read(name)) {
-                Some((input, _)) => Err(ModelError::Input {
-                    input: (*input).to_owned(),
-                    location: location.to_owned(),
-                }),
-                None => Ok(Dynamics::Formulas(rates)),
-            };
-        };
-        let dimension = variables.len();
-        let mut matrix = IntervalMatrix::zero(dimension, dimension);
-        let mut center = Vec::new();
-        for (row, (entries, column, offset)) in forms.iter().enumerate() {
-            for (place, entry) in entries.iter().enumerate() {
-                matrix[(row, place)] = *entry;
-            }
-            let middle = |(entry, (_, values)): (&Interval, &(&str, Interval))| {
-                *entry * Interval::point(values.midpoint())
-            };
-            center
-                .push(column.iter().zip(inputs).map(middle).fold(*offset, |sum, term| sum + term));
-        }
+        let scope = Scope { location, variables, inputs };
+        let formulas: Vec<&Expression> = rates.iter().collect();
+        let forms = scope.coefficients(&rates, &formulas, |rate| scope.of_formula(rate))?;
+        let Some(forms) = forms else { return Ok(Dynamics::Formulas(rates)) };
+        let matrix = matrix(&forms, variables.len());
+        let center = scope.offsets(&forms, |values| Interval::point(values.midpoint()));
         let generators = inputs.iter().enumerate().map(|(number, (_, values))| {
             let half = Interval::point(radius(*values));
             forms.iter().map(|(_, column, _)| column[number] * half).collect()
@@ -122,36 +147,11 @@ impl Assignments {
         variables: &[String],
         inputs: &[(&str, Interval)],
     ) -> Result<Self, ModelError> {
-        let location = || location.to_owned();
-        let unknown = |value: &NewValue| {
-            value.formulas().find_map(|formula| stranger(formula, variables, inputs))
-        };
-        if let Some(variable) = values.iter().find_map(unknown) {
-            return Err(ModelError::Variable { location: location(), variable });
-        }
-        let forms: Option<Vec<Coefficients>> =
-            values.iter().map(|value| new_coefficients(value, variables, inputs)).collect();
-        let Some(forms) = forms else {
-            let read = |name: &&str| {
-                values.iter().flat_map(NewValue::formulas).any(|it| it.variables().contains(*name))
-            };
-            return match inputs.iter().map(|(name, _)| *name).find(read) {
-                Some(input) => {
-                    Err(ModelError::Input { input: input.to_owned(), location: location() })
-                }
-                None => Ok(Assignments::Formulas(values)),
-            };
-        };
-        let dimension = variables.len();
-        let mut matrix = IntervalMatrix::zero(dimension, dimension);
-        let mut offset = Vec::new();
-        for (row, (entries, column, constant)) in forms.iter().enumerate() {
-            for (place, entry) in entries.iter().enumerate() {
-                matrix[(row, place)] = *entry;
-            }
-            let terms = column.iter().zip(inputs).map(|(entry, (_, values))| *entry * *values);
-            offset.push(terms.fold(*constant, |sum, term| sum + term));
-        }
-        Ok(Assignments::Affine(matrix, offset))
+        let scope = Scope { location, variables, inputs };
+        let formulas: Vec<&Expression> = values.iter().flat_map(NewValue::formulas).collect();
+        let forms = scope.coefficients(&values, &formulas, |value| scope.of_new_value(value))?;
+        let Some(forms) = forms else { return Ok(Assignments::Formulas(values)) };
+        let offset = scope.offsets(&forms, |values| values);
+        Ok(Assignments::Affine(matrix(&forms, variables.len()), offset))
     }
 }

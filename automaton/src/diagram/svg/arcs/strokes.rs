@@ -7,7 +7,7 @@ use super::{
     AIR, Arc, Extent, FIRST_PORT, LEADING, LOOP, Label, PORT, Row, Side, loop_height, loop_width,
 };
 use crate::diagram::sketch::Sketch;
-use crate::diagram::svg::canvas::{Canvas, LINE_HEIGHT, Place, Size, number, text_width};
+use crate::diagram::svg::canvas::{Canvas, LINE_HEIGHT, Pixel, Size, number, text_width};
 use crate::diagram::svg::{label_class, stroke_class};
 
 /// How far the first arc between neighbours bulges, in pixels.
@@ -22,14 +22,14 @@ const SAMPLE: f64 = 30.0;
 impl Row {
     pub(super) fn draw_boxes(&self, canvas: &mut Canvas, sketch: &Sketch, extent: &mut Extent) {
         for one in &self.boxes {
-            let corner = Place { x: one.left, y: -self.height / 2.0 };
+            let corner = Pixel { x: one.left, y: -self.height / 2.0 };
             let size = Size { width: one.width, height: self.height };
             canvas.location(corner, size, one.name, one.is_missed);
             extent.include(corner, size);
             let first = -(one.lines.len() as f64 - 1.0) / 2.0 * LINE_HEIGHT;
             for (at, line) in one.lines.iter().enumerate() {
                 let class = if at == 0 { "name middle" } else { "middle" };
-                let place = Place { x: one.middle(), y: first + at as f64 * LINE_HEIGHT };
+                let place = Pixel { x: one.middle(), y: first + at as f64 * LINE_HEIGHT };
                 canvas.label(place, line, class);
             }
         }
@@ -42,14 +42,14 @@ impl Row {
     fn draw_entrance(&self, canvas: &mut Canvas, extent: &mut Extent) {
         let width = self.start.iter().map(|line| text_width(line)).fold(0.0, f64::max);
         let length = ENTRANCE.max(width + AIR);
-        canvas.dot(Place { x: -length, y: 0.0 });
-        canvas.arrow(Place { x: -length, y: 0.0 }, Place { x: 0.0, y: 0.0 }, "must");
+        canvas.dot(Pixel { x: -length, y: 0.0 });
+        canvas.arrow(Pixel { x: -length, y: 0.0 }, Pixel { x: 0.0, y: 0.0 }, "must");
         let top = -LEADING - self.start.len() as f64 * LINE_HEIGHT;
         for (at, line) in self.start.iter().enumerate() {
             let y = top + (at as f64 + 0.5) * LINE_HEIGHT;
-            canvas.label(Place { x: -length, y }, line, "condition");
+            canvas.label(Pixel { x: -length, y }, line, "condition");
         }
-        let corner = Place { x: -length - LEADING, y: top };
+        let corner = Pixel { x: -length - LEADING, y: top };
         extent.include(corner, Size { width: length, height: -top + LEADING });
     }
 
@@ -64,13 +64,13 @@ impl Row {
         for arc in self.loops(last) {
             let y = top + loop_height(arc) / 2.0;
             let curve = bezier(
-                Place { x: right, y: y - spread },
-                Place { x: right + reach / 0.75, y: y - 2.6 * spread },
-                Place { x: right + reach / 0.75, y: y + 2.6 * spread },
-                Place { x: right, y: y + spread },
+                Pixel { x: right, y: y - spread },
+                Pixel { x: right + reach / 0.75, y: y - 2.6 * spread },
+                Pixel { x: right + reach / 0.75, y: y + 2.6 * spread },
+                Pixel { x: right, y: y + spread },
             );
             self.stroke(canvas, arc, &curve);
-            let corner = Place { x: right + reach + LEADING, y: y - arc.label.height() / 2.0 };
+            let corner = Pixel { x: right + reach + LEADING, y: y - arc.label.height() / 2.0 };
             arc.label.draw(canvas, corner.x, corner.y, "");
             extent.include(corner, Size { width: arc.label.width, height: arc.label.height() });
             top += loop_height(arc);
@@ -85,13 +85,13 @@ impl Row {
         for arc in self.loops(position) {
             let x = left + loop_width(arc) / 2.0;
             let curve = bezier(
-                Place { x: x - spread, y: top },
-                Place { x: x - 2.6 * spread, y: top - reach / 0.75 },
-                Place { x: x + 2.6 * spread, y: top - reach / 0.75 },
-                Place { x: x + spread, y: top },
+                Pixel { x: x - spread, y: top },
+                Pixel { x: x - 2.6 * spread, y: top - reach / 0.75 },
+                Pixel { x: x + 2.6 * spread, y: top - reach / 0.75 },
+                Pixel { x: x + spread, y: top },
             );
             self.stroke(canvas, arc, &curve);
-            let corner = Place {
+            let corner = Pixel {
                 x: x - arc.label.width / 2.0,
                 y: top - reach - LEADING - arc.label.height(),
             };
@@ -115,7 +115,7 @@ impl Row {
         let mut level = FIRST_PORT + BULGE;
         for (number, arc) in self.near(gap, side).enumerate() {
             let port = FIRST_PORT + PORT * number as f64;
-            let mut ends = [Place { x: left, y: sign * port }, Place { x: right, y: sign * port }];
+            let mut ends = [Pixel { x: left, y: sign * port }, Pixel { x: right, y: sign * port }];
             if side == Side::Below {
                 ends.reverse();
             }
@@ -124,15 +124,15 @@ impl Row {
                 let control = sign * (port + (level - port) / 0.75);
                 let inwards = (to.x - from.x) / 4.0;
                 let (one, other) = (from.x + inwards, to.x - inwards);
-                bezier(from, Place { x: one, y: control }, Place { x: other, y: control }, to)
+                bezier(from, Pixel { x: one, y: control }, Pixel { x: other, y: control }, to)
             } else {
                 let inwards = (to.x - from.x).signum() * AIR / 2.0;
                 let corners = [
                     from,
-                    Place { x: from.x + inwards, y: from.y },
-                    Place { x: from.x + inwards, y: sign * level },
-                    Place { x: to.x - inwards, y: sign * level },
-                    Place { x: to.x - inwards, y: to.y },
+                    Pixel { x: from.x + inwards, y: from.y },
+                    Pixel { x: from.x + inwards, y: sign * level },
+                    Pixel { x: to.x - inwards, y: sign * level },
+                    Pixel { x: to.x - inwards, y: to.y },
                     to,
                 ];
                 bent(&corners, BEND / 2.0)
@@ -158,7 +158,7 @@ impl Row {
         };
         arc.label.draw(canvas, x, top, "middle");
         let width = arc.label.width;
-        extent.include(Place { x: x - width / 2.0, y: top }, Size { width, height });
+        extent.include(Pixel { x: x - width / 2.0, y: top }, Size { width, height });
         level + height + 2.0 * LEADING
     }
 
@@ -183,10 +183,10 @@ impl Row {
                 let to = port(arc.to, !rightwards);
                 let (edge, height) = (side.sign() * self.height / 2.0, side.sign() * level);
                 let corners = [
-                    Place { x: from, y: edge },
-                    Place { x: from, y: height },
-                    Place { x: to, y: height },
-                    Place { x: to, y: edge },
+                    Pixel { x: from, y: edge },
+                    Pixel { x: from, y: height },
+                    Pixel { x: to, y: height },
+                    Pixel { x: to, y: edge },
                 ];
                 self.stroke(canvas, arc, &bent(&corners, BEND));
                 level = self.draw_label(canvas, extent, arc, self.middle_of_gap(arc.gap()), level);
@@ -208,7 +208,7 @@ impl Label {
         for (at, line) in self.lines.iter().enumerate() {
             let y = top + (at as f64 + 0.5) * LINE_HEIGHT;
             let class = format!("{} {alignment}", label_class(at, line));
-            canvas.label(Place { x, y }, line, class.trim_end());
+            canvas.label(Pixel { x, y }, line, class.trim_end());
         }
     }
 }
@@ -223,11 +223,11 @@ pub(super) fn draw_key(canvas: &mut Canvas, sketch: &Sketch, extent: &mut Extent
         let class = format!("arrow {}", stroke_class(*urgency, false));
         let end = x + SAMPLE;
         canvas.path(&format!("M {} {} H {}", number(x), number(y), number(end)), &class, true);
-        canvas.label(Place { x: end + LEADING, y }, urgency.name(), "key");
+        canvas.label(Pixel { x: end + LEADING, y }, urgency.name(), "key");
         x = end + LEADING + text_width(urgency.name()) + AIR;
     }
     if x > extent.left {
         let size = Size { width: x - AIR - extent.left, height: LINE_HEIGHT };
-        extent.include(Place { x: extent.left, y: y - LINE_HEIGHT / 2.0 }, size);
+        extent.include(Pixel { x: extent.left, y: y - LINE_HEIGHT / 2.0 }, size);
     }
 }
