@@ -23,6 +23,7 @@ pub(super) struct Options {
 impl Options {
     pub fn read(text: &str) -> Result<Self, SpaceExError> {
         let mut options = Options { initially: (0, vec![vec![]]), ..Options::default() };
+        let mut known: Vec<(&str, usize)> = Vec::new();
         for (line, content) in (1..).zip(text.lines()) {
             let wrong = |problem: String| SpaceExError::Configuration { line, problem };
             let content = content.trim();
@@ -32,13 +33,20 @@ impl Options {
             let Some((key, value)) = content.split_once('=') else {
                 return Err(wrong(format!("`{content}` is no line `key = value`")));
             };
+            let key = key.trim();
+            if let Some((_, first)) = known.iter().find(|(one, _)| *one == key) {
+                return Err(wrong(format!(
+                    "`{key}` stands in line {first} already: leave one out"
+                )));
+            }
+            known.push((key, line));
             let value = unquoted(value).map_err(wrong)?;
             let number = || -> Result<f64, SpaceExError> {
                 let number: f64 =
                     value.parse().map_err(|_| wrong(format!("`{value}` is no number")))?;
                 if number.is_nan() { Err(wrong("NaN is no number".into())) } else { Ok(number) }
             };
-            match key.trim() {
+            match key {
                 "system" => options.system = Some((line, value.to_owned())),
                 "initially" => {
                     options.initially = (line, formula::alternatives(value).map_err(wrong)?);
@@ -57,9 +65,11 @@ impl Options {
                 },
                 "directions" => options.directions = Some((line, value.to_owned())),
                 "iter-max" | "max-iterations" => {
-                    let limit = number()?;
+                    let limit: i64 = value
+                        .parse()
+                        .map_err(|_| wrong(format!("`{value}` is no whole number of jumps")))?;
                     // A negative limit is none.
-                    options.jumps = (limit >= 0.0).then_some(limit as usize);
+                    options.jumps = usize::try_from(limit).ok();
                 }
                 "output-variables" => {
                     let shown = value.split(',').map(|name| name.trim().to_owned());

@@ -122,6 +122,13 @@ impl<'a> Network<'a> {
                     },
                     (Err(error), None) => return wrong(bind.line, format!("`{value}`: {error}")),
                 };
+                let is_label = inner.parameters.iter().any(|one| one.name == *key && one.is_label);
+                if let (true, Bound::Number(number)) = (is_label, &value) {
+                    return wrong(
+                        bind.line,
+                        format!("the label `{key}` is bound to {number}: bind it to a label"),
+                    );
+                }
                 inner_names.insert(key.clone(), value);
             }
             let inner_name = format!("{prefix}{}", bind.name);
@@ -162,6 +169,13 @@ impl Instance<'_> {
                         .variables()
                         .into_iter()
                         .find(|name| !self.names.contains_key(*name));
+                    let is_label = |name: &&str| {
+                        let mut known = self.component.parameters.iter();
+                        known.any(|one| one.is_label && one.name == **name)
+                    };
+                    if let Some(label) = formula.variables().into_iter().find(is_label) {
+                        return Err(wrong(format!("`{label}` is a label, and no number")));
+                    }
                     if let Some(stranger) = stranger {
                         return Err(wrong(format!(
                             "`{stranger}` is no parameter of component `{}`",

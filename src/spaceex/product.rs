@@ -102,7 +102,11 @@ impl<'a> Product<'a> {
             if known.is_label {
                 continue;
             }
-            if flowing.contains(name) {
+            if flowing.contains(name) && known.is_constant {
+                return self.wrong(format!(
+                    "`{name}` is a constant, and has a flow or is assigned: make its dynamics any"
+                ));
+            } else if flowing.contains(name) {
                 self.variables.push(name.clone());
             } else if known.is_constant {
                 let Some(values) = fixed(&options.initially.1, name) else {

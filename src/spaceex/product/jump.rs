@@ -93,7 +93,7 @@ impl Product<'_> {
             })?;
             is_urgent |= transition.is_urgent;
             for clause in instance.clauses(&transition.guard, transition.line)? {
-                guard.extend(predicate(&clause, transition.line)?);
+                guard.extend(predicate(&clause).map_err(wrong)?);
             }
             for (name, assigned) in instance.assignments(transition)? {
                 let coordinate = coordinates

@@ -41,7 +41,8 @@ impl Product<'_> {
             for clause in instance.clauses(&place.invariant, place.line)? {
                 // Bounds on inputs say what inputs are.
                 if !self.is_input_bound(&clause) {
-                    invariant.extend(predicate(&clause, place.line)?);
+                    let wrong = |problem| SpaceExError::Model { line: place.line, problem };
+                    invariant.extend(predicate(&clause).map_err(wrong)?);
                 }
             }
         }
