@@ -28,13 +28,20 @@ pub(super) struct Parameter {
     pub is_controlled: bool,
 }
 
+/// What stands in an element; nothing where there is none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Text {
+    pub line: usize,
+    pub content: String,
+}
+
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Location {
     pub id: String,
     pub name: String,
     pub line: usize,
-    pub invariant: String,
-    pub flow: String,
+    pub invariant: Text,
+    pub flow: Text,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,9 +49,9 @@ pub(super) struct Transition {
     pub source: String,
     pub target: String,
     pub line: usize,
-    pub label: String,
-    pub guard: String,
-    pub assignment: String,
+    pub label: Text,
+    pub guard: Text,
+    pub assignment: Text,
     pub is_urgent: bool,
 }
 
@@ -54,7 +61,7 @@ pub(super) struct Bind {
     pub name: String,
     pub line: usize,
     /// Parameters of the component, each with what it is bound to.
-    pub maps: Vec<(String, String)>,
+    pub maps: Vec<(String, Text)>,
 }
 
 impl Component {
@@ -68,14 +75,14 @@ impl Component {
                     return wrong(transition.line, format!("there is no location with id {id}"));
                 }
             }
-            let label = transition.label.trim();
+            let label = transition.label.content.trim();
             let is_known = |one: &Parameter| one.is_label && one.name == label;
             if !label.is_empty() && !self.parameters.iter().any(is_known) {
                 let problem = format!(
                     "`{label}` is no label of component `{}`: declare a param of type label",
                     self.id
                 );
-                return wrong(transition.line, problem);
+                return wrong(transition.label.line, problem);
             }
         }
         for (at, bind) in self.binds.iter().enumerate() {

@@ -3,7 +3,7 @@
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-use super::{Bind, Component, Location, Parameter, Transition};
+use super::{Bind, Component, Location, Parameter, Text, Transition};
 use crate::spaceex::SpaceExError;
 
 /// The elements that can stand in an element; in all others there is text.
@@ -202,19 +202,20 @@ impl Document {
         };
         let location = component.locations.last_mut();
         let transition = component.transitions.last_mut();
+        let text = Text { line: element.line, content };
         match (element.name.as_str(), location, transition) {
-            ("invariant", Some(location), _) => location.invariant = content,
-            ("flow", Some(location), _) => location.flow = content,
-            ("label", _, Some(transition)) => transition.label = content,
-            ("guard", _, Some(transition)) => transition.guard = content,
-            ("assignment", _, Some(transition)) => transition.assignment = content,
+            ("invariant", Some(location), _) => location.invariant = text,
+            ("flow", Some(location), _) => location.flow = text,
+            ("label", _, Some(transition)) => transition.label = text,
+            ("guard", _, Some(transition)) => transition.guard = text,
+            ("assignment", _, Some(transition)) => transition.assignment = text,
             ("map", ..) => {
                 if let (Some(key), Some(bind)) = (self.key.take(), component.binds.last_mut()) {
                     if bind.maps.iter().any(|(known, _)| *known == key) {
                         let problem = format!("`{}` binds `{key}` twice: leave one out", bind.name);
                         return Err(self.wrong(problem));
                     }
-                    bind.maps.push((key, content.trim().to_owned()));
+                    bind.maps.push((key, text));
                 }
             }
             ("component", ..) => component.check()?,

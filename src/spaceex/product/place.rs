@@ -38,10 +38,11 @@ impl Product<'_> {
                 }
                 _ => rates = None,
             }
-            for clause in instance.clauses(&place.invariant, place.line)? {
+            for clause in instance.clauses(&place.invariant)? {
                 // Bounds on inputs say what inputs are.
                 if !self.is_input_bound(&clause) {
-                    let wrong = |problem| SpaceExError::Model { line: place.line, problem };
+                    let wrong =
+                        |problem| SpaceExError::Model { line: place.invariant.line, problem };
                     invariant.extend(predicate(&clause).map_err(wrong)?);
                 }
             }

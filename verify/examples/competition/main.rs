@@ -14,15 +14,17 @@ mod gearbox;
 mod heat;
 mod nonlinear;
 mod platoon;
+mod predators;
 mod rendezvous;
 
 use std::ops::ControlFlow;
 use std::time::Instant;
 
 use pleach_automaton::{Automaton, Name, Record};
+use pleach_guards::Interval;
 use pleach_verify::reach::{
-    Completion, Directions, Forbidden, Model, Proof, Settings, Span, StateSet, Uncertain, prove,
-    runs,
+    Completion, Directions, Forbidden, Model, Polytope, Proof, Settings, Span, StateSet, Uncertain,
+    prove, runs,
 };
 
 use heat::Heat;
@@ -53,19 +55,18 @@ pub struct Outcome {
 /// An automaton, where it begins and where it may not come.
 pub struct Instance {
     automaton: Automaton<Name, Name, Record>,
-    start: StateSet,
+    /// Where it begins: in one of these.
+    starts: Vec<StateSet>,
     uncertain: Vec<Uncertain>,
     forbidden: Vec<Forbidden>,
     settings: Settings,
-    /// Into how many parts the initial set is cut along each axis.
-    parts: Vec<usize>,
     measured: Option<Measure>,
 }
 
 impl Instance {
     /// The instance with its initial set cut into parts.
     fn cut(mut self, parts: &[usize]) -> Self {
-        self.parts = parts.to_vec();
+        self.starts = self.starts.iter().flat_map(|start| start.parts(parts)).collect();
         self
     }
 }
@@ -152,9 +153,8 @@ fn processor_time() -> Option<f64> {
 
 fn solved(instance: &Instance) -> TestResult<(Model, Proof)> {
     let model = Model::with_uncertain(&instance.automaton, &instance.uncertain)?;
-    let starts = instance.start.parts(&instance.parts);
     let go_on = &mut |_| ControlFlow::Continue(());
-    let proof = prove(&model, &starts, &instance.forbidden, &instance.settings, go_on)?;
+    let proof = prove(&model, &instance.starts, &instance.forbidden, &instance.settings, go_on)?;
     Ok((model, proof))
 }
 
@@ -171,8 +171,7 @@ fn simulated(
     if !matches!(proof.enclosure.ending, Completion::Horizon | Completion::Everything) {
         return Ok(());
     }
-    let Instance { automaton, uncertain, start, settings, .. } = instance;
-    let starts = std::slice::from_ref(start);
+    let Instance { automaton, uncertain, starts, settings, .. } = instance;
     let drawn = runs(automaton, uncertain, starts, settings.horizon, count, 1);
     let own = automaton.names().len();
     for run in &drawn {
@@ -205,13 +204,18 @@ fn line(name: &str, outcome: &Outcome, seconds: f64) -> String {
     format!("| {name} | {answer} | {seconds:.2} s | {sets} | {away} | {measured} |\n")
 }
 
-/// What the list asks to be measured.
+/// What the list asks to be measured of the sets that hold the states at the horizon.
 fn measured(instance: &Instance, model: &Model, proof: &Proof) -> Option<String> {
-    let last = &proof.enclosure.visits.last()?.segments.last()?.set;
-    let sides = last.hull()?;
+    let segments = proof.enclosure.visits.iter().flat_map(|visit| &visit.segments);
+    let horizon = instance.settings.horizon;
+    let last: Vec<&Polytope> = segments
+        .filter(|segment| segment.time.upper() >= horizon)
+        .map(|segment| &segment.set)
+        .collect();
     let width = |name: &str| {
         let place = model.variables().iter().position(|variable| variable == name)?;
-        Some(sides[place].width())
+        let sides = last.iter().filter_map(|set| set.hull()).map(|sides| sides[place]);
+        sides.reduce(Interval::hull).map(|side| side.width())
     };
     Some(match instance.measured? {
         Measure::Width(name) => format!("width of {name} {:.4}", width(name)?),
@@ -219,7 +223,8 @@ fn measured(instance: &Instance, model: &Model, proof: &Proof) -> Option<String>
         Measure::Sum => {
             let bound = |sign: f64| {
                 let direction = vec![sign; model.variables().len()];
-                last.template().position(&direction).map(|place| last.bounds()[place])
+                let bounds = last.iter().map(|set| set.bound(&direction));
+                bounds.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
             };
             format!("width of the sum {:.1e}", bound(1.0)? + bound(-1.0)?)
         }
@@ -252,6 +257,7 @@ fn automata() -> TestResult<Vec<(&'static str, Instance)>> {
     };
     // The reports take jumps as SpaceEx does.
     let jumping = |horizon, step| Settings { enters_invariants: true, ..affine(horizon, step) };
+    let sharp = Settings { generators: 100, ..affine(20.0, 0.02) };
     let gears = |step| Settings { clusters: 4, ..jumping(0.2, step) };
     let approach = |clusters| Settings { clusters, ..jumping(300.0, 0.04) };
     let stiff = |order| Settings {
@@ -259,21 +265,31 @@ fn automata() -> TestResult<Vec<(&'static str, Instance)>> {
         ..smooth(40.0, 1e-9, order, 1, 4)
     };
     let alike = [(1.25, 1.55); 2];
+    let crossing =
+        Settings { directions: Directions::Octagons, step: 0.02, ..smooth(3.64, 1e-7, 6, 2, 4) };
     Ok(vec![
         ("PLAD01-BND42", platoon::deterministic(42.0, affine(20.0, 0.02))?),
-        ("PLAD01-BND30", platoon::deterministic(30.0, affine(20.0, 0.02))?),
+        ("PLAD01-BND30", platoon::deterministic(30.0, sharp)?),
         ("GRBX01", gearbox::shift((0.0001, 0.0001), gears(0.0005))?),
         ("GRBX02", gearbox::shift((0.00005, 0.00015), gears(0.0005))?),
         ("SRNA01", rendezvous::mission(None, approach(1))?),
         ("SRA01", rendezvous::mission(Some((120.0, 120.0)), approach(1))?),
         ("SRA02", rendezvous::mission(Some((120.0, 125.0)), approach(4))?),
+        ("SRA03", rendezvous::mission(Some((120.0, 145.0)), approach(4))?),
+        ("SRA04", rendezvous::mission(Some((240.0, 240.0)), approach(40))?),
         ("VDP, in 16 parts", nonlinear::oscillator(smooth(7.0, 1e-7, 8, 3, 4))?.cut(&[8, 2])),
-        ("CVDP23", nonlinear::van_der_pol(alike, (1.0, 3.0), 2.75, smooth(7.0, 1e-5, 8, 3, 4))?),
+        (
+            "CVDP23, in 64 parts",
+            nonlinear::van_der_pol(alike, (1.0, 3.0), 2.75, smooth(7.0, 1e-6, 8, 3, 4))?
+                .cut(&[4, 1, 4, 1, 4]),
+        ),
         ("LALO20, W = 0.01", nonlinear::laub_loomis(0.01, 4.5, smooth(20.0, 1e-7, 6, 2, 4))?),
         ("LALO20, W = 0.05", nonlinear::laub_loomis(0.05, 4.5, smooth(20.0, 1e-5, 6, 2, 4))?),
         ("LALO20, W = 0.1", nonlinear::laub_loomis(0.1, 5.0, smooth(20.0, 1e-5, 6, 2, 4))?),
-        ("LOVO", nonlinear::lotka_volterra(smooth(3.64, 1e-9, 8, 2, 20))?),
-        ("ROBE, case 1", nonlinear::robertson(1e2, 1e3, stiff(8))?),
+        ("LOVO25, in 8 parts", predators::cycle(8, crossing)?),
+        ("ROBE25, case 1", nonlinear::robertson(1e2, 1e3, stiff(8))?),
+        ("ROBE25, case 2", nonlinear::robertson(1e3, 1e5, stiff(8))?),
+        ("ROBE25, case 3", nonlinear::robertson(1e3, 1e7, stiff(8))?),
         ("QUAD, ± 0.1", nonlinear::quadrotor(0.1, smooth(5.0, 1e-7, 6, 2, 4))?),
         ("QUAD, ± 0.4", nonlinear::quadrotor(0.4, smooth(5.0, 1e-7, 6, 2, 4))?),
         ("QUAD, ± 0.8", nonlinear::quadrotor(0.8, smooth(5.0, 1e-6, 6, 3, 4))?),
