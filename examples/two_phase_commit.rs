@@ -2,7 +2,7 @@
 //!
 //! Participants of a transaction prepare to commit it and say so, or give up. A coordinator
 //! commits once it has heard from all that they are prepared; until then it may abort at any time.
-//! What it decides, each participant learns some time. Nobody waits for anybody, and messages take
+//! What it decides, each participant learns some time. No one waits for another, and messages take
 //! as long as they like; so no clock is in the model, and everything that can ever happen is
 //! explored.
 //!
@@ -126,7 +126,7 @@ pub fn exhibit() -> Shown {
     let (three, five) = (explored(3)?, explored(5)?);
     let found = [&three, &five].map(|exploration| exploration.states().len() as f64);
     let inconsistent = five.states().filter(|state| !is_consistent(state)).count() as f64;
-    let agreed = three.find(|state| tally(state) == [0, 0, 3, 0]).ok_or("nobody commits")?;
+    let agreed = three.find(|state| tally(state) == [0, 0, 3, 0]).ok_or("no state is committed")?;
     Ok(Exhibit::new("two_phase_commit", include_str!("two_phase_commit.rs"))
         .component("coordinator", &coordinator()?)
         .component("ballot", &ballot()?)

@@ -1,7 +1,7 @@
 //! The command-line program.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
-#![warn(clippy::print_stdout, clippy::print_stderr)] // they panic where nobody reads: see `cli::output`
+#![warn(clippy::print_stdout, clippy::print_stderr)] // they panic when the stream is closed: see `cli::output`
 
 mod cli;
 

@@ -47,11 +47,11 @@ const REASONS: &[([&str; 4], &str)] = &[
     ),
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
     (
-        ["service", "gathering", "nobody there", ""],
+        ["service", "gathering", "no robot", ""],
         "no robot is connected to an access point at the start",
     ),
-    (["service", "serviced", "nobody there", ""], "the robots are all gone after a task"),
-    (["service", "electing", "nobody answers", ""], "the robots are all gone during an election"),
+    (["service", "serviced", "no robot", ""], "the robots are all gone after a task"),
+    (["service", "electing", "no answer", ""], "the robots are all gone during an election"),
     (
         ["service", "", "heard", ""],
         "another access point has gone on although this one has not heard of it",

@@ -59,7 +59,7 @@ macro_rules! for_each_automaton {
         [
             $act("The duty of a robot", "duty", DUTY, &it.duty),
             $act("The mission as one robot sees it", "mission", MISSION, &it.mission),
-            $act("The exchange of duties", "exchange", EXCHANGE, &it.dealing),
+            $act("The exchange of duties", "exchange", EXCHANGE, &it.exchange),
             $act("The place of a robot in the tree", "place", PLACE, &it.attachment),
             $act("The control period of a robot", "control", CONTROL, &it.control),
             $act("The service of an access point", "service", SERVICE, &it.service),

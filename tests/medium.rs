@@ -66,7 +66,7 @@ fn without_messages_nothing_happens() {
     }
 }
 
-// ---- A robot out of everyone's range -----------------------------------------------------------
+// ---- A robot out of range of all others -----------------------------------------------------------
 
 /// A corner of Study I in which no robot comes into range and through which none walks.
 const FAR_CORNER: [f64; 2] = [2.6, 1.53];

@@ -17,15 +17,15 @@ const BULLETIN: &str = "discrete/src/network/bulletin.rs";
 const CELL: &str = "continuous/src/geometry/cell.rs";
 const DUAL: &str = "continuous/src/network/routing/dual.rs";
 const ELECTION: &str = "discrete/src/network/election.rs";
-const EXCHANGE: &str = "discrete/src/network/exchange.rs";
+const OFFERS: &str = "discrete/src/network/offers.rs";
 const ID_SET: &str = "discrete/src/network/id_set.rs";
 const LOCAL: &str = "continuous/src/network/routing/local.rs";
 const MOTION: &str = "continuous/src/network/motion/mod.rs";
 const PATH: &str = "discrete/src/network/path.rs";
 const ZONOTOPE: &str = "verify/src/reach/zonotope.rs";
 
-const ROBOT_DEALING: &str = "automaton/src/network/robot/dealing.rs";
 const ROBOT_EXCHANGE: &str = "automaton/src/network/robot/exchange.rs";
+const ROBOT_PARTNER: &str = "automaton/src/network/robot/partner.rs";
 const ROBOT_FACTS: &str = "automaton/src/network/robot/facts.rs";
 const ROBOT_LEADER: &str = "automaton/src/network/robot/leader.rs";
 const ROBOT_MISSION: &str = "automaton/src/network/robot/mission.rs";
@@ -54,18 +54,18 @@ const CALLS: &[Call] = &[
     ("best", ELECTION, ROBOT_LEADER, "self.election.as_ref()?.best()"),
     ("is_complete", ELECTION, ROBOT_FACTS, "election.is_complete(&self.roster)"),
     ("has_token", ELECTION, ROBOT_RECRUIT, "!election.has_token(self.id)"),
-    ("new", EXCHANGE, "automaton/src/network/robot/mod.rs", "Dealings::new()"),
-    ("make_offer", EXCHANGE, ROBOT_DEALING, "dealings.make_offer(robot.partner?"),
-    ("answer", EXCHANGE, ROBOT_DEALING, "dealings.answer(mover, offer, given)"),
-    ("hear", EXCHANGE, ROBOT_DEALING, "dealings.hear(robot.id, reply)"),
-    ("conclude", EXCHANGE, ROBOT_DEALING, "dealings.conclude(offer, offers_made)"),
-    ("asks", EXCHANGE, ROBOT_EXCHANGE, "offer.asks(self.id, answered)"),
-    ("is_heard", EXCHANGE, EXCHANGE, "reply.is_heard(offer)"),
-    ("has_heard_reply", EXCHANGE, ROBOT_EXCHANGE, ".has_heard_reply(offer, made)"),
-    ("are_under_way", EXCHANGE, ROBOT_EXCHANGE, "self.dealings().are_under_way()"),
-    ("offer", EXCHANGE, ROBOT_EXCHANGE, "self.dealings().offer()"),
-    ("offers_made", EXCHANGE, "automaton/src/network/robot/mod.rs", ".offers_made()"),
-    ("reply", EXCHANGE, "automaton/src/network/robot/mod.rs", "self.dealings().reply()"),
+    ("new", OFFERS, "automaton/src/network/robot/mod.rs", "Offers::new()"),
+    ("make_offer", OFFERS, ROBOT_EXCHANGE, "offers.make_offer(robot.partner?"),
+    ("answer", OFFERS, ROBOT_EXCHANGE, "offers.answer(mover, offer, given)"),
+    ("hear", OFFERS, ROBOT_EXCHANGE, "offers.hear(robot.id, reply)"),
+    ("conclude", OFFERS, ROBOT_EXCHANGE, "offers.conclude(offer, offers_made)"),
+    ("asks", OFFERS, ROBOT_PARTNER, "offer.asks(self.id, answered)"),
+    ("is_heard", OFFERS, OFFERS, "reply.is_heard(offer)"),
+    ("has_heard_reply", OFFERS, ROBOT_PARTNER, ".has_heard_reply(offer, made)"),
+    ("are_under_way", OFFERS, ROBOT_PARTNER, "self.offers().are_under_way()"),
+    ("offer", OFFERS, ROBOT_PARTNER, "self.offers().offer()"),
+    ("offers_made", OFFERS, "automaton/src/network/robot/mod.rs", ".offers_made()"),
+    ("reply", OFFERS, "automaton/src/network/robot/mod.rs", "self.offers().reply()"),
     ("new", ID_SET, ELECTION, "tokens: IdSet::new()"),
     ("insert", ID_SET, ELECTION, "self.tokens.insert(robot)"),
     ("contains", ID_SET, ELECTION, "self.tokens.contains(robot)"),
@@ -103,7 +103,7 @@ const CALLS: &[Call] = &[
 const CLAIMS: &[(&str, &str)] = &[
     ("is_feasible", LOCAL),
     ("keeps_posts_held", "discrete/src/network/activity.rs"),
-    ("taking", EXCHANGE),
+    ("taking", OFFERS),
 ];
 
 /// The code of a file: without comments, and without the tests at its end.

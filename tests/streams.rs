@@ -1,4 +1,4 @@
-//! Inputs and outputs that are not ordinary files: pipes that nobody reads, devices that are full,
+//! Inputs and outputs that are not ordinary files: pipes without a reader, devices that are full,
 //! paths that are taken.
 
 use pleach::trace::{TraceEntry, TraceReader};
@@ -70,7 +70,7 @@ fn what_cannot_be_written_is_told() {
 /// What people would have read is lost, and nothing else.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_mission_goes_on_when_nobody_reads_its_story() {
+fn a_mission_goes_on_when_its_story_has_no_reader() {
     let folder = folder("unread");
     let path = folder.join("trace.jsonl");
     let arguments = ["run", "scenarios/too-few.toml", "--no-figures", "--trace"];

@@ -227,7 +227,7 @@ fn a_receiver_of_messages_with_a_deadline_takes_them_in_every_location() {
         parts.channel(channel).build().map(|_| ())
     };
     assert_eq!(with(channel()), Ok(()), "a message that takes any time can wait");
-    let refused = with(channel().taking(0.0, 1.0)).expect_err("nobody listens in `deaf`");
+    let refused = with(channel().taking(0.0, 1.0)).expect_err("`deaf` receives nothing");
     assert_eq!(
         refused.to_string(),
         "messages have to arrive at `b.hear` in time, but component `b` has no transition with \

@@ -21,7 +21,7 @@ fn automata_of_robots_have_no_faults() {
     let automata = Automata::new().expect("the automata are well formed");
     has_no_unexplained_finding(&automata.duty);
     has_no_unexplained_finding(&automata.mission);
-    has_no_unexplained_finding(&automata.dealing);
+    has_no_unexplained_finding(&automata.exchange);
     has_no_unexplained_finding(&automata.attachment);
     has_no_unexplained_finding(&automata.control);
 }

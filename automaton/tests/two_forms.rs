@@ -38,7 +38,7 @@ fn hops(ring: &[Station]) -> usize {
     if ring.iter().all(|station| station.delay == 0.0) { ring.len() - 1 } else { 0 }
 }
 
-/// What a node does, when, and what its clock reads after it.
+/// When a node does what, and what its clock reads after it.
 type Step = (f64, Kind, f64);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -289,5 +289,22 @@ proptest! {
         let steps = steps_of_automata(&ring);
         prop_assert!(shows_something(&steps));
         prop_assert_eq!(steps, steps_of_nodes(&ring));
+    }
+}
+
+/// Whatever the order of the nodes, a node whose clock is due sends what it has just received.
+#[test]
+fn an_ensemble_delivers_before_clocks_tick() {
+    let [slow, fast] = [0.5, 1.5].map(|rate| Station { rate, period: 1.0, delay: 1.0 });
+    for (ring, slow) in [([slow, fast], 0), ([fast, slow], 1)] {
+        let steps = &steps_of_nodes(&ring)[slow];
+        let expected = [
+            (1.0, Kind::Tells, 0.5),
+            (2.0, Kind::Hears, 1.5),
+            (2.0, Kind::Tells, 1.5),
+            (3.0, Kind::Hears, 3.0),
+            (3.0, Kind::Tells, 3.0),
+        ];
+        assert_eq!(steps[..expected.len()], expected);
     }
 }

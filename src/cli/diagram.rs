@@ -14,7 +14,7 @@ pub fn print(arguments: &DiagramArguments) -> Result<Status, Failure> {
     let format = arguments.format;
     let drawing = match arguments.automaton {
         Which::Duty => draw(&automata.duty, format),
-        Which::Exchange => draw(&automata.dealing, format),
+        Which::Exchange => draw(&automata.exchange, format),
         Which::Mission => draw(&automata.mission, format),
         Which::Place => draw(&automata.attachment, format),
         Which::Control => draw(&automata.control, format),

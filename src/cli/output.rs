@@ -7,7 +7,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes lines to the error output. If it cannot be written, because nobody reads it any more for
+/// Writes lines to the error output. If it cannot be written, because it is closed for
 /// example, the lines are lost, and the program goes on.
 pub fn tell(lines: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{lines}");

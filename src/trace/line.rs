@@ -5,7 +5,7 @@ use crate::automaton::network::record::{
 };
 use crate::automaton::network::scenario::Scenario;
 use crate::discrete::Location;
-use crate::discrete::network::{Activity, Dealing, Phase, Role};
+use crate::discrete::network::{Activity, ExchangeStage, Phase, Role};
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -170,7 +170,7 @@ impl From<&[RobotSnapshot]> for RobotsLine {
     fn from(robots: &[RobotSnapshot]) -> Self {
         Self {
             location: robots.iter().map(|robot| robot.activity.name().into()).collect(),
-            exchange: robots.iter().map(|robot| robot.dealing.name().into()).collect(),
+            exchange: robots.iter().map(|robot| robot.exchange.name().into()).collect(),
             known_phase: robots.iter().map(|robot| robot.phase.name().into()).collect(),
             target: robots.iter().map(|robot| robot.target.map(|target| target.into())).collect(),
             sent: robots.iter().map(|robot| robot.sent).collect(),
@@ -197,10 +197,10 @@ impl RobotsLine {
         let view = |robot: usize| {
             Ok(RobotSnapshot {
                 activity: called("location", Activity::ALL, Activity::name, &self.location[robot])?,
-                dealing: called(
+                exchange: called(
                     "location of an exchange",
-                    Dealing::ALL,
-                    Dealing::name,
+                    ExchangeStage::ALL,
+                    ExchangeStage::name,
                     &self.exchange[robot],
                 )?,
                 phase: called("phase", Phase::ALL, Phase::name, &self.known_phase[robot])?,

@@ -6,7 +6,7 @@ use pleach::automaton::network::record::{
     End, MissionEvent, Outcome, PostView, RobotSnapshot, Route, Snapshot,
 };
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::discrete::network::{Activity, Dealing, Phase, Role};
+use pleach::discrete::network::{Activity, ExchangeStage, Phase, Role};
 use pleach::mission::Watcher;
 use std::path::Path;
 
@@ -80,7 +80,7 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
         robots: vec![
             RobotSnapshot {
                 activity: Activity::Relay,
-                dealing: Dealing::Free,
+                exchange: ExchangeStage::Free,
                 phase: Phase::Advance,
                 target: None,
                 sent: 12,
@@ -88,7 +88,7 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
             },
             RobotSnapshot {
                 activity: Activity::Leading,
-                dealing: Dealing::Offering,
+                exchange: ExchangeStage::Offering,
                 phase: Phase::Advance,
                 target: Some([0.9, 0.25].into()),
                 sent: 14,

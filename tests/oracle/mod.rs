@@ -117,7 +117,7 @@ impl Plan {
     fn stand(&self, now: &Snapshot, findings: &mut Findings) -> Result<(), String> {
         self.routes_are_what_they_span(now)?;
         self.residuals(now, findings)?;
-        self.everyone_is_connected(now)?;
+        self.all_are_connected(now)?;
         self.the_tree_is_a_tree(now)?;
         for (robot, &place) in now.positions.iter().enumerate() {
             if !self.is_inside(place.into()) {
@@ -156,7 +156,7 @@ impl Plan {
     }
 
     /// Information spreads backwards from the access points, until it spreads no more.
-    fn everyone_is_connected(&self, now: &Snapshot) -> Result<(), String> {
+    fn all_are_connected(&self, now: &Snapshot) -> Result<(), String> {
         let nodes = self.robots() + self.access_points.len();
         let mut reached: Vec<bool> = (0..nodes).map(|node| node >= self.robots()).collect();
         loop {

@@ -124,7 +124,7 @@ pub const ALL: &[Change] = changes! {
         let now = record.at(site);
         now.active = (0..now.roles.len()).collect();
     };
-    "active: nobody may move" => |record, site| record.at(site).active.clear();
+    "active: no robot may move" => |record, site| record.at(site).active.clear();
     "active: the first is dropped" => |record, site| {
         let now = record.at(site);
         if !now.active.is_empty() {

@@ -106,10 +106,10 @@ fn report_refusals(
         }
         any = true;
         let message = if has_any {
-            "it has the label only on transitions that can never be taken, so that nobody can \
+            "it has the label only on transitions that can never be taken, so that no one can \
              take it: see those"
         } else {
-            "it has an event of this name and no transition on it, so that nobody can ever take \
+            "it has an event of this name and no transition on it, so that no one can ever take \
              the label: add a transition, or rename the event"
         };
         let place = on_label(Some(model), label);

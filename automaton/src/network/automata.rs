@@ -9,8 +9,8 @@ use crate::BuildError;
 
 use super::access_point::{RoundAutomaton, ServiceAutomaton, round_automaton, service_automaton};
 use super::robot::{
-    AttachmentAutomaton, ControlAutomaton, DealingAutomaton, DutyAutomaton, MissionAutomaton,
-    Targets, attachment_automaton, control_automaton, dealing_automaton, duty_automaton,
+    AttachmentAutomaton, ControlAutomaton, DutyAutomaton, ExchangeAutomaton, MissionAutomaton,
+    Targets, attachment_automaton, control_automaton, duty_automaton, exchange_automaton,
     mission_automaton, targets,
 };
 use super::user::{RequestAutomaton, request_automaton};
@@ -25,7 +25,7 @@ pub struct Automata {
     /// The mission as the robot knows it.
     pub mission: MissionAutomaton,
     /// The state of the robot in the exchange of duties.
-    pub dealing: DealingAutomaton,
+    pub exchange: ExchangeAutomaton,
     /// The robot's place in the tree.
     pub attachment: AttachmentAutomaton,
     /// The stage of the robot in its control period.
@@ -48,7 +48,7 @@ impl Automata {
             duty: duty_automaton()?,
             targets: targets(),
             mission: mission_automaton()?,
-            dealing: dealing_automaton()?,
+            exchange: exchange_automaton()?,
             attachment: attachment_automaton()?,
             control: control_automaton()?,
             service: service_automaton()?,
@@ -64,7 +64,7 @@ impl Automata {
             duty: self.duty.counted(),
             targets: self.targets,
             mission: self.mission.counted(),
-            dealing: self.dealing.counted(),
+            exchange: self.exchange.counted(),
             attachment: self.attachment.counted(),
             control: self.control.counted(),
             service: self.service.counted(),
@@ -87,7 +87,7 @@ impl Automata {
         }
         named("duty", self.duty.taken())
             .chain(named("mission", self.mission.taken()))
-            .chain(named("exchange of duties", self.dealing.taken()))
+            .chain(named("exchange of duties", self.exchange.taken()))
             .chain(named("place in the tree", self.attachment.taken()))
             .chain(named("control period", self.control.taken()))
             .chain(named("service of the tasks", self.service.taken()))

@@ -135,7 +135,7 @@ pub struct Beacon {
 }
 
 impl Beacon {
-    /// Whether the same sender surely said this before `other`: it had heard, or offered, less.
+    /// Whether the same sender surely sent this before `other`: it had received, or offered, less.
     /// A medium may deliver copies late.
     pub fn is_older_than(&self, other: &Beacon) -> bool {
         other.bulletin.id().is_newer_than(self.bulletin.id())
@@ -146,18 +146,18 @@ impl Beacon {
 /// The beacon that a node sent last. As long as its public state does not change, a node sends the
 /// very same beacon again, and receivers need not read it.
 #[derive(Clone, Debug, Default)]
-pub struct Voice {
+pub struct LastBeacon {
     last: Option<Arc<Beacon>>,
 }
 
-impl Voice {
+impl LastBeacon {
     /// The beacon sent last, if any.
-    pub fn last(&self) -> Option<Arc<Beacon>> {
+    pub fn get(&self) -> Option<Arc<Beacon>> {
         self.last.clone()
     }
 
     /// The beacon to send now, and whether it differs from the last one.
-    pub fn say(&mut self, now: Beacon) -> (Arc<Beacon>, bool) {
+    pub fn replace_by(&mut self, now: Beacon) -> (Arc<Beacon>, bool) {
         match &self.last {
             Some(last) if **last == now => (Arc::clone(last), false),
             _ => {

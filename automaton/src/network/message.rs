@@ -34,9 +34,9 @@ use super::wire;
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Message {
-    /// The public state of the sender, to everyone in range.
+    /// The public state of the sender, to all nodes in range.
     Beacon(#[serde(with = "wire")] Arc<Beacon>),
-    /// How the sender's equation c_i ≥ η stands, to everyone.
+    /// How the sender's equation c_i ≥ η stands, to all nodes in range.
     Multiplier {
         /// λ_i, and what ADAL needs beside it.
         #[serde(with = "wire")]
@@ -48,9 +48,12 @@ pub enum Message {
     Flow(#[serde(with = "wire")] f64),
     /// By how much the sender's flow to its parent grows in the sweep, to the parent.
     Demand(#[serde(with = "wire")] f64),
-    /// The sender cannot pass on what it is sent, to everyone.
+    /// The sender cannot pass on what it is sent, to all nodes in range.
     Shortage,
-    /// The move that the sender intends, to everyone.
+    /// The sender goes back to its flows of the period before, to the nodes with which it shares a
+    /// flow that has changed.
+    Restore,
+    /// The move that the sender intends, to all nodes in range.
     Proposal(#[serde(with = "wire")] Segment),
     /// The sender cannot accept the move that the receiver intends.
     Objection,

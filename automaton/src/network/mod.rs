@@ -30,7 +30,7 @@ pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
 pub use robot::{
-    Robot, RobotView, attachment_automaton, control_automaton, dealing_automaton, duty_automaton,
+    Robot, RobotView, attachment_automaton, control_automaton, duty_automaton, exchange_automaton,
     mission_automaton,
 };
 pub use site::{Site, SiteError};

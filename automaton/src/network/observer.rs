@@ -41,7 +41,7 @@ impl<M> Network<M> {
         let Traffic { sent, heard } = self.nodes.traffic(robot.id());
         RobotSnapshot {
             activity: robot.duty().location(),
-            dealing: robot.dealing(),
+            exchange: robot.exchange(),
             phase: robot.phase(),
             target: robot.goal(),
             sent,

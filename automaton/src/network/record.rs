@@ -3,7 +3,7 @@
 //! Nodes are numbered from 0: robots first, then access points.
 
 use nalgebra::Point2;
-use pleach_discrete::network::{Activity, Dealing, Phase, Role};
+use pleach_discrete::network::{Activity, ExchangeStage, Phase, Role};
 use serde::{Deserialize, Serialize};
 
 /// The observers' view of one instant, just before the robots move.
@@ -46,13 +46,13 @@ pub struct Snapshot {
     pub robots: Vec<RobotSnapshot>,
 }
 
-/// Where a robot is in its automata, where it goes, and how much it says and hears.
+/// Where a robot is in its automata, where it goes, and how much it sends and receives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotSnapshot {
     /// Its location in the duty automaton.
     pub activity: Activity,
     /// Its location in the automaton of the exchange of duties.
-    pub dealing: Dealing,
+    pub exchange: ExchangeStage,
     /// Where the mission stands as far as it knows.
     pub phase: Phase,
     /// Where it goes; none if it stands still.

@@ -147,7 +147,7 @@ impl User {
         }
     }
 
-    /// The access point that the user talks to.
+    /// The access point that the user sends its requests to.
     fn desk(&self) -> NodeId {
         self.site.robots
     }

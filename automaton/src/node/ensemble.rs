@@ -29,7 +29,7 @@ pub enum NodeJump {
 /// How many messages a node has sent and heard.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
-    /// Messages sent; one to everyone counts once.
+    /// Messages sent; a broadcast counts once.
     pub sent: u64,
     /// Messages heard.
     pub heard: u64,

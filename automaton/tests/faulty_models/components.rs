@@ -65,7 +65,7 @@ fn a_door_and_its_guard_are_sound() {
 }
 
 #[test]
-fn labels_that_nobody_else_knows() {
+fn labels_that_no_other_component_has() {
     let expected = ["warning: lonely label: component `guard`, on `doze`"];
     check(house(door(), guard()).label("lock").label("unlock").label("doze"), &expected);
 }
@@ -221,7 +221,7 @@ fn train_and_gate() {
 }
 
 #[test]
-fn inputs_that_nobody_reads() {
+fn inputs_that_are_never_read() {
     let dog = Automaton::<Dog, Bark, Watch>::starting_in(Dog::Lying)
         .initially(Watch { seen: 0.0, night: 0.0 })
         .transition(

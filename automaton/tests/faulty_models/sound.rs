@@ -206,7 +206,7 @@ fn functions_are_noted_once_each() {
 fn what_is_not_decided_is_noted_with_its_resolution() {
     let Point { x, y } = Point::coordinates();
     let circle = norm([x.clone().into(), y.clone().into()]);
-    // √2 is no floating-point number, so that they touch, but nobody can show where.
+    // √2 is no floating-point number, so that they touch, but no number shows where.
     let root = constant(2.0).square_root();
     let machine = machine()
         .flow(A, x.rate(1.0))

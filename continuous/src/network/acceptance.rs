@@ -1,6 +1,6 @@
 //! The certified acceptance of moves: constraint (5) holds at every instant of the motion.
 //!
-//! The linearised problem (21)–(22) proposes a move with everyone else fixed, but all robots move
+//! The linearised problem (21)–(22) proposes a move with all others fixed, but all robots move
 //! at once. What is accepted is decided here, exactly.
 //!
 //! # Held flows

@@ -95,7 +95,7 @@ pub fn neighbour_residual_gradient(
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum RatesError {
-    /// Lists that speak of the robots have different lengths.
+    /// Lists about the robots have different lengths.
     #[error("{robots} robots, but {routes} lists of routes and {rates} rates: one of each is due")]
     Lengths {
         /// Number of robot positions.

@@ -1,7 +1,7 @@
 //! The stages of a robot's control period, and the table between them (Algorithm 5).
 //!
 //! Control is sampled. Time passes in one location only, [`Stage::Moving`]; at the sample the robot
-//! goes through the others, which take no time. In each it waits for what its neighbours say, up to
+//! goes through the others, which take no time. In each it waits for what its neighbours send, up to
 //! the next tick of its clock; then it processes what it has received, and sends. Sweeps and negotiation
 //! have a fixed number of rounds, in which a robot with nothing to do does not tick.
 

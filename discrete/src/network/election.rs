@@ -79,7 +79,7 @@ impl Election {
         }
     }
 
-    /// Whether what a neighbour sent says nothing new: [`merge`](Self::merge) would change nothing.
+    /// Whether what a neighbour sent contains nothing new: [`merge`](Self::merge) would change nothing.
     pub fn knows(&self, heard: &Election) -> bool {
         heard.id != self.id || self.tokens.includes(&heard.tokens) && self.best >= heard.best
     }

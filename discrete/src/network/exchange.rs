@@ -1,195 +1,88 @@
-//! The exchange of duties between a mover and the robot that stands in its way.
+//! The exchange of duties as an automaton: where a robot stands in it, and the table.
 //!
-//! Robots are alike: where a mover would have to pass a parked robot, the two exchange duties
-//! instead, which is Algorithm 4's "adopts the role" without the walk. The mover offers its duty;
-//! the parked robot answers with its own and goes on doing it; the mover takes that and gives its
-//! offer up; then the parked robot takes what was offered. Each step is visible in the beacon of the
-//! robot that took it, so that messages may be repeated or come late.
-//!
-//! ```
-//! use pleach_discrete::network::Dealings;
-//!
-//! let (mut mover, mut parked) = (Dealings::new(), Dealings::new());
-//! mover.make_offer(1, "relay");
-//! let offer = mover.offer().expect("it has just been made");
-//! parked.answer(0, offer, Some("leaf"));
-//! assert_eq!(parked.conclude(mover.offer(), mover.offers_made()), None); // not before the mover
-//!
-//! let reply = parked.reply().expect("it has just answered");
-//! assert_eq!(mover.hear(0, reply), Some("leaf"));
-//! assert_eq!(parked.conclude(mover.offer(), mover.offers_made()), Some("relay"));
-//! assert!(!mover.are_under_way() && !parked.are_under_way());
-//! ```
+//! What each transition does to the offers and replies themselves is
+//! [`Offers`](super::Offers).
 
-use super::NodeId;
+use crate::{Row, TransitionTable, Urgency, vocabulary};
 
-#[cfg(any(kani, test))]
-mod proofs;
+vocabulary! {
+    /// The state of a robot in the exchange of duties.
+    pub enum ExchangeStage: Location {
+        /// It exchanges nothing.
+        Free = "free",
+        /// As a mover, it has offered its duty to the robot in its way.
+        Offering = "offering",
+        /// It has refused an offer, and repeats that until the mover has heard it.
+        Refusing = "refusing",
+        /// It has made an offer, and refused one.
+        OfferingAndRefusing = "offering and refusing",
+        /// It gives its duty for the one offered, and holds it until the mover has taken it.
+        Giving = "giving",
+    }
 
-/// A mover's standing offer to a parked robot.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct Offer<D> {
-    /// The receiver.
-    pub to: NodeId,
-    /// The offers of one robot are numbered.
-    pub number: u32,
-    /// The duty that the mover hands over.
-    pub duty: D,
-}
-
-/// The parked robot's answer, repeated until the mover has heard it.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct Reply<D> {
-    /// The receiver.
-    pub to: NodeId,
-    /// The number of the offer.
-    pub number: u32,
-    /// The duty that the parked robot handed over in return; none if it refused.
-    pub accepted: Option<D>,
-}
-
-impl<D> Offer<D> {
-    /// Whether `robot` is to answer, which has answered the offers of this mover up to the one
-    /// with the number `answered`.
-    pub fn asks(&self, robot: NodeId, answered: Option<u32>) -> bool {
-        self.to == robot && answered.is_none_or(|last| last < self.number)
+    /// What happens in an exchange of duties.
+    pub enum ExchangeEvent: Event {
+        /// It finds a robot in its way with which to exchange duties.
+        Offers = "offers",
+        /// Its offer is refused.
+        OfferRefused = "offer refused",
+        /// Its offer is accepted: it takes the partner's duty.
+        DutyTaken = "duty taken",
+        /// It accepts an offer.
+        Gives = "gives",
+        /// It refuses an offer.
+        Refuses = "refuses",
+        /// The mover has heard the refusal.
+        RefusalHeard = "refusal heard",
+        /// The mover has taken the duty given: it takes the one offered.
+        DutyGiven = "duty given",
     }
 }
 
-impl<D> Reply<D> {
-    /// Whether the mover has heard this reply, to judge by its `offer`: it has given that one up.
-    pub fn is_heard(&self, offer: Option<&Offer<D>>) -> bool {
-        offer.is_none_or(|offer| offer.number != self.number)
-    }
+const fn row(
+    priority: u8,
+    source: ExchangeStage,
+    event: ExchangeEvent,
+    target: ExchangeStage,
+) -> Row<ExchangeStage, ExchangeEvent> {
+    Row { source, event, target, urgency: Urgency::AtOnce, priority }
 }
 
-/// The exchanges of a robot: with an offer as a mover, with a reply as the parked one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Dealings<D> {
-    offer: Option<Offer<D>>,
-    offers_made: u32,
-    reply: Option<Reply<D>>,
-    /// What it gets for the duty that the reply hands over.
-    taking: Option<D>,
-}
-
-impl<D> Default for Dealings<D> {
-    fn default() -> Self {
-        Dealings::new()
-    }
-}
-
-impl<D> Dealings<D> {
-    /// Those of a robot that has never exchanged its duty.
-    pub const fn new() -> Self {
-        Dealings { offer: None, offers_made: 0, reply: None, taking: None }
-    }
-
-    /// The standing offer.
-    pub const fn offer(&self) -> Option<&Offer<D>> {
-        self.offer.as_ref()
-    }
-
-    /// How many offers the robot has made so far.
-    pub const fn offers_made(&self) -> u32 {
-        self.offers_made
-    }
-
-    /// The answer that the mover has not heard yet.
-    pub const fn reply(&self) -> Option<&Reply<D>> {
-        self.reply.as_ref()
-    }
-
-    /// The duty that the robot takes over once the mover that offered it has taken its own.
-    pub const fn taking(&self) -> Option<&D> {
-        self.taking.as_ref()
-    }
-
-    /// Whether an exchange is under way.
-    pub const fn are_under_way(&self) -> bool {
-        self.offer.is_some() || self.reply.is_some()
-    }
-}
-
-impl<D> Dealings<D> {
-    /// Whether the mover, which has this offer and has made this number of offers, has heard the reply.
-    pub fn has_heard_reply(&self, offer: Option<&Offer<D>>, offers_made: u32) -> bool {
-        // What the mover said before it made the offer may be heard again.
-        self.reply
-            .as_ref()
-            .is_some_and(|reply| reply.is_heard(offer) && offers_made >= reply.number)
-    }
-}
-
-impl<D: Copy> Dealings<D> {
-    /// The mover offers its `duty`.
-    pub fn make_offer(&mut self, to: NodeId, duty: D) {
-        self.offers_made += 1;
-        self.offer = Some(Offer { to, number: self.offers_made, duty });
-    }
-
-    /// The parked robot answers the `offer` of `mover`: with the duty that it gives in return,
-    /// or none if it refuses.
-    pub fn answer(&mut self, mover: NodeId, offer: &Offer<D>, given: Option<D>) {
-        self.taking = given.map(|_| offer.duty);
-        self.reply = Some(Reply { to: mover, number: offer.number, accepted: given });
-    }
-
-    /// The mover, which is robot `own`, hears what the robot says to which it made its offer: the
-    /// duty that it has now, if that one accepts.
-    pub fn hear(&mut self, own: NodeId, reply: &Reply<D>) -> Option<D> {
-        let offer = self.offer.as_ref()?;
-        if reply.to != own || reply.number != offer.number {
-            return None;
-        }
-        self.offer = None;
-        reply.accepted
-    }
-
-    /// The parked robot hears of the mover, which has this offer and has made this number of offers: the duty
-    /// that it has now, if it has given its own and the mover has taken that.
-    pub fn conclude(&mut self, offer: Option<&Offer<D>>, offers_made: u32) -> Option<D> {
-        if !self.has_heard_reply(offer, offers_made) {
-            return None;
-        }
-        self.reply = None;
-        self.taking.take()
-    }
-}
+/// The table of the exchange of duties.
+///
+/// Priority 0: what becomes of an own offer. Priority 1: what becomes of a reply. Priority 2:
+/// offers of others. Priority 3: an offer of its own.
+pub const EXCHANGE: TransitionTable<ExchangeStage, ExchangeEvent> = {
+    use ExchangeEvent as On;
+    use ExchangeStage::{Free, Giving, Offering, OfferingAndRefusing, Refusing};
+    TransitionTable::new(&[
+        row(3, Free, On::Offers, Offering),
+        row(2, Free, On::Gives, Giving),
+        row(2, Free, On::Refuses, Refusing),
+        row(0, Offering, On::DutyTaken, Free),
+        row(0, Offering, On::OfferRefused, Free),
+        row(2, Offering, On::Refuses, OfferingAndRefusing),
+        row(0, OfferingAndRefusing, On::DutyTaken, Refusing),
+        row(0, OfferingAndRefusing, On::OfferRefused, Refusing),
+        row(1, OfferingAndRefusing, On::RefusalHeard, Offering),
+        row(1, Refusing, On::RefusalHeard, Free),
+        row(1, Giving, On::DutyGiven, Free),
+    ])
+};
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Location;
 
     #[test]
-    fn what_is_meant_for_others_changes_nothing() {
-        let mut mover = Dealings::new();
-        mover.make_offer(4, 'a');
-        let offer = mover.offer().cloned().expect("it has been made");
-        assert!(offer.asks(4, None) && offer.asks(4, Some(0)));
-        assert!(!offer.asks(3, None) && !offer.asks(4, Some(1)));
-        for (to, number) in [(9, 1), (2, 8)] {
-            let before = mover.clone();
-            assert_eq!(mover.hear(2, &Reply { to, number, accepted: Some('b') }), None);
-            assert_eq!(mover, before);
+    fn the_table_is_deterministic_and_every_location_is_reached_and_left() {
+        assert!(EXCHANGE.is_deterministic());
+        assert_eq!(EXCHANGE.unreachable_from(ExchangeStage::Free), vec![]);
+        for &exchange in ExchangeStage::ALL {
+            let mut reached = [false; ExchangeStage::ALL.len()];
+            EXCHANGE.mark_reachable(exchange, &mut reached);
+            assert!(reached[ExchangeStage::Free as usize], "{exchange:?} never ends");
         }
-        assert_eq!(mover.hear(2, &Reply { to: 2, number: 1, accepted: Some('b') }), Some('b'));
-        assert!(!mover.are_under_way() && mover.offers_made() == 1);
-    }
-
-    #[test]
-    fn who_refuses_takes_nothing() {
-        let (mut mover, mut parked) = (Dealings::default(), Dealings::default());
-        mover.make_offer(1, 'a');
-        parked.answer(0, mover.offer().expect("it has been made"), None);
-        assert!(parked.are_under_way() && parked.taking().is_none());
-        assert_eq!(mover.hear(0, parked.reply().expect("it has answered")), None);
-        assert!(!mover.are_under_way());
-        assert_eq!(parked.conclude(mover.offer(), mover.offers_made()), None);
-        assert!(!parked.are_under_way());
     }
 }

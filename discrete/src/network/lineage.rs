@@ -15,8 +15,8 @@ pub struct Lineage {
     root: usize,
 }
 
-/// Whether a post that is attached to the bearer of this path would close a cycle: the way leads
-/// through it.
+/// Whether a post would close a cycle if it were attached to the last post of this path: the path
+/// leads through it.
 ///
 /// ```
 /// use pleach_discrete::network::PostId;
@@ -43,7 +43,7 @@ impl Lineage {
         posts.iter().enumerate().all(is_new).then_some(Lineage { posts, root })
     }
 
-    /// The lineage of a post that is attached to the bearer of this one; none if that would close a
+    /// The lineage of a post that is attached to the post of this one; none if that would close a
     /// cycle.
     pub fn extended_by(&self, post: PostId) -> Option<Self> {
         if self.contains(post) {

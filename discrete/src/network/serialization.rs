@@ -1,6 +1,6 @@
 //! What messages carry, in files and packets of any format (feature `serde`).
 //!
-//! Reading refuses what no node can have said: a set that is not ascending or holds an absurd
+//! Reading refuses what no node can have sent: a set that is not ascending or holds an absurd
 //! number, an election whose best bidder has placed no token, a break point without a vote, and a
 //! lineage with a cycle. What is written is read back, in every format that has sequences, options
 //! and named fields.

@@ -31,13 +31,13 @@ vocabulary! {
         /// It announces the next task.
         Announces = "announces",
         /// There is no robot to announce the next task to.
-        NobodyThere = "nobody there",
+        NoRobot = "no robot",
         /// There is no task left.
         AllServiced = "all serviced",
         /// No robot bids for the task.
-        NobodyBids = "nobody bids",
+        NoBid = "no bid",
         /// Robots that take part in the election do not answer.
-        NobodyAnswers = "nobody answers",
+        NoAnswer = "no answer",
     }
 
     /// What a user does.
@@ -76,7 +76,7 @@ const fn row(
 
 /// The table of an access point.
 ///
-/// Priority 0: what others say. Priority 1: what the first access point does by itself.
+/// Priority 0: what others report. Priority 1: what the first access point does by itself.
 pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
     use Service::*;
     use ServiceEvent as On;
@@ -86,14 +86,14 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(0, Gathering, On::ServiceHeard, Serviced),
         row(0, Gathering, On::EndHeard, Over),
         row(1, Gathering, On::Announces, Electing),
-        row(1, Gathering, On::NobodyThere, Over),
+        row(1, Gathering, On::NoRobot, Over),
         row(1, Gathering, On::AllServiced, Over),
         row(0, Electing, On::ElectionHeard, Electing),
         row(0, Electing, On::ProgressHeard, UnderWay),
         row(0, Electing, On::ServiceHeard, Serviced),
         row(0, Electing, On::EndHeard, Over),
-        row(1, Electing, On::NobodyBids, Over),
-        row(1, Electing, On::NobodyAnswers, Over),
+        row(1, Electing, On::NoBid, Over),
+        row(1, Electing, On::NoAnswer, Over),
         row(0, UnderWay, On::ElectionHeard, Electing),
         row(0, UnderWay, On::ProgressHeard, UnderWay),
         row(0, UnderWay, On::ServiceHeard, Serviced),
@@ -103,7 +103,7 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(0, Serviced, On::ServiceHeard, Serviced),
         row(0, Serviced, On::EndHeard, Over),
         row(1, Serviced, On::Announces, Electing),
-        row(1, Serviced, On::NobodyThere, Over),
+        row(1, Serviced, On::NoRobot, Over),
         row(1, Serviced, On::AllServiced, Over),
     ])
 };
@@ -119,7 +119,7 @@ const fn request(
 
 /// The table of the user.
 ///
-/// Priority 0: what it hears. Priority 1: what its clock says.
+/// Priority 0: what it receives. Priority 1: its clock.
 pub const REQUESTS: TransitionTable<Request, RequestEvent> = {
     use Request::*;
     use RequestEvent as On;

@@ -116,7 +116,7 @@ pub enum CampaignError {
     },
 }
 
-/// The name under which a mission is reported that neither ends nor says why.
+/// The name under which a mission is reported that neither ends nor reports why.
 pub const ENDS: &str = "every task is serviced, or the mission ends with a reason";
 
 /// More states of one configuration than this are not visited.

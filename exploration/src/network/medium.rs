@@ -19,11 +19,11 @@ pub enum Medium {
         /// of times.
         period: Option<u32>,
     },
-    /// One node at a time, in any order: it hears what all nodes in range say now. Others may
-    /// speak and think any number of times meanwhile.
+    /// One node at a time, in any order: it receives what all nodes in range send now. Others may
+    /// send and deliberate any number of times meanwhile.
     NodesInAnyOrder,
     /// One message at a time, in any order. What is on its way from one node to another is
-    /// overtaken by what the sender says next, and stays with the receiver until then: messages
+    /// overtaken by what the sender sends next, and stays with the receiver until then: messages
     /// are late for any time, lost if a newer one comes, and heard again and again.
     MessagesInAnyOrder,
 }
@@ -36,7 +36,7 @@ pub struct Faults {
     /// Messages that are late: what the receiver heard last of the sender reaches it once more
     /// instead.
     pub delays: u32,
-    /// Messages of which a copy arrives too, in place of what the sender says in one of the next
+    /// Messages of which a copy arrives too, in place of what the sender sends in one of the next
     /// [`LONGEST_ECHO`] rounds.
     pub duplicates: u32,
 }
@@ -106,7 +106,7 @@ impl Protocol {
                     }
                     let heard = self.still_heard_by(state, to);
                     let next = self.one(state, to, Stimulus::Hear(heard))?;
-                    found.push((Action::Think(to), next));
+                    found.push((Action::Deliberate(to), next));
                 }
             }
         }

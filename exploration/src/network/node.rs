@@ -9,7 +9,7 @@ use pleach_automaton::network::{AccessPoint, Message, Robot, RobotView, Sense};
 use pleach_automaton::node::{Input, Node as _, Observed, Outputs};
 use pleach_continuous::Point;
 
-/// The number of a beacon among all those ever said.
+/// The number of a beacon among all those ever sent.
 pub type BeaconId = u32;
 /// The number of a state of a node among all those ever met.
 pub type LocalId = u32;
@@ -24,7 +24,7 @@ pub enum Node {
 }
 
 impl Node {
-    /// One step. What the node says is read off its state, and its reports are not needed.
+    /// One step. What the node sends is read off its state, and its reports are not needed.
     pub(super) fn step(&mut self, input: Input<'_, Message, Sense>) -> Result<(), RobotError> {
         let mut outputs = Outputs::of(0);
         match self {
@@ -55,12 +55,12 @@ impl Node {
     }
 }
 
-/// The state of one node: itself, what it says, and what it heard last of each other node.
+/// The state of one node: itself, what it sends, and what it received last of each other node.
 #[derive(Clone, Debug)]
 pub struct Local {
     /// The node.
     pub node: Node,
-    /// What it says.
+    /// What it sends.
     pub beacon: BeaconId,
     /// The last beacon heard of each node in range, by ascending sender.
     pub heard: Vec<BeaconId>,
@@ -183,10 +183,10 @@ impl Nodes {
         let Local { mut node, mut heard, .. } = self.local(local).clone();
         if let Stimulus::Hear(beacons) | Stimulus::Round(beacons) = &key.1 {
             self.hear(&mut node, beacons)?;
-            self.stir(&mut node, &key.1)?;
+            self.apply(&mut node, &key.1)?;
             heard = self.last_heard(&node, &heard, beacons);
         } else {
-            self.stir(&mut node, &key.1)?;
+            self.apply(&mut node, &key.1)?;
         }
         let outcome = self.take_up(node, heard);
         self.outcomes.insert(key, outcome);
@@ -201,10 +201,12 @@ impl Nodes {
         })
     }
 
-    fn stir(&self, node: &mut Node, stimulus: &Stimulus) -> Result<(), RobotError> {
+    fn apply(&self, node: &mut Node, stimulus: &Stimulus) -> Result<(), RobotError> {
         match (node, stimulus) {
-            (Node::Robot(robot), Stimulus::Hear(_)) => robot.think(),
-            (Node::AccessPoint(access_point), Stimulus::Hear(_)) => Ok(access_point.think_over()?),
+            (Node::Robot(robot), Stimulus::Hear(_)) => robot.deliberate_now(),
+            (Node::AccessPoint(access_point), Stimulus::Hear(_)) => {
+                Ok(access_point.deliberate_now()?)
+            }
             (node @ Node::Robot(_), &Stimulus::Move(place)) => {
                 node.step(Input::Sensed(Sense::Position(self.positions[place])))
             }

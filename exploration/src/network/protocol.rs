@@ -53,7 +53,7 @@ pub enum Action {
         /// The receiver.
         to: NodeId,
     },
-    /// The same, but the copy arrives in place of what `from` says.
+    /// The same, but the copy arrives in place of what `from` sends.
     Echo {
         /// The sender.
         from: NodeId,
@@ -62,7 +62,7 @@ pub enum Action {
     },
     /// A node hears all nodes in range.
     Listen(NodeId),
-    /// `to` hears what `from` says now or, if it is out of range, nothing of it any more.
+    /// `to` receives what `from` sends now or, if it is out of range, nothing of it any more.
     Hear {
         /// The sender.
         from: NodeId,
@@ -70,7 +70,7 @@ pub enum Action {
         to: NodeId,
     },
     /// A node processes what it knows.
-    Think(NodeId),
+    Deliberate(NodeId),
     /// A robot comes to the next place on its way.
     Move(NodeId),
     /// A parked robot at the same place does not let a mover pass.
@@ -93,11 +93,11 @@ impl fmt::Display for Action {
                 write!(f, "in a round what {to} hears of {from} is copied on the way")
             }
             Action::Echo { from, to } => {
-                write!(f, "in a round {to} hears the copy of what {from} said")
+                write!(f, "in a round {to} hears the copy of what {from} sent")
             }
             Action::Listen(node) => write!(f, "{node} hears all nodes in range"),
             Action::Hear { from, to } => write!(f, "{to} hears {from}"),
-            Action::Think(node) => write!(f, "{node} deliberates"),
+            Action::Deliberate(node) => write!(f, "{node} deliberates"),
             Action::Move(robot) => write!(f, "{robot} moves on"),
             Action::Touch(robot) => write!(f, "{robot} cannot pass a robot at its place"),
             Action::Period => write!(f, "a control period begins"),
@@ -387,7 +387,7 @@ impl Protocol {
         Ok(next)
     }
 
-    /// The user speaks when nothing is under way.
+    /// The user asks when nothing is under way.
     fn announcement(&mut self, state: &State) -> Result<Option<State>, RobotError> {
         let first = self.configuration.places.robots();
         let is_due = matches!(

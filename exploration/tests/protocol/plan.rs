@@ -174,7 +174,7 @@ impl Step {
     /// Whether this step may be that action.
     pub const fn is_meant_by(self, action: Action) -> bool {
         match action {
-            Action::Round | Action::Listen(_) | Action::Hear { .. } | Action::Think(_) => {
+            Action::Round | Action::Listen(_) | Action::Hear { .. } | Action::Deliberate(_) => {
                 matches!(self, Step::Hear(_))
             }
             Action::Move(_) => matches!(self, Step::Move(_)),

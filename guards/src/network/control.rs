@@ -86,7 +86,7 @@ pub fn move_certified() -> Guard {
     Guard::new("move certified", (!proposition("hears_proposals")).and(last))
 }
 
-/// Every neighbour has spoken: the clock calls.
+/// All messages of the round have arrived: the clock is due.
 pub fn heard() -> Guard {
     Guard::new("heard", always())
 }

@@ -1,6 +1,6 @@
 //! The guards of the duty automaton (Algorithms 3 and 4, Remark 5.6).
 //!
-//! Some propositions say which step of the mission, or which exchange of duties, the automaton
+//! Some propositions name the step of the mission, or which exchange of duties, the automaton
 //! jumps together with; in a jump by itself they are false.
 
 use crate::{Guard, Predicate, proposition, variable};
@@ -137,8 +137,8 @@ pub fn merged() -> Guard {
 
 /// For some periods no branch has depended on it.
 pub fn retired() -> Guard {
-    let barren = variable("barren").at_least(variable("barren_patience"));
-    disengaged("retired", barren & variable("branches").less_than(1.0))
+    let unused = variable("unused").at_least(variable("unused_patience"));
+    disengaged("retired", unused & variable("branches").less_than(1.0))
 }
 
 /// It takes over a duty called `name` in an exchange.

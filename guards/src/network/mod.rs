@@ -6,8 +6,8 @@
 
 pub mod attachment;
 pub mod control;
-pub mod dealing;
 pub mod duty;
+pub mod exchange;
 pub mod service;
 pub mod target;
 

@@ -58,13 +58,13 @@ pub fn announces_next() -> Guard {
 }
 
 /// There is a task, and no robot is connected.
-pub fn nobody_there_first() -> Guard {
-    first("nobody there", lacks_robots())
+pub fn no_robot_first() -> Guard {
+    first("no robot", lacks_robots())
 }
 
 /// There is another task, and no robot is connected.
-pub fn nobody_there_next() -> Guard {
-    next("nobody there", lacks_robots())
+pub fn no_robot_next() -> Guard {
+    next("no robot", lacks_robots())
 }
 
 /// There is no task at all.
@@ -78,16 +78,16 @@ pub fn all_serviced() -> Guard {
 }
 
 /// The leader election is over, and no robot has bid.
-pub fn nobody_bids() -> Guard {
+pub fn no_bid() -> Guard {
     let over = proposition("asked") & proposition("election_over");
-    named("nobody bids", over & proposition("leader_wanted") & !proposition("has_bid"))
+    named("no bid", over & proposition("leader_wanted") & !proposition("has_bid"))
 }
 
 /// The election lasts longer than news can take.
-pub fn nobody_answers() -> Guard {
+pub fn no_answer() -> Guard {
     let waits = proposition("asked") & proposition("knows_electors");
     let overdue = variable("waited").more_than(variable("longest_wait"));
-    named("nobody answers", waits & !proposition("election_over") & overdue)
+    named("no answer", waits & !proposition("election_over") & overdue)
 }
 
 /// The first control period begins.

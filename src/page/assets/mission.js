@@ -226,7 +226,7 @@ class Facts {
     const range = mission.scenario.link.max_range;
     const near = places.flatMap(([px, py], other) =>
       other !== node && Math.hypot(px - x, py - y) < range ? [other] : []);
-    return near.length ? near.join(", ") : "nobody in range";
+    return near.length ? near.join(", ") : "none in range";
   }
 
   /** Fields of the trace with a value for each robot that this page has no words for. */

@@ -22,7 +22,7 @@ pub struct Grid {
 
 impl Grid {
     pub fn new(trajectory: &Trajectory, horizon: f64) -> Grid {
-        // Infinite windows see enough of what nobody knows in 12 s: starts add up to less.
+        // Infinite windows see enough of what is not known within 12 s: starts add up to less.
         let beyond = if horizon.is_finite() { horizon } else { 12.0 };
         let end = (trajectory.duration() + beyond + 1.0) as i32 * STEPS;
         let mut instants = Vec::new();

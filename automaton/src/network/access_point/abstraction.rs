@@ -14,8 +14,8 @@ impl AccessPoint {
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
-    pub fn think_over(&mut self) -> Result<(), TransitionError> {
-        self.think()?;
+    pub fn deliberate_now(&mut self) -> Result<(), TransitionError> {
+        self.deliberate()?;
         self.heard.clear();
         Ok(())
     }
@@ -35,7 +35,7 @@ impl AccessPoint {
         self.serve()
     }
 
-    /// Everything, apart from what it hears, that decides what the access point says from now on.
+    /// Everything, apart from what it receives, that decides what the access point sends from now on.
     ///
     /// Left out is what the explorer stands for and what follows from the rest; how long a wait has
     /// been over does not matter. A field that is neither told nor left out does not compile.
@@ -63,7 +63,7 @@ impl AccessPoint {
             rounds: _,
             acts: _,
             is_new: _,
-            voice: _,
+            last_beacon: _,
             log: _,
             // The explorer stands for time.
             clock: _,

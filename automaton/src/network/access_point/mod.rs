@@ -15,7 +15,7 @@ use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, Node
 mod rounds;
 mod service;
 
-use super::beacon::{Beacon, Bulletin, Notice, Voice};
+use super::beacon::{Beacon, Bulletin, LastBeacon, Notice};
 use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
@@ -68,7 +68,7 @@ pub struct AccessPoint {
     acts: RoundActs,
     is_new: bool,
     clock: f64,
-    voice: Voice,
+    last_beacon: LastBeacon,
     log: Vec<MissionEvent>,
 }
 
@@ -97,7 +97,7 @@ impl AccessPoint {
             acts: &[],
             is_new: true,
             clock: period,
-            voice: Voice::default(),
+            last_beacon: LastBeacon::default(),
             log: Vec::new(),
         }
     }
@@ -113,8 +113,8 @@ impl AccessPoint {
 
     /// The beacon for its neighbours and, over the wire, the other access points: the very same
     /// beacon as before unless something in it has changed.
-    fn speak(&mut self) -> Arc<Beacon> {
-        let (beacon, _) = self.voice.say(self.public_state());
+    fn next_beacon(&mut self) -> Arc<Beacon> {
+        let (beacon, _) = self.last_beacon.replace_by(self.public_state());
         beacon
     }
 
@@ -145,10 +145,10 @@ impl AccessPoint {
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
-    fn think(&mut self) -> Result<(), TransitionError> {
+    fn deliberate(&mut self) -> Result<(), TransitionError> {
         self.hear_notices()?;
         self.find_route();
-        self.call_roll();
+        self.update_roster();
         Ok(())
     }
 
@@ -263,7 +263,7 @@ impl AccessPoint {
     }
 
     /// Which robots are attached to the access points.
-    fn call_roll(&mut self) {
+    fn update_roster(&mut self) {
         let own = Anchor::Access(self.number);
         let mut roster = IdSet::new();
         for beacon in &self.heard {

@@ -26,7 +26,7 @@ pub enum RoundAct {
     /// τ := 0.
     RestartClock,
     /// It processes the messages received, and serves the user.
-    Think,
+    Deliberate,
     /// The first access point sends the user the newest notice.
     TellUser,
     /// It sends its public state.
@@ -42,7 +42,7 @@ impl Act for RoundAct {
     fn name(self) -> &'static str {
         match self {
             RoundAct::RestartClock => "τ := 0",
-            RoundAct::Think => "deliberate, serve",
+            RoundAct::Deliberate => "deliberate, serve",
             RoundAct::TellUser => "tell the user",
             RoundAct::TellBeacon => "tell beacon",
             RoundAct::Forget => "forget silent nodes",
@@ -89,16 +89,16 @@ impl AccessPoint {
                     self.expect_all();
                 }
                 RoundAct::Forget => self.forget_silent(),
-                RoundAct::Think => {
+                RoundAct::Deliberate => {
                     let known = self.bulletin.id();
-                    self.think()?;
+                    self.deliberate()?;
                     self.serve()?;
                     if self.bulletin.id() != known {
                         self.tell_user(outputs);
                     }
                 }
                 RoundAct::TellUser => self.tell_user(outputs),
-                RoundAct::TellBeacon => outputs.broadcast(Message::Beacon(self.speak())),
+                RoundAct::TellBeacon => outputs.broadcast(Message::Beacon(self.next_beacon())),
             }
         }
         self.is_new &= self.round() > 0;
@@ -120,7 +120,7 @@ fn row<A: DataOf<Rounds>, B: DataOf<Rounds>>(
 /// # Errors
 /// Never with the table and guards of this crate; they are checked all the same.
 pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
-    use RoundAct::{Forget, RestartClock, TellBeacon, TellUser, Think};
+    use RoundAct::{Deliberate, Forget, RestartClock, TellBeacon, TellUser};
     let wait = |point: &mut AccessPoint, duration: f64| point.clock += duration;
     Automaton::builder(ROUNDS, Round::Resting)
         .observing()
@@ -135,13 +135,13 @@ pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
         .carried_out(row(
             RoundEvent::NextRound,
             guards::next_round(),
-            &[Forget, Think, TellBeacon],
+            &[Forget, Deliberate, TellBeacon],
             |listening: &Listening| Listening { round: listening.round + 1 },
         ))
         .carried_out(row(
             RoundEvent::RoundsOver,
             guards::rounds_over(),
-            &[Forget, Think],
+            &[Forget, Deliberate],
             |_: &Listening| Resting,
         ))
         .build()

@@ -271,9 +271,9 @@ fn announces<A: DataOf<Serving>>(guard: Guard) -> Row {
     Transfer::where_known(ServiceEvent::Announces, guard, "announce the next task", announce::<A>)
 }
 
-fn nobody_there<A: DataOf<Serving>>(guard: Guard) -> Row {
+fn no_robot<A: DataOf<Serving>>(guard: Guard) -> Row {
     let name = "end the mission: insufficient robots";
-    Transfer::new(ServiceEvent::NobodyThere, guard, name, end_without_robots::<A>)
+    Transfer::new(ServiceEvent::NoRobot, guard, name, end_without_robots::<A>)
 }
 
 fn all_serviced<A: DataOf<Serving>>(guard: Guard) -> Row {
@@ -308,19 +308,19 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(end_heard::<Serviced>())
         .carried_out(announces::<Gathering>(guards::announces_first()))
         .carried_out(announces::<Serviced>(guards::announces_next()))
-        .carried_out(nobody_there::<Gathering>(guards::nobody_there_first()))
-        .carried_out(nobody_there::<Serviced>(guards::nobody_there_next()))
+        .carried_out(no_robot::<Gathering>(guards::no_robot_first()))
+        .carried_out(no_robot::<Serviced>(guards::no_robot_next()))
         .carried_out(all_serviced::<Gathering>(guards::nothing_to_service()))
         .carried_out(all_serviced::<Serviced>(guards::all_serviced()))
         .carried_out(Transfer::where_known(
-            ServiceEvent::NobodyBids,
-            guards::nobody_bids(),
+            ServiceEvent::NoBid,
+            guards::no_bid(),
             "end the mission: unreachable task",
             end_without_bid,
         ))
         .carried_out(Transfer::where_known(
-            ServiceEvent::NobodyAnswers,
-            guards::nobody_answers(),
+            ServiceEvent::NoAnswer,
+            guards::no_answer(),
             "end the mission: blocked",
             end_unanswered,
         ))

@@ -21,7 +21,7 @@ impl<'a> RobotView<'a> {
 
     /// The duty that it takes over once the mover that offered it has taken its own.
     pub fn taking(self) -> Option<&'a Duty> {
-        self.robot().dealings().taking()
+        self.robot().offers().taking()
     }
 
     /// The path Σ that was announced last.
@@ -58,7 +58,7 @@ impl<'a> RobotView<'a> {
 
     /// The numbers of control periods without progress at which its guards change, ascending.
     pub fn still_thresholds(self) -> [u32; 3] {
-        [STATIONARY_WINDOW, super::exchange::LAST_RESORT, self.robot().patience().ceil() as u32]
+        [STATIONARY_WINDOW, super::partner::LAST_RESORT, self.robot().patience().ceil() as u32]
     }
 }
 
@@ -67,10 +67,10 @@ impl Robot {
     ///
     /// # Errors
     /// When a guard cannot be evaluated, or transitions do not come to an end.
-    pub fn think(&mut self) -> Result<(), RobotError> {
+    pub fn deliberate_now(&mut self) -> Result<(), RobotError> {
         self.end_round();
-        self.reflect()?;
-        self.stir();
+        self.process_messages()?;
+        self.note_change();
         self.is_quiet = false;
         self.jump()
     }
@@ -92,7 +92,7 @@ impl Robot {
         self.jump()
     }
 
-    /// Everything, apart from the beacons that it goes by, that decides what the robot says and does
+    /// Everything, apart from the beacons that it goes by, that decides what the robot sends and does
     /// from now on: robots with equal accounts that go by the same beacons have the same future, as
     /// long as they are moved alike.
     ///
@@ -107,14 +107,14 @@ impl Robot {
             still_periods,
             duty,
             mission,
-            deal,
+            exchange,
             last_partner,
             answered,
             parent,
             place,
             below,
             can_detach,
-            barren_periods,
+            unused_periods,
             bulletin,
             tasks,
             roster,
@@ -140,9 +140,9 @@ impl Robot {
             facts: _,
             is_quiet: _,
             has_news: _,
-            is_unspoken: _,
+            has_unsent_news: _,
             is_unmeasured: _,
-            voice: _,
+            last_beacon: _,
             beacon_told: _,
             heard_up_to: _,
             desired_parent: _,
@@ -161,8 +161,9 @@ impl Robot {
             inflows: _,
             demands: _,
             residual: _,
+            standing: _,
             has_swept: _,
-            is_frugal: _,
+            has_no_reserve: _,
             has_shortage_news: _,
             has_untold_flows: _,
             is_unsettled: _,
@@ -183,8 +184,8 @@ impl Robot {
         format!(
             "{:?}",
             (
-                (id, position, still_periods, &**duty, &**mission, barren_periods),
-                (&**deal, answered, last_partner, parent, &**place, below, can_detach),
+                (id, position, still_periods, &**duty, &**mission, unused_periods),
+                (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
                 (bulletin, tasks, roster, eligible, election, bid, waited, route),
                 (agreement, team, silences),
             )

@@ -21,7 +21,7 @@ use super::motion::ROUNDING;
 const REATTACHMENT_GAIN: f64 = 0.05;
 
 /// A node without a branch becomes redundant after this many control periods.
-pub(super) const PATIENCE_WITH_BARREN_POSTS: u32 = 2;
+pub(super) const PATIENCE_WITH_UNUSED_POSTS: u32 = 2;
 
 impl Robot {
     /// Renews the robot's place in the tree from what it has heard.
@@ -55,14 +55,14 @@ impl Robot {
     }
 
     /// Once a period: for how long no branch has depended on the post, Remark 5.6 (ii).
-    pub(super) fn count_barren_periods(&mut self) {
-        let barren = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
+    pub(super) fn count_unused_periods(&mut self) {
+        let unused = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
             && !self.bears_branch()
             && !self.tree_is_frozen()
             && !self.is_engaged()
             && !self.duty.is_bound();
-        self.barren_periods = if barren { self.barren_periods + 1 } else { 0 };
-        self.is_quiet &= self.barren_periods < PATIENCE_WITH_BARREN_POSTS;
+        self.unused_periods = if unused { self.unused_periods + 1 } else { 0 };
+        self.is_quiet &= self.unused_periods < PATIENCE_WITH_UNUSED_POSTS;
     }
 
     /// While a path Σ is being sought or walked, no robot changes its parent.
@@ -107,11 +107,11 @@ impl Robot {
     fn choose_parent(&self) -> Option<Option<Anchor>> {
         let post = *self.duty.post()?;
         let current = post.parent.and_then(|anchor| {
-            let bearer = self.bearer(anchor)?;
-            let lineage = bearer.beacon.lineage.as_ref()?;
-            let usable = Self::accepts_redundant(bearer)
+            let holder = self.neighbour_at(anchor)?;
+            let lineage = holder.beacon.lineage.as_ref()?;
+            let usable = Self::accepts_redundant(holder)
                 && !lineage.contains(post.id)
-                && self.walk_to(bearer) <= self.site.hard_length * (1.0 + ROUNDING);
+                && self.walk_to(holder) <= self.site.hard_length * (1.0 + ROUNDING);
             usable.then_some((lineage.hops(), anchor))
         });
         let best = self.best_parent(post.id, None);
@@ -206,7 +206,7 @@ impl Robot {
             return Some(Some(Anchor::Post(awaited)));
         }
         let (goal, anchor) = (self.team_goal()?, self.anchor()?);
-        let parent = self.bearer(anchor)?;
+        let parent = self.neighbour_at(anchor)?;
         let own = self.duty.post().map(|post| post.id);
         let gain = REATTACHMENT_GAIN * self.site.build_length;
         let mut nearest = self.site.distance(parent.position(), goal) - gain;

@@ -67,7 +67,7 @@ impl Holds<Duty> for Robot {
 
     fn carry_out(&mut self, effects: Effects) {
         (self.desired_parent, self.reattaches_to) = (None, None);
-        self.barren_periods = 0;
+        self.unused_periods = 0;
         for effect in effects {
             match effect {
                 DutyEffect::Report(event) => self.report(event),
@@ -82,7 +82,7 @@ impl Holds<Duty> for Robot {
 }
 
 impl Robot {
-    /// Takes at most one transition of the duty automaton, together with what `label` says.
+    /// Takes at most one transition of the duty automaton, together with what `label` stands for.
     pub(super) fn jump_duty(
         &mut self,
         label: Label,
@@ -93,7 +93,7 @@ impl Robot {
         self.label = Label::Alone;
         if matches!(jump, Ok(Some(_))) {
             self.is_quiet = false;
-            self.stir();
+            self.note_change();
             self.look_after_place()?;
         }
         jump
@@ -418,7 +418,7 @@ fn attached<A: DataOf<Duty> + Holder + From<Held>>() -> Row {
 }
 
 /// What a jump takes place together with, a step of the mission or an exchange of duties, is one
-/// thing at a time: the propositions that speak of it exclude each other, and `step`, which says
+/// thing at a time: the propositions about it exclude each other, and `step`, which says
 /// something of several steps.
 fn labels(step: &'static str) -> [&'static str; 15] {
     [

@@ -1,148 +1,263 @@
-//! Exchanging duties with the robot that stands in the way.
+//! The automaton of the exchange of duties: what each transition of [`EXCHANGE`] does to the offers
+//! and replies ([`Offers`]), and when.
 //!
-//! A mover that touches a parked robot nearer to its goal offers it its duty. The parked robot
-//! answers with its own; the mover, which is within δ of the post, takes it; and when the parked
-//! robot sees that, it takes the mover's duty: the [`Dealings`] of the two. From the offer to the end
-//! neither takes a step of the mission, so that what is taken over is what was offered. A post is
-//! never without a robot, and no duty is ever done by two. With every exchange the way that remains
-//! gets shorter, so that exchanges come to an end. A mover that cannot pass takes a partner somewhat
-//! farther from its goal too, but no robot twice in a row.
-//!
-//! [`Dealings`]: pleach_discrete::network::Dealings
+//! Where an exchange gives the robot another duty, the duty automaton jumps together with this one.
 
-use pleach_discrete::network::{NodeId, Offer, Phase, PostKind, Reply};
+use std::sync::Arc;
 
-use super::super::duty::{Duty, Shifting};
+use pleach_discrete::network::{EXCHANGE, ExchangeEvent, ExchangeStage, NodeId, Offers};
+use pleach_guards::network::exchange as guards;
+
+use crate::located::{Current, DataOf, Holds};
+use crate::{Automaton, BuildError, Transfer, TransitionError};
+
+use super::super::duty::Duty;
+use super::super::record::MissionEvent;
 use super::Robot;
-use super::hearing::Neighbour;
 
-/// Two robots touch when they are this many ρ apart; they never come closer than 2ρ.
-const CONTACT: f64 = 2.6;
-/// The parked robot must be nearer to the goal by this share of ρ.
-const GAIN: f64 = 0.05;
-/// Control periods without progress after which a mover looks for an exchange.
-const PATIENCE: u32 = 2;
-/// Control periods without progress after which it takes a partner that is not nearer: one that
-/// leaves no room to pass, at a corner say.
-pub(super) const LAST_RESORT: u32 = 10;
-/// How much farther from the goal, in ρ, such a partner may be.
-const CONCESSION: f64 = 4.0;
+/// The automaton of the exchange of duties.
+pub type ExchangeAutomaton = Automaton<ExchangeStage, ExchangeEvent, Robot>;
 
-impl Robot {
-    /// Once a period: a mover that makes no progress looks for a partner among the robots in its way.
-    pub(super) fn consider_exchange(&mut self) {
-        self.partner = None;
-        if self.is_engaged() || self.still_periods < PATIENCE || !self.may_hand_over() {
-            return;
+macro_rules! modes {
+    ($($(#[$note:meta])* $name:ident),+ $(,)?) => {
+        crate::places_of! {
+            /// The state of a robot in the exchange of duties, with its offers and replies.
+            pub enum Exchange: ExchangeStage { $($(#[$note])* $name($name)),+ }
         }
-        let Some(goal) = self.goal() else { return };
-        let gain = if self.still_periods < LAST_RESORT { GAIN } else { -CONCESSION };
-        let own_way = self.site.distance(self.position, goal);
-        let mut nearest = own_way - gain * self.clearance();
-        let mut partner = None;
-        for neighbour in &self.neighbours {
-            if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
-                let way = self.site.distance(neighbour.position(), goal);
-                let is_return = way >= own_way && self.last_partner == Some(neighbour.id());
-                if way < nearest && !is_return && self.could_be_replaced_by(neighbour) {
-                    (nearest, partner) = (way, Some(neighbour.id()));
+
+        $($(#[$note])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $name(pub Offers<Duty>);
+
+        impl From<Offers<Duty>> for $name {
+            fn from(offers: Offers<Duty>) -> Self {
+                $name(offers)
+            }
+        }
+
+        impl HasOffers for $name {
+            fn offers(&self) -> &Offers<Duty> {
+                &self.0
+            }
+        })+
+
+        impl Exchange {
+            /// Its offers and replies.
+            pub const fn offers(&self) -> &Offers<Duty> {
+                match self {
+                    $(Exchange::$name($name(offers)) => offers),+
                 }
             }
         }
-        self.partner = partner;
+    };
+}
+
+trait HasOffers {
+    fn offers(&self) -> &Offers<Duty>;
+}
+
+modes! {
+    /// The data of [`ExchangeStage::Free`].
+    Free,
+    /// The data of [`ExchangeStage::Offering`].
+    Offering,
+    /// The data of [`ExchangeStage::Refusing`].
+    Refusing,
+    /// The data of [`ExchangeStage::OfferingAndRefusing`].
+    OfferingAndRefusing,
+    /// The data of [`ExchangeStage::Giving`].
+    Giving,
+}
+
+/// The effects of a transition other than changing the location.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ExchangeEffect {
+    /// It has answered the offer with this number of this mover.
+    Answered(NodeId, u32),
+    /// It no longer looks for a partner.
+    PartnerAsked,
+    /// It takes this duty over from this robot.
+    Takes(Duty, NodeId),
+}
+
+type Effects = Vec<ExchangeEffect>;
+
+impl Holds<Exchange> for Robot {
+    type Effects = Effects;
+
+    fn current(&self) -> &Current<Exchange> {
+        &self.exchange
     }
 
-    /// Whether this robot is on a way that another could go on with.
-    fn may_hand_over(&self) -> bool {
-        match *self.duty {
-            Duty::Shifting(Shifting { place, .. }) => {
-                let active = self.active_subgroup();
-                active.is_some_and(|active| active.places().contains(&place)) && !self.has_arrived()
+    fn current_mut(&mut self) -> &mut Current<Exchange> {
+        &mut self.exchange
+    }
+
+    fn carry_out(&mut self, effects: Effects) {
+        for effect in effects {
+            match effect {
+                ExchangeEffect::Answered(mover, number) => {
+                    self.answered.insert(mover, number);
+                }
+                ExchangeEffect::PartnerAsked => self.partner = None,
+                ExchangeEffect::Takes(duty, partner) => self.taking_over = Some((duty, partner)),
             }
-            Duty::Following(_) | Duty::Leading(_) => self.phase() == Phase::Advance,
-            _ => false,
         }
     }
+}
 
-    /// Whether this robot could take over the post of `parked` from where it is.
-    fn could_replace(&self, parked: &Neighbour) -> bool {
-        let Some(station) = parked.station() else { return false };
-        let settings = &self.site.settings;
-        let near = |place| (self.position - place) as pleach_continuous::Vector;
-        let within_reach = match station.post.kind {
-            PostKind::Primary { .. } | PostKind::Redundant => true,
-            PostKind::Fixed => near(station.reference).norm() <= settings.service_radius,
-        };
-        let services = station.post.task.is_none_or(|task| {
-            self.task_position(task)
-                .is_some_and(|place| near(place).norm() <= settings.service_radius)
-        });
-        let link_holds = station
-            .post
-            .parent
-            .and_then(|anchor| self.bearer(anchor))
-            .is_some_and(|parent| self.walk_to(parent) <= self.site.hard_length);
-        let children_hold = self
-            .neighbours
-            .iter()
-            .filter(|n| n.post().is_some_and(|post| post.is_child_of(station.post.id)))
-            .all(|child| self.walk_to(child) <= self.site.hard_length);
-        parked.beacon.parked
-            && parked.beacon.offer.is_none()
-            && parked.beacon.reply.is_none()
-            && within_reach
-            && services
-            && link_holds
-            && children_hold
+impl Robot {
+    /// Its offers and replies.
+    pub(super) fn offers(&self) -> &Offers<Duty> {
+        self.exchange.offers()
     }
 
-    /// Whether the links of this robot would hold if `parked` took its duty.
-    fn could_be_replaced_by(&self, parked: &Neighbour) -> bool {
-        self.tree_links().iter().all(|link| {
-            self.neighbour(link.to).is_some_and(|other| {
-                self.site.walk(parked.position(), other.position()) <= self.site.hard_length
-            })
-        })
+    /// Takes all transitions of the exchange of duties that can be taken, together with the duty
+    /// automaton where the robot gets another duty.
+    pub(super) fn advance_exchange(&mut self) -> Result<(), TransitionError> {
+        let site = Arc::clone(&self.site);
+        while let Some(jump) = site.automata.exchange.step_in_place::<Exchange>(self)? {
+            self.note_change();
+            if let Some((duty, partner)) = self.taking_over.take() {
+                self.exchange_duty(duty, partner)?;
+                if jump.event == ExchangeEvent::DutyTaken {
+                    let event = MissionEvent::DutiesExchanged { mover: self.id, parked: partner };
+                    self.report(event);
+                }
+            }
+        }
+        Ok(())
     }
+}
 
-    pub(super) fn task_position(&self, task: usize) -> Option<pleach_continuous::Point> {
-        self.tasks.iter().find(|known| known.number == task).map(|known| known.position)
+// ---- The resets ------------------------------------------------------------------------------
+
+fn offer(free: &Free, robot: &Robot, effects: &mut Effects) -> Option<Offering> {
+    let mut offers = free.0.clone();
+    offers.make_offer(robot.partner?, *robot.duty);
+    effects.push(ExchangeEffect::PartnerAsked);
+    Some(Offering(offers))
+}
+
+fn answer<A: HasOffers, B: From<Offers<Duty>>>(
+    exchange: &A,
+    robot: &Robot,
+    effects: &mut Effects,
+    given: Option<Duty>,
+) -> Option<B> {
+    let (mover, offer) = robot.offer_to_answer()?;
+    let mut offers = exchange.offers().clone();
+    offers.answer(mover, offer, given);
+    effects.push(ExchangeEffect::Answered(mover, offer.number));
+    Some(B::from(offers))
+}
+
+fn give(free: &Free, robot: &Robot, effects: &mut Effects) -> Option<Giving> {
+    answer(free, robot, effects, Some(*robot.duty))
+}
+
+fn refuse<A: HasOffers, B: From<Offers<Duty>>>(
+    exchange: &A,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> Option<B> {
+    answer(exchange, robot, effects, None)
+}
+
+/// The offer is answered: it is given up and, if it was accepted, the partner's duty taken.
+fn hear_answer<A: HasOffers, B: From<Offers<Duty>>>(
+    exchange: &A,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> Option<B> {
+    let reply = robot.answer_to_offer()?;
+    let partner = exchange.offers().offer()?.to;
+    let mut offers = exchange.offers().clone();
+    if let Some(duty) = offers.hear(robot.id, reply) {
+        effects.push(ExchangeEffect::Takes(duty, partner));
     }
+    Some(B::from(offers))
+}
 
-    // ---- What the guards ask -----------------------------------------------------------------
-
-    /// The partner's answer to its offer.
-    pub(super) fn answer_to_offer(&self) -> Option<&Reply<Duty>> {
-        let offer = self.dealings().offer()?;
-        let reply = self.neighbour(offer.to)?.beacon.reply.as_ref()?;
-        (reply.to == self.id && reply.number == offer.number).then_some(reply)
+/// The mover has heard the reply: it is given up and, if it was an acceptance, the duty offered
+/// taken.
+fn conclude<A: HasOffers, B: From<Offers<Duty>>>(
+    exchange: &A,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> Option<B> {
+    let to = exchange.offers().reply()?.to;
+    let mover = robot.neighbour(to)?;
+    let mut offers = exchange.offers().clone();
+    let (offer, offers_made) = (mover.beacon.offer.as_ref(), mover.beacon.offers_made);
+    if let Some(duty) = offers.conclude(offer, offers_made) {
+        effects.push(ExchangeEffect::Takes(duty, to));
     }
+    Some(B::from(offers))
+}
 
-    /// The first offer to this robot that it has not answered, with the mover.
-    pub(super) fn offer_to_answer(&self) -> Option<(NodeId, &Offer<Duty>)> {
-        self.neighbours.iter().find_map(|neighbour| {
-            let offer = neighbour.beacon.offer.as_ref()?;
-            let answered = self.answered.get(&neighbour.id()).copied();
-            offer.asks(self.id, answered).then(|| (neighbour.id(), offer))
-        })
-    }
+type Row = Transfer<ExchangeStage, ExchangeEvent, Robot>;
 
-    /// Whether the mover has given its offer up, so that it has heard the reply.
-    pub(super) fn is_reply_heard(&self) -> bool {
-        self.dealings().reply().and_then(|reply| self.neighbour(reply.to)).is_some_and(|mover| {
-            let (offer, made) = (mover.beacon.offer.as_ref(), mover.beacon.offers_made);
-            self.dealings().has_heard_reply(offer, made)
-        })
-    }
+fn taken<A, B>() -> Row
+where
+    A: DataOf<Exchange> + HasOffers,
+    B: DataOf<Exchange> + From<Offers<Duty>>,
+{
+    let name = "take the partner's duty";
+    Transfer::where_known(ExchangeEvent::DutyTaken, guards::duty_taken(), name, hear_answer::<A, B>)
+}
 
-    /// Whether this robot may leave its post to a mover.
-    pub(super) fn may_be_relieved(&self) -> bool {
-        self.is_parked() && self.dealings().offer().is_none() && self.duty.station().is_some()
-    }
+fn refused<A, B>() -> Row
+where
+    A: DataOf<Exchange> + HasOffers,
+    B: DataOf<Exchange> + From<Offers<Duty>>,
+{
+    let name = "withdraw the offer";
+    let guard = guards::offer_refused();
+    Transfer::where_known(ExchangeEvent::OfferRefused, guard, name, hear_answer::<A, B>)
+}
 
-    /// Whether an exchange is under way. The robot then stands still, and what it does stays what
-    /// it is: a duty that changed after it was offered would be taken over as it had been.
-    pub(super) fn is_engaged(&self) -> bool {
-        self.dealings().are_under_way()
-    }
+fn refuses<A, B>() -> Row
+where
+    A: DataOf<Exchange> + HasOffers,
+    B: DataOf<Exchange> + From<Offers<Duty>>,
+{
+    Transfer::where_known(ExchangeEvent::Refuses, guards::refuses(), "refuse", refuse::<A, B>)
+}
+
+fn refusal_heard<A, B>() -> Row
+where
+    A: DataOf<Exchange> + HasOffers,
+    B: DataOf<Exchange> + From<Offers<Duty>>,
+{
+    let (guard, name) = (guards::refusal_heard(), "withdraw the reply");
+    Transfer::where_known(ExchangeEvent::RefusalHeard, guard, name, conclude::<A, B>)
+}
+
+/// The automaton of the exchange of duties.
+///
+/// # Errors
+/// Never with the table and guards of this crate; they are checked all the same.
+pub fn exchange_automaton() -> Result<ExchangeAutomaton, BuildError> {
+    use ExchangeEvent as On;
+    Automaton::builder(EXCHANGE, ExchangeStage::Free)
+        .observing()
+        .carried_out(Transfer::where_known(On::Offers, guards::offers(), "offer the duty", offer))
+        .carried_out(Transfer::where_known(On::Gives, guards::gives(), "give the duty", give))
+        .carried_out(refuses::<Free, Refusing>())
+        .carried_out(refuses::<Offering, OfferingAndRefusing>())
+        .carried_out(taken::<Offering, Free>())
+        .carried_out(taken::<OfferingAndRefusing, Refusing>())
+        .carried_out(refused::<Offering, Free>())
+        .carried_out(refused::<OfferingAndRefusing, Refusing>())
+        .carried_out(refusal_heard::<OfferingAndRefusing, Offering>())
+        .carried_out(refusal_heard::<Refusing, Free>())
+        .carried_out(Transfer::where_known(
+            On::DutyGiven,
+            guards::duty_given(),
+            "take the duty offered",
+            conclude::<Giving, Free>,
+        ))
+        .build()
 }

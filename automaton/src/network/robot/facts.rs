@@ -10,7 +10,7 @@ use super::super::beacon::Notice;
 use super::super::duty::{AwaitingRelease, Duty, Waiting};
 use super::super::scenario::RoutingMethod;
 use super::Robot;
-use super::attachment::PATIENCE_WITH_BARREN_POSTS;
+use super::attachment::PATIENCE_WITH_UNUSED_POSTS;
 use super::lineage::HeardWay;
 use super::rounds::SweepRound;
 
@@ -106,9 +106,9 @@ facts! {
             /// The number of branches attached to the post ahead on Σ.
             branches_ahead: robot.post_ahead().map_or(0, |post| robot.branches_of(post.id)) as f64,
             /// Control periods for which no branch has depended on its post.
-            barren: f64::from(robot.barren_periods),
+            unused: f64::from(robot.unused_periods),
             /// Control periods after which a post without a branch is given up.
-            barren_patience: f64::from(PATIENCE_WITH_BARREN_POSTS),
+            unused_patience: f64::from(PATIENCE_WITH_UNUSED_POSTS),
             /// τ: seconds since the last sample.
             clock: robot.time_since_sample(),
             /// Δt: seconds from sample to sample.

@@ -1,4 +1,4 @@
-//! Listening: the table of neighbours and what each of them last said.
+//! Listening: the table of neighbours and what each of them last sent.
 
 use std::sync::{Arc, OnceLock};
 
@@ -186,7 +186,7 @@ impl Robot {
     }
 
     /// The neighbour that stands for `anchor`.
-    pub(super) fn bearer(&self, anchor: Anchor) -> Option<&Neighbour> {
+    pub(super) fn neighbour_at(&self, anchor: Anchor) -> Option<&Neighbour> {
         match anchor {
             Anchor::Access(access) => self.neighbour(self.site.robots + access),
             Anchor::Post(post) => self.holder(post),

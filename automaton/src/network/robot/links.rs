@@ -49,7 +49,7 @@ impl Robot {
         Some(TreeLink { to, limit: self.limit_of(Some(&*self.duty)) })
     }
 
-    /// The robots that say that they are attached to this one.
+    /// The robots that report that they are attached to this one.
     fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
         self.neighbours.iter().filter(|neighbour| neighbour.beacon.parent == Some(self.id))
     }

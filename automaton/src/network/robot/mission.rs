@@ -215,13 +215,13 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         .carried_out(Transfer::new(
             Step::Blocked,
             guards::blocked(),
-            "say why",
+            "report why",
             team::give_up::<Advance>,
         ))
         .carried_out(Transfer::new(
             Step::Blocked,
             guards::blocked(),
-            "say why",
+            "report why",
             team::give_up::<Shift>,
         ))
         .carried_out(Transfer::where_known(
@@ -233,7 +233,7 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         .carried_out(Transfer::new(
             Step::Unaided,
             guards::unaided(),
-            "ask other trees, or say why",
+            "ask other trees, or report why",
             recruit::end_unaided,
         ))
         .carried_out(Transfer::where_known(

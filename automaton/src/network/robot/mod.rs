@@ -5,15 +5,14 @@
 //! [`Node`](crate::node::Node): `step` says what it does with each input, stage by stage of a
 //! control period. The chapters follow that period: it receives beacons (`hearing`), keeps its place
 //! in the tree (`attachment`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
-//! `path`, `team`), exchanges duties with a robot in its way
-//! (`exchange`) or makes way (`yielding`), routes its packets (`routing`) and moves (`motion`);
+//! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
+//! (`yielding`), routes its packets (`routing`, `standing`) and moves (`motion`);
 //! what its guards see of all this are `facts`.
 
 #[cfg(feature = "abstraction")]
 mod abstraction;
 mod attachment;
 mod control;
-mod dealing;
 mod duties;
 mod exchange;
 mod facts;
@@ -23,10 +22,12 @@ mod lineage;
 mod links;
 mod mission;
 mod motion;
+mod partner;
 mod path;
 mod recruit;
 mod rounds;
 mod routing;
+mod standing;
 mod step;
 mod target;
 mod team;
@@ -41,12 +42,12 @@ use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Dealings, Election, IdSet, NodeId, NoticeId, Post, PostId, Role,
+    Agreement, Anchor, Bid, Election, IdSet, NodeId, NoticeId, Offers, Post, PostId, Role,
 };
 
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
-pub use dealing::{Deal, DealingAutomaton, DealingEffect, dealing_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
+pub use exchange::{Exchange, ExchangeAutomaton, ExchangeEffect, exchange_automaton};
 pub use facts::{Facts, GLOSSARY};
 pub use lineage::{AttachmentAutomaton, PlaceInTree, attachment_automaton};
 pub use links::TreeLink;
@@ -60,7 +61,7 @@ use crate::automaton::TransitionError;
 use crate::located::Current;
 use crate::node::Outputs;
 
-use super::beacon::{Beacon, Bulletin, Notice, TeamReport, Voice};
+use super::beacon::{Beacon, Bulletin, LastBeacon, Notice, TeamReport};
 use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::message::Message;
@@ -117,14 +118,14 @@ pub struct Robot {
 
     // What has changed since it last deliberated, spoke and measured its facts.
     has_news: bool,
-    is_unspoken: bool,
+    has_unsent_news: bool,
     is_unmeasured: bool,
-    voice: Voice,
+    last_beacon: LastBeacon,
     /// In how many rounds of this period it has told its beacon as it is now.
     beacon_told: usize,
 
     // The exchange of duties that it is engaged in.
-    deal: Current<Deal>,
+    exchange: Current<Exchange>,
     /// The robot in its way with which it could exchange duties.
     partner: Option<NodeId>,
     /// The duty that it takes over in this jump, and from which robot.
@@ -145,7 +146,7 @@ pub struct Robot {
     /// The node that p₁ finds to be a better parent.
     reattaches_to: Option<NodeId>,
     can_detach: bool,
-    barren_periods: u32,
+    unused_periods: u32,
 
     // What it knows of the mission.
     bulletin: Bulletin,
@@ -167,8 +168,9 @@ pub struct Robot {
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
     residual: f64,
+    standing: standing::StandingFlows,
     has_swept: bool,
-    is_frugal: bool,
+    has_no_reserve: bool,
     has_shortage_news: bool,
     has_untold_flows: bool,
     is_unsettled: bool,
@@ -222,11 +224,11 @@ impl Robot {
             facts: Facts::default(),
             is_quiet: false,
             has_news: true,
-            is_unspoken: true,
+            has_unsent_news: true,
             is_unmeasured: true,
-            voice: Voice::default(),
+            last_beacon: LastBeacon::default(),
             beacon_told: 0,
-            deal: Current::new(Deal::Free(dealing::Free(Dealings::new()))),
+            exchange: Current::new(Exchange::Free(exchange::Free(Offers::new()))),
             partner: None,
             taking_over: None,
             last_partner: None,
@@ -241,7 +243,7 @@ impl Robot {
             desired_parent: None,
             reattaches_to: None,
             can_detach: false,
-            barren_periods: 0,
+            unused_periods: 0,
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             tasks: Vec::new(),
             roster: Arc::default(),
@@ -260,8 +262,9 @@ impl Robot {
             inflows: Vec::new(),
             demands: Vec::new(),
             residual: 0.0,
+            standing: standing::StandingFlows::default(),
             has_swept: false,
-            is_frugal: false,
+            has_no_reserve: false,
             has_shortage_news: false,
             has_untold_flows: false,
             is_unsettled: true,
@@ -297,12 +300,12 @@ impl Robot {
     /// The beacon that the robot sends now: the very same as before unless something
     /// in it has changed.
     fn next_beacon(&mut self) -> Arc<Beacon> {
-        if !std::mem::take(&mut self.is_unspoken)
-            && let Some(beacon) = self.voice.last()
+        if !std::mem::take(&mut self.has_unsent_news)
+            && let Some(beacon) = self.last_beacon.get()
         {
             return beacon;
         }
-        let (beacon, is_new) = self.voice.say(self.public_state());
+        let (beacon, is_new) = self.last_beacon.replace_by(self.public_state());
         if is_new {
             (self.has_news, self.beacon_told) = (true, 0);
         }
@@ -325,9 +328,9 @@ impl Robot {
             parked: self.is_parked(),
             way: self.way_asked_for(),
             can_detach: self.can_detach,
-            offer: self.dealings().offer().cloned(),
-            offers_made: self.dealings().offers_made(),
-            reply: self.dealings().reply().cloned(),
+            offer: self.offers().offer().cloned(),
+            offers_made: self.offers().offers_made(),
+            reply: self.offers().reply().cloned(),
             team: self.team,
         }
     }
@@ -355,10 +358,10 @@ impl Robot {
     /// A control period begins: what is looked at once a period.
     fn begin_period(&mut self) -> Result<(), TransitionError> {
         self.beacon_told = 0;
-        self.stir();
-        self.count_barren_periods();
+        self.note_change();
+        self.count_unused_periods();
         self.consider_exchange();
-        self.deal()
+        self.advance_exchange()
     }
 
     /// After each round of messages: the robot processes what it has received.
@@ -370,13 +373,13 @@ impl Robot {
         if !std::mem::take(&mut self.has_news) && !is_due {
             return Ok(());
         }
-        self.reflect()
+        self.process_messages()
     }
 
     /// Processes what it has received, whether or not it contains news.
-    fn reflect(&mut self) -> Result<(), TransitionError> {
-        (self.is_unspoken, self.is_unmeasured) = (true, true);
-        self.deal()?;
+    fn process_messages(&mut self) -> Result<(), TransitionError> {
+        (self.has_unsent_news, self.is_unmeasured) = (true, true);
+        self.advance_exchange()?;
         self.keep_place()?;
         self.hear_notices();
         self.remember_parent();
@@ -390,15 +393,15 @@ impl Robot {
         let jumped = self.jump_mission()? || self.jump_duty(Label::Alone)?.is_some();
         if jumped {
             self.is_quiet = false;
-            self.stir();
+            self.note_change();
         }
         self.report_role_after(role);
         Ok(jumped)
     }
 
     /// The robot's state has changed: it has to deliberate, to send its state and to measure its facts.
-    fn stir(&mut self) {
-        (self.has_news, self.is_unspoken, self.is_unmeasured) = (true, true, true);
+    fn note_change(&mut self) {
+        (self.has_news, self.has_unsent_news, self.is_unmeasured) = (true, true, true);
     }
 
     fn report(&mut self, event: MissionEvent) {

@@ -402,12 +402,12 @@ impl Robot {
         }
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
-        self.stir();
+        self.note_change();
     }
 
     /// A new control period begins.
     pub(super) fn restart_clock(&mut self) {
-        self.stir();
+        self.note_change();
         self.velocity = Vector::zeros();
         self.clock = 0.0;
     }

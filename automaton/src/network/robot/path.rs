@@ -13,7 +13,7 @@ use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
-/// The path Σ is known: its members say whether they are break points.
+/// The path Σ is known: its members report whether they are break points.
 pub(super) fn vote(
     _: &RecruitElection,
     robot: &Robot,

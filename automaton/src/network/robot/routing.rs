@@ -62,7 +62,7 @@ pub struct RouteLink {
     pub reliability: f64,
     /// w_ij.
     pub weight: f64,
-    /// What the neighbour last said of its equation; none for an access point.
+    /// How the neighbour last reported its equation to stand; none for an access point.
     pub report: Option<NeighbourReport>,
     /// T_ij.
     pub share: f64,
@@ -73,6 +73,12 @@ pub struct RouteLink {
 }
 
 impl RouteLink {
+    /// A link that carries this flow until the end of the period.
+    pub(super) fn of_flow(to: NodeId, reliability: f64, flow: f64) -> Self {
+        let share = flow / reliability;
+        RouteLink { to, reliability, weight: 0.0, report: None, share, iterate: 0.0, told: flow }
+    }
+
     /// F_ij = T_ij R_ij.
     pub fn flow(&self) -> f64 {
         self.share * self.reliability
@@ -82,7 +88,7 @@ impl RouteLink {
 impl Robot {
     /// Finds the links over which the robot may send from here, keeping what it knows of them.
     pub(super) fn survey_links(&mut self) {
-        (self.is_frugal, self.has_shortage_news) = (false, false);
+        (self.has_no_reserve, self.has_shortage_news) = (false, false);
         (self.has_untold_flows, self.is_unsettled) = (true, true);
         let old = std::mem::take(&mut self.links);
         let tree = self.tree_links();
@@ -144,7 +150,7 @@ impl Robot {
         outputs.broadcast(Message::Multiplier { report, parent: self.upstream });
     }
 
-    /// A neighbour says how its equation stands, and where its demand will go.
+    /// A neighbour reports how its equation stands, and where its demand will go.
     pub(super) fn hear_multiplier(
         &mut self,
         from: NodeId,
@@ -385,7 +391,7 @@ impl Robot {
         let before = self.links[tree_link].flow();
         let demand = self.inflow + self.rate + self.reserve();
         let outflow = self.outflow();
-        if outflow > demand && (is_first || self.is_frugal) {
+        if outflow > demand && (is_first || self.has_no_reserve) {
             self.links.iter_mut().for_each(|link| link.share *= demand / outflow);
         } else if demand - outflow > RESIDUAL_ROUNDING {
             self.raise_outflow(demand, tree_link);
@@ -409,10 +415,10 @@ impl Robot {
     }
 
     /// This robot may find that it cannot pass on what it is sent: it does without its reserve,
-    /// and says so once in a period.
+    /// and reports that once in a period.
     pub(super) fn admit_shortage(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
         if self.is_infeasible() {
-            self.economise(outputs);
+            self.give_up_reserve(outputs);
         }
     }
 
@@ -424,7 +430,7 @@ impl Robot {
         outputs: &mut Outputs<Message, MissionEvent>,
     ) {
         if self.upstream == Some(overloaded) {
-            self.economise(outputs);
+            self.give_up_reserve(outputs);
         } else if let Ok(at) = self.links.binary_search_by_key(&overloaded, |link| link.to) {
             let had_share = self.links[at].share > 0.0;
             self.has_shortage_news |= had_share;
@@ -433,8 +439,8 @@ impl Robot {
         }
     }
 
-    fn economise(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
-        if !std::mem::replace(&mut self.is_frugal, true) {
+    fn give_up_reserve(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if !std::mem::replace(&mut self.has_no_reserve, true) {
             self.has_shortage_news = true;
             outputs.broadcast(Message::Shortage);
         }
@@ -442,7 +448,7 @@ impl Robot {
 
     /// η, or nothing when the tree can carry no more than the rates.
     fn reserve(&self) -> f64 {
-        if self.is_frugal { 0.0 } else { self.site.settings.routing_reserve }
+        if self.has_no_reserve { 0.0 } else { self.site.settings.routing_reserve }
     }
 
     /// Whether the routes cannot carry the rates: c_i < −c_min.
@@ -462,7 +468,7 @@ impl Robot {
     /// its flows.
     pub(super) fn routes_stand(&self) -> bool {
         let has_news = self.has_shortage_news || self.has_untold_flows || self.is_unsettled;
-        self.has_swept && !has_news && (self.is_frugal || !self.is_infeasible())
+        self.has_swept && !has_news && (self.has_no_reserve || !self.is_infeasible())
     }
 
     /// The routes of the period stand.

@@ -1,9 +1,8 @@
-//! The robot as a node: what it does at each tick of its clock, and what it hears in between.
+//! The robot as a node: what it does at each tick of its clock, and with each message in between.
 //!
-//! A control period is a sequence of stages that takes no time. The robot counts its own rounds:
-//! at a tick it makes something of what it has heard since the last one, and speaks. Then it waits
-//! for what the others say, up to the next tick. When it has set off, its clock calls again at
-//! τ = Δt.
+//! A control period is a sequence of stages that takes no time. The robot counts its own rounds: at
+//! a tick it processes what it has received since the last one, and sends. Then it waits for the
+//! messages of the others, up to the next tick. When it has set off, its next tick is at τ = Δt.
 
 use std::collections::VecDeque;
 
@@ -49,7 +48,7 @@ impl<F: Into<RobotFault>> From<F> for RobotError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RobotFault {
-    /// A guard speaks of something that robots do not measure.
+    /// A guard reads something that robots do not measure.
     #[error(transparent)]
     Guard(#[from] TransitionError),
     /// Time has passed although an invariant does not hold.
@@ -138,7 +137,7 @@ impl Robot {
         (self.position, self.arrival) = (position, position);
         self.resting_places = VecDeque::from([position]);
         self.still_periods = still_periods;
-        self.stir();
+        self.note_change();
     }
 
     /// The robot finds that it stands at `position`, and how far its neighbours are from there.
@@ -174,7 +173,7 @@ impl Robot {
         (self.site.settings.period - self.clock).max(0.0)
     }
 
-    /// Most messages are beacons that say nothing new.
+    /// Most messages are beacons without news.
     #[inline]
     fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
         match message {
@@ -190,6 +189,7 @@ impl Robot {
             Message::Flow(flow) => self.hear_flow(from, *flow),
             Message::Demand(more) => self.hear_demand(from, *more, outputs),
             Message::Shortage => self.hear_shortage(from, outputs),
+            Message::Restore => self.restore_flows(outputs),
             Message::Proposal(segment) => self.hear_proposal(from, *segment),
             Message::Objection => self.yield_to_objection(),
             _ => {}

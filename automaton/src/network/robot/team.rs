@@ -140,7 +140,7 @@ impl Robot {
     fn is_slack(&self) -> bool {
         let bound = self
             .anchor()
-            .and_then(|anchor| self.bearer(anchor))
+            .and_then(|anchor| self.neighbour_at(anchor))
             .is_none_or(|parent| self.walk_to(parent) >= SLACK * self.site.build_length);
         let bunched = || {
             self.team_goal()

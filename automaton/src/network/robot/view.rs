@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Dealing, NodeId, NoticeId, Phase, Role, Stage, Subgroup};
+use pleach_discrete::network::{ExchangeStage, NodeId, NoticeId, Phase, Role, Stage, Subgroup};
 
 use super::super::beacon::{Beacon, Notice};
 use super::super::duty::Duty;
@@ -48,8 +48,8 @@ impl<'a> RobotView<'a> {
     }
 
     /// Its location in the automaton of the exchange of duties.
-    pub fn dealing(self) -> Dealing {
-        self.0.deal.location()
+    pub fn exchange(self) -> ExchangeStage {
+        self.0.exchange.location()
     }
 
     /// Its location in the automaton of the mission, with the data.

@@ -12,7 +12,7 @@
 //!
 //! 1. sends its [`report`](AdalRobot::report) to its neighbours: λ_i, e_i and q_i;
 //! 2. minimises its local augmented Lagrangian over its own T_ij ≥ 0, Σ_j T_ij ≤ 1 and s_i ≥ 0, with
-//!    everyone else's variables as they are,
+//!    the variables of all others as they are,
 //!
 //!    ```text
 //!    Σ_j [w_ij T_ij² − (λ_i − λ_j) R_ij T_ij] + λ_i s_i + ρ/2 (ê_i² + Σ_j ê_j²),
@@ -292,7 +292,7 @@ mod tests {
         })
     }
 
-    /// The local augmented Lagrangian, as its definition says.
+    /// The local augmented Lagrangian, by its definition.
     fn lagrangian(
         robot: &AdalRobot,
         links: &[AdalLink],

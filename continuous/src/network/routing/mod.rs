@@ -39,7 +39,7 @@ pub mod rounds;
 ///
 /// It is 1 less a margin that is far above rounding (1e-15) and far below any share that matters:
 /// time shares that are recomputed as F/R must not exceed 1 by rounding, or the certified
-/// acceptance would refuse even that everyone stays.
+/// acceptance would refuse even that all robots stay.
 pub const TIME_BUDGET: f64 = 1.0 - 1e-9;
 
 #[cfg(test)]

@@ -68,7 +68,7 @@ pub enum ProblemError {
         /// Its weight.
         weight: f64,
     },
-    /// Lists that speak of the robots have different lengths.
+    /// Lists about the robots have different lengths.
     #[error("{robots} robots, but {rates} rates: one each is due")]
     Lengths {
         /// Number of robots.

@@ -43,7 +43,7 @@ fn settled_views_tell_every_vote() {
     }
 }
 
-/// A vote stands: whatever is said for the same place afterwards changes nothing.
+/// A vote stands: whatever is reported for the same place afterwards changes nothing.
 #[kani::proof]
 #[kani::unwind(6)]
 fn a_vote_stands() {
@@ -86,7 +86,7 @@ fn arrivals_are_known_together_if_each_is_known() {
     assert!(view.have_arrived(places) == expected);
 }
 
-/// A view of another path changes nothing, whatever it says of votes and arrivals.
+/// A view of another path changes nothing, whatever votes and arrivals it contains.
 #[kani::proof]
 #[kani::unwind(6)]
 fn a_view_of_another_path_changes_nothing() {

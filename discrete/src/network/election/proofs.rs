@@ -44,7 +44,7 @@ fn merging_views_is_taking_a_maximum() {
     assert!(merged(one.clone(), &one) == one);
 }
 
-/// A view of another election changes nothing, whatever it says: not of one before or after, nor of
+/// A view of another election changes nothing, whatever it contains: not of one before or after, nor of
 /// one that another node called for at the same step.
 #[kani::proof]
 #[kani::unwind(5)]

@@ -356,7 +356,7 @@ impl Conclusions {
             } else if settled && !teams().any(is_near) {
                 let sentence = format!(
                     "robot {robot} may move, and it is at its post, not of the active team, and in \
-                     nobody's way"
+                     no other robot's way"
                 );
                 return Err(Dispute::of(Property::ActiveTeam, &[robot], sentence));
             }

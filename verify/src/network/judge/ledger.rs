@@ -152,12 +152,12 @@ impl Ledger {
         Ok(())
     }
 
-    /// The robot that calls finds that nobody in its tree can come: others may lead.
+    /// The robot that calls finds that no robot in its tree can come: others may lead.
     fn repeat_election(&mut self, task: usize) -> Result<(), Dispute> {
         self.expect_pursued(task, "the election is repeated for")?;
         if self.stage() != Stage::Calling {
             let sentence = format!(
-                "the election for task {task} is repeated, and nobody has called for a recruit"
+                "the election for task {task} is repeated, and no robot has called for a recruit"
             );
             return dispute(&[], sentence);
         }

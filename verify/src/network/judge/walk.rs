@@ -23,7 +23,7 @@ impl Walk {
         Some(*self.break_points.get(number)?..*self.break_points.get(number + 1)?)
     }
 
-    /// The members of the subgroup that moves or is the next to move; nobody after the last.
+    /// The members of the subgroup that moves or is the next to move; no one after the last.
     pub fn next_team(&self) -> &[usize] {
         self.subgroup(self.arrived).map_or(&[], |places| &self.path[places])
     }

@@ -46,7 +46,7 @@ fn lineage(parents: &[Option<usize>; ROBOTS], node: usize) -> ([PostId; ROBOTS],
 }
 
 /// Any tree of four robots; a robot, in the tree or not, attaches to a member whose lineage
-/// does not contain it: the tree stays a tree, and everyone stays in it. If the lineage contains
+/// does not contain it: the tree stays a tree, and all nodes stay in it. If the lineage contains
 /// the robot, the step would close a cycle.
 ///
 /// Assumes that the lineage is the way as it is; late ones are explored in `exploration`.

@@ -6,20 +6,20 @@ use super::*;
 const MOVER: NodeId = 0;
 const PARKED: NodeId = 1;
 
-/// What a robot does, and what it sends of its dealings: now, and before its last step.
+/// What a robot does, and what it sends of its offers: now, and before its last step.
 struct Robot {
     duty: u8,
-    now: Dealings<u8>,
-    before: Dealings<u8>,
+    now: Offers<u8>,
+    before: Offers<u8>,
 }
 
 impl Robot {
     fn new(duty: u8) -> Self {
-        Robot { duty, now: Dealings::new(), before: Dealings::new() }
+        Robot { duty, now: Offers::new(), before: Offers::new() }
     }
 
     /// What is heard of it: its last beacon, or the one before.
-    fn heard(&self) -> Dealings<u8> {
+    fn heard(&self) -> Offers<u8> {
         if kani::any() { self.now.clone() } else { self.before.clone() }
     }
 

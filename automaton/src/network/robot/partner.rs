@@ -1,0 +1,148 @@
+//! Exchanging duties with the robot that stands in the way.
+//!
+//! A mover that touches a parked robot nearer to its goal offers it its duty. The parked robot
+//! answers with its own; the mover, which is within δ of the post, takes it; and when the parked
+//! robot sees that, it takes the mover's duty: the [`Offers`] of the two. From the offer to the end
+//! neither takes a step of the mission, so that what is taken over is what was offered. A post is
+//! never without a robot, and no duty is ever done by two. With every exchange the way that remains
+//! gets shorter, so that exchanges come to an end. A mover that cannot pass takes a partner somewhat
+//! farther from its goal too, but no robot twice in a row.
+//!
+//! [`Offers`]: pleach_discrete::network::Offers
+
+use pleach_discrete::network::{NodeId, Offer, Phase, PostKind, Reply};
+
+use super::super::duty::{Duty, Shifting};
+use super::Robot;
+use super::hearing::Neighbour;
+
+/// Two robots touch when they are this many ρ apart; they never come closer than 2ρ.
+const CONTACT: f64 = 2.6;
+/// The parked robot must be nearer to the goal by this share of ρ.
+const GAIN: f64 = 0.05;
+/// Control periods without progress after which a mover looks for an exchange.
+const PATIENCE: u32 = 2;
+/// Control periods without progress after which it takes a partner that is not nearer: one that
+/// leaves no room to pass, at a corner say.
+pub(super) const LAST_RESORT: u32 = 10;
+/// How much farther from the goal, in ρ, such a partner may be.
+const CONCESSION: f64 = 4.0;
+
+impl Robot {
+    /// Once a period: a mover that makes no progress looks for a partner among the robots in its way.
+    pub(super) fn consider_exchange(&mut self) {
+        self.partner = None;
+        if self.is_engaged() || self.still_periods < PATIENCE || !self.may_hand_over() {
+            return;
+        }
+        let Some(goal) = self.goal() else { return };
+        let gain = if self.still_periods < LAST_RESORT { GAIN } else { -CONCESSION };
+        let own_way = self.site.distance(self.position, goal);
+        let mut nearest = own_way - gain * self.clearance();
+        let mut partner = None;
+        for neighbour in &self.neighbours {
+            if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
+                let way = self.site.distance(neighbour.position(), goal);
+                let is_return = way >= own_way && self.last_partner == Some(neighbour.id());
+                if way < nearest && !is_return && self.could_be_replaced_by(neighbour) {
+                    (nearest, partner) = (way, Some(neighbour.id()));
+                }
+            }
+        }
+        self.partner = partner;
+    }
+
+    /// Whether this robot is on a way that another could go on with.
+    fn may_hand_over(&self) -> bool {
+        match *self.duty {
+            Duty::Shifting(Shifting { place, .. }) => {
+                let active = self.active_subgroup();
+                active.is_some_and(|active| active.places().contains(&place)) && !self.has_arrived()
+            }
+            Duty::Following(_) | Duty::Leading(_) => self.phase() == Phase::Advance,
+            _ => false,
+        }
+    }
+
+    /// Whether this robot could take over the post of `parked` from where it is.
+    fn could_replace(&self, parked: &Neighbour) -> bool {
+        let Some(station) = parked.station() else { return false };
+        let settings = &self.site.settings;
+        let near = |place| (self.position - place) as pleach_continuous::Vector;
+        let within_reach = match station.post.kind {
+            PostKind::Primary { .. } | PostKind::Redundant => true,
+            PostKind::Fixed => near(station.reference).norm() <= settings.service_radius,
+        };
+        let services = station.post.task.is_none_or(|task| {
+            self.task_position(task)
+                .is_some_and(|place| near(place).norm() <= settings.service_radius)
+        });
+        let link_holds = station
+            .post
+            .parent
+            .and_then(|anchor| self.neighbour_at(anchor))
+            .is_some_and(|parent| self.walk_to(parent) <= self.site.hard_length);
+        let children_hold = self
+            .neighbours
+            .iter()
+            .filter(|n| n.post().is_some_and(|post| post.is_child_of(station.post.id)))
+            .all(|child| self.walk_to(child) <= self.site.hard_length);
+        parked.beacon.parked
+            && parked.beacon.offer.is_none()
+            && parked.beacon.reply.is_none()
+            && within_reach
+            && services
+            && link_holds
+            && children_hold
+    }
+
+    /// Whether the links of this robot would hold if `parked` took its duty.
+    fn could_be_replaced_by(&self, parked: &Neighbour) -> bool {
+        self.tree_links().iter().all(|link| {
+            self.neighbour(link.to).is_some_and(|other| {
+                self.site.walk(parked.position(), other.position()) <= self.site.hard_length
+            })
+        })
+    }
+
+    pub(super) fn task_position(&self, task: usize) -> Option<pleach_continuous::Point> {
+        self.tasks.iter().find(|known| known.number == task).map(|known| known.position)
+    }
+
+    // ---- What the guards ask -----------------------------------------------------------------
+
+    /// The partner's answer to its offer.
+    pub(super) fn answer_to_offer(&self) -> Option<&Reply<Duty>> {
+        let offer = self.offers().offer()?;
+        let reply = self.neighbour(offer.to)?.beacon.reply.as_ref()?;
+        (reply.to == self.id && reply.number == offer.number).then_some(reply)
+    }
+
+    /// The first offer to this robot that it has not answered, with the mover.
+    pub(super) fn offer_to_answer(&self) -> Option<(NodeId, &Offer<Duty>)> {
+        self.neighbours.iter().find_map(|neighbour| {
+            let offer = neighbour.beacon.offer.as_ref()?;
+            let answered = self.answered.get(&neighbour.id()).copied();
+            offer.asks(self.id, answered).then(|| (neighbour.id(), offer))
+        })
+    }
+
+    /// Whether the mover has given its offer up, so that it has heard the reply.
+    pub(super) fn is_reply_heard(&self) -> bool {
+        self.offers().reply().and_then(|reply| self.neighbour(reply.to)).is_some_and(|mover| {
+            let (offer, made) = (mover.beacon.offer.as_ref(), mover.beacon.offers_made);
+            self.offers().has_heard_reply(offer, made)
+        })
+    }
+
+    /// Whether this robot may leave its post to a mover.
+    pub(super) fn may_be_relieved(&self) -> bool {
+        self.is_parked() && self.offers().offer().is_none() && self.duty.station().is_some()
+    }
+
+    /// Whether an exchange is under way. The robot then stands still, and what it does stays what
+    /// it is: a duty that changed after it was offered would be taken over as it had been.
+    pub(super) fn is_engaged(&self) -> bool {
+        self.offers().are_under_way()
+    }
+}
