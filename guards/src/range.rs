@@ -129,7 +129,7 @@ impl Expression {
 }
 
 impl UnaryOperator {
-    fn range(self, operand: Interval) -> Option<Interval> {
+    pub(crate) fn range(self, operand: Interval) -> Option<Interval> {
         match self {
             UnaryOperator::Negation => Some(-operand),
             UnaryOperator::AbsoluteValue => Some(operand.abs()),
@@ -146,7 +146,7 @@ impl UnaryOperator {
 }
 
 impl BinaryOperator {
-    fn range(self, left: Interval, right: Interval) -> Interval {
+    pub(crate) fn range(self, left: Interval, right: Interval) -> Interval {
         match self {
             BinaryOperator::Sum => left + right,
             BinaryOperator::Difference => left - right,

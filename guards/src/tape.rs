@@ -2,7 +2,8 @@
 //!
 //! A [`Tape`] computes a list of expressions in one pass over numbered places. Parts that occur
 //! more than once, also in different expressions, are computed once, and a product that is added to
-//! something is one instruction. The operations and their order are those of the expressions, so
+//! something is one instruction. Instructions of one kind whose operands lie side by side, as in the
+//! equations of many equal parts, are carried out together. The operations and their order are those of the expressions, so
 //! that the results agree with [`Expression::evaluate`] bit for bit.
 //!
 //! ```
@@ -19,6 +20,7 @@
 //! # Ok::<(), pleach_guards::EvaluationError>(())
 //! ```
 
+mod ranges;
 mod writer;
 
 use crate::expression::{Choice, Expression};
@@ -34,13 +36,12 @@ use writer::Writer;
 pub struct Tape {
     /// How many of the first places hold variables.
     variables: usize,
-    /// What the places after the variables hold.
+    /// What the places after the variables hold. What is read abreast has as
+    /// many places as it takes.
     constants: Vec<f64>,
-    /// By instruction, which writes the next place after the constants: the places of its operands,
-    /// from the first on as many as its action needs.
-    operands: Vec<[u32; 4]>,
-    /// The actions of the instructions, in their order.
-    runs: Vec<Run>,
+    /// How many places hold what is computed.
+    computed: usize,
+    instructions: Vec<Instruction>,
     tables: Vec<Table>,
     /// The places of the results.
     results: Vec<u32>,
@@ -59,6 +60,7 @@ enum Action {
     ProductLess,
     /// c − a · b, rounded twice.
     LessProduct,
+    Root,
     Unary(UnaryOperator),
     Binary(BinaryOperator),
     /// A power, whose exponent has a place, too.
@@ -69,11 +71,47 @@ enum Action {
     Choice(Relation),
 }
 
-/// Instructions of one action, of which none needs what another one writes.
+/// What is done to some places, once or abreast.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Run {
+struct Instruction {
     action: Action,
-    length: u32,
+    /// How often [`LANES`] results are computed at once, each from operands one place after those of
+    /// the result before it; 0 for a single result.
+    rows: u32,
+    /// Where the first result goes.
+    target: u32,
+    /// The places of the operands of the first result, from the first on as many as the action needs.
+    operands: [u32; 4],
+}
+
+/// How many results are computed at once by an instruction abreast.
+const LANES: usize = 4;
+
+impl Action {
+    /// How many operands it needs.
+    fn operands(self) -> usize {
+        match self {
+            Action::Root | Action::Unary(_) | Action::Lookup(_) => 1,
+            Action::Sum | Action::Difference | Action::Product | Action::Quotient => 2,
+            Action::Binary(_) | Action::Power => 2,
+            Action::ProductSum | Action::ProductLess | Action::LessProduct => 3,
+            Action::Choice(_) => 4,
+        }
+    }
+
+    /// Whether it is done abreast where it can be: arithmetic is.
+    fn is_arithmetic(self) -> bool {
+        matches!(
+            self,
+            Action::Sum
+                | Action::Difference
+                | Action::Product
+                | Action::Quotient
+                | Action::ProductSum
+                | Action::ProductLess
+                | Action::LessProduct
+        )
+    }
 }
 
 impl Tape {
@@ -99,7 +137,7 @@ impl Tape {
     pub fn places(&self) -> Vec<f64> {
         let mut places = vec![0.0; self.variables];
         places.extend(&self.constants);
-        places.resize(places.len() + self.operands.len(), 0.0);
+        places.resize(places.len() + self.computed, 0.0);
         places
     }
 
@@ -113,54 +151,80 @@ impl Tape {
         let given = self.variables.min(values.len());
         places[..given].copy_from_slice(&values[..given]);
         places[given..self.variables].fill(f64::NAN);
-        let mut place = self.variables + self.constants.len();
-        let mut left = &self.operands[..];
-        for run in &self.runs {
-            let operands;
-            (operands, left) = left.split_at(run.length as usize);
-            let (known, rest) = places.split_at_mut(place);
-            self.execute(run.action, operands, known, rest);
-            place += operands.len();
+        for instruction in &self.instructions {
+            if instruction.rows == 0 {
+                self.once(instruction, places);
+            } else {
+                abreast(instruction, places);
+            }
         }
         for (result, &place) in results.iter_mut().zip(&self.results) {
             *result = places[place as usize];
         }
     }
 
-    /// What to do is decided once for a run of instructions and not for each.
     #[inline]
-    fn execute(&self, action: Action, operands: &[[u32; 4]], known: &[f64], new: &mut [f64]) {
-        match action {
-            Action::Sum => each(operands, known, new, |[a, b]| a + b),
-            Action::Difference => each(operands, known, new, |[a, b]| a - b),
-            Action::Product => each(operands, known, new, |[a, b]| a * b),
-            Action::Quotient => each(operands, known, new, |[a, b]| a / b),
-            Action::ProductSum => each(operands, known, new, |[a, b, c]| a * b + c),
-            Action::ProductLess => each(operands, known, new, |[a, b, c]| a * b - c),
-            Action::LessProduct => each(operands, known, new, |[a, b, c]| c - a * b),
-            Action::Unary(operator) => each(operands, known, new, |[a]| operator.apply(a)),
-            Action::Binary(operator) => each(operands, known, new, |[a, b]| operator.apply(a, b)),
-            Action::Power => each(operands, known, new, |[a, exponent]| raise(a, exponent)),
-            Action::Lookup(table) => {
-                let table = &self.tables[table as usize];
-                each(operands, known, new, |[a]| table.value(a));
-            }
-            Action::Choice(relation) => each(operands, known, new, |[a, b, then, otherwise]| {
-                Choice::select(relation, (a, b), (then, otherwise))
-            }),
-        }
+    fn once(&self, instruction: &Instruction, places: &mut [f64]) {
+        let at = |number: usize| places[instruction.operands[number] as usize];
+        let result = match instruction.action {
+            Action::Sum => at(0) + at(1),
+            Action::Difference => at(0) - at(1),
+            Action::Product => at(0) * at(1),
+            Action::Quotient => at(0) / at(1),
+            Action::ProductSum => at(0) * at(1) + at(2),
+            Action::ProductLess => at(0) * at(1) - at(2),
+            Action::LessProduct => at(2) - at(0) * at(1),
+            Action::Root => at(0).sqrt(),
+            Action::Unary(UnaryOperator::Negation) => -at(0),
+            Action::Unary(operator) => operator.apply(at(0)),
+            Action::Binary(operator) => operator.apply(at(0), at(1)),
+            Action::Power => raise(at(0), at(1)),
+            Action::Lookup(table) => self.tables[table as usize].value(at(0)),
+            Action::Choice(relation) => Choice::select(relation, (at(0), at(1)), (at(2), at(3))),
+        };
+        places[instruction.target as usize] = result;
     }
 }
 
-/// Writes the results of instructions with `N` operands among the known places to new ones.
+/// Computes the rows of an instruction; the writer makes them of arithmetic only.
 #[inline]
-fn each<const N: usize>(
-    operands: &[[u32; 4]],
-    known: &[f64],
-    new: &mut [f64],
-    result: impl Fn([f64; N]) -> f64,
+fn abreast(instruction: &Instruction, places: &mut [f64]) {
+    let (known, new) = places.split_at_mut(instruction.target as usize);
+    let count = instruction.rows as usize;
+    let new = &mut new.as_chunks_mut::<LANES>().0[..count];
+    let row = |number: usize| -> &[[f64; LANES]] {
+        &known[instruction.operands[number] as usize..].as_chunks::<LANES>().0[..count]
+    };
+    match instruction.action {
+        Action::Sum => two(new, row(0), row(1), |a, b| a + b),
+        Action::Difference => two(new, row(0), row(1), |a, b| a - b),
+        Action::Product => two(new, row(0), row(1), |a, b| a * b),
+        Action::Quotient => two(new, row(0), row(1), |a, b| a / b),
+        Action::ProductSum => three(new, row(0), row(1), row(2), |a, b, c| a * b + c),
+        Action::ProductLess => three(new, row(0), row(1), row(2), |a, b, c| a * b - c),
+        Action::LessProduct => three(new, row(0), row(1), row(2), |a, b, c| c - a * b),
+        _ => {}
+    }
+}
+
+type Rows<'a> = &'a [[f64; LANES]];
+
+#[inline]
+fn two(new: &mut [[f64; LANES]], a: Rows<'_>, b: Rows<'_>, result: impl Fn(f64, f64) -> f64) {
+    for ((new, a), b) in new.iter_mut().zip(a).zip(b) {
+        *new = std::array::from_fn(|lane| result(a[lane], b[lane]));
+    }
+}
+
+#[inline]
+fn three(
+    new: &mut [[f64; LANES]],
+    a: Rows<'_>,
+    b: Rows<'_>,
+    c: Rows<'_>,
+    result: impl Fn(f64, f64, f64) -> f64,
 ) {
-    for (place, operands) in new.iter_mut().zip(operands) {
-        *place = result(std::array::from_fn(|number| known[operands[number] as usize]));
+    for (((new, a), b), c) in new.iter_mut().zip(a).zip(b).zip(c) {
+        *new = std::array::from_fn(|lane| result(a[lane], b[lane], c[lane]));
     }
 }

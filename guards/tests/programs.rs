@@ -1,7 +1,10 @@
 //! Compiled expressions and predicates against the trees they come from.
 
 use crate::common::{expressions, predicates};
-use pleach_guards::{EvaluationError, Predicate, Tape, Verdict, constant, variable};
+use pleach_guards::{
+    EvaluationError, Expression, Interval, Predicate, Substitution, Tape, Verdict, constant,
+    variable,
+};
 use proptest::prelude::*;
 
 const NAMES: [&str; 3] = ["δ", "x", "y"];
@@ -33,6 +36,62 @@ proptest! {
                 let expected = expression.evaluate(&state(values)).unwrap_or(f64::NAN);
                 prop_assert!(same(*found, expected), "{expression} at {values:?}");
             }
+        }
+    }
+
+    /// Equal parts under other names, whose instructions lie abreast.
+    #[test]
+    fn tapes_of_equal_parts_compute_bit_for_bit(
+        expression in expressions(),
+        states in prop::collection::vec(values(), 1..11),
+    ) {
+        let names = |part: usize| NAMES.map(|name| format!("{name}{part}"));
+        let listed = (0..NAMES.len()).flat_map(|one| (0..states.len()).map(move |part| (one, part)));
+        let listed: Vec<String> = listed.map(|(one, part)| names(part)[one].clone()).collect();
+        let parts = (0..states.len()).map(|part| {
+            let own = names(part);
+            let pairs = NAMES.iter().zip(&own).map(|(&old, new)| (old, new.as_str()));
+            2.0 * expression.substitute(&Substitution::renaming(pairs)) + 1.0
+        });
+        let parts: Vec<Expression> = parts.collect();
+        let tape = Tape::compile(&parts, &listed).expect("these are all names that occur");
+        let values: Vec<f64> =
+            (0..NAMES.len()).flat_map(|one| states.iter().map(move |values| values[one])).collect();
+        let mut results = vec![0.0; parts.len()];
+        tape.evaluate(&values, &mut tape.places(), &mut results);
+        for (values, found) in states.iter().zip(&results) {
+            let whole = 2.0 * &expression + 1.0;
+            let expected = whole.evaluate(&state(*values)).unwrap_or(f64::NAN);
+            prop_assert!(same(*found, expected), "{expression} at {values:?}");
+        }
+    }
+
+    /// What a tape computes from numbers lies in what it computes from intervals around them.
+    #[test]
+    fn ranges_of_tapes_contain_their_values(
+        expressions in prop::collection::vec(expressions(), 1..4),
+        one in prop::array::uniform3(-10.0..10.0),
+        other in prop::array::uniform3(-10.0..10.0),
+        shares in prop::array::uniform3(0.0..=1.0),
+    ) {
+        let tape = Tape::compile(&expressions, &NAMES).expect("these are all names that occur");
+        let (one, other, shares): ([f64; 3], [f64; 3], [f64; 3]) = (one, other, shares);
+        let bounds = |place: usize| -> Interval {
+            let (low, high) = (one[place].min(other[place]), one[place].max(other[place]));
+            Interval::new(low, high).expect("they are in order")
+        };
+        let boxed: [Interval; 3] = std::array::from_fn(bounds);
+        let inside: [f64; 3] = std::array::from_fn(|place| {
+            let (low, high) = (boxed[place].lower(), boxed[place].upper());
+            (low + shares[place] * (high - low)).clamp(low, high)
+        });
+        let (mut places, mut ranges) = (Vec::new(), Vec::new());
+        tape.ranges(&boxed, &mut places, &mut ranges);
+        let mut results = vec![0.0; expressions.len()];
+        tape.evaluate(&inside, &mut tape.places(), &mut results);
+        for ((expression, range), result) in expressions.iter().zip(&ranges).zip(results) {
+            let is_inside = result.is_nan() || range.contains(result);
+            prop_assert!(is_inside, "{expression}: {result} at {inside:?}, {range}");
         }
     }
 

@@ -35,6 +35,8 @@ pub(crate) struct Mode {
     pub(crate) motion: ModeMotion,
     /// The rates that are formulas, all together and in their order.
     pub(crate) rates: Tape,
+    /// Whether they are those of all coordinates, in the order of these.
+    pub(crate) is_whole: bool,
     pub(crate) invariant: Option<Condition>,
     /// In their total order.
     pub(crate) leaving: Vec<Leaving>,
@@ -117,13 +119,15 @@ impl Blueprint {
                     change: change(&transition.reset, names, shape)?,
                 })
             });
+            let motion = match &mode.flow {
+                Some(flow) => motion(flow, names, shape)?,
+                None => ModeMotion::Rates(Vec::new()),
+            };
             modes.push(Mode {
                 name: location.name(),
                 rates: tape(mode.flow.as_ref(), names)?,
-                motion: match &mode.flow {
-                    Some(flow) => motion(flow, names, shape)?,
-                    None => ModeMotion::Rates(Vec::new()),
-                },
+                is_whole: motion.is_whole(names.len()),
+                motion,
                 invariant: mode
                     .invariant
                     .as_ref()
@@ -136,6 +140,15 @@ impl Blueprint {
         let initial = position(automaton.locations(), automaton.initial());
         let (coordinates, own) = (names.to_vec(), automaton.own.clone());
         Ok(Blueprint { modes, events, coordinates, initial, own, sketch })
+    }
+}
+
+impl ModeMotion {
+    /// Whether it gives the rates of this many coordinates in their order.
+    fn is_whole(&self, coordinates: usize) -> bool {
+        let ModeMotion::Rates(rates) = self else { return false };
+        let places = rates.iter().map(|rate| rate.coordinate);
+        rates.len() == coordinates && places.eq(0..coordinates)
     }
 }
 

@@ -202,6 +202,7 @@ impl CompositionBuilder {
                 model: part.model,
                 group: 0,
                 places: Vec::new(),
+                window: None,
                 accumulation: part.accumulation,
                 continuation: part.continuation,
             };

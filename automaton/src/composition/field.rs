@@ -4,7 +4,8 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
-use pleach_continuous::flow::{InvalidFlow, LinearField, VectorField};
+use pleach_continuous::flow::{InvalidFlow, LinearField, Piece, VectorField};
+use pleach_guards::Interval;
 
 use super::blueprint::{Mode, ModeMotion, RateProgram, Solution};
 use super::group::Group;
@@ -39,6 +40,8 @@ pub(super) struct Field<'a> {
     scratch: RefCell<[Vec<f64>; 3]>,
     /// By moving component: the places of its tape, once they are needed.
     places: RefCell<Vec<Vec<f64>>>,
+    /// Room for the ranges of coordinates, what is computed from them, and those of rates.
+    ranges: RefCell<[Vec<Interval>; 3]>,
 }
 
 /// A coefficient of a linear rate: its row, its column and its value.
@@ -81,6 +84,7 @@ impl<'a> Field<'a> {
             start,
             places: RefCell::default(),
             scratch: RefCell::default(),
+            ranges: RefCell::default(),
         }
     }
 
@@ -157,12 +161,17 @@ impl<'a> Field<'a> {
         for ((component, mode), places) in self.moving.iter().zip(&mut *tapes) {
             match &mode.motion {
                 ModeMotion::Rates(formulas) => {
-                    let [own, change, _] = &mut *self.scratch.borrow_mut();
-                    component.gather(state, &component.places, own);
-                    change.resize(formulas.len(), 0.0);
                     if places.is_empty() {
                         *places = mode.rates.places();
                     }
+                    if let Some(first) = component.window.filter(|_| mode.is_whole) {
+                        let window = first..first + component.places.len();
+                        mode.rates.evaluate(&state[window.clone()], places, &mut rates[window]);
+                        continue;
+                    }
+                    let [own, change, _] = &mut *self.scratch.borrow_mut();
+                    component.gather(state, &component.places, own);
+                    change.resize(formulas.len(), 0.0);
                     mode.rates.evaluate(own, places, change);
                     for (rate, change) in formulas.iter().zip(change) {
                         rates[component.places[rate.coordinate]] = *change;
@@ -188,6 +197,26 @@ impl<'a> Field<'a> {
             advance(own, time);
             component.scatter(own, &component.places, state);
         }
+    }
+
+    /// Whether ranges alone show that no rate grows without bound on a piece of the solution.
+    pub(super) fn bounds_rates(&self, piece: &Piece) -> bool {
+        let [own, places, results] = &mut *self.ranges.borrow_mut();
+        self.moving.iter().all(|(component, mode)| {
+            let ModeMotion::Rates(rates) = &mode.motion else { return true };
+            if rates.iter().all(|rate| rate.tracker.is_none()) {
+                return true;
+            }
+            own.clear();
+            own.extend(component.places.iter().map(|&place| piece.range(place)));
+            mode.rates.ranges(own, places, results);
+            let is_bounded =
+                |range: &Interval| range.lower().is_finite() && range.upper().is_finite();
+            rates
+                .iter()
+                .zip(results.iter())
+                .all(|(rate, range)| rate.tracker.is_none() || is_bounded(range))
+        })
     }
 
     /// Rates that could grow without bound, with where their variables are.

@@ -19,6 +19,9 @@ use crate::trajectory::Why;
 
 use search::{Fault, Search, Stop, flow_failure};
 
+/// By how much a flight may be longer than the last for both to be found in one look.
+const MARGIN: f64 = 1.5;
+
 /// A flow that has been looked at in advance. Its times count from its start, in seconds.
 pub(super) struct Flight {
     /// When it began.
@@ -50,6 +53,8 @@ pub(super) struct Plan<'a> {
     pub(super) start: Vec<f64>,
     /// How long it may take, in seconds.
     pub(super) limit: f64,
+    /// How long the last flight was, in seconds: this one may be as long.
+    pub(super) last: f64,
     /// What is known of the linear flows of the group.
     pub(super) linear: &'a mut LinearFlows,
 }
@@ -57,8 +62,18 @@ pub(super) struct Plan<'a> {
 impl Plan<'_> {
     /// The flow up to an event; `steps` is how many pieces and spans may still be looked at.
     pub(super) fn fly(self, steps: &mut u64) -> Result<Flight, Halt> {
-        let Plan { group, standing, settings, policy, allowance, since, start, limit, linear } =
-            self;
+        let Plan {
+            group,
+            standing,
+            settings,
+            policy,
+            allowance,
+            since,
+            start,
+            limit,
+            last,
+            linear,
+        } = self;
         let composition = standing.composition;
         let field = Field::of(composition, group, standing.locations, start);
         let conditions = Conditions { standing, group, policy, allowance };
@@ -87,6 +102,7 @@ impl Plan<'_> {
             since,
             doubts: Vec::new(),
             steps,
+            stride: MARGIN * last,
         };
         let end = match search.run(limit) {
             Ok(end) => end,

@@ -43,6 +43,8 @@ impl Composition {
             let slots = &self.groups[component.group].slots;
             let place = |slot: &usize| slots.partition_point(|one| one < slot);
             component.places = component.slots.iter().map(place).collect();
+            let follow = component.places.windows(2).all(|pair| pair[1] == pair[0] + 1);
+            component.window = component.places.first().copied().filter(|_| follow);
         }
         for (number, label) in self.labels.iter().enumerate() {
             if let Some(&(first, _)) = label.participants.first() {

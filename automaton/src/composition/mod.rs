@@ -134,6 +134,8 @@ pub(crate) struct Component {
     group: usize,
     /// By coordinate: where its value is among those of the group.
     places: Vec<usize>,
+    /// The first of these places, if they follow each other.
+    window: Option<usize>,
     /// What happens where its jumps accumulate, if it says so itself.
     accumulation: Option<Accumulation>,
     /// The event that is taken beyond an accumulation of its jumps.

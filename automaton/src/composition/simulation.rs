@@ -87,6 +87,8 @@ struct GroupState {
     /// may be outside an invariant by as much. It is a rounding error of the instant of the event.
     allowance: f64,
     zeno: ZenoDetector,
+    /// How long the last flight was, in seconds; infinite before the first.
+    last: f64,
     /// What is known of its linear flows.
     linear: LinearFlows,
 }
@@ -136,6 +138,7 @@ impl<'a> Simulation<'a> {
             compelled: None,
             allowance: 0.0,
             zeno: ZenoDetector::new(horizon),
+            last: f64::INFINITY,
             linear: LinearFlows::default(),
         };
         Ok(Simulation {

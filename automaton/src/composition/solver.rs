@@ -27,6 +27,8 @@ pub(super) struct Solver<'a> {
     field: &'a Field<'a>,
     method: Method<'a>,
     pieces: Vec<Piece>,
+    /// How many numbers they hold.
+    size: usize,
     /// How far it is solved.
     reached: f64,
     crawled: u32,
@@ -62,7 +64,7 @@ impl<'a> Solver<'a> {
             }
         };
         let (pieces, enclosures) = (Vec::new(), Vec::new());
-        Ok(Solver { field, method, pieces, reached: 0.0, crawled: 0, enclosures })
+        Ok(Solver { field, method, pieces, size: 0, reached: 0.0, crawled: 0, enclosures })
     }
 
     /// Whether all variables move along lines, so that nothing needs to be solved.
@@ -102,7 +104,7 @@ impl<'a> Solver<'a> {
 
     /// How many numbers the pieces hold.
     pub(super) fn size(&self) -> usize {
-        self.pieces.iter().map(Piece::len).sum()
+        self.size
     }
 
     /// The solution up to `time`.
@@ -155,13 +157,14 @@ impl<'a> Solver<'a> {
                 step.piece(start).ok_or("the flow has no solution")?
             }
         };
-        let piece = self.complete(&curved);
+        let piece = self.complete(curved);
         let piece = if self.field.has_solutions() { self.fitted(&piece) } else { piece };
         let bounded = self.check_rates(&piece);
         let end = bounded.as_ref().err().map_or(piece.end(), |(singularity, _)| *singularity);
         let progress = self.check_progress(&piece);
         if end > start {
             self.reached = end;
+            self.size += piece.len();
             self.pieces.push(piece.within(start, end));
         }
         bounded.map_err(|(_, reason)| reason)?;
@@ -169,9 +172,15 @@ impl<'a> Solver<'a> {
     }
 
     /// The piece with all variables, given that of the curved ones.
-    fn complete(&self, curved: &Piece) -> Piece {
+    fn complete(&self, curved: Piece) -> Piece {
+        let is_complete = matches!(self.method, Method::Steps(_))
+            && self.field.rows.iter().all(|row| *row == Row::Curved);
+        if is_complete {
+            return curved;
+        }
         let (origin, scale) = (curved.origin(), curved.scale());
-        let mut piece = Piece::new(curved.start(), curved.end(), origin, scale);
+        let mut piece = Piece::new(curved.start(), curved.end(), origin, scale)
+            .with_room(self.field.rows.len(), curved.degree().max(1) + 1);
         let mut next = 0;
         for (place, row) in self.field.rows.iter().enumerate() {
             let own = match &self.method {
@@ -225,6 +234,9 @@ impl<'a> Solver<'a> {
     /// it does not, or until nothing is left to halve: then the rate is bounded up to there alone.
     fn check_rates(&mut self, piece: &Piece) -> Result<(), (f64, String)> {
         let field = self.field;
+        if field.bounds_rates(piece) {
+            return Ok(());
+        }
         for (component, rate) in field.unbounded_rates() {
             let Some(tracker) = &rate.tracker else { continue };
             let mut spans = vec![(piece.start(), piece.end())];

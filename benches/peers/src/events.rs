@@ -51,26 +51,57 @@ fn clock() -> Automaton<Place, Cue, Clock> {
         .expect("it is sound")
 }
 
+/// Runs with events several times, if they are among those known: 20,000 events of as many clocks
+/// or thermostats as `number`, or that many bounces.
+pub fn repeat(name: &str, number: u32, times: u32) -> Option<()> {
+    let (composition, horizon) = match name {
+        "clocks" => crowd(number, &clock(), |clock| Clock { clock }, EVENTS),
+        "thermostats" => crowd(number, &thermostat(), warm, EVENTS),
+        "bounces" => {
+            let ball = Composition::builder().add("ball", &ball()).build().expect("it fits");
+            (ball, 2.0 * f64::from(number))
+        }
+        _ => return None,
+    };
+    let settings = Settings { accumulation: Accumulation::Off, ..Settings::default() };
+    for _ in 0..times {
+        let jumps = composition.run_with(settings, horizon).expect("it can be run").jumps().len();
+        eprintln!("{jumps} jumps");
+    }
+    Some(())
+}
+
+/// How many events there are in all of a crowd.
+const EVENTS: f64 = 20_000.0;
+
+/// Automata that begin in these states, and a horizon that is the shorter the more they are.
+fn crowd<S: Coordinates + Clone>(
+    count: u32,
+    automaton: &Automaton<Place, Cue, S>,
+    start: impl Fn(f64) -> S,
+    horizon: f64,
+) -> (Composition, f64) {
+    let crowd = (0..count).fold(Composition::builder(), |crowd, number| {
+        let start = start(f64::from(number) / f64::from(count));
+        crowd.add_in(&format!("number {number}"), automaton, start)
+    });
+    (crowd.build().expect("the parts fit"), horizon / f64::from(count))
+}
+
 /// The time of an event in a crowd of automata, which begin in these states, per event.
 fn event_in<S: Coordinates + Clone>(
     count: u32,
     automaton: &Automaton<Place, Cue, S>,
     start: impl Fn(f64) -> S,
-    horizon: f64,
 ) -> Duration {
-    let crowd = (0..count).fold(Composition::builder(), |crowd, number| {
-        let start = start(f64::from(number) / f64::from(count));
-        crowd.add_in(&format!("number {number}"), automaton, start)
-    });
-    let crowd = crowd.build().expect("the parts fit");
-    let horizon = horizon / f64::from(count);
+    let (crowd, horizon) = crowd(count, automaton, start, EVENTS);
     let events = crowd.run(horizon).expect("it can be run").jumps().len();
     fastest(5, || crowd.run(horizon)) / u32::try_from(events).unwrap_or(1)
 }
 
 /// Independent clocks out of step with one another: the time of an event.
 fn clocks(report: &mut Report) {
-    let cost = |count| event_in(count, &clock(), |clock| Clock { clock }, 20_000.0);
+    let cost = |count| event_in(count, &clock(), |clock| Clock { clock });
     let one = cost(1);
     for count in [10, 100, 1000] {
         add(report, format!("an event of {count} clocks, to that of one"), (cost(count), one));
@@ -81,10 +112,10 @@ fn clocks(report: &mut Report) {
     add(report, "an event of 100000 clocks, to that of one".to_owned(), (time, one));
 }
 
-/// The same with rooms whose temperatures are exponential functions of time.
-fn thermostats(report: &mut Report) {
+/// A room that is heated and, when it is warm, aired.
+fn thermostat() -> Automaton<Place, Cue, Clock> {
     let Clock { clock: temperature } = Clock::coordinates();
-    let thermostat = here(Clock { clock: 19.0 })
+    here(Clock { clock: 19.0 })
         .flow(Here, temperature.rate(0.1 * (30.0 - &temperature)))
         .transition(
             from(Here)
@@ -94,17 +125,24 @@ fn thermostats(report: &mut Report) {
                 .then(temperature.becomes(19.0)),
         )
         .build()
-        .expect("it is sound");
-    let start = |share| Clock { clock: 19.0 + 3.9 * share };
-    let cost = |count| event_in(count, &thermostat, start, 20_000.0);
+        .expect("it is sound")
+}
+
+fn warm(share: f64) -> Clock {
+    Clock { clock: 19.0 + 3.9 * share }
+}
+
+/// The same with rooms whose temperatures are exponential functions of time.
+fn thermostats(report: &mut Report) {
+    let cost = |count| event_in(count, &thermostat(), warm);
     let times = (cost(1000), cost(1));
     add(report, "an event of 1000 thermostats, to that of one".to_owned(), times);
 }
 
-/// A ball that keeps all its speed: the time of a bounce.
-fn bounces(report: &mut Report) {
+/// A ball that keeps all its speed.
+fn ball() -> Automaton<Place, Cue, Ball> {
     let Ball { height, velocity } = Ball::coordinates();
-    let ball = here(Ball { height: 1.0, velocity: 0.0 })
+    here(Ball { height: 1.0, velocity: 0.0 })
         .flow(Here, [height.rate(&velocity), velocity.rate(-2.0)])
         .transition(
             from(Here)
@@ -114,7 +152,12 @@ fn bounces(report: &mut Report) {
                 .then([velocity.becomes(-1.0 * &velocity), height.becomes(0.0)]),
         )
         .build()
-        .expect("it is sound");
+        .expect("it is sound")
+}
+
+/// The time of its bounces.
+fn bounces(report: &mut Report) {
+    let ball = ball();
     let settings = Settings { accumulation: Accumulation::Off, ..Settings::default() };
     // It falls for 1 s, then bounces every 2 s.
     let cost = |bounces: u32| {

@@ -7,6 +7,15 @@
 //!
 //! The second command also puts the tables into the document. Their numbers are ratios of times within
 //! the run; the times themselves, which depend on the machine, go to the standard error.
+//!
+//! ```sh
+//! cargo run --release --manifest-path benches/peers/Cargo.toml -- one orbit run 1e-9 100
+//! cargo run --release --manifest-path benches/peers/Cargo.toml -- one bounces 1000 1
+//! ```
+//!
+//! These do one thing as often as they are told, for a profiler: a problem as a `function`, as
+//! `formulas`, as the `run` of an automaton or by the `peer`, at a relative tolerance; or runs with
+//! many events.
 
 mod events;
 mod problems;
@@ -23,6 +32,11 @@ use report::Report;
 use solvers::tolerance_for;
 
 fn main() -> io::Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    if let ["one", rest @ ..] = &arguments[..] {
+        return one(rest).ok_or_else(|| io::Error::other("one NAME [WAY] NUMBER TIMES"));
+    }
     let mut report = Report::default();
     report.table(&[
         "integration at equal error",
@@ -38,7 +52,22 @@ fn main() -> io::Result<()> {
     compare(&orbit(), &mut report);
     events::all(&mut report);
     print!("{report}");
-    std::env::args().nth(1).map_or(Ok(()), |document| report.put_into(Path::new(&document)))
+    arguments.first().map_or(Ok(()), |document| report.put_into(Path::new(document)))
+}
+
+/// Does one thing several times; none if it is not known.
+fn one(arguments: &[&str]) -> Option<()> {
+    let times = arguments.last()?.parse().ok()?;
+    match *arguments {
+        ["Lorenz", way, relative, _] => lorenz().repeat(way, relative.parse().ok()?, times),
+        ["oscillators", way, relative, _] => {
+            coupled_van_der_pol().repeat(way, relative.parse().ok()?, times)
+        }
+        ["chain", way, relative, _] => chain().repeat(way, relative.parse().ok()?, times),
+        ["orbit", way, relative, _] => orbit().repeat(way, relative.parse().ok()?, times),
+        [name, number, _] => events::repeat(name, number.parse().ok()?, times),
+        _ => None,
+    }
 }
 
 /// A row for each of two tolerances, at which `pleach` runs: with the rates as a function, as formulas,

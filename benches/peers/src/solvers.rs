@@ -130,6 +130,21 @@ impl<const N: usize> Problem<N> {
         last.try_into().expect("the dimension of the problem")
     }
 
+    /// Solves the problem several times in one way, if it is one of them.
+    pub fn repeat(&self, way: &str, relative: f64, times: u32) -> Option<()> {
+        let (tape, automaton) = (self.tape(), self.automaton());
+        for _ in 0..times {
+            std::hint::black_box(match way {
+                "function" => self.by_function(relative, self.end),
+                "formulas" => self.by_formulas(&tape, relative, self.end),
+                "run" => self.by_run(&automaton, relative, self.end),
+                "peer" => self.dop853(relative, self.end),
+                _ => return None,
+            });
+        }
+        Some(())
+    }
+
     pub fn dopri5(&self, relative: f64, end: f64) -> [f64; N] {
         dop!(Dopri5, self, relative, end, 0.04, 0.2, 10.0)
     }

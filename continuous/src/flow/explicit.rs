@@ -3,7 +3,7 @@
 use super::dormand_prince::{
     EIGHTH, ELEVENTH, EXTENSION, FIFTEENTH, FIFTH, FIFTH_ORDER_ERROR, FOURTEENTH, FOURTH, NINTH,
     NODES, NODES_INSIDE, SECOND, SEVENTH, SIXTEENTH, SIXTH, SOLUTION, TENTH, THIRD, THIRD_ORDER,
-    TWELFTH, combine,
+    TWELFTH, combine, combine_differences,
 };
 use super::integrator::{Origin, Trial};
 use super::{Tolerances, VectorField};
@@ -127,11 +127,7 @@ impl Explicit {
 
         let stages = [k1, k6, k7, k8, k9, k10, k11, k12, k13, k14, k15, k16];
         for (term, weights) in terms.iter_mut().zip(EXTENSION) {
-            // The weights sum to 0: less the rate at the start, straight motion gives exactly 0.
-            for (i, x) in term.iter_mut().enumerate() {
-                let weighted = weights.iter().zip(&stages);
-                *x = step * weighted.map(|(weight, k)| weight * (k[i] - k1[i])).sum::<f64>();
-            }
+            combine_differences(term, step, weights, stages);
         }
         terms.iter().flatten().all(|x| x.is_finite())
     }

@@ -45,6 +45,14 @@ impl Piece {
         Piece { start, end, origin, scale, coefficients, ends, errors }
     }
 
+    /// The same piece, with memory for this many components of so many coefficients.
+    #[must_use]
+    pub fn with_room(mut self, components: usize, coefficients: usize) -> Self {
+        self.coefficients.reserve_exact(components * coefficients);
+        self.ends.reserve_exact(components);
+        self
+    }
+
     /// Adds a component: its coefficients, the constant first, and a bound on its error.
     pub fn push(&mut self, coefficients: impl IntoIterator<Item = f64>, error: f64) {
         let first = self.coefficients.len();
@@ -53,6 +61,7 @@ impl Piece {
             self.coefficients.pop();
         }
         if error != 0.0 {
+            self.errors.reserve_exact(self.ends.capacity().saturating_sub(self.errors.len()));
             self.errors.resize(self.ends.len(), 0.0);
             self.errors.push(error);
         } else if !self.errors.is_empty() {
@@ -123,6 +132,23 @@ impl Piece {
     pub fn rate(&self, component: usize, time: f64) -> f64 {
         let coefficients = self.coefficients(component).iter().copied();
         Jet::of(coefficients, self.place(time)).slope / self.scale
+    }
+
+    /// An interval that contains a component anywhere on the piece: quickly found, and wider than the
+    /// values of [`enclose`](Self::enclose).
+    pub fn range(&self, component: usize) -> Interval {
+        let (first, last) = (self.place(self.start), self.place(self.end));
+        let farthest = first.abs().max(last.abs());
+        let coefficients = self.coefficients(component);
+        let mut value = Extremes::default();
+        let (mut near, mut far) = (1.0, 1.0);
+        for c in coefficients {
+            value.add(*c, near, far);
+            far *= farthest;
+            // On both sides of the origin a power is between those of the farthest place.
+            near = if first >= 0.0 { near * first } else { -far };
+        }
+        value.interval(noise_of_powers(coefficients.len()), self.error(component))
     }
 
     /// Encloses all components from `from` to `to`, both within the piece.
@@ -268,13 +294,18 @@ impl Span {
             }
             value.add(*c, near, far);
         }
-        let noise = (2 * coefficients.len() + 4) as f64 * ULP;
+        let noise = noise_of_powers(coefficients.len());
         Some((value.interval(noise, error), self.per_second(slope.interval(noise, 0.0))))
     }
 
     fn per_second(&self, rate: Interval) -> Interval {
         if self.scale == 1.0 { rate } else { rate / Interval::point(self.scale) }
     }
+}
+
+/// By how much, as a fraction of their magnitudes, a sum of this many powers is off for rounding.
+fn noise_of_powers(coefficients: usize) -> f64 {
+    (2 * coefficients + 4) as f64 * ULP
 }
 
 /// The lowest and the highest value of a sum of powers of numbers between two that are not

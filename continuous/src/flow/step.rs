@@ -57,6 +57,8 @@ const MOST_TERMS: usize = 7;
 const INSIDE: f64 = 10.0;
 /// The number of terms of the cubic through the states and rates of both ends.
 const CUBIC_TERMS: usize = 3;
+/// The number of terms of the extension of an implicit step.
+const STIFF_TERMS: usize = 4;
 
 impl Inside {
     pub(super) fn new(dimension: usize) -> Self {
@@ -88,14 +90,26 @@ impl Inside {
 
     /// The coefficients of the same polynomial in powers of θ, from that of θ⁰ = 1 on.
     fn powers(&self, component: usize) -> [f64; MOST_TERMS + 1] {
+        // A number of terms that is known in advance makes straight code.
+        match self.known {
+            MOST_TERMS => self.powers_of::<MOST_TERMS>(component),
+            STIFF_TERMS => self.powers_of::<STIFF_TERMS>(component),
+            _ => self.powers_of::<CUBIC_TERMS>(component),
+        }
+    }
+
+    fn powers_of<const TERMS: usize>(&self, component: usize) -> [f64; MOST_TERMS + 1] {
+        let terms: [f64; TERMS] = std::array::from_fn(|number| self.terms[number][component]);
         let mut powers = [0.0; MOST_TERMS + 1];
-        for (number, term) in self.terms[..self.known].iter().enumerate().rev() {
-            powers[0] += term[component];
+        for number in (0..TERMS).rev() {
+            powers[0] += terms[number];
             let by_theta = number % 2 == 0;
-            for power in (0..=MOST_TERMS).rev() {
-                let lower = if power == 0 { 0.0 } else { powers[power - 1] };
+            let degree = TERMS - number;
+            for power in (1..=degree).rev() {
+                let lower = powers[power - 1];
                 powers[power] = if by_theta { lower } else { powers[power] - lower };
             }
+            powers[0] = if by_theta { 0.0 } else { powers[0] };
         }
         powers
     }
@@ -133,7 +147,8 @@ impl<F: VectorField + ?Sized> Curve for Step<'_, F> {
     fn piece(&self, _time: f64) -> Option<Piece> {
         let mut inside = self.inside.borrow_mut();
         self.explore(&mut inside);
-        let mut piece = Piece::new(self.start, self.end, self.start, self.end - self.start);
+        let mut piece = Piece::new(self.start, self.end, self.start, self.end - self.start)
+            .with_room(self.first.len(), MOST_TERMS + 1);
         for (component, (first, last)) in self.first.iter().zip(self.last).enumerate() {
             let mut powers = inside.powers(component);
             powers[0] += first;
@@ -168,11 +183,8 @@ impl<F: VectorField + ?Sized> Step<'_, F> {
                 if is_sound { MOST_TERMS } else { CUBIC_TERMS }
             }
             Stages::Implicit(implicit) => {
-                if implicit.extend(&mut inside.terms[1..4]) {
-                    4
-                } else {
-                    CUBIC_TERMS
-                }
+                let extended = implicit.extend(&mut inside.terms[1..STIFF_TERMS]);
+                if extended { STIFF_TERMS } else { CUBIC_TERMS }
             }
         };
     }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Action, Run, Tape};
+use super::{Action, Instruction, LANES, Tape};
 use crate::expression::Expression;
 use crate::fold::Operands;
 use crate::operator::{BinaryOperator, UnaryOperator};
@@ -43,8 +43,8 @@ pub(super) struct Writer<'a> {
     tables: Vec<Table>,
 }
 
-/// An action, and the places of its operands.
-type Instruction = (Action, [u32; 4]);
+/// An action and its operands, from the first on as many as it needs.
+type Deed = (Action, [Value; 4]);
 
 impl<'a> Writer<'a> {
     /// An empty tape on these variables.
@@ -124,25 +124,77 @@ impl<'a> Writer<'a> {
     pub(super) fn tape(self, variables: usize, results: &[Value]) -> Tape {
         let merged = self.merged_products(results);
         let batches = self.scheduled(&merged);
-        let mut places = Places {
-            variables,
-            constants: self.constants.len(),
-            of: vec![0; self.operations.len()],
-        };
+        let mut order = vec![0; self.operations.len()];
         for (place, &number) in (0..).zip(batches.iter().flatten()) {
-            places.of[number] = place;
+            order[number] = place;
         }
-        let (mut operands, mut runs) = (Vec::new(), Vec::new());
-        for batch in &batches {
-            let Some(&first) = batch.first() else { continue };
-            let action = self.action(first, &merged, &places);
-            runs.push(Run { action, length: batch.len() as u32 });
-            operands
-                .extend(batch.iter().map(|&number| self.instruction(number, &merged, &places).1));
-        }
+        let stretches: Vec<&[usize]> =
+            batches.iter().flat_map(|batch| self.stretches(batch, &merged, &order)).collect();
+        let places = self.places(variables, order, &stretches, &merged);
+        let mut target = places.computed;
+        let instructions = stretches.iter().map(|numbers| {
+            let (action, values) = self.deed(numbers[0], &merged);
+            let operands = values.map(|value| places.place(value));
+            let rows = (numbers.len() / LANES) as u32;
+            let instruction = Instruction { action, rows, target, operands };
+            target += numbers.len() as u32;
+            instruction
+        });
+        let instructions = instructions.collect();
+        let widths = self.constants.iter().zip(&places.widths);
+        let constants = widths.flat_map(|(&value, &width)| (0..width).map(move |_| value));
+        let (constants, computed) = (constants.collect(), batches.iter().map(Vec::len).sum());
         let results = results.iter().map(|result| places.place(*result)).collect();
-        let Writer { constants, tables, .. } = self;
-        Tape { variables, constants, operands, runs, tables, results }
+        Tape { variables, constants, computed, instructions, tables: self.tables, results }
+    }
+
+    /// The batch as stretches whose operands lie abreast, as many times [`LANES`] long as they can
+    /// be, and single operations.
+    fn stretches<'b>(
+        &self,
+        batch: &'b [usize],
+        merged: &[bool],
+        order: &[u32],
+    ) -> impl Iterator<Item = &'b [usize]> {
+        let follows = |one: &usize, next: &usize| {
+            let [(action, one), (_, next)] = [one, next].map(|&number| self.deed(number, merged));
+            let mut operands = one.into_iter().zip(next).take(action.operands());
+            action.is_arithmetic() && operands.all(|operands| follow_each_other(operands, order))
+        };
+        let stretches: Vec<&[usize]> = batch.chunk_by(follows).collect();
+        stretches.into_iter().flat_map(|numbers| {
+            let (rows, rest) = numbers.split_at(numbers.len() / LANES * LANES);
+            let rows = (!rows.is_empty()).then_some(rows);
+            rows.into_iter().chain(rest.chunks(1))
+        })
+    }
+
+    /// A constant that is read abreast has as many places as results are computed from it.
+    fn places(
+        &self,
+        variables: usize,
+        order: Vec<u32>,
+        stretches: &[&[usize]],
+        merged: &[bool],
+    ) -> Places {
+        let mut widths = vec![1; self.constants.len()];
+        for numbers in stretches {
+            let (action, values) = self.deed(numbers[0], merged);
+            for value in &values[..action.operands()] {
+                if let Value::Constant(index) = *value {
+                    let width = &mut widths[index as usize];
+                    *width = (*width).max(numbers.len());
+                }
+            }
+        }
+        let mut next = variables as u32;
+        let starts = widths.iter().map(|&width| {
+            let start = next;
+            next += width as u32;
+            start
+        });
+        let constants = starts.collect();
+        Places { constants, widths, computed: next, order }
     }
 
     /// All operations but merged products in batches of one action, each after those whose results
@@ -150,26 +202,27 @@ impl<'a> Writer<'a> {
     fn scheduled(&self, merged: &[bool]) -> Vec<Vec<usize>> {
         let mut missing = vec![0; self.operations.len()];
         let mut needed_by = vec![Vec::new(); self.operations.len()];
-        // Where places are does not matter for what is done.
-        let nowhere = Places { variables: 0, constants: 0, of: vec![0; self.operations.len()] };
         let mut ready: BTreeMap<Action, Vec<usize>> = BTreeMap::new();
+        let action = |number: usize| self.deed(number, merged).0;
         for number in (0..self.operations.len()).filter(|&number| !merged[number]) {
             for needed in self.needs(number, merged) {
                 needed_by[needed].push(number);
                 missing[number] += 1;
             }
             if missing[number] == 0 {
-                ready.entry(self.action(number, merged, &nowhere)).or_default().push(number);
+                ready.entry(action(number)).or_default().push(number);
             }
         }
         let mut batches = Vec::new();
-        while let Some((&action, _)) = ready.iter().max_by_key(|(_, numbers)| numbers.len()) {
-            let batch = ready.remove(&action).unwrap_or_default();
+        while let Some((&commonest, _)) = ready.iter().max_by_key(|(_, numbers)| numbers.len()) {
+            let mut batch = ready.remove(&commonest).unwrap_or_default();
+            // In the order in which they were written, equal parts of a model lie abreast.
+            batch.sort_unstable();
             for &number in &batch {
                 for &next in &needed_by[number] {
                     missing[next] -= 1;
                     if missing[next] == 0 {
-                        ready.entry(self.action(next, merged, &nowhere)).or_default().push(next);
+                        ready.entry(action(next)).or_default().push(next);
                     }
                 }
             }
@@ -191,10 +244,6 @@ impl<'a> Writer<'a> {
             }
         }
         needed
-    }
-
-    fn action(&self, number: usize, merged: &[bool], nowhere: &Places) -> Action {
-        self.instruction(number, merged, nowhere).0
     }
 
     /// Which products are used once, and there as a term: they need no place.
@@ -229,49 +278,56 @@ impl<'a> Writer<'a> {
         is_merged
     }
 
-    fn instruction(&self, number: usize, merged: &[bool], places: &Places) -> Instruction {
-        let at = |value| places.place(value);
+    fn deed(&self, number: usize, merged: &[bool]) -> Deed {
         let product = |value| match value {
             Value::Computed(number) if merged[number as usize] => {
                 match self.operations[number as usize] {
-                    Operation::Binary(_, a, b) => Some((at(a), at(b))),
+                    Operation::Binary(_, a, b) => Some((a, b)),
                     _ => None,
                 }
             }
             _ => None,
         };
-        let (action, places) = match self.operations[number] {
+        let one = |action, a| (action, [a; 4]);
+        let two = |action, a, b| (action, [a, b, b, b]);
+        let three = |action, (a, b), c| (action, [a, b, c, c]);
+        match self.operations[number] {
             Operation::Binary(BinaryOperator::Sum, a, b) => match (product(a), product(b)) {
-                (_, Some((left, right))) => (Action::ProductSum, [left, right, at(a), 0]),
-                (Some((left, right)), None) => (Action::ProductSum, [left, right, at(b), 0]),
-                (None, None) => (Action::Sum, [at(a), at(b), 0, 0]),
+                (_, Some(product)) => three(Action::ProductSum, product, a),
+                (Some(product), None) => three(Action::ProductSum, product, b),
+                (None, None) => two(Action::Sum, a, b),
             },
             Operation::Binary(BinaryOperator::Difference, a, b) => match (product(a), product(b)) {
-                (_, Some((left, right))) => (Action::LessProduct, [left, right, at(a), 0]),
-                (Some((left, right)), None) => (Action::ProductLess, [left, right, at(b), 0]),
-                (None, None) => (Action::Difference, [at(a), at(b), 0, 0]),
+                (_, Some(product)) => three(Action::LessProduct, product, a),
+                (Some(product), None) => three(Action::ProductLess, product, b),
+                (None, None) => two(Action::Difference, a, b),
             },
-            Operation::Binary(operator, a, b) => {
-                let action = match operator {
-                    BinaryOperator::Product => Action::Product,
-                    BinaryOperator::Quotient => Action::Quotient,
-                    operator => Action::Binary(operator),
-                };
-                (action, [at(a), at(b), 0, 0])
-            }
-            Operation::Unary(operator, a) => (Action::Unary(operator), [at(a), 0, 0, 0]),
-            Operation::Power(a, exponent) if self.is_two(exponent) => {
-                (Action::Product, [at(a), at(a), 0, 0])
-            }
-            Operation::Power(a, exponent) => (Action::Power, [at(a), at(exponent), 0, 0]),
-            Operation::Lookup(table, a) => (Action::Lookup(table), [at(a), 0, 0, 0]),
-            Operation::Choice(relation, parts) => (Action::Choice(relation), parts.map(at)),
-        };
-        (action, places)
+            Operation::Binary(BinaryOperator::Product, a, b) => two(Action::Product, a, b),
+            Operation::Binary(BinaryOperator::Quotient, a, b) => two(Action::Quotient, a, b),
+            Operation::Binary(operator, a, b) => two(Action::Binary(operator), a, b),
+            Operation::Unary(operator, a) => one(Action::Unary(operator), a),
+            Operation::Power(a, exponent) if self.is(exponent, 2.0) => two(Action::Product, a, a),
+            Operation::Power(a, exponent) if self.is(exponent, 0.5) => one(Action::Root, a),
+            Operation::Power(a, exponent) => two(Action::Power, a, exponent),
+            Operation::Lookup(table, a) => one(Action::Lookup(table), a),
+            Operation::Choice(relation, parts) => (Action::Choice(relation), parts),
+        }
     }
 
-    fn is_two(&self, value: Value) -> bool {
-        matches!(value, Value::Constant(index) if self.constants[index as usize] == 2.0)
+    fn is(&self, value: Value, number: f64) -> bool {
+        matches!(value, Value::Constant(index) if self.constants[index as usize] == number)
+    }
+}
+
+/// Whether two operands can be those of neighbours among operations abreast.
+fn follow_each_other((one, next): (Value, Value), order: &[u32]) -> bool {
+    match (one, next) {
+        (Value::Variable(one), Value::Variable(next)) => next == one + 1,
+        (Value::Computed(one), Value::Computed(next)) => {
+            order[next as usize] == order[one as usize] + 1
+        }
+        (Value::Constant(one), Value::Constant(next)) => one == next,
+        _ => false,
     }
 }
 
@@ -292,20 +348,21 @@ impl Operation {
 
 /// Where values lie: variables first, then constants, then what is computed.
 struct Places {
-    variables: usize,
-    constants: usize,
-    /// By operation: its instruction.
-    of: Vec<u32>,
+    /// By constant: the first place, and how many there are.
+    constants: Vec<u32>,
+    widths: Vec<usize>,
+    /// The first place of what is computed.
+    computed: u32,
+    /// By operation: when it is computed.
+    order: Vec<u32>,
 }
 
 impl Places {
     fn place(&self, value: Value) -> u32 {
         match value {
             Value::Variable(index) => index,
-            Value::Constant(index) => self.variables as u32 + index,
-            Value::Computed(number) => {
-                (self.variables + self.constants) as u32 + self.of[number as usize]
-            }
+            Value::Constant(index) => self.constants[index as usize],
+            Value::Computed(number) => self.computed + self.order[number as usize],
         }
     }
 }

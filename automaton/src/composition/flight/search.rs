@@ -62,7 +62,13 @@ pub(super) struct Search<'a, 'f> {
     pub(super) since: Moment,
     pub(super) doubts: Vec<Doubt>,
     pub(super) steps: &'a mut u64,
+    /// How much time is looked at first, in seconds: about as long as the flight may take. It does not
+    /// change what is found.
+    pub(super) stride: f64,
 }
+
+/// By how much more time is looked at after each stride without an event.
+const LENGTHENING: f64 = 4.0;
 
 impl<'a> Search<'a, '_> {
     /// Where the flight ends: at a time at which something switches, or between two of them.
@@ -107,7 +113,9 @@ impl<'a> Search<'a, '_> {
                 Ok(piece) => piece,
                 Err(reason) => return Err(self.lost_flow(reason)),
             };
-            let end = piece.end().min(to);
+            let (end, look) = (piece.end().min(to), from + self.stride);
+            let end = if look > from { end.min(look) } else { end };
+            self.stride *= LENGTHENING;
             let search = self.settings.search();
             let found = isolate(piece, from, end, &search, &mut self.tension, self.steps);
             let Finding { onset, doubts } = found.map_err(|lost| self.lost(lost))?;

@@ -54,6 +54,7 @@ impl<'a> Simulation<'a> {
             since: self.now,
             start: parts.slots.iter().map(|&slot| self.values[slot]).collect(),
             // A little more, for what happens at the instant nearest to the horizon.
+            last: self.groups[group].last,
             limit: left.seconds() + f64::EPSILON * self.horizon,
             linear: &mut linear,
         };
@@ -81,6 +82,9 @@ impl<'a> Simulation<'a> {
         self.groups[group].allowance = self.allowance_of(group, &flight.landing)?;
         self.awake.insert(group);
         let duration = flight.duration.seconds();
+        if duration > 0.0 {
+            self.groups[group].last = duration;
+        }
         let halt = flight.halt.clone();
         if let Some(record) = &mut self.record {
             record.flown(group, flight);
