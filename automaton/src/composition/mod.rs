@@ -67,7 +67,6 @@
 
 pub(crate) mod blueprint;
 mod builder;
-mod chance;
 pub mod channel;
 mod exploration;
 mod field;

@@ -8,7 +8,7 @@
 use pleach_discrete::network::{Bid, NodeId, NoticeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
-use super::super::duty::{Duty, Path};
+use super::super::duty::Path;
 use super::facts::STATIONARY_WINDOW;
 use super::{Robot, RobotError, RobotView};
 
@@ -17,11 +17,6 @@ impl<'a> RobotView<'a> {
     /// The beacon that the robot would send now.
     pub fn beacon(self) -> Beacon {
         self.robot().public_state()
-    }
-
-    /// The duty that it takes over once the mover that offered it has taken its own.
-    pub fn taking(self) -> Option<&'a Duty> {
-        self.robot().offers().taking()
     }
 
     /// The path Σ that was announced last.
@@ -144,6 +139,7 @@ impl Robot {
             is_unmeasured: _,
             last_beacon: _,
             beacon_told: _,
+            period: _,
             heard_up_to: _,
             desired_parent: _,
             reattaches_to: _,
