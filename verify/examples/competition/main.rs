@@ -14,6 +14,7 @@ mod gearbox;
 mod heat;
 mod nonlinear;
 mod platoon;
+mod predators;
 mod rendezvous;
 
 use std::ops::ControlFlow;
@@ -264,6 +265,8 @@ fn automata() -> TestResult<Vec<(&'static str, Instance)>> {
         ..smooth(40.0, 1e-9, order, 1, 4)
     };
     let alike = [(1.25, 1.55); 2];
+    let crossing =
+        Settings { directions: Directions::Octagons, step: 0.02, ..smooth(3.64, 1e-9, 8, 2, 20) };
     Ok(vec![
         ("PLAD01-BND42", platoon::deterministic(42.0, affine(20.0, 0.02))?),
         ("PLAD01-BND30", platoon::deterministic(30.0, sharp)?),
@@ -272,13 +275,21 @@ fn automata() -> TestResult<Vec<(&'static str, Instance)>> {
         ("SRNA01", rendezvous::mission(None, approach(1))?),
         ("SRA01", rendezvous::mission(Some((120.0, 120.0)), approach(1))?),
         ("SRA02", rendezvous::mission(Some((120.0, 125.0)), approach(4))?),
+        ("SRA03", rendezvous::mission(Some((120.0, 145.0)), approach(4))?),
+        ("SRA04", rendezvous::mission(Some((240.0, 240.0)), approach(40))?),
         ("VDP, in 16 parts", nonlinear::oscillator(smooth(7.0, 1e-7, 8, 3, 4))?.cut(&[8, 2])),
-        ("CVDP23", nonlinear::van_der_pol(alike, (1.0, 3.0), 2.75, smooth(7.0, 1e-5, 8, 3, 4))?),
+        (
+            "CVDP23, in 64 parts",
+            nonlinear::van_der_pol(alike, (1.0, 3.0), 2.75, smooth(7.0, 1e-6, 8, 3, 4))?
+                .cut(&[4, 1, 4, 1, 4]),
+        ),
         ("LALO20, W = 0.01", nonlinear::laub_loomis(0.01, 4.5, smooth(20.0, 1e-7, 6, 2, 4))?),
         ("LALO20, W = 0.05", nonlinear::laub_loomis(0.05, 4.5, smooth(20.0, 1e-5, 6, 2, 4))?),
         ("LALO20, W = 0.1", nonlinear::laub_loomis(0.1, 5.0, smooth(20.0, 1e-5, 6, 2, 4))?),
-        ("LOVO", nonlinear::lotka_volterra(smooth(3.64, 1e-9, 8, 2, 20))?),
-        ("ROBE, case 1", nonlinear::robertson(1e2, 1e3, stiff(8))?),
+        ("LOVO25, in 8 parts", predators::cycle(8, crossing)?),
+        ("ROBE25, case 1", nonlinear::robertson(1e2, 1e3, stiff(8))?),
+        ("ROBE25, case 2", nonlinear::robertson(1e3, 1e5, stiff(8))?),
+        ("ROBE25, case 3", nonlinear::robertson(1e3, 1e7, stiff(8))?),
         ("QUAD, ± 0.1", nonlinear::quadrotor(0.1, smooth(5.0, 1e-7, 6, 2, 4))?),
         ("QUAD, ± 0.4", nonlinear::quadrotor(0.4, smooth(5.0, 1e-7, 6, 2, 4))?),
         ("QUAD, ± 0.8", nonlinear::quadrotor(0.8, smooth(5.0, 1e-6, 6, 3, 4))?),
