@@ -1,10 +1,12 @@
 //! What happens in one component is no matter for others.
 
-use pleach_automaton::{Automaton, Composition, Limit, Policy, Reason, Settings, from};
+use pleach_automaton::{
+    Accumulation, Automaton, Composition, Coordinates, Limit, Policy, Reason, Settings, from,
+};
 
 use super::Cue::{Go, Rest};
 use super::Place::{Here, There};
-use super::{Machine, One, ball_and_table, built, metronome, ramp, run, times, x};
+use super::{Body, Machine, One, ball_and_table, built, metronome, ramp, run, times, x};
 
 #[test]
 fn what_happens_elsewhere_changes_nothing() {
