@@ -3,6 +3,8 @@
 //! far below 1, and hardly a robot ever objects to a move.
 
 use crate::missions::{Mission, run, shipped};
+use pleach::automaton::network::record::Outcome;
+use pleach::automaton::network::scenario::Scenario;
 
 /// Settings under which robots object: r, the least reliability of tree links, κ and σ.
 struct Stress {
@@ -41,4 +43,22 @@ fn missions_under_stress_keep_what_is_promised() {
         }
     }
     assert!(largest > 0.99, "the largest load is only {largest}");
+}
+
+/// At rates that links can hardly carry, the tree changes to one that cannot. The former flows stand
+/// then, so that no residual becomes negative, and the mission ends by naming the loads.
+#[test]
+fn rates_that_links_cannot_carry_end_the_mission_and_break_nothing() {
+    let saturated = include_str!("scenarios/saturated.toml");
+    let saturated: Scenario = toml::from_str(saturated).expect("it is a scenario");
+    let cases = [0.27, 0.28, 0.29, 0.3]
+        .map(|rate| (saturated.clone(), rate))
+        .into_iter()
+        .chain([0.15, 0.17].map(|rate| (shipped("study-1"), rate)));
+    for (mut scenario, rate) in cases {
+        scenario.robot.iter_mut().for_each(|robot| robot.rate = rate);
+        let end = run(scenario).end;
+        assert_eq!(end.outcome, Outcome::Blocked, "with rates of {rate}");
+        assert!(end.reason.contains("their links carry no more"), "{}", end.reason);
+    }
 }

@@ -21,25 +21,8 @@ use std::{env, fmt, fs, io};
 use catalogue::{CatalogueError, Fault, faults};
 use rounding::{CHOICE, Rounding, places, with_choices};
 
-/// What is copied from the root of the workspace: all that the packages are built from.
-const SOURCES: [&str; 16] = [
-    "Cargo.toml",
-    "Cargo.lock",
-    "rustfmt.toml",
-    "src",
-    "guards",
-    "discrete",
-    "continuous",
-    "automaton",
-    "verify",
-    "proofs",
-    "tests",
-    "examples",
-    "benches",
-    "scenarios",
-    "docs",
-    "README.md",
-];
+/// What is not copied: what cargo builds, and history.
+const LEFT_OUT: [&str; 2] = ["target", ".git"];
 
 /// Seconds after which a command is ended: a fault may give the protocol endlessly many states.
 const TIME_LIMIT: &str = "900";
@@ -155,12 +138,9 @@ impl<'a> Workshop<'a> {
     /// Makes the copy one in which rounding can be left out at each place, and runs the tests without.
     fn plant_choices(&self, places: &[Rounding]) -> Result<(), Error> {
         let sources = with_choices(self.root, places)?;
-        fs::create_dir_all(&self.copy)?;
-        for path in SOURCES {
-            renew(&self.root.join(path), &self.copy.join(path), &|file| {
-                sources.keys().any(|planted| self.copy.join(planted) == *file)
-            })?;
-        }
+        renew(self.root, &self.copy, &|file| {
+            sources.keys().any(|planted| self.copy.join(planted) == *file)
+        })?;
         for (file, source) in &sources {
             write_if_new(&self.copy.join(file), source.as_bytes())?;
         }
@@ -195,11 +175,8 @@ impl<'a> Workshop<'a> {
 
     /// Plants one fault in sources that have no other, and runs its command.
     fn try_out(&self, fault: &Fault) -> Result<Verdict, Error> {
-        fs::create_dir_all(&self.copy)?;
-        for path in SOURCES {
-            let planted = self.copy.join(&fault.file);
-            renew(&self.root.join(path), &self.copy.join(path), &|file| *file == *planted)?;
-        }
+        let planted = self.copy.join(&fault.file);
+        renew(self.root, &self.copy, &|file| *file == *planted)?;
         write_if_new(&self.copy.join(&fault.file), fault.planted(self.root)?.as_bytes())?;
         let output = Command::new("timeout")
             .args([TIME_LIMIT, "cargo"])
@@ -226,14 +203,26 @@ impl<'a> Workshop<'a> {
 fn renew(original: &Path, copy: &Path, is_planted: &dyn Fn(&Path) -> bool) -> io::Result<()> {
     if original.is_dir() {
         fs::create_dir_all(copy)?;
+        for entry in fs::read_dir(copy)? {
+            let entry = entry?;
+            if !original.join(entry.file_name()).exists() {
+                remove(&entry.path())?;
+            }
+        }
         for entry in fs::read_dir(original)? {
             let entry = entry?;
-            renew(&entry.path(), &copy.join(entry.file_name()), is_planted)?;
+            if LEFT_OUT.iter().all(|name| entry.file_name() != *name) {
+                renew(&entry.path(), &copy.join(entry.file_name()), is_planted)?;
+            }
         }
-    } else if original.exists() && !is_planted(copy) {
+    } else if !is_planted(copy) {
         write_if_new(copy, &fs::read(original)?)?;
     }
     Ok(())
+}
+
+fn remove(path: &Path) -> io::Result<()> {
+    if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
 fn write_if_new(path: &Path, content: &[u8]) -> io::Result<()> {

@@ -50,6 +50,9 @@ pub enum Message {
     Demand(#[serde(with = "wire")] f64),
     /// The sender cannot pass on what it is sent, to all nodes in range.
     Shortage,
+    /// The sender goes back to its flows of the period before, to the nodes with which it shares a
+    /// flow that has changed.
+    Restore,
     /// The move that the sender intends, to all nodes in range.
     Proposal(#[serde(with = "wire")] Segment),
     /// The sender cannot accept the move that the receiver intends.

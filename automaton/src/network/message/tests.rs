@@ -144,6 +144,7 @@ fn messages() -> Vec<Message> {
         Message::Flow(0.075),
         Message::Demand(f64::MIN_POSITIVE),
         Message::Shortage,
+        Message::Restore,
         Message::Proposal(Segment::new(Point::new(0.1, 0.2), Point::new(1.0 / 3.0, 0.2))),
         Message::Objection,
         Message::Request(Arc::from([])),
@@ -163,6 +164,7 @@ fn kind(message: &Message) -> &'static str {
         Message::Flow(_) => "flow",
         Message::Demand(_) => "demand",
         Message::Shortage => "shortage",
+        Message::Restore => "restore",
         Message::Proposal(_) => "proposal",
         Message::Objection => "objection",
         Message::Request(_) => "request",
@@ -199,7 +201,7 @@ fn every_kind_of_message_is_read_back_as_it_was_written() {
         texts.insert(text);
     }
     assert_eq!(texts.len(), messages().len(), "unlike messages are written unlike");
-    assert_eq!(kinds.len(), 9);
+    assert_eq!(kinds.len(), 10);
     let named: BTreeSet<_> = duties().iter().map(|duty| duty.location()).collect();
     assert_eq!(named.len(), Activity::ALL.len());
     assert_eq!(notices().iter().map(kind_of_notice).collect::<BTreeSet<_>>().len(), 7);

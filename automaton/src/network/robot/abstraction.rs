@@ -161,6 +161,7 @@ impl Robot {
             inflows: _,
             demands: _,
             residual: _,
+            standing: _,
             has_swept: _,
             has_no_reserve: _,
             has_shortage_news: _,

@@ -53,6 +53,8 @@ acts! {
     Deliberate = "deliberate",
     /// It tells its public state, unless it has told it often enough.
     TellBeacon = "tell beacon",
+    /// It keeps the flows of the period before.
+    KeepFlows = "keep flows",
     /// The links over which it can route.
     SurveyLinks = "survey links",
     /// It tells its flows to those who receive them.
@@ -77,6 +79,8 @@ acts! {
     AdmitShortage = "admit shortage",
     /// Overloaded robots are relieved of what does not come over the tree, and a sweep begins.
     SweepAgain = "relieve, begin sweep",
+    /// If its routes do not fit, it goes back to the flows that it has kept.
+    SettleRoutes = "restore flows if c < −c_min",
     /// The routes of this period stand.
     EndRoutes = "end routes",
     /// u := QP(ψ, cell): target, geodesic and motion problem (lines 4 to 7).
@@ -141,6 +145,7 @@ impl Robot {
                 self.deliberate()?;
             }
             Act::TellBeacon => self.tell_beacon(outputs),
+            Act::KeepFlows => self.keep_flows(),
             Act::SurveyLinks => {
                 self.is_new = false;
                 self.survey_links();
@@ -156,6 +161,7 @@ impl Robot {
             Act::SettleResidual => self.settle_residual(),
             Act::AdmitShortage => self.admit_shortage(outputs),
             Act::SweepAgain => self.sweep_again(outputs),
+            Act::SettleRoutes => self.settle_routes(outputs),
             Act::EndRoutes => self.end_routes(),
             Act::Propose => self.propose()?,
             Act::TellProposal => self.tell_proposal(outputs),
@@ -202,13 +208,13 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(
             On::RoutesDue,
             guards::routes_due(),
-            &[Deliberate, Jump, SurveyLinks, TellMultiplier],
+            &[Deliberate, Jump, KeepFlows, SurveyLinks, TellMultiplier],
             |_: &Beacons| Multipliers { iteration: 1 },
         ))
         .carried_out(row(
             On::OldFlowsDue,
             guards::old_flows_due(),
-            &[Deliberate, Jump, SurveyLinks, TellFlows],
+            &[Deliberate, Jump, KeepFlows, SurveyLinks, TellFlows],
             |_: &Beacons| OldFlows {},
         ))
         .carried_out(row(
@@ -250,7 +256,7 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(
             On::RoutesDone,
             guards::routes_done(),
-            &[SettleResidual, EndRoutes],
+            &[SettleResidual, SettleRoutes],
             |_: &Sweeps| Planning {},
         ))
         .carried_out(row(
@@ -265,7 +271,7 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(
             On::MoveDue,
             guards::heard(),
-            &[Propose, TellProposal, CountRounds],
+            &[EndRoutes, Propose, TellProposal, CountRounds],
             |_: &Planning| Negotiation {},
         ))
         .carried_out(row(

@@ -6,7 +6,7 @@
 //! control period. The chapters follow that period: it receives beacons (`hearing`), keeps its place
 //! in the tree (`attachment`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
-//! (`yielding`), routes its packets (`routing`) and moves (`motion`);
+//! (`yielding`), routes its packets (`routing`, `standing`) and moves (`motion`);
 //! what its guards see of all this are `facts`.
 
 #[cfg(feature = "abstraction")]
@@ -27,6 +27,7 @@ mod path;
 mod recruit;
 mod rounds;
 mod routing;
+mod standing;
 mod step;
 mod target;
 mod team;
@@ -167,6 +168,7 @@ pub struct Robot {
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
     residual: f64,
+    standing: standing::StandingFlows,
     has_swept: bool,
     has_no_reserve: bool,
     has_shortage_news: bool,
@@ -260,6 +262,7 @@ impl Robot {
             inflows: Vec::new(),
             demands: Vec::new(),
             residual: 0.0,
+            standing: standing::StandingFlows::default(),
             has_swept: false,
             has_no_reserve: false,
             has_shortage_news: false,

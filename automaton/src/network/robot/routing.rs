@@ -73,6 +73,12 @@ pub struct RouteLink {
 }
 
 impl RouteLink {
+    /// A link that carries this flow until the end of the period.
+    pub(super) fn of_flow(to: NodeId, reliability: f64, flow: f64) -> Self {
+        let share = flow / reliability;
+        RouteLink { to, reliability, weight: 0.0, report: None, share, iterate: 0.0, told: flow }
+    }
+
     /// F_ij = T_ij R_ij.
     pub fn flow(&self) -> f64 {
         self.share * self.reliability

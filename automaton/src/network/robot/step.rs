@@ -189,6 +189,7 @@ impl Robot {
             Message::Flow(flow) => self.hear_flow(from, *flow),
             Message::Demand(more) => self.hear_demand(from, *more, outputs),
             Message::Shortage => self.hear_shortage(from, outputs),
+            Message::Restore => self.restore_flows(outputs),
             Message::Proposal(segment) => self.hear_proposal(from, *segment),
             Message::Objection => self.yield_to_objection(),
             _ => {}
