@@ -15,7 +15,7 @@ use crate::coverage::tally::Tally;
 use crate::flow::Flow;
 use crate::law::Command;
 use crate::located::{Holds, Place};
-use crate::observed::Watch;
+use crate::observed::{self, Watch};
 use crate::reset::Reset;
 
 pub use step::Step;

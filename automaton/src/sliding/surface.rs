@@ -4,8 +4,7 @@ mod forms;
 
 use pleach_discrete::{Event, Location};
 use pleach_guards::{
-    Comparison, Expression, Predicate, Relation, Substitution, always, constant, maximum, never,
-    not,
+    Comparison, Expression, Predicate, Substitution, always, constant, maximum, never, not,
 };
 
 use crate::automaton::Automaton;
