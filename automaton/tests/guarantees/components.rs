@@ -1,7 +1,7 @@
 //! What happens in one component is no matter for others.
 
 use pleach_automaton::{
-    Accumulation, Automaton, Composition, Coordinates, Limit, Policy, Reason, Settings, from,
+    Accumulation, Automaton, Composition, Limit, Policy, Reason, Settings, from,
 };
 
 use super::Cue::{Go, Rest};
@@ -117,7 +117,7 @@ fn steps_per_bounce(bounces: u32) -> f64 {
             Settings { step_limit, accumulation: Accumulation::Off, ..Settings::default() };
         ball.run_with(settings, 2.0 * f64::from(bounces)).expect("it can be run")
     };
-    let (mut few, mut enough) = (0, 1 << 24);
+    let (mut few, mut enough) = (0_u64, 1 << 24);
     while enough - few > 1 + enough / 256 {
         let steps = few.midpoint(enough);
         let ends = run(steps).ending().reason == Reason::Limit(Limit::Steps(steps));
