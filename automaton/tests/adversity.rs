@@ -1,6 +1,8 @@
 //! Models that are made to be missed, to hang or to panic: of every event the run has it, or says that it
 //! is in doubt.
 
+use std::f64::consts::FRAC_PI_2;
+
 use pleach_automaton::{
     Automaton, Builder, Coordinate, Coordinates, Reason, Settings, Trajectory, coordinates, from,
 };
@@ -192,11 +194,7 @@ fn events_at_the_start_and_at_the_horizon_are_taken() {
     assert_said(&go(wave(), place.at_least(0.5), quarter), quarter, 1e-14);
     // Strict at the very start: the guard begins to hold right after it.
     assert_event(&go(wave(), place.more_than(0.0), 1.0), 0.0, 1e-15);
-    assert_event(
-        &go(wave(), place.more_than(0.0) & speed.less_than(0.0), 3.0),
-        1.570_796_326_794_896_6,
-        1e-14,
-    );
+    assert_event(&go(wave(), place.more_than(0.0) & speed.less_than(0.0), 3.0), FRAC_PI_2, 1e-14);
 }
 
 /// A flow so stiff that its fast part is over after a hundred millionth of a second.
