@@ -29,6 +29,7 @@ mod random_missions;
 mod records;
 mod scenario_faults;
 mod spaceex;
+mod storms;
 mod story;
 mod streams;
 mod stressed;

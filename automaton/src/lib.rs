@@ -19,6 +19,7 @@
 
 pub mod automaton;
 pub mod builder;
+mod chance;
 pub mod check;
 pub mod composition;
 pub mod coordinates;

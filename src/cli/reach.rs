@@ -67,11 +67,15 @@ pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
     problem.settings.horizon = arguments.horizon.unwrap_or(problem.settings.horizon);
     problem.settings.step = arguments.step.unwrap_or(problem.settings.step);
     problem.settings.clusters = arguments.clusters.unwrap_or(problem.settings.clusters);
+    let picture = arguments.svg.as_ref().map(|path| {
+        let axes = axes(&problem, arguments.axes.as_deref())?;
+        Ok::<_, Failure>((path, axes))
+    });
+    let picture = picture.transpose()?;
     let begin = Instant::now();
     let solution = solve(&problem, arguments.quiet)?;
     let seconds = begin.elapsed().as_secs_f64();
-    if let Some(path) = &arguments.svg {
-        let axes = axes(&problem, arguments.axes.as_deref())?;
+    if let Some((path, axes)) = picture {
         let runs = problem.runs(arguments.runs);
         let picture = solution.picture(&problem.system, [&axes[0], &axes[1]], &runs);
         let picture = picture.map_err(Failure::Usage)?.to_svg();
@@ -109,12 +113,25 @@ fn solve(problem: &Problem, is_quiet: bool) -> Result<Solution, Failure> {
     solution.map_err(|error| Failure::Usage(error.to_string()))
 }
 
+/// The coordinates, and the constants that are only known to lie in intervals.
+fn variables(problem: &Problem) -> Vec<String> {
+    let names = problem.automata.iter().take(1).flat_map(|automaton| automaton.names());
+    let constants = problem.uncertain.iter().filter(|one| !one.varies);
+    names.map(|name| (*name).to_owned()).chain(constants.map(|one| one.parameter.clone())).collect()
+}
+
 /// The quantities that are drawn.
 fn axes(problem: &Problem, asked: Option<&str>) -> Result<[String; 2], Failure> {
     let names: Vec<String> = match asked {
         Some(text) => text.split(',').map(|name| name.trim().to_owned()).collect(),
         None => problem.shown.clone(),
     };
+    let known = variables(problem);
+    let is_known = |name: &String| ["t", "time"].contains(&name.as_str()) || known.contains(name);
+    if let Some(stranger) = names.iter().find(|name| !is_known(name)) {
+        let known = known.join(", ");
+        return Err(Failure::Usage(format!("{stranger:?} cannot be drawn: there are t, {known}")));
+    }
     match (&names[..], asked) {
         ([across, up], _) => Ok([across.clone(), up.clone()]),
         ([up], None) => Ok(["t".to_owned(), up.clone()]),
@@ -151,7 +168,7 @@ fn verdict(problem: &Problem, solution: &Solution, seconds: f64) -> String {
     }
     if solution.verdict() == Verdict::Undecided {
         for proof in &solution.proofs {
-            lines.push(format!("  the enclosure ends with {:?}", proof.enclosure.ending));
+            lines.push(format!("  {}", proof.enclosure.ending));
             if let Some(doubt) = proof.doubts.first() {
                 let place = &solution.model.locations()[doubt.location].name;
                 lines.push(format!(

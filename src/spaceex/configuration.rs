@@ -17,12 +17,13 @@ pub(super) struct Options {
     pub step: Option<f64>,
     pub directions: Option<Line<String>>,
     pub jumps: Option<usize>,
-    pub shown: Vec<String>,
+    pub shown: Line<Vec<String>>,
 }
 
 impl Options {
     pub fn read(text: &str) -> Result<Self, SpaceExError> {
         let mut options = Options { initially: (0, vec![vec![]]), ..Options::default() };
+        let mut known: Vec<(&str, usize)> = Vec::new();
         for (line, content) in (1..).zip(text.lines()) {
             let wrong = |problem: String| SpaceExError::Configuration { line, problem };
             let content = content.trim();
@@ -32,13 +33,20 @@ impl Options {
             let Some((key, value)) = content.split_once('=') else {
                 return Err(wrong(format!("`{content}` is no line `key = value`")));
             };
-            let value = value.trim().trim_matches('"').trim();
+            let key = key.trim();
+            if let Some((_, first)) = known.iter().find(|(one, _)| *one == key) {
+                return Err(wrong(format!(
+                    "`{key}` stands in line {first} already: leave one out"
+                )));
+            }
+            known.push((key, line));
+            let value = unquoted(value).map_err(wrong)?;
             let number = || -> Result<f64, SpaceExError> {
                 let number: f64 =
                     value.parse().map_err(|_| wrong(format!("`{value}` is no number")))?;
                 if number.is_nan() { Err(wrong("NaN is no number".into())) } else { Ok(number) }
             };
-            match key.trim() {
+            match key {
                 "system" => options.system = Some((line, value.to_owned())),
                 "initially" => {
                     options.initially = (line, formula::alternatives(value).map_err(wrong)?);
@@ -47,16 +55,25 @@ impl Options {
                 "forbidden" => {
                     options.forbidden = (line, formula::alternatives(value).map_err(wrong)?);
                 }
-                "time-horizon" => options.horizon = Some(number()?),
-                "sampling-time" | "flowpipe-tolerance-step" => options.step = Some(number()?),
+                "time-horizon" => match number()? {
+                    horizon if horizon >= 0.0 => options.horizon = Some(horizon),
+                    _ => return Err(wrong(format!("{value} is no duration: write 0 or more"))),
+                },
+                "sampling-time" | "flowpipe-tolerance-step" => match number()? {
+                    step if step > 0.0 && step.is_finite() => options.step = Some(step),
+                    _ => return Err(wrong(format!("{value} is no step: write more than 0"))),
+                },
                 "directions" => options.directions = Some((line, value.to_owned())),
                 "iter-max" | "max-iterations" => {
-                    let limit = number()?;
+                    let limit: i64 = value
+                        .parse()
+                        .map_err(|_| wrong(format!("`{value}` is no whole number of jumps")))?;
                     // A negative limit is none.
-                    options.jumps = (limit >= 0.0).then_some(limit as usize);
+                    options.jumps = usize::try_from(limit).ok();
                 }
                 "output-variables" => {
-                    options.shown = value.split(',').map(|name| name.trim().to_owned()).collect();
+                    let shown = value.split(',').map(|name| name.trim().to_owned());
+                    options.shown = (line, shown.filter(|name| !name.is_empty()).collect());
                 }
                 // Of other tools' methods and outputs.
                 "scenario"
@@ -81,5 +98,15 @@ impl Options {
             }
         }
         Ok(options)
+    }
+}
+
+/// What stands between quotes, or all if there are none.
+fn unquoted(text: &str) -> Result<&str, String> {
+    let text = text.trim();
+    match (text.strip_prefix('"'), text.strip_suffix('"')) {
+        (Some(_), Some(_)) if text.len() > 1 => Ok(text[1..text.len() - 1].trim()),
+        (None, None) => Ok(text),
+        _ => Err(format!("`{text}` has a single quotation mark: add the other")),
     }
 }

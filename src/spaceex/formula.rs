@@ -55,10 +55,16 @@ pub(super) fn alternatives(text: &str) -> Result<Vec<Vec<Clause>>, String> {
         return Ok(vec![vec![]]);
     }
     let parts = split(text, '|');
+    if parts.iter().any(|part| part.trim().is_empty()) {
+        return Err(format!("`{text}` has an alternative that says nothing: leave out the `|`"));
+    }
     if parts.len() > 1 {
         return Ok(parts.into_iter().map(alternatives).collect::<Result<Vec<_>, _>>()?.concat());
     }
     let parts = split(text, '&');
+    if parts.iter().any(|part| part.trim().is_empty()) {
+        return Err(format!("`{text}` has a part that says nothing: leave out the `&`"));
+    }
     if parts.len() > 1 {
         return parts.into_iter().try_fold(vec![vec![]], |product, part| {
             let factors = alternatives(part)?;
@@ -119,8 +125,11 @@ fn split(text: &str, separator: char) -> Vec<&str> {
         }
     }
     parts.push(&text[begin..]);
-    let is_single = parts.len() == 1;
-    parts.into_iter().filter(|part| is_single || !part.trim().is_empty()).collect()
+    // `&&` and `||` leave nothing between their halves.
+    let last = parts.len() - 1;
+    let is_half = |at: usize, part: &str| part.is_empty() && at > 0 && at < last;
+    let parts = parts.into_iter().enumerate();
+    parts.filter(|(at, part)| !is_half(*at, part)).map(|(_, part)| part).collect()
 }
 
 /// a ≤ b, also in chains a ≤ b ≤ c.
@@ -161,8 +170,11 @@ fn comparisons(text: &str) -> Result<Vec<Clause>, String> {
         && *only == Relation::Equal
         && let Some(component) = sides[0].trim().strip_prefix("loc(")
     {
-        let component = component.trim_end().trim_end_matches(')').trim().to_owned();
-        return Ok(vec![Clause::Location { component, location: sides[1].trim().to_owned() }]);
+        let Some(component) = component.trim_end().strip_suffix(')') else {
+            return Err(format!("`{text}` lacks a parenthesis: write loc(component)==location"));
+        };
+        let (component, location) = (component.trim().to_owned(), sides[1].trim().to_owned());
+        return Ok(vec![Clause::Location { component, location }]);
     }
     let sides = sides.into_iter().map(side).collect::<Result<Vec<_>, _>>()?;
     let clause = |(at, relation): (usize, &Relation)| Clause::Compare {

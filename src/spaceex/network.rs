@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use crate::guards::{Expression, Substitution, constant};
 
 use super::SpaceExError;
-use super::document::{Component, Location, Transition};
+use super::document::{Component, Location, Parameter, Text, Transition};
 use super::formula::{self, Clause, Relation, Side};
 
 /// A base component with its names bound.
@@ -31,6 +31,8 @@ pub(super) enum Bound {
 /// A parameter of the whole.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Known {
+    /// Where it is declared.
+    pub line: usize,
     pub is_label: bool,
     pub is_constant: bool,
 }
@@ -70,8 +72,8 @@ impl<'a> Network<'a> {
             // What is not bound, as what is local, is the instance's own.
             let bound = bound.or_insert_with(|| Bound::Name(format!("{prefix}{}", parameter.name)));
             if let Bound::Name(global) = bound {
-                let known =
-                    Known { is_label: parameter.is_label, is_constant: parameter.is_constant };
+                let Parameter { line, is_label, is_constant, .. } = *parameter;
+                let known = Known { line, is_label, is_constant };
                 let known_before =
                     self.known.entry(global.clone()).or_insert_with(|| known.clone());
                 if known_before.is_label != known.is_label {
@@ -99,10 +101,11 @@ impl<'a> Network<'a> {
                 return wrong(bind.line, format!("there is no component `{}`", bind.component));
             };
             let mut inner_names = BTreeMap::new();
-            for (key, value) in &bind.maps {
+            for (key, text) in &bind.maps {
+                let (line, value) = (text.line, text.content.trim());
                 if !inner.parameters.iter().any(|parameter| parameter.name == *key) {
                     return wrong(
-                        bind.line,
+                        line,
                         format!("component `{}` has no parameter `{key}`", inner.id),
                     );
                 }
@@ -112,7 +115,7 @@ impl<'a> Network<'a> {
                         Ok(number) => Bound::Number(number),
                         Err(_) => {
                             return wrong(
-                                bind.line,
+                                line,
                                 format!(
                                     "`{key}` is bound to `{value}`, which is neither a number nor a parameter of `{}`",
                                     component.id
@@ -120,8 +123,15 @@ impl<'a> Network<'a> {
                             );
                         }
                     },
-                    (Err(error), None) => return wrong(bind.line, format!("`{value}`: {error}")),
+                    (Err(error), None) => return wrong(line, format!("`{value}`: {error}")),
                 };
+                let is_label = inner.parameters.iter().any(|one| one.name == *key && one.is_label);
+                if let (true, Bound::Number(number)) = (is_label, &value) {
+                    return wrong(
+                        line,
+                        format!("the label `{key}` is bound to {number}: bind it to a label"),
+                    );
+                }
                 inner_names.insert(key.clone(), value);
             }
             let inner_name = format!("{prefix}{}", bind.name);
@@ -152,8 +162,8 @@ impl Instance<'_> {
     }
 
     /// A conjunction of the component, in names of the whole.
-    pub fn clauses(&self, text: &str, line: usize) -> Result<Vec<Clause>, SpaceExError> {
-        let wrong = |problem: String| SpaceExError::Model { line, problem };
+    pub fn clauses(&self, text: &Text) -> Result<Vec<Clause>, SpaceExError> {
+        let wrong = |problem: String| SpaceExError::Model { line: text.line, problem };
         let substitution = self.substitution();
         let side = |side: Side| -> Result<Side, SpaceExError> {
             match side {
@@ -162,6 +172,13 @@ impl Instance<'_> {
                         .variables()
                         .into_iter()
                         .find(|name| !self.names.contains_key(*name));
+                    let is_label = |name: &&str| {
+                        let mut known = self.component.parameters.iter();
+                        known.any(|one| one.is_label && one.name == **name)
+                    };
+                    if let Some(label) = formula.variables().into_iter().find(is_label) {
+                        return Err(wrong(format!("`{label}` is a label, and no number")));
+                    }
                     if let Some(stranger) = stranger {
                         return Err(wrong(format!(
                             "`{stranger}` is no parameter of component `{}`",
@@ -179,7 +196,7 @@ impl Instance<'_> {
                 },
             }
         };
-        let clauses = formula::conjunction(text).map_err(wrong)?;
+        let clauses = formula::conjunction(&text.content).map_err(wrong)?;
         clauses
             .into_iter()
             .map(|clause| match clause {
@@ -199,9 +216,9 @@ impl Instance<'_> {
         &self,
         place: &Location,
     ) -> Result<Option<Vec<(String, Expression)>>, SpaceExError> {
-        let wrong = |problem: String| SpaceExError::Model { line: place.line, problem };
+        let wrong = |problem: String| SpaceExError::Model { line: place.flow.line, problem };
         let mut rates = Vec::new();
-        for clause in self.clauses(&place.flow, place.line)? {
+        for clause in self.clauses(&place.flow)? {
             match clause {
                 Clause::Always => {}
                 Clause::Never => return Ok(None),
@@ -235,9 +252,10 @@ impl Instance<'_> {
         &self,
         transition: &Transition,
     ) -> Result<Vec<(String, Assigned)>, SpaceExError> {
-        let wrong = |problem: String| SpaceExError::Model { line: transition.line, problem };
+        let wrong =
+            |problem: String| SpaceExError::Model { line: transition.assignment.line, problem };
         let mut assigned: Vec<(String, Assigned)> = Vec::new();
-        for clause in self.clauses(&transition.assignment, transition.line)? {
+        for clause in self.clauses(&transition.assignment)? {
             let (left, relation, right) = match clause {
                 Clause::Always => continue,
                 Clause::Compare { left, relation, right } => (left, relation, right),

@@ -76,6 +76,12 @@ impl<'a> Product<'a> {
         Ok(product)
     }
 
+    /// Whether a name is that of a coordinate, an input or a constant.
+    fn is_number(&self, name: &str) -> bool {
+        let others = self.constants.iter().chain(&self.inputs).map(|(name, _)| name);
+        self.variables.iter().chain(others).any(|known| known == name)
+    }
+
     fn wrong<T>(&self, problem: String) -> Result<T> {
         Err(SpaceExError::Model { line: self.line, problem })
     }
@@ -96,43 +102,49 @@ impl<'a> Product<'a> {
             if known.is_label {
                 continue;
             }
-            if flowing.contains(name) {
+            let wrong = |problem| Err(SpaceExError::Model { line: known.line, problem });
+            if flowing.contains(name) && known.is_constant {
+                return wrong(format!(
+                    "`{name}` is a constant, and has a flow or is assigned: make its dynamics any"
+                ));
+            } else if flowing.contains(name) {
                 self.variables.push(name.clone());
             } else if known.is_constant {
                 let Some(values) = fixed(&options.initially.1, name) else {
-                    return self.wrong(format!(
+                    return wrong(format!(
                         "`{name}` is a constant without a value: bind it to a number, or give it one in `initially`"
                     ));
                 };
                 self.constants.push((name.clone(), values));
             } else {
-                let values = self.input_bounds(name)?;
-                self.inputs.push((name.clone(), values));
+                match self.input_bounds(name)? {
+                    Some(values) => self.inputs.push((name.clone(), values)),
+                    None => {
+                        return wrong(format!(
+                            "`{name}` has neither a flow nor bounds: give it a flow, or keep it between \
+                             two numbers in the invariants"
+                        ));
+                    }
+                }
             }
         }
         Ok(())
     }
 
     /// Between which numbers invariants keep an input; over all locations, for there is one input.
-    fn input_bounds(&self, name: &str) -> Result<Interval> {
+    fn input_bounds(&self, name: &str) -> Result<Option<Interval>> {
         let mut bounds: Option<Interval> = None;
         for instance in &self.network.instances {
             if !instance.names.values().any(|bound| *bound == Bound::Name(name.to_owned())) {
                 continue;
             }
             for place in &instance.component.locations {
-                let clauses = instance.clauses(&place.invariant, place.line)?;
+                let clauses = instance.clauses(&place.invariant)?;
                 let Some(within) = fixed(&[clauses], name) else { continue };
                 bounds = Some(bounds.map_or(within, |known| known.hull(within)));
             }
         }
-        match bounds {
-            Some(bounds) if bounds.width().is_finite() => Ok(bounds),
-            _ => self.wrong(format!(
-                "`{name}` has neither a flow nor bounds: give it a flow, or keep it between two numbers in \
-                 the invariants"
-            )),
-        }
+        Ok(bounds.filter(|bounds| bounds.width().is_finite()))
     }
 
     /// The tuples of locations, and their names.
@@ -186,7 +198,7 @@ impl<'a> Product<'a> {
             initial,
             forbidden: self.forbidden(options)?,
             settings: settings(options)?,
-            shown: options.shown.clone(),
+            shown: self.shown(options)?,
         })
     }
 

@@ -122,7 +122,7 @@ impl<F: FnMut(Arrival) -> bool> Passage for Filtered<F> {
         let distance = (!is_wire).then(length);
         let (number, period) = (self.messages, self.updates - 1);
         self.messages += 1;
-        let is_beacon = matches!(delivery.message, Message::Beacon(_));
+        let is_beacon = matches!(delivery.message, Message::Beacon { .. });
         let arrival = Arrival { number, period, sender, receiver, distance, is_beacon };
         if (self.loses)(arrival) { Ok(()) } else { hand_over(delivery) }
     }

@@ -67,7 +67,6 @@
 
 pub(crate) mod blueprint;
 mod builder;
-mod chance;
 pub mod channel;
 mod exploration;
 mod field;
@@ -77,6 +76,7 @@ mod jumps;
 mod linear;
 mod models;
 mod picture;
+mod product;
 mod record;
 mod replay;
 mod settings;
@@ -92,6 +92,7 @@ pub use pleach_continuous::flow::Method;
 pub use builder::{CompositionBuilder, CompositionError};
 pub use channel::Channel;
 pub use exploration::{Exploration, ExplorationError, Reached};
+pub use product::ProductError;
 pub use replay::ReplayError;
 pub use settings::{Accumulation, Policy, Settings};
 pub use simulation::{Failure, Halt, Move, Simulation, SimulationError, Taken};

@@ -12,12 +12,12 @@ use serde::{Deserialize, Serialize};
 pub use failure::{Failure, Halt, SimulationError};
 
 use super::Composition;
-use super::chance::Chance;
 use super::flight::Flight;
 use super::linear::LinearFlows;
 use super::record::Record;
 use super::settings::{Policy, Settings};
 use super::tension::Readiness;
+use crate::chance::Chance;
 use crate::executor::{Ending, Round, System};
 use crate::moment::Moment;
 use crate::time::HybridTime;

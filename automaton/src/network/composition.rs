@@ -7,6 +7,7 @@
 //! The network passes messages on and has no access to the state of nodes. What observers
 //! see is put together in [`crate::network::observer`].
 
+use std::fmt::{self, Debug};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -15,8 +16,9 @@ use pleach_discrete::network::Stage;
 
 use super::access_point::AccessPoint;
 use super::beacon::Notice;
+use super::frail::Frail;
 use super::medium::Radio;
-use super::member::{Member, MemberView, Sense};
+use super::member::{Member, Sense};
 use super::message::Message;
 use super::record::{End, MissionEvent, Outcome};
 use super::robot::{Robot, RobotError, RobotView};
@@ -24,7 +26,7 @@ use super::scenario::{Scenario, ValidScenario};
 use super::site::Site;
 use super::user::User;
 use crate::executor::{Round, System};
-use crate::node::{Ensemble, Medium, NodeJump};
+use crate::node::{Ensemble, Medium, Node, NodeJump, Observed};
 
 /// What went wrong inside the simulator.
 #[derive(Debug, thiserror::Error)]
@@ -60,11 +62,10 @@ impl KernelTimes {
     }
 }
 
-/// The network of robots.
-#[derive(Debug)]
-pub struct Network<M = Radio> {
+/// The network of robots. Its nodes are [`Member`]s, or [`Frail`](super::Frail) ones.
+pub struct Network<M = Radio, N: RobotNode = Member> {
     pub(super) site: Arc<Site>,
-    pub(super) nodes: Ensemble<Member, M>,
+    pub(super) nodes: Ensemble<N, M>,
     pub(super) events: Vec<MissionEvent>,
     pub(super) step: usize,
     /// Whether the current control period is over.
@@ -105,7 +106,43 @@ impl<M: Medium<Message, Point>> Network<M> {
             .map(|access_point| Member::AccessPoint(Box::new(access_point)));
         let user = Member::User(Box::new(User::new(Arc::clone(&site))));
         let members: Vec<Member> = robots.chain(access_points).chain([user]).collect();
-        let user = members.len() - 1;
+        Network::of_nodes(scenario, site, medium, members)
+    }
+}
+
+/// A node of a network of robots, with the member that observers see of it.
+pub trait RobotNode:
+    Node<Message = Message, Sense = Sense, Report = MissionEvent, Body = Point, Error = RobotError>
+{
+    /// The member.
+    fn member(&self) -> &Member;
+}
+
+impl RobotNode for Member {
+    fn member(&self) -> &Member {
+        self
+    }
+}
+
+impl RobotNode for Frail {
+    fn member(&self) -> &Member {
+        Frail::member(self)
+    }
+}
+
+impl<M: Medium<Message, Point>, N: RobotNode> Network<M, N> {
+    /// The network of a scenario whose nodes are these: robots first, then access points, last the
+    /// user.
+    ///
+    /// # Errors
+    /// When the user cannot say what there is to do.
+    pub fn of_nodes(
+        scenario: &Scenario,
+        site: Arc<Site>,
+        medium: M,
+        members: Vec<N>,
+    ) -> Result<Self, NetworkError> {
+        let user = members.len().saturating_sub(1);
         let mut nodes = Ensemble::new(members, medium);
         let tasks = scenario.task.iter().map(|task| task.position.into()).collect();
         nodes.sense(user, Sense::Tasks(tasks))?;
@@ -120,7 +157,7 @@ impl<M: Medium<Message, Point>> Network<M> {
     }
 }
 
-impl<M> Network<M> {
+impl<M, N: RobotNode> Network<M, N> {
     /// What the robots know from the beginning.
     pub fn site(&self) -> &Site {
         &self.site
@@ -138,12 +175,16 @@ impl<M> Network<M> {
 
     /// The robots as observers see them, by number.
     pub fn robots(&self) -> Vec<RobotView<'_>> {
-        self.nodes.views().filter_map(MemberView::robot).collect()
+        self.members().filter_map(|member| member.view().robot()).collect()
+    }
+
+    fn members(&self) -> impl Iterator<Item = &Member> {
+        self.nodes.nodes().iter().map(RobotNode::member)
     }
 
     /// How the mission has ended, as the user knows it.
     fn announced_end(&self) -> Option<End> {
-        let user = self.nodes.views().find_map(MemberView::user)?;
+        let user = self.members().find_map(|member| member.view().user())?;
         match user.notice() {
             Notice::Ended { outcome, reason, task } => {
                 Some(End { outcome: *outcome, reason: reason.to_string(), task: *task })
@@ -153,14 +194,29 @@ impl<M> Network<M> {
     }
 }
 
-impl<M: Medium<Message, Point>> Network<M> {
+impl<M: Debug, N: RobotNode> Debug for Network<M, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let members: Vec<&Member> = self.members().collect();
+        f.debug_struct("Network")
+            .field("step", &self.step)
+            .field("members", &members)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<M: Medium<Message, Point>, N: RobotNode> Network<M, N> {
+    /// The nodes, by number.
+    pub fn nodes(&self) -> &[N] {
+        self.nodes.nodes()
+    }
+
     /// The medium.
     pub const fn medium(&self) -> &M {
         self.nodes.medium()
     }
 }
 
-impl<M: Medium<Message, Point>> System for Network<M> {
+impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
     type Jump = NodeJump;
     type Finish = End;
     type Error = NetworkError;
@@ -185,7 +241,7 @@ impl<M: Medium<Message, Point>> System for Network<M> {
             self.events.clear();
             self.nodes.forget_traffic();
         }
-        let first = self.nodes.view(0).and_then(MemberView::robot);
+        let first = self.members().next().and_then(|member| member.view().robot());
         let stage = first.map_or(Stage::Moving, RobotView::stage);
         let begin = Instant::now();
         self.nodes.jump(round)?;

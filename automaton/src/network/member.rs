@@ -28,6 +28,8 @@ pub enum Member {
 pub enum Sense {
     /// The position of a robot, as it measures it.
     Position(Point),
+    /// At a sample, the position of a robot as its localisation measures it.
+    Fix(Point),
     /// The tasks that a person requests, in their order.
     Tasks(Arc<[Point]>),
 }

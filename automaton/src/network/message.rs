@@ -35,7 +35,14 @@ use super::wire;
 #[non_exhaustive]
 pub enum Message {
     /// The public state of the sender, to all nodes in range.
-    Beacon(#[serde(with = "wire")] Arc<Beacon>),
+    Beacon {
+        /// The control period in which it is sent. All nodes count their periods alike; one that
+        /// begins later takes the number from the first beacon that it receives.
+        period: u32,
+        /// The public state.
+        #[serde(with = "wire")]
+        beacon: Arc<Beacon>,
+    },
     /// How the sender's equation c_i ≥ η stands, to all nodes in range.
     Multiplier {
         /// λ_i, and what ADAL needs beside it.

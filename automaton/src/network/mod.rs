@@ -7,6 +7,7 @@ pub mod beacon;
 mod composition;
 pub mod control;
 pub mod duty;
+pub mod frail;
 mod link;
 pub mod medium;
 pub mod member;
@@ -24,7 +25,8 @@ mod wire;
 
 pub use access_point::{AccessPoint, round_automaton, service_automaton};
 pub use automata::{Automata, NamedRow};
-pub use composition::{KernelTimes, Network, NetworkError};
+pub use composition::{KernelTimes, Network, NetworkError, RobotNode};
+pub use frail::{Crash, Frail, Trouble};
 pub use link::Link;
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};

@@ -5,13 +5,13 @@
 use pleach_discrete::network::{NodeId, Phase, PostKind};
 
 use super::beacon::Notice;
-use super::composition::Network;
+use super::composition::{Network, RobotNode};
 use super::record::{MissionEvent, PostView, RobotSnapshot, Route, Snapshot};
 use super::robot::RobotView;
 use crate::located::Place as _;
-use crate::node::Traffic;
+use crate::node::{Node, Traffic};
 
-impl<M> Network<M> {
+impl<M, N: RobotNode> Network<M, N> {
     /// The observers' view of this instant, just before the robots move.
     pub fn snapshot(&self) -> Snapshot {
         let overview = self.overview();
@@ -19,7 +19,7 @@ impl<M> Network<M> {
         Snapshot {
             step: self.step,
             time: self.step as f64 * self.site.settings.period,
-            positions: robots().map(RobotView::position).collect(),
+            positions: self.nodes.nodes()[..robots().count()].iter().map(Node::body).collect(),
             roles: robots().map(RobotView::role).collect(),
             phase: overview.phase(),
             active: overview.active(),

@@ -11,6 +11,10 @@ use super::automata::Automata;
 use super::scenario::{Scenario, Settings};
 use crate::builder::BuildError;
 
+/// Steps of two robots towards each other from where they begin to watch each other to where they
+/// could come into contact.
+const WATCHED_STEPS: f64 = 8.0;
+
 /// Common knowledge of the robots; it does not change during a mission.
 #[derive(Debug)]
 pub struct Site {
@@ -30,6 +34,8 @@ pub struct Site {
     pub build_length: f64,
     /// d_hard: the geodesic length that no link of the tree exceeds.
     pub hard_length: f64,
+    /// The distance up to which robots watch each other.
+    watch_radius: f64,
     /// Whether links behave as a model of the caller's says, and not as `[link]` does.
     has_own_link: bool,
     /// The automata that every robot runs.
@@ -78,12 +84,13 @@ impl Site {
             workspace,
             free_space,
             access_points: scenario.access_point.iter().map(|ap| ap.position.into()).collect(),
-            link,
             robots: scenario.robot.len(),
             build_length: settings.longest_new_link(),
             hard_length: settings.longest_tree_link(),
+            watch_radius: Self::watch_radius(&settings, &link),
             settings,
             has_own_link: false,
+            link,
             automata: Automata::new()?,
             #[cfg(feature = "abstraction")]
             measure: None,
@@ -96,7 +103,8 @@ impl Site {
         let link = Link::new(model);
         let hard_length = link.distance_at(self.settings.tree_reliability);
         let build_length = hard_length - self.settings.service_radius;
-        Site { link, hard_length, build_length, has_own_link: true, ..self }
+        let watch_radius = Self::watch_radius(&self.settings, &link);
+        Site { link, hard_length, build_length, watch_radius, has_own_link: true, ..self }
     }
 
     /// Whether links behave as the model given to [`with_link`](Self::with_link) says.
@@ -109,6 +117,25 @@ impl Site {
     #[must_use]
     pub fn measured_by(self, measure: impl Measure + 'static) -> Self {
         Site { measure: Some(Box::new(measure)), ..self }
+    }
+
+    /// Some steps more than the 2ρ + 2σ from which two robots could come into contact in one control
+    /// period, and so far inside the range of the radio that no step leads out of it.
+    fn watch_radius(settings: &Settings, link: &Link) -> f64 {
+        let Settings { clearance, step_radius, .. } = *settings;
+        let meeting = 2.0 * (clearance + step_radius);
+        let well_in_range = link.range() - 2.0 * step_radius;
+        (meeting + WATCHED_STEPS * step_radius).min(well_in_range).max(meeting)
+    }
+
+    /// Whether robots at this distance move only if they have heard each other in the same control
+    /// period: they may come into contact within a few periods. Robots on places of a graph never do.
+    pub fn is_near(&self, distance: f64) -> bool {
+        #[cfg(feature = "abstraction")]
+        if self.measure.is_some() {
+            return false;
+        }
+        distance <= self.watch_radius
     }
 
     /// Rounds of messages in which news surely crosses the network and comes back: no message is

@@ -192,7 +192,7 @@ impl Node for User {
                 self.jump(outputs)?;
             }
             Input::Tick { .. } => self.jump(outputs)?,
-            Input::Sensed(Sense::Position(_)) | Input::Heard { .. } => {}
+            Input::Sensed(Sense::Position(_) | Sense::Fix(_)) | Input::Heard { .. } => {}
         }
         Ok(())
     }

@@ -210,6 +210,13 @@ impl<N: Node, M> Ensemble<N, M> {
     }
 }
 
+impl<N: Node, M> Ensemble<N, M> {
+    /// The nodes, by number, for the program that has set them up.
+    pub fn nodes(&self) -> &[N] {
+        &self.nodes
+    }
+}
+
 impl<N: Node + Observed, M> Ensemble<N, M> {
     /// What observers see of each node, by number.
     pub fn views(&self) -> impl ExactSizeIterator<Item = N::View<'_>> {

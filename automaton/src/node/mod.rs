@@ -18,10 +18,12 @@
 mod ensemble;
 mod medium;
 mod outputs;
+mod weather;
 
 pub use ensemble::{Ensemble, NodeJump, Traffic};
 pub use medium::{Delivery, FullMesh, Medium};
 pub use outputs::{Destination, Envelope, Outputs};
+pub use weather::{Partition, Unreliable, Weather};
 
 /// The number of a node in its ensemble, from 0.
 pub type NodeId = usize;

@@ -14,6 +14,9 @@ pub type BeaconId = u32;
 /// The number of a state of a node among all those ever met.
 pub type LocalId = u32;
 
+/// Nodes are explored within one control period: the explorer stands for time.
+const PERIOD: u32 = 1;
+
 /// A robot or an access point.
 #[derive(Clone, Debug)]
 pub enum Node {
@@ -196,7 +199,7 @@ impl Nodes {
     fn hear(&self, node: &mut Node, beacons: &[BeaconId]) -> Result<(), RobotError> {
         beacons.iter().try_for_each(|&id| {
             let beacon = &self.beacons[id as usize];
-            let message = Message::Beacon(Arc::clone(beacon));
+            let message = Message::Beacon { period: PERIOD, beacon: Arc::clone(beacon) };
             node.step(Input::Heard { from: beacon.sender, message: &message })
         })
     }

@@ -1,12 +1,10 @@
 //! What clauses say: as predicates, and as bounds on one variable.
 
-use super::Result;
 use crate::guards::{Expression, Interval, Predicate};
-use crate::spaceex::SpaceExError;
 use crate::spaceex::formula::{Clause, Relation, Side};
 
 /// A clause as a predicate; nothing for one about locations.
-pub(super) fn predicate(clause: &Clause, line: usize) -> Result<Option<Predicate>> {
+pub(super) fn predicate(clause: &Clause) -> Result<Option<Predicate>, String> {
     Ok(match clause {
         Clause::Always | Clause::Location { .. } => None,
         Clause::Never => Some(crate::guards::never()),
@@ -18,10 +16,7 @@ pub(super) fn predicate(clause: &Clause, line: usize) -> Result<Option<Predicate
                 Side::Primed(name) => Some(name.as_str()),
                 Side::Formula(_) => None,
             });
-            return Err(SpaceExError::Model {
-                line,
-                problem: format!("`{}'` cannot stand in a condition", primed.unwrap_or_default()),
-            });
+            return Err(format!("`{}'` cannot stand in a condition", primed.unwrap_or_default()));
         }
     })
 }

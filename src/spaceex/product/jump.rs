@@ -59,7 +59,7 @@ impl Product<'_> {
     }
 
     fn label(&self, instance: &Instance<'_>, transition: &Transition) -> Option<String> {
-        let label = transition.label.trim();
+        let label = transition.label.content.trim();
         instance.global(label).map(str::to_owned)
     }
 
@@ -92,8 +92,9 @@ impl Product<'_> {
                 wrong(format!("there is no location with id {}", transition.target))
             })?;
             is_urgent |= transition.is_urgent;
-            for clause in instance.clauses(&transition.guard, transition.line)? {
-                guard.extend(predicate(&clause, transition.line)?);
+            for clause in instance.clauses(&transition.guard)? {
+                let wrong = |problem| SpaceExError::Model { line: transition.guard.line, problem };
+                guard.extend(predicate(&clause).map_err(wrong)?);
             }
             for (name, assigned) in instance.assignments(transition)? {
                 let coordinate = coordinates

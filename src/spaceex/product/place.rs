@@ -38,10 +38,12 @@ impl Product<'_> {
                 }
                 _ => rates = None,
             }
-            for clause in instance.clauses(&place.invariant, place.line)? {
+            for clause in instance.clauses(&place.invariant)? {
                 // Bounds on inputs say what inputs are.
                 if !self.is_input_bound(&clause) {
-                    invariant.extend(predicate(&clause, place.line)?);
+                    let wrong =
+                        |problem| SpaceExError::Model { line: place.invariant.line, problem };
+                    invariant.extend(predicate(&clause).map_err(wrong)?);
                 }
             }
         }

@@ -75,19 +75,27 @@ impl Product<'_> {
             self.variables.iter().chain(resting.iter().map(|(name, _)| name)).cloned().collect();
         let mut initial = Vec::new();
         for clauses in alternatives {
+            for clause in clauses {
+                if let Some(states) = predicate(clause).map_err(wrong)? {
+                    self.knows_all_of(&states).map_err(wrong)?;
+                }
+            }
             let locations = self.names_of(&self.allowed(clauses, *line)?);
             let mut sides = Vec::new();
             for name in &names {
                 let side = fixed(std::slice::from_ref(clauses), name)
                     .filter(|side| side.width().is_finite());
                 sides.push(side.ok_or_else(|| {
-                    wrong(format!("`initially` does not bound `{name}` from both sides"))
+                    wrong(format!(
+                        "`initially` does not bound `{name}` from both sides, or allows no value of it"
+                    ))
                 })?);
             }
             // Comparisons of several variables cut the box.
             let mut cuts = Vec::new();
             for clause in clauses {
-                cuts.extend(predicate(clause, *line)?.filter(|one| one.variables().len() > 1));
+                let predicate = predicate(clause).map_err(wrong)?;
+                cuts.extend(predicate.filter(|one| one.variables().len() > 1));
             }
             let values = self.constants.iter().filter(|(_, values)| values.width() == 0.0);
             let values = values.map(|(name, values)| (name, constant(values.midpoint())));
@@ -112,15 +120,41 @@ impl Product<'_> {
         Ok(initial)
     }
 
+    /// Fails if a predicate reads what is no number of the system.
+    fn knows_all_of(&self, states: &Predicate) -> std::result::Result<(), String> {
+        match states.variables().into_iter().find(|name| !self.is_number(name)) {
+            Some(stranger) => Err(format!("`{stranger}` is no variable or constant of the system")),
+            None => Ok(()),
+        }
+    }
+
+    /// The variables to be shown.
+    pub(super) fn shown(&self, options: &Options) -> Result<Vec<String>> {
+        let (line, shown) = &options.shown;
+        let is_known = |name: &&String| *name == "t" || self.is_number(name);
+        match shown.iter().find(|name| !is_known(name)) {
+            Some(stranger) => Err(SpaceExError::Configuration {
+                line: *line,
+                problem: format!(
+                    "`{stranger}` cannot be shown: there are t, {}",
+                    self.variables.join(", ")
+                ),
+            }),
+            None => Ok(shown.clone()),
+        }
+    }
+
     pub(super) fn forbidden(&self, options: &Options) -> Result<Vec<Forbidden>> {
         let (line, alternatives) = &options.forbidden;
+        let wrong = |problem: String| SpaceExError::Configuration { line: *line, problem };
         let mut forbidden = Vec::new();
         for clauses in alternatives {
             let mut states = Vec::new();
             for clause in clauses {
-                states.extend(predicate(clause, *line)?);
+                states.extend(predicate(clause).map_err(wrong)?);
             }
             let states = Predicate::all(states);
+            self.knows_all_of(&states).map_err(wrong)?;
             let is_local = clauses.iter().any(|clause| matches!(clause, Clause::Location { .. }));
             if is_local {
                 for location in self.names_of(&self.allowed(clauses, *line)?) {
@@ -141,7 +175,7 @@ pub(super) fn settings(options: &Options) -> Result<Settings> {
         None => Directions::Boxes,
         Some((_, name)) if name == "box" => Directions::Boxes,
         // Octagons stand in for uniform directions.
-        Some((_, name)) if name == "oct" || name.starts_with("uni") => Directions::Octagons,
+        Some((_, name)) if name == "oct" || is_uniform(name) => Directions::Octagons,
         Some((line, name)) => {
             return Err(SpaceExError::Configuration {
                 line: *line,
@@ -159,4 +193,10 @@ pub(super) fn settings(options: &Options) -> Result<Settings> {
         enters_invariants: true,
         ..defaults
     })
+}
+
+/// `uni` with a number of directions.
+fn is_uniform(name: &str) -> bool {
+    let count = name.strip_prefix("uni").and_then(|count| count.trim().parse::<usize>().ok());
+    count.is_some_and(|count| count > 0)
 }

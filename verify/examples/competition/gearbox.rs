@@ -100,17 +100,16 @@ pub fn shift(spread: (f64, f64), mut settings: Settings) -> TestResult<Instance>
     let nothing = Interval::point(0.0);
     Ok(Instance {
         automaton,
-        start: StateSet::from_box(vec![
+        starts: vec![StateSet::from_box(vec![
             nothing,
             nothing,
             around(-0.0167, spread.0)?,
             around(0.003, spread.1)?,
             nothing,
-        ]),
+        ])],
         uncertain: Vec::new(),
         forbidden: vec![Forbidden::anywhere(impulse.at_least(20.0))],
         settings,
-        parts: Vec::new(),
         measured: None,
     })
 }

@@ -28,11 +28,10 @@ fn single(
     let sides = sides.iter().map(|(_, lower, upper)| Interval::new(*lower, *upper));
     Ok(Instance {
         automaton,
-        start: StateSet::from_box(sides.collect::<Result<_, _>>()?),
+        starts: vec![StateSet::from_box(sides.collect::<Result<_, _>>()?)],
         uncertain: Vec::new(),
         forbidden,
         settings,
-        parts: Vec::new(),
         measured: None,
     })
 }

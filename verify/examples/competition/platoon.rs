@@ -56,7 +56,7 @@ pub fn deterministic(distance: f64, settings: Settings) -> TestResult<Instance> 
     let close = ["x1", "x4", "x7"].map(|name| variable(name).at_most(-distance));
     Ok(Instance {
         automaton,
-        start: StateSet::from_box(vec![Interval::point(0.0); 10]),
+        starts: vec![StateSet::from_box(vec![Interval::point(0.0); 10])],
         uncertain: vec![Uncertain {
             parameter: "u".to_owned(),
             values: Interval::new(-9.0, 1.0)?,
@@ -64,7 +64,6 @@ pub fn deterministic(distance: f64, settings: Settings) -> TestResult<Instance> 
         }],
         forbidden: close.map(Forbidden::anywhere).to_vec(),
         settings,
-        parts: Vec::new(),
         measured: None,
     })
 }

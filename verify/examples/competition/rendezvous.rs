@@ -51,11 +51,10 @@ pub fn mission(abort: Option<(f64, f64)>, settings: Settings) -> TestResult<Inst
     let sides = sides.map(|(lower, upper)| Interval::new(lower, upper));
     Ok(Instance {
         automaton,
-        start: StateSet::from_box(sides.into_iter().collect::<Result<_, _>>()?),
+        starts: vec![StateSet::from_box(sides.into_iter().collect::<Result<_, _>>()?)],
         uncertain: Vec::new(),
         forbidden: specification(abort.is_some()),
         settings,
-        parts: Vec::new(),
         measured: None,
     })
 }

@@ -85,6 +85,7 @@ pub mod link;
 pub mod motion;
 pub mod period;
 pub mod separation;
+pub mod storm;
 pub mod team;
 pub mod tree;
 

@@ -15,6 +15,8 @@
 //! The directions e^{Aᵀkh} ℓ are computed with the powers e^{Ah·2ʲ}, one for each binary digit of k: so
 //! the rounding of k steps passes through log₂ k products and not through k.
 
+mod inputs;
+
 use pleach_guards::Interval;
 
 use super::exponential::exponential;
@@ -44,45 +46,6 @@ impl AffineFlow {
     /// V.
     pub fn inputs(&self) -> &Zonotope {
         &self.inputs
-    }
-
-    /// Every x(τ) that begins in `start`, for durations τ in `duration`, which are not negative.
-    ///
-    /// What the inputs add is doubled from a small step: the states after 2 s seconds are those after
-    /// s seconds, moved on by s, and what the inputs add in the second half.
-    #[must_use]
-    pub fn after(&self, start: &Zonotope, duration: Interval, generators: usize) -> Zonotope {
-        let doublings = 12;
-        let step = duration * Interval::point(0.5f64.powi(doublings));
-        let mut moved = exponential(&self.matrix.map(|entry| entry * step));
-        let mut added = self.added(step);
-        let nothing = vec![Interval::point(0.0); start.dimension()];
-        for _ in 0..doublings {
-            added = added.plus(&added.mapped(&moved, &nothing)).reduced(generators);
-            moved = moved.times(&moved);
-        }
-        start.mapped(&moved, &nothing).plus(&added).reduced(generators)
-    }
-
-    /// What inputs add during a short step: ∫ e^{As} v(s) ds.
-    fn added(&self, step: Interval) -> Zonotope {
-        let from_zero = Interval::new(0.0, step.upper().max(0.0)).unwrap_or(Interval::WHOLE);
-        let over = exponential(&self.matrix.map(|entry| entry * from_zero));
-        let mean = |vector: &[f64]| -> Vec<Interval> {
-            over.apply_to_numbers(vector).into_iter().map(|entry| entry * step).collect()
-        };
-        let center = mean(self.inputs.center());
-        let generators: Vec<Vec<Interval>> =
-            self.inputs.generators().iter().map(|generator| mean(generator)).collect();
-        let mut added = Zonotope::from_intervals(&center, &generators);
-        for (axis, slack) in
-            self.inputs.slack().iter().enumerate().filter(|(_, slack)| **slack > 0.0)
-        {
-            let mut unit = vec![0.0; self.inputs.dimension()];
-            unit[axis] = *slack;
-            added.push(&mean(&unit));
-        }
-        added
     }
 }
 
@@ -270,33 +233,5 @@ mod tests {
         let added = |t: f64| -t / 12.0 + t * t / 4.0 - t * t * t / 6.0;
         assert!(bounds.during >= added(0.789), "{bounds:?}");
         assert!(bounds.after >= added(1.0), "{bounds:?}");
-    }
-
-    /// A set that moves by an input for an uncertain time.
-    #[test]
-    fn sets_after_a_duration_hold_every_end() {
-        let flow = AffineFlow::new(
-            IntervalMatrix::zero(1, 1),
-            Zonotope::from_box(&[Interval::new(-0.7, 0.3).expect("in order")]),
-        );
-        let start = Zonotope::from_box(&points(&[1.0]));
-        let after = flow.after(&start, Interval::new(0.1, 0.9).expect("in order"), 8).hull()[0];
-        assert!(fraction(after.lower()) <= fraction(1.0) - fraction(0.7) * fraction(0.9));
-        assert!(fraction(after.upper()) >= fraction(1.0) + fraction(0.3) * fraction(0.9));
-    }
-
-    /// ẋ = x + v comes from 0 to (eᵗ − 1) v: of inputs in a segment and in a box.
-    #[test]
-    fn what_inputs_add_grows_with_the_flow() {
-        let mut matrix = IntervalMatrix::zero(1, 1);
-        matrix[(0, 0)] = Interval::point(1.0);
-        let mut inputs = Zonotope::from_box(&points(&[2.0]));
-        inputs.widen(&[1.0]);
-        let flow = AffineFlow::new(matrix, inputs);
-        let start = Zonotope::from_box(&points(&[0.0]));
-        let after = flow.after(&start, Interval::point(1.0), 8).hull()[0];
-        let exact = 1f64.exp_m1();
-        assert!(after.lower() <= exact && 3.0 * exact <= after.upper(), "{after}");
-        assert!(after.width() <= 2.01 * exact, "{after}");
     }
 }

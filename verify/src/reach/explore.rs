@@ -4,6 +4,7 @@ mod landing;
 mod prepared;
 
 use std::collections::VecDeque;
+use std::fmt;
 use std::ops::ControlFlow;
 
 use pleach_guards::Interval;
@@ -42,6 +43,21 @@ pub enum Completion {
     Diverged,
     /// The observer has stopped the search.
     Stopped,
+}
+
+impl fmt::Display for Completion {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Completion::Horizon => "all states up to the horizon are enclosed",
+            Completion::Everything => "all states at all times are enclosed",
+            Completion::JumpLimit => "more jumps follow each other than the limit allows",
+            Completion::SegmentLimit => "there are more sets than the limit allows",
+            Completion::Diverged => {
+                "a flow grows without bounds, or cannot be enclosed any farther"
+            }
+            Completion::Stopped => "the search was stopped",
+        })
+    }
 }
 
 /// A set enters a location and flows.

@@ -16,17 +16,19 @@
 //! uniqueness of the solution of an IVP for an ODE*, Reliable Computing 7). At the end of the step the
 //! remainders become symbols of their own, so that later steps turn and shrink them with the flow.
 
+mod step;
+
 use std::sync::Arc;
 
 use pleach_guards::{Expression, Interval};
 
 use super::flow::Stretch;
 use super::polytope::Template;
-use super::series::{Coefficient, SeriesProgram};
+use super::series::SeriesProgram;
 use super::set::StateSet;
 use super::settings::Settings;
-use super::taylor_model::{Limits, Monomial, TaylorModel};
-use super::vector::{around_zero, magnitude};
+use super::taylor_model::{Limits, TaylorModel};
+use step::{Step, combined, remainder, share_of_error};
 
 /// How many symbols there can be.
 const SYMBOLS: usize = 240;
@@ -48,15 +50,6 @@ pub(super) struct Integration {
     order: usize,
     tolerance: f64,
     most_symbols: usize,
-}
-
-/// What encloses a step.
-struct Step {
-    length: f64,
-    /// xⱼ for each variable.
-    coefficients: Vec<Vec<TaylorModel>>,
-    /// f⁽ᵏ⁾(B) for each variable.
-    last: Vec<Interval>,
 }
 
 impl Integration {
@@ -118,8 +111,9 @@ impl Integration {
         self.state = step.end();
         self.time = self.time + Interval::point(step.length);
         self.name_errors();
-        let after =
-            directions.iter().map(|direction| combined(direction, &self.state).range().upper());
+        let after = directions
+            .iter()
+            .map(|direction| combined(direction, self.state.iter()).range().upper());
         let after = after.collect();
         Some(Stretch { from, to: self.time.upper(), during, after })
     }
@@ -193,138 +187,6 @@ impl Integration {
             component.rename(|symbol| name[usize::from(symbol)].unwrap_or(symbol));
         }
         self.symbols = first + kept;
-    }
-}
-
-/// f⁽ᵏ⁾(B) for a box B that solutions do not leave for `length` seconds; `None` if none is found.
-fn remainder(
-    program: &SeriesProgram,
-    coefficients: &[Vec<TaylorModel>],
-    length: f64,
-    order: usize,
-) -> Option<Vec<Interval>> {
-    /// How often a box is tried.
-    const TRIALS: usize = 4;
-    let within = Interval::new(0.0, length).ok()?;
-    let known: Vec<Interval> =
-        coefficients.iter().map(|series| polynomial(series, within)).collect();
-    let power = power_of(within, order);
-    let mut guess: Vec<Interval> = known.iter().map(|side| inflated(*side, 0.01)).collect();
-    for _ in 0..TRIALS {
-        let series = program.solve(&guess, order, ())?;
-        let last: Vec<Interval> = series.iter().map(|of_one| of_one[order]).collect();
-        let image: Vec<Interval> =
-            known.iter().zip(&last).map(|(side, last)| *side + power * *last).collect();
-        let is_inside = |(inner, outer): (&Interval, &Interval)| {
-            outer.lower() <= inner.lower() && inner.upper() <= outer.upper()
-        };
-        if image.iter().zip(&guess).all(is_inside) {
-            return Some(last);
-        }
-        if !image.iter().all(|side| side.lower().is_finite() && side.upper().is_finite()) {
-            return None;
-        }
-        guess = image.iter().zip(&guess).map(|(new, old)| inflated(new.hull(*old), 0.1)).collect();
-    }
-    None
-}
-
-/// tᵏ for times t.
-fn power_of(time: Interval, order: usize) -> Interval {
-    (0..order).fold(Interval::point(1.0), |power, _| power * time)
-}
-
-/// A wider interval.
-fn inflated(side: Interval, share: f64) -> Interval {
-    side + around_zero(side.width() * share + magnitude(side) * 1e-9 + 1e-12)
-}
-
-/// Σ xⱼ tʲ for times t, as one interval.
-fn polynomial(series: &[TaylorModel], time: Interval) -> Interval {
-    series
-        .iter()
-        .rev()
-        .fold(Interval::point(0.0), |sum, coefficient| sum * time + coefficient.range())
-}
-
-/// What a step adds to the remainders, as a share of the state.
-fn share_of_error(state: &[TaylorModel], last: &[Interval], length: f64, order: usize) -> f64 {
-    let power = length.powi(order as i32);
-    let share = |(component, last): (&TaylorModel, &Interval)| {
-        magnitude(*last) * power / magnitude(component.range()).max(1.0)
-    };
-    state.iter().zip(last).map(share).fold(0.0, f64::max)
-}
-
-/// Of no components.
-const NONE: Limits = Limits { degree: 1, first_error: 0, least: 0.0 };
-
-/// d · x
-fn combined(direction: &[f64], components: &[TaylorModel]) -> TaylorModel {
-    let limits = components.first().map_or(NONE, TaylorModel::limits);
-    let zero = TaylorModel::constant(Interval::point(0.0), limits);
-    let terms = direction.iter().zip(components).filter(|(entry, _)| **entry != 0.0);
-    terms.fold(zero, |sum, (entry, component)| match *entry {
-        1.0 => sum.plus(component),
-        -1.0 => sum.minus(component),
-        entry => sum.plus(&component.scaled(Interval::point(entry))),
-    })
-}
-
-impl Step {
-    /// The state at the end.
-    fn end(&self) -> Vec<TaylorModel> {
-        let time = Interval::point(self.length);
-        let power = power_of(time, self.coefficients.first().map_or(0, Vec::len));
-        let end = |(series, last): (&Vec<TaylorModel>, &Interval)| {
-            let limits = series[0].limits();
-            let nothing = TaylorModel::constant(Interval::point(0.0), limits);
-            let sum = series
-                .iter()
-                .rev()
-                .fold(nothing, |sum, coefficient| sum.scaled(time).plus(coefficient));
-            sum.plus(&TaylorModel::number(power * *last, limits))
-        };
-        self.coefficients.iter().zip(&self.last).map(end).collect()
-    }
-
-    /// At least d · x during the step.
-    fn bound_along(&self, direction: &[f64]) -> f64 {
-        let order = self.coefficients.first().map_or(0, Vec::len);
-        let length = Interval::point(self.length);
-        let within = Interval::new(0.0, self.length).unwrap_or(Interval::WHOLE);
-        let mut rest = Interval::point(0.0);
-        // The coefficients of each monomial in time from 0 to 1, by power.
-        let mut entries: Vec<(Monomial, usize, f64)> = Vec::new();
-        let mut power = Interval::point(1.0);
-        for at in 0..order {
-            let column: Vec<TaylorModel> = direction
-                .iter()
-                .zip(&self.coefficients)
-                .map(|(entry, series)| match entry {
-                    0.0 => TaylorModel::constant(Interval::point(0.0), series[0].limits()),
-                    _ => series[at].clone(),
-                })
-                .collect();
-            let along = combined(direction, &column).scaled(power);
-            rest = rest + along.rest().hull(Interval::point(0.0));
-            entries.extend(along.terms().iter().map(|(monomial, a)| (*monomial, at, *a)));
-            power = power * length;
-        }
-        let last = direction.iter().zip(&self.last).filter(|(entry, _)| **entry != 0.0);
-        let last = last.map(|(entry, last)| Interval::point(*entry) * *last);
-        let last = last.fold(Interval::point(0.0), |sum, term| sum + term);
-        rest = rest + power_of(within, order) * last;
-        entries.sort_by_key(|(monomial, at, _)| (*monomial, *at));
-        let groups = entries.chunk_by(|one, other| one.0 == other.0);
-        let ranges = groups.map(|group| {
-            let over_time = group.iter().map(|(_, at, a)| match at {
-                0 => Interval::point(*a),
-                _ => Interval::point(*a).hull(Interval::point(0.0)),
-            });
-            group[0].0.range() * over_time.fold(Interval::point(0.0), |sum, term| sum + term)
-        });
-        ranges.fold(rest, |sum, term| sum + term).upper()
     }
 }
 

@@ -1,6 +1,7 @@
 //! Enclosures of all runs.
 
 mod answers;
+mod composed;
 mod confirmed;
 mod exact;
 mod oracle;

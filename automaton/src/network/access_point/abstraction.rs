@@ -67,6 +67,7 @@ impl AccessPoint {
             log: _,
             // The explorer stands for time.
             clock: _,
+            period: _,
         } = self;
         let settled = match self.notice() {
             Notice::Quiet => (*settled_rounds).min(ROUNDS_UNTIL_ROSTER_SETTLES),

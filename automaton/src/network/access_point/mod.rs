@@ -68,6 +68,8 @@ pub struct AccessPoint {
     acts: RoundActs,
     is_new: bool,
     clock: f64,
+    /// How many control periods have begun.
+    period: u32,
     last_beacon: LastBeacon,
     log: Vec<MissionEvent>,
 }
@@ -97,6 +99,7 @@ impl AccessPoint {
             acts: &[],
             is_new: true,
             clock: period,
+            period: 0,
             last_beacon: LastBeacon::default(),
             log: Vec::new(),
         }
@@ -152,8 +155,15 @@ impl AccessPoint {
         Ok(())
     }
 
-    /// Takes in a beacon. One that arrives after a newer one of its sender is ignored.
-    fn hear(&mut self, beacon: &Arc<Beacon>) {
+    /// Takes in a beacon. One that arrives after a newer one of its sender is ignored, and so is one
+    /// that has been late since an earlier control period.
+    fn hear(&mut self, period: u32, beacon: &Arc<Beacon>) {
+        if period < self.period {
+            return;
+        }
+        if self.is_new {
+            self.period = period;
+        }
         self.silent.remove(&beacon.sender);
         match self.heard.binary_search_by_key(&beacon.sender, |held| held.sender) {
             Ok(at) if beacon.is_older_than(&self.heard[at]) => {}
@@ -327,8 +337,8 @@ impl Node for AccessPoint {
         outputs: &mut Outputs<Message, MissionEvent>,
     ) -> Result<(), RobotError> {
         match input {
-            Input::Heard { message: Message::Beacon(beacon), .. } => {
-                self.hear(beacon);
+            Input::Heard { message: Message::Beacon { period, beacon }, .. } => {
+                self.hear(*period, beacon);
             }
             Input::Heard { message: Message::Request(tasks), .. } => {
                 self.requested = Some(Arc::clone(tasks));

@@ -86,6 +86,7 @@ impl AccessPoint {
             match act {
                 RoundAct::RestartClock => {
                     self.clock = 0.0;
+                    self.period = self.period.saturating_add(1);
                     self.expect_all();
                 }
                 RoundAct::Forget => self.forget_silent(),
@@ -98,7 +99,8 @@ impl AccessPoint {
                     }
                 }
                 RoundAct::TellUser => self.tell_user(outputs),
-                RoundAct::TellBeacon => outputs.broadcast(Message::Beacon(self.next_beacon())),
+                RoundAct::TellBeacon => outputs
+                    .broadcast(Message::Beacon { period: self.period, beacon: self.next_beacon() }),
             }
         }
         self.is_new &= self.round() > 0;

@@ -132,7 +132,7 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
 
 /// A message of every kind: beacons with every duty and every notice.
 fn messages() -> Vec<Message> {
-    let beacon = |beacon| Message::Beacon(Arc::new(beacon));
+    let beacon = |beacon| Message::Beacon { period: 7, beacon: Arc::new(beacon) };
     let of_duty = |duty| beacon(talkative(duty, Notice::Quiet));
     let of_notice = |notice| beacon(talkative(duties()[0], notice));
     let news = |notice| Message::News(Bulletin::first(Shared::new(notice)));
@@ -159,7 +159,7 @@ fn messages() -> Vec<Message> {
 /// The name of a kind; a new kind does not compile here until it has one.
 fn kind(message: &Message) -> &'static str {
     match message {
-        Message::Beacon(_) => "beacon",
+        Message::Beacon { .. } => "beacon",
         Message::Multiplier { .. } => "multiplier",
         Message::Flow(_) => "flow",
         Message::Demand(_) => "demand",
@@ -219,7 +219,7 @@ fn beacon_with(field: &str, value: Value) -> Value {
     let beacon = talkative(duties()[0], notices()[1].clone());
     let mut written = serde_json::to_value(beacon).expect("it can be written");
     written[field] = value;
-    json!({ "beacon": written })
+    json!({ "beacon": { "period": 0, "beacon": written } })
 }
 
 #[test]

@@ -8,7 +8,7 @@
 use pleach_discrete::network::{Bid, NodeId, NoticeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
-use super::super::duty::{Duty, Path};
+use super::super::duty::Path;
 use super::facts::STATIONARY_WINDOW;
 use super::{Robot, RobotError, RobotView};
 
@@ -17,11 +17,6 @@ impl<'a> RobotView<'a> {
     /// The beacon that the robot would send now.
     pub fn beacon(self) -> Beacon {
         self.robot().public_state()
-    }
-
-    /// The duty that it takes over once the mover that offered it has taken its own.
-    pub fn taking(self) -> Option<&'a Duty> {
-        self.robot().offers().taking()
     }
 
     /// The path Σ that was announced last.
@@ -37,8 +32,7 @@ impl<'a> RobotView<'a> {
     /// The election that it knows to be over, and the winner with its bid.
     pub fn concluded_election(self) -> Option<(NoticeId, Option<(Bid, NodeId)>)> {
         let election = self.robot().election.as_ref()?;
-        let over = election.is_complete(&self.robot().roster);
-        over.then(|| (election.id(), election.best()))
+        self.robot().election_is_over().then(|| (election.id(), election.best()))
     }
 
     /// The election that it takes part in, or took part in last.
@@ -144,6 +138,7 @@ impl Robot {
             is_unmeasured: _,
             last_beacon: _,
             beacon_told: _,
+            period: _,
             heard_up_to: _,
             desired_parent: _,
             reattaches_to: _,

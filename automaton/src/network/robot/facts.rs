@@ -260,8 +260,7 @@ impl Robot {
         self.measure_word(&mut facts);
         let best = self.election.as_ref().and_then(|election| election.best());
         let won = best.is_some_and(|(bid, robot)| robot == self.id && bid.rank > 0);
-        let over =
-            self.election.as_ref().is_some_and(|election| election.is_complete(&self.roster));
+        let over = self.election_is_over();
         facts.election_over = over;
         match self.phase() {
             Phase::RecruitElection => {
@@ -294,6 +293,13 @@ impl Robot {
             Notice::Ended { .. } => facts.end_announced = true,
             _ => {}
         }
+    }
+
+    /// Whether the token of every robot of the roster is known. A robot that has joined since the task
+    /// was announced does not know the roster, and cannot tell.
+    pub(super) fn election_is_over(&self) -> bool {
+        let election = self.election.as_ref().filter(|_| !self.roster.is_empty());
+        election.is_some_and(|election| election.is_complete(&self.roster))
     }
 
     fn is_caller(&self) -> bool {

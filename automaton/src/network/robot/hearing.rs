@@ -21,6 +21,8 @@ pub(super) struct Neighbour {
     walk: OnceLock<f64>,
     /// Where the robot stood when it measured the link.
     measured_at: Point,
+    /// The control period in which it was heard last.
+    heard_in: u32,
     /// Whether it has been heard in this round.
     is_heard: bool,
     /// Rounds since it was heard.
@@ -34,7 +36,7 @@ pub(in super::super) const ROUNDS_TO_BE_HEARD: usize = 3;
 
 impl Neighbour {
     /// A node as heard from `own`.
-    fn new(beacon: &Arc<Beacon>, own: Point, site: &Site) -> Self {
+    fn new(beacon: &Arc<Beacon>, period: u32, own: Point, site: &Site) -> Self {
         let distance = (beacon.position - own).norm();
         Neighbour {
             beacon: Arc::clone(beacon),
@@ -42,6 +44,7 @@ impl Neighbour {
             reliability: site.link.reliability(distance),
             walk: OnceLock::new(),
             measured_at: own,
+            heard_in: period,
             is_heard: true,
             silent_rounds: 0,
         }
@@ -50,7 +53,11 @@ impl Neighbour {
     /// The same node, as last heard, seen from elsewhere.
     pub fn seen_from(&self, own: Point, site: &Site) -> Self {
         let (is_heard, silent_rounds) = (self.is_heard, self.silent_rounds);
-        Neighbour { is_heard, silent_rounds, ..Neighbour::new(&self.beacon, own, site) }
+        Neighbour {
+            is_heard,
+            silent_rounds,
+            ..Neighbour::new(&self.beacon, self.heard_in, own, site)
+        }
     }
 
     pub fn id(&self) -> NodeId {
@@ -75,28 +82,36 @@ impl Neighbour {
 }
 
 impl Robot {
-    /// Takes in a beacon. One that arrives after a newer one of its sender is ignored.
-    pub(super) fn hear_beacon(&mut self, beacon: &Arc<Beacon>) {
+    /// Takes in a beacon. One that arrives after a newer one of its sender is ignored, and so is one
+    /// that has been late since an earlier control period.
+    pub(super) fn hear_beacon(&mut self, period: u32, beacon: &Arc<Beacon>) {
+        if period < self.period {
+            return;
+        }
         // Beacons of a round mostly come in the order of their senders, and have no news.
         let expected = self.neighbours.get_mut(self.heard_up_to);
         if let Some(known) = expected
             && Arc::ptr_eq(&known.beacon, beacon)
             && known.measured_at == self.position
         {
-            (known.is_heard, known.silent_rounds) = (true, 0);
+            (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
             self.heard_up_to += 1;
         } else {
-            self.hear_news(beacon);
+            self.hear_news(period, beacon);
         }
     }
 
     #[inline(never)]
-    fn hear_news(&mut self, beacon: &Arc<Beacon>) {
+    fn hear_news(&mut self, period: u32, beacon: &Arc<Beacon>) {
+        if self.is_new {
+            self.period = period;
+        }
         let known = self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id);
         match known {
-            Ok(at) => self.renew(at, beacon),
+            Ok(at) => self.renew(at, period, beacon),
             Err(at) => {
-                self.neighbours.insert(at, Neighbour::new(beacon, self.position, &self.site));
+                let neighbour = Neighbour::new(beacon, period, self.position, &self.site);
+                self.neighbours.insert(at, neighbour);
                 self.receive_news();
             }
         }
@@ -105,15 +120,15 @@ impl Robot {
     }
 
     /// A neighbour that the robot knows is heard again.
-    fn renew(&mut self, at: usize, beacon: &Arc<Beacon>) {
+    fn renew(&mut self, at: usize, period: u32, beacon: &Arc<Beacon>) {
         let known = &mut self.neighbours[at];
         let is_same = Arc::ptr_eq(&known.beacon, beacon);
         if !is_same && beacon.is_older_than(&known.beacon) {
             return;
         }
-        (known.is_heard, known.silent_rounds) = (true, 0);
+        (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
         if (known.measured_at, known.position()) != (self.position, beacon.position) {
-            *known = Neighbour::new(beacon, self.position, &self.site);
+            *known = Neighbour::new(beacon, period, self.position, &self.site);
         } else if !is_same {
             known.beacon = Arc::clone(beacon);
         } else {
@@ -134,20 +149,39 @@ impl Robot {
         }
     }
 
-    /// A neighbour that the robot knows is not heard; returns the index of the next one.
+    /// A neighbour that the robot knows is not heard; returns the index of the next one. One that was
+    /// near when it was heard last is not out of range: it stays where it is taken to be, and this
+    /// robot does not leave its place meanwhile.
     fn miss(&mut self, at: usize) -> usize {
         let known = &mut self.neighbours[at];
-        let silent_rounds = known.silent_rounds + 1;
+        let silent_rounds = known.silent_rounds.saturating_add(1).min(ROUNDS_TO_BE_HEARD as u8);
         if known.measured_at != self.position {
             *known = known.seen_from(self.position, &self.site);
         }
         known.silent_rounds = silent_rounds;
-        if usize::from(silent_rounds) >= ROUNDS_TO_BE_HEARD || known.reliability <= 0.0 {
+        let is_lost = usize::from(silent_rounds) == ROUNDS_TO_BE_HEARD
+            && (known.is_access_point() || !self.site.is_near(known.distance));
+        if is_lost || known.reliability <= 0.0 {
             self.neighbours.remove(at);
             self.receive_news();
             return at;
         }
         at + 1
+    }
+
+    /// Whether the robot may leave its place in this control period: it has heard in this period where
+    /// each robot is that was near when it was heard last.
+    ///
+    /// If one of two robots that could meet moves, it so knows where the other is. If both move, each
+    /// keeps to its own side of the line between them (17); if one stays, its place lies on its own
+    /// side. No message that is lost gives a robot the right to move.
+    pub(super) fn may_leave_place(&self) -> bool {
+        let is_sure = |known: &Neighbour| {
+            known.heard_in == self.period
+                || known.is_access_point()
+                || !self.site.is_near(known.distance)
+        };
+        self.neighbours.iter().all(is_sure)
     }
 
     /// The nodes that the robot hears, and for how many rounds each has been silent.

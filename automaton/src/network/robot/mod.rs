@@ -85,6 +85,8 @@ pub struct Robot {
     /// x.
     position: Point,
     neighbours: Vec<Neighbour>,
+    /// How many control periods have begun.
+    period: u32,
     /// Where in the table of neighbours the next beacon is expected.
     heard_up_to: usize,
     /// The link whose other end is expected to tell its multiplier next.
@@ -234,6 +236,7 @@ impl Robot {
             last_partner: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
+            period: 0,
             heard_up_to: 0,
             parent: None,
             place: Current::new(PlaceInTree::Detached(lineage::Detached)),
@@ -288,7 +291,7 @@ impl Robot {
         let beacon = self.next_beacon();
         if !self.has_told_beacon() {
             self.beacon_told += 1;
-            outputs.broadcast(Message::Beacon(beacon));
+            outputs.broadcast(Message::Beacon { period: self.period, beacon });
         }
     }
 

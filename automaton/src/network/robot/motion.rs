@@ -143,7 +143,7 @@ impl Robot {
             self.waypoint = None;
             return;
         };
-        if self.is_infeasible() {
+        if self.is_infeasible() || !self.may_leave_place() {
             return;
         }
         let Some(waypoint) = self.first_waypoint(goal) else { return };
@@ -387,6 +387,12 @@ impl Robot {
         };
     }
 
+    /// The robot measures at a sample that it is not quite where its move was to end.
+    pub(super) fn correct_position(&mut self, position: Point) {
+        (self.position, self.arrival) = (position, position);
+        self.note_change();
+    }
+
     /// The move is certified: eq. (23) until the next sample.
     pub(super) fn set_off(&mut self) {
         let segment = self.own_move();
@@ -408,6 +414,7 @@ impl Robot {
     /// A new control period begins.
     pub(super) fn restart_clock(&mut self) {
         self.note_change();
+        self.period = self.period.saturating_add(1);
         self.velocity = Vector::zeros();
         self.clock = 0.0;
     }

@@ -119,10 +119,14 @@ impl Node for Robot {
 
 impl Robot {
     fn sense(&mut self, sensed: Sense, outputs: &mut Out) -> Result<(), RobotError> {
-        if let Sense::Position(position) = sensed {
-            self.find_itself_at(position);
-            self.jump()?;
-            self.tell_observers(outputs);
+        match sensed {
+            Sense::Position(position) => {
+                self.find_itself_at(position);
+                self.jump()?;
+                self.tell_observers(outputs);
+            }
+            Sense::Fix(position) => self.correct_position(position),
+            Sense::Tasks(_) => {}
         }
         Ok(())
     }
@@ -177,7 +181,7 @@ impl Robot {
     #[inline]
     fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
         match message {
-            Message::Beacon(beacon) => self.hear_beacon(beacon),
+            Message::Beacon { period, beacon } => self.hear_beacon(*period, beacon),
             _ => self.hear_of_routes_or_moves(from, message, outputs),
         }
     }

@@ -47,6 +47,11 @@ impl<'a> RobotView<'a> {
         &self.0.duty
     }
 
+    /// The duty that it takes over once the mover that offered it has taken its own.
+    pub fn taking(self) -> Option<&'a Duty> {
+        self.0.offers().taking()
+    }
+
     /// Its location in the automaton of the exchange of duties.
     pub fn exchange(self) -> ExchangeStage {
         self.0.exchange.location()

@@ -3,7 +3,7 @@
 /// A sequence of draws, by SplitMix64 (G. L. Steele, D. Lea and C. H. Flood 2014,
 /// doi:10.1145/2660193.2660195).
 #[derive(Clone, Debug)]
-pub(super) struct Chance {
+pub(crate) struct Chance {
     state: u64,
 }
 
@@ -12,7 +12,7 @@ const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Chance {
     /// The sequence with this number among those of a seed.
-    pub(super) fn new(seed: u64, number: usize) -> Self {
+    pub(crate) fn new(seed: u64, number: usize) -> Self {
         let mut chance = Chance { state: seed };
         let offset = chance.next().wrapping_add(STEP.wrapping_mul(number as u64));
         Chance { state: offset }
@@ -26,12 +26,12 @@ impl Chance {
     }
 
     /// An even draw from [0, 1).
-    pub(super) fn share(&mut self) -> f64 {
+    pub(crate) fn share(&mut self) -> f64 {
         (self.next() >> 11) as f64 * (-53f64).exp2()
     }
 
     /// An even draw from the numbers below `count` > 0.
-    pub(super) fn below(&mut self, count: usize) -> usize {
+    pub(crate) fn below(&mut self, count: usize) -> usize {
         // The bias is at most count ÷ 2⁵³.
         ((self.share() * count as f64) as usize).min(count.saturating_sub(1))
     }

@@ -1,0 +1,268 @@
+//! A composition as one automaton, for whatever asks questions of automata.
+
+use std::collections::BTreeMap;
+
+use pleach_discrete::Urgency;
+use pleach_guards::{Expression, Predicate, Substitution, variable};
+use thiserror::Error;
+
+use super::Composition;
+use crate::automaton::Automaton;
+use crate::builder::{BuildError, Builder};
+use crate::check::model::{Effect, Model, Motion, Transition};
+use crate::coordinates::Coordinate;
+use crate::edge::from;
+use crate::named::{Name, Record, RepeatedName};
+
+/// How many locations a product may have.
+const LOCATIONS: usize = 4096;
+
+/// Why a composition is not written as one automaton.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ProductError {
+    /// A flow or a reset is a function.
+    #[error("component `{component}`: {part} is a function: write it as formulas")]
+    Function {
+        /// The component.
+        component: String,
+        /// What is one.
+        part: String,
+    },
+    /// There are too many combinations of locations.
+    #[error("the components can be in more than {LOCATIONS} combinations of locations")]
+    Locations,
+    /// Two coordinates have one name.
+    #[error(transparent)]
+    Names(#[from] RepeatedName),
+    /// The parts do not make an automaton: a formula names what is no coordinate, for one.
+    #[error("the product is no automaton: {0}")]
+    Build(#[from] BuildError),
+}
+
+impl Composition {
+    /// The composition as one automaton: its locations are the combinations of locations that
+    /// components can come to by their transitions, its coordinates those of the composition. A label
+    /// is one transition for each choice of transitions of its participants; it is forced if one of
+    /// them is.
+    ///
+    /// Every run of the composition is one of the product. Where guards of several transitions on one
+    /// label hold at once, of which a component takes the first, the product may take each.
+    ///
+    /// # Errors
+    ///
+    /// [`ProductError`] if a flow or a reset is a function, a formula rests on propositions, or there
+    /// are too many combinations.
+    pub fn product(&self) -> Result<Automaton<Name, Name, Record>, ProductError> {
+        let product = Product::of(self)?;
+        let state = Record::new(self.variables.iter().zip(self.initial.iter().copied()))?;
+        let coordinates = state.coordinates();
+        let first = product.name(&product.combinations[0]);
+        let mut builder = Automaton::<Name, Name, Record>::starting_in(first).initially(state);
+        for combination in &product.combinations {
+            builder = product.add_location(builder, combination, &coordinates)?;
+        }
+        for combination in &product.combinations {
+            for jump in product.jumps(combination) {
+                builder = product.add_transition(builder, combination, &jump, &coordinates)?;
+            }
+        }
+        Ok(builder.build()?)
+    }
+}
+
+/// The transitions that are taken together: components, and for each the number of its transition.
+type Jump = Vec<(usize, usize)>;
+
+struct Product<'a> {
+    composition: &'a Composition,
+    models: Vec<Model>,
+    /// By component: from its own names to those of the composition.
+    renamings: Vec<Substitution>,
+    combinations: Vec<Vec<usize>>,
+}
+
+impl<'a> Product<'a> {
+    fn of(composition: &'a Composition) -> Result<Self, ProductError> {
+        let renaming = |component: &super::Component| {
+            let own = component.blueprint.coordinates.iter().zip(&component.slots);
+            Substitution::new(
+                own.map(|(name, slot)| (*name, variable(&composition.variables[*slot]))),
+            )
+        };
+        let mut product = Product {
+            composition,
+            models: composition.models(),
+            renamings: composition.components.iter().map(renaming).collect(),
+            combinations: Vec::new(),
+        };
+        product.enumerate()?;
+        Ok(product)
+    }
+
+    /// Finds the combinations, the initial one first.
+    fn enumerate(&mut self) -> Result<(), ProductError> {
+        let initial: Vec<usize> = self.models.iter().map(|model| model.initial).collect();
+        let mut known = BTreeMap::from([(initial.clone(), ())]);
+        self.combinations.push(initial);
+        let mut next = 0;
+        while let Some(combination) = self.combinations.get(next).cloned() {
+            for jump in self.jumps(&combination) {
+                let target = self.target(&combination, &jump);
+                if known.insert(target.clone(), ()).is_none() {
+                    self.combinations.push(target);
+                }
+            }
+            if self.combinations.len() > LOCATIONS {
+                return Err(ProductError::Locations);
+            }
+            next += 1;
+        }
+        Ok(())
+    }
+
+    fn transition(&self, (component, number): (usize, usize)) -> &Transition {
+        &self.models[component].transitions[number]
+    }
+
+    fn target(&self, combination: &[usize], jump: &Jump) -> Vec<usize> {
+        let mut target = combination.to_vec();
+        for &part in jump {
+            target[part.0] = self.transition(part).target;
+        }
+        target
+    }
+
+    /// The jumps from a combination: of single components, then by labels.
+    fn jumps(&self, combination: &[usize]) -> Vec<Jump> {
+        let leaving =
+            |component: usize| self.models[component].modes[combination[component]].leaving.iter();
+        let mut jumps: Vec<Jump> = Vec::new();
+        for (component, model) in self.models.iter().enumerate() {
+            let own = leaving(component).filter(|number| model.is_own(**number));
+            jumps.extend(own.map(|number| vec![(component, *number)]));
+        }
+        for label in &self.composition.labels {
+            let mut together: Vec<Jump> = vec![Vec::new()];
+            for &(component, event) in &label.participants {
+                let joining = leaving(component)
+                    .filter(|number| self.models[component].transitions[**number].event == event);
+                let joining: Vec<usize> = joining.copied().collect();
+                together = together
+                    .iter()
+                    .flat_map(|jump| {
+                        joining
+                            .iter()
+                            .map(move |number| [&jump[..], &[(component, *number)]].concat())
+                    })
+                    .collect();
+            }
+            jumps.extend(together);
+        }
+        jumps
+    }
+
+    fn name(&self, combination: &[usize]) -> Name {
+        let parts = self.models.iter().zip(combination);
+        let parts: Vec<&str> = parts.map(|(model, mode)| model.modes[*mode].name).collect();
+        Name::new(&parts.join(", "))
+    }
+
+    fn function(&self, component: usize, part: &str) -> ProductError {
+        let component = self.composition.components[component].name.clone();
+        ProductError::Function { component, part: part.to_owned() }
+    }
+
+    /// The coordinate that a component calls `name`.
+    fn coordinate<'c>(
+        &self,
+        component: usize,
+        name: &str,
+        coordinates: &'c [Coordinate<Record>],
+    ) -> Option<&'c Coordinate<Record>> {
+        let component = &self.composition.components[component];
+        let place = component.blueprint.coordinates.iter().position(|own| *own == name)?;
+        coordinates.get(component.slots[place])
+    }
+
+    fn add_location(
+        &self,
+        mut builder: Builder<Name, Name, Record>,
+        combination: &[usize],
+        coordinates: &[Coordinate<Record>],
+    ) -> Result<Builder<Name, Name, Record>, ProductError> {
+        let name = self.name(combination);
+        let (mut rates, mut invariant) = (Vec::new(), Vec::new());
+        for (component, mode) in combination.iter().enumerate() {
+            let mode = &self.models[component].modes[*mode];
+            let renaming = &self.renamings[component];
+            let Motion::Rates(listed) = &mode.motion else {
+                return Err(self.function(component, &format!("the flow of `{}`", mode.name)));
+            };
+            for (own, rate) in listed {
+                if let Some(coordinate) = self.coordinate(component, own, coordinates) {
+                    rates.push(coordinate.rate(rate.substitute(renaming)));
+                }
+            }
+            invariant.push(mode.invariant.substitute(renaming));
+        }
+        builder = builder.flow(name, rates);
+        let invariant = Predicate::all(invariant);
+        Ok(if invariant == pleach_guards::always() {
+            builder
+        } else {
+            builder.invariant(name, invariant)
+        })
+    }
+
+    fn add_transition(
+        &self,
+        builder: Builder<Name, Name, Record>,
+        combination: &[usize],
+        jump: &Jump,
+        coordinates: &[Coordinate<Record>],
+    ) -> Result<Builder<Name, Name, Record>, ProductError> {
+        let (mut guards, mut values, mut urgency) = (Vec::new(), Vec::new(), Urgency::May);
+        for &(component, number) in jump {
+            let transition = self.transition((component, number));
+            let renaming = &self.renamings[component];
+            let renamed = |formula: &Expression| formula.substitute(renaming);
+            guards.push(transition.guard.predicate().substitute(renaming));
+            urgency = match (urgency, transition.urgency) {
+                (Urgency::AtOnce, _) | (_, Urgency::AtOnce) => Urgency::AtOnce,
+                (Urgency::Must, _) | (_, Urgency::Must) => Urgency::Must,
+                _ => Urgency::May,
+            };
+            let Effect::Assignments(assignments) = &transition.effect else {
+                let event = &self.composition.components[component].events[transition.event];
+                return Err(self.function(component, &format!("the reset of `{event}`")));
+            };
+            let between = |name: &String| {
+                transition.intervals.iter().find(|(own, _)| own == name).map(|(_, ends)| ends)
+            };
+            for (own, value) in assignments {
+                let Some(coordinate) = self.coordinate(component, own, coordinates) else {
+                    continue;
+                };
+                values.push(match between(own) {
+                    Some([lower, upper]) => {
+                        coordinate.becomes_within(renamed(lower), renamed(upper))
+                    }
+                    None => coordinate.becomes(renamed(value)),
+                });
+            }
+        }
+        let (component, number) = jump[0];
+        let event = self.transition((component, number)).event;
+        let event = Name::new(&self.composition.components[component].events[event]);
+        let target = self.name(&self.target(combination, jump));
+        let arrow = from(self.name(combination)).on(event).to(target);
+        let guard = Predicate::all(guards);
+        let edge = match urgency {
+            Urgency::May => arrow.may(guard),
+            Urgency::Must => arrow.must(guard),
+            Urgency::AtOnce => arrow.at_once(guard),
+        };
+        Ok(builder.transition(edge.then(values)))
+    }
+}

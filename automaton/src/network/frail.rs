@@ -1,0 +1,248 @@
+//! Nodes that fail: they crash, restart, join late, and their positions and moves have errors.
+//!
+//! [`Frail`] wraps a [`Member`] of an ensemble. It has the true position of the body; the node knows
+//! what its localisation measures. The faults of a node are its [`Trouble`]. Draws are those of a seed.
+
+use std::sync::Arc;
+
+use pleach_continuous::{Point, Vector};
+use pleach_discrete::network::Stage;
+
+use super::member::{Member, Sense};
+use super::message::Message;
+use super::record::MissionEvent;
+use super::robot::RobotError;
+use crate::chance::Chance;
+use crate::node::{Input, Node, Observed, Outputs};
+
+/// The faults of one node. Times are in seconds from the beginning.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trouble {
+    /// When it joins; its body stands at its start from the beginning.
+    pub joins: Option<f64>,
+    /// When it stops.
+    pub crash: Option<Crash>,
+    /// By how much its clock is behind the others'.
+    pub shift: f64,
+    /// How far what it knows of its position may be off, in the scenario's unit.
+    pub position_error: f64,
+    /// How far from its end a move may end, in the scenario's unit.
+    pub motion_error: f64,
+}
+
+/// A node stops. A robot then stands where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crash {
+    /// When.
+    pub time: f64,
+    /// After so many inputs at that time: in the midst of the messages of a control period.
+    pub inputs: u32,
+    /// When it restarts, having forgotten everything but its number; none if it never does.
+    pub back: Option<f64>,
+}
+
+/// How a node is made anew that has forgotten everything: from where its body stands.
+pub type Maker = Arc<dyn Fn(Point) -> Member + Send + Sync>;
+
+/// A node with its faults.
+#[derive(Clone)]
+pub struct Frail {
+    member: Member,
+    maker: Maker,
+    trouble: Trouble,
+    chance: Chance,
+    state: State,
+    /// The true position.
+    true_position: Point,
+    time: f64,
+    period: f64,
+    inputs: u32,
+    /// What the robot believed when its move began, and what disturbs the move.
+    believed: Point,
+    disturbance: Option<Vector>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    /// It has not begun, or not begun again; it does at this time.
+    Waiting(f64),
+    Running,
+    /// It has stopped for good.
+    Gone,
+}
+
+impl std::fmt::Debug for Frail {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Frail")
+            .field("member", &self.member)
+            .field("state", &self.state)
+            .field("place", &self.true_position)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Times closer than this share of a control period are the same.
+const SAME: f64 = 1e-9;
+
+impl Frail {
+    /// The node that `maker` makes at `place`, with its faults; control periods take `period`
+    /// seconds, and `seed` decides on errors.
+    pub fn new(maker: Maker, place: Point, period: f64, trouble: Trouble, seed: u64) -> Self {
+        let begin = trouble.joins.map(|time| on_grid(time, period)).unwrap_or(0.0) + trouble.shift;
+        Frail {
+            member: maker(place),
+            maker,
+            chance: Chance::new(seed, 0),
+            state: if begin > 0.0 { State::Waiting(begin) } else { State::Running },
+            true_position: place,
+            time: 0.0,
+            period,
+            inputs: 0,
+            believed: place,
+            disturbance: None,
+            trouble,
+        }
+    }
+
+    /// The node as it is now, or was when it stopped.
+    pub const fn member(&self) -> &Member {
+        &self.member
+    }
+
+    /// Whether it runs.
+    pub fn is_running(&self) -> bool {
+        self.state == State::Running
+    }
+
+    /// Whether it will never run again.
+    pub fn is_gone(&self) -> bool {
+        self.state == State::Gone
+    }
+
+    fn is_at(&self, time: f64) -> bool {
+        self.time >= time - SAME * self.period
+    }
+
+    /// Stops the node if its time has come.
+    fn suffer(&mut self) {
+        let Some(crash) = self.trouble.crash.filter(|crash| self.is_at(crash.time)) else { return };
+        if self.state != State::Running || self.inputs < crash.inputs {
+            self.inputs += 1;
+            return;
+        }
+        self.trouble.crash = None;
+        self.state = match crash.back {
+            Some(back) => State::Waiting(on_grid(back, self.period) + self.trouble.shift),
+            None => State::Gone,
+        };
+    }
+
+    fn begin(&mut self) {
+        self.state = State::Running;
+        self.member = (self.maker)(self.true_position);
+        (self.believed, self.disturbance) = (self.true_position, None);
+    }
+
+    fn is_exact(&self) -> bool {
+        self.trouble.position_error == 0.0 && self.trouble.motion_error == 0.0
+    }
+
+    /// Somewhere in a disc of this radius.
+    fn somewhere(&mut self, radius: f64) -> Vector {
+        let (angle, share) = (std::f64::consts::TAU * self.chance.share(), self.chance.share());
+        Vector::new(angle.cos(), angle.sin()) * (radius * share.sqrt())
+    }
+
+    /// What its localisation tells a robot that is about to take a sample.
+    fn locate(&mut self) -> Option<Point> {
+        let robot = self.member.view().robot()?;
+        let is_due = self.member.time_to_tick() == Some(0.0);
+        let is_sample = is_due && robot.stage() == Stage::Moving;
+        if self.is_exact() || !is_sample {
+            return None;
+        }
+        self.disturbance = None;
+        let error = self.somewhere(self.trouble.position_error);
+        self.believed = self.true_position + error;
+        Some(self.believed)
+    }
+}
+
+/// The first instant from `time` on at which a control period begins.
+fn on_grid(time: f64, period: f64) -> f64 {
+    (time / period - SAME).ceil().max(0.0) * period
+}
+
+impl Node for Frail {
+    type Message = Message;
+    type Sense = Sense;
+    type Report = MissionEvent;
+    type Body = Point;
+    type Error = RobotError;
+
+    fn step(
+        &mut self,
+        input: Input<'_, Message, Sense>,
+        outputs: &mut Outputs<Message, MissionEvent>,
+    ) -> Result<(), RobotError> {
+        if let State::Waiting(begin) = self.state
+            && self.is_at(begin)
+        {
+            self.begin();
+        }
+        self.suffer();
+        if self.state != State::Running {
+            return match input {
+                // What a person asks of the user is not forgotten.
+                Input::Sensed(Sense::Tasks(_)) => self.member.step(input, outputs),
+                _ => Ok(()),
+            };
+        }
+        if matches!(input, Input::Tick { .. })
+            && let Some(position) = self.locate()
+        {
+            self.member.step(Input::Sensed(Sense::Fix(position)), outputs)?;
+        }
+        self.member.step(input, outputs)
+    }
+
+    fn time_to_tick(&self) -> Option<f64> {
+        match self.state {
+            State::Waiting(begin) => Some((begin - self.time).max(0.0)),
+            State::Running => self.member.time_to_tick(),
+            State::Gone => None,
+        }
+    }
+
+    fn flow(&mut self, duration: f64) {
+        self.time += duration;
+        if self.state != State::Running {
+            return;
+        }
+        let before = self.member.body();
+        self.member.flow(duration);
+        let after = self.member.body();
+        if self.is_exact() || self.member.view().robot().is_none() {
+            self.true_position = after;
+        } else if before != after {
+            if self.disturbance.is_none() {
+                self.disturbance = Some(self.somewhere(self.trouble.motion_error));
+            }
+            let share = (duration / self.period).min(1.0);
+            self.true_position +=
+                (after - before) + self.disturbance.unwrap_or_else(Vector::zeros) * share;
+        }
+    }
+
+    fn rounds_to_pass(&self) -> usize {
+        if self.is_running() { self.member.rounds_to_pass() } else { 0 }
+    }
+
+    fn check_invariant(&self) -> Result<(), RobotError> {
+        if self.is_running() { self.member.check_invariant() } else { Ok(()) }
+    }
+
+    fn body(&self) -> Point {
+        self.true_position
+    }
+}

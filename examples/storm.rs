@@ -1,0 +1,223 @@
+//! Missions in storms: messages are lost, late and copied, robots crash, restart and join late, and
+//! positions and moves have errors.
+//!
+//! `cargo run --release --example storm -- COUNT [FIRST_SEED]` runs as many missions, of all kinds
+//! and on all plans in turn, and tells the first that breaks a promise of safety, shrunk.
+//! `cargo run --release --example storm -- table SEEDS [KIND]` prints a table of what becomes of
+//! missions under each kind of storm.
+
+#[path = "../tests/floor_plans/mod.rs"]
+mod floor_plans;
+
+use floor_plans::{Family, scenario as plan};
+use pleach::automaton::network::record::Outcome;
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::verify::network::storm::{Kind, Storm, Verdict, draw, ride, ride_watched, shrink};
+use pleach::{scenario_file, story};
+use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
+
+/// Scenarios of the table.
+const SHIPPED: [&str; 5] = ["study-1", "study-2", "office", "discs", "corridor"];
+/// Control periods after which a mission is given up.
+const MOST_PERIODS: usize = 3_000;
+
+fn shipped(name: &str) -> Result<ValidScenario, Box<dyn Error>> {
+    Ok(scenario_file::read(Path::new(&format!("scenarios/{name}.toml")))?)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match &arguments[..] {
+        [word, name, kind, seed] if word == "one" => one(name, kind, seed.parse()?),
+        [word, seeds, kind @ ..] if word == "table" => table(seeds.parse()?, kind.first()),
+        [count, first @ ..] => {
+            let first = first.first().map_or(Ok(0), |first| first.parse())?;
+            many(first, count.parse()?)
+        }
+        _ => Err("usage: storm COUNT [FIRST_SEED] | storm table SEEDS [KIND]".into()),
+    }
+}
+
+fn is_serviced(verdict: &Verdict) -> bool {
+    verdict.end.as_ref().is_some_and(|end| end.outcome == Outcome::Serviced)
+}
+
+/// What becomes of missions under each kind of storm.
+fn table(seeds: u64, only: Option<&String>) -> Result<(), Box<dyn Error>> {
+    let mut missions = Vec::new();
+    for name in SHIPPED {
+        let scenario = shipped(name)?;
+        let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
+        println!("{name}: {} periods without faults", calm.periods);
+        missions.push((scenario, calm.periods));
+    }
+    println!("| storm | serviced | periods | separation | clearance | others |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    for &kind in Kind::ALL.iter().filter(|kind| only.is_none_or(|only| kind.name().contains(only)))
+    {
+        let (mut runs, mut serviced, mut longer) = (0, 0, 0.0_f64);
+        let mut broken: Vec<(String, usize)> = Vec::new();
+        for (scenario, calm) in &missions {
+            for seed in 0..seeds {
+                let storm = draw(kind, seed, scenario, *calm as f64);
+                let periods = MOST_PERIODS.min(3 * calm);
+                runs += 1;
+                match ride(scenario, &storm, periods) {
+                    Ok(verdict) => {
+                        if is_serviced(&verdict) {
+                            serviced += 1;
+                            longer = longer.max(verdict.periods as f64 / *calm as f64);
+                        }
+                        if only.is_some() {
+                            report(scenario, seed, &verdict);
+                        }
+                        for violation in &verdict.violations {
+                            count(&mut broken, violation.property.name());
+                        }
+                    }
+                    Err(error) => count(&mut broken, &error.to_string()),
+                }
+            }
+        }
+        let of =
+            |name: &str| broken.iter().find(|known| known.0 == name).map_or(0, |known| known.1);
+        let others: Vec<String> = broken
+            .iter()
+            .filter(|(name, _)| !["separation", "clearance"].contains(&name.as_str()))
+            .map(|(name, times)| format!("{name} {times}"))
+            .collect();
+        println!(
+            "| {} | {serviced} of {runs} | at most ×{longer:.2} | {} | {} | {} |",
+            kind.name(),
+            of("separation"),
+            of("clearance"),
+            others.join(", ")
+        );
+    }
+    Ok(())
+}
+
+/// What was not as it should be.
+fn report(scenario: &ValidScenario, seed: u64, verdict: &Verdict) {
+    if !is_serviced(verdict) {
+        let end = verdict.end.as_ref().map_or("time is up", |end| end.reason.as_str());
+        let last = verdict.events.last().map(|(step, event)| (step, story::tell(event)));
+        println!(
+            "  {} {seed}: k = {}, last motion {}, {end}; {last:?}",
+            scenario.name, verdict.periods, verdict.last_motion
+        );
+    }
+    for violation in &verdict.violations {
+        println!("  {} {seed}: {violation}", scenario.name);
+    }
+}
+
+/// Tells one mission.
+fn one(name: &str, kind: &str, seed: u64) -> Result<(), Box<dyn Error>> {
+    let scenario = shipped(name)?;
+    let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
+    let named = |known: &&Kind| known.name() == kind;
+    let kind = Kind::ALL.iter().find(named).ok_or("no such kind")?;
+    let storm = draw(*kind, seed, &scenario, calm.periods as f64);
+    println!("{storm:#?}");
+    let verdict = ride(&scenario, &storm, MOST_PERIODS.min(3 * calm.periods))?;
+    for (step, event) in &verdict.events {
+        println!("k = {step:<6} {}", story::tell(event));
+    }
+    report(&scenario, seed, &verdict);
+    if let Some(violation) = verdict.violations.first() {
+        let concerned = |node: usize| violation.robots.contains(&node);
+        ride_watched(&scenario, &storm, violation.step + 2, |snapshot| {
+            if snapshot.step + 6 < violation.step {
+                return;
+            }
+            println!("k = {}", snapshot.step);
+            for &robot in violation.robots.iter().filter(|&&r| r < snapshot.positions.len()) {
+                println!(
+                    "  {robot} at {:?}, c = {:.6}, active {}",
+                    snapshot.positions[robot],
+                    snapshot.residuals[robot],
+                    snapshot.active.contains(&robot)
+                );
+            }
+            for route in &snapshot.routes {
+                if concerned(route.from) || concerned(route.to) {
+                    let flow = route.share * route.reliability;
+                    println!(
+                        "  {} -> {}: F {flow:.6} R {:.6}",
+                        route.from, route.to, route.reliability
+                    );
+                }
+            }
+        })?;
+    }
+    Ok(())
+}
+
+fn count(broken: &mut Vec<(String, usize)>, name: &str) {
+    match broken.iter_mut().find(|known| known.0 == name) {
+        Some(known) => known.1 += 1,
+        None => broken.push((name.to_owned(), 1)),
+    }
+}
+
+/// The mission of a seed, and its storm.
+fn mission(seed: u64) -> Result<(ValidScenario, Storm), Box<dyn Error>> {
+    let kind = Kind::ALL[seed as usize % Kind::ALL.len()];
+    let turn = seed as usize / Kind::ALL.len();
+    let families: Vec<Family> =
+        Family::ALL.into_iter().filter(|&family| family != Family::Hall).collect();
+    let scenario = match turn % (SHIPPED.len() + families.len()) {
+        number if number < SHIPPED.len() => shipped(SHIPPED[number])?,
+        number => plan(families[number - SHIPPED.len()], seed),
+    };
+    let storm = draw(kind, seed, &scenario, 300.0);
+    Ok((scenario, storm))
+}
+
+fn many(first: u64, missions: u64) -> Result<(), Box<dyn Error>> {
+    let start = Instant::now();
+    let (mut serviced, mut broken) = (0, Vec::new());
+    for seed in first..first + missions {
+        let (scenario, storm) = mission(seed)?;
+        let verdict = ride(&scenario, &storm, MOST_PERIODS)?;
+        serviced += usize::from(is_serviced(&verdict));
+        if !verdict.violations.is_empty() {
+            if broken.is_empty() {
+                tell(&scenario, &storm, &verdict)?;
+            }
+            broken.push(seed);
+        }
+    }
+    println!(
+        "{missions} missions in {:.0} s: {serviced} serviced, {} broke a promise {:?}",
+        start.elapsed().as_secs_f64(),
+        broken.len(),
+        &broken[..broken.len().min(20)]
+    );
+    Ok(())
+}
+
+/// Tells the smallest storm that breaks the same promise.
+fn tell(scenario: &ValidScenario, storm: &Storm, verdict: &Verdict) -> Result<(), Box<dyn Error>> {
+    let Some(violation) = verdict.violations.first() else { return Ok(()) };
+    let property = violation.property;
+    let periods = violation.step + 2;
+    let fails = |storm: &Storm| {
+        ride(scenario, storm, periods).is_ok_and(|verdict| {
+            verdict.violations.iter().any(|violation| violation.property == property)
+        })
+    };
+    let smallest = shrink(storm, fails);
+    let verdict = ride(scenario, &smallest, periods)?;
+    println!("{} in {smallest:#?}", scenario.name);
+    for (step, event) in &verdict.events {
+        println!("k = {step:<6} {}", story::tell(event));
+    }
+    for violation in &verdict.violations {
+        println!("{violation}");
+    }
+    Ok(())
+}

@@ -1,0 +1,181 @@
+//! Storms by seed, kind by kind.
+
+use pleach_automaton::network::scenario::ValidScenario;
+use pleach_automaton::network::{Crash, Trouble};
+use pleach_automaton::node::{Partition, Weather};
+
+use super::Storm;
+
+/// A kind of storm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// Messages are lost with this probability, from the beginning or once the mission is under
+    /// way.
+    Loss {
+        /// The probability.
+        rate: f64,
+        /// Whether none is lost at the beginning.
+        later: bool,
+    },
+    /// One message of ten is late.
+    Delay,
+    /// One message of ten comes again later.
+    Copies,
+    /// Nothing gets over some links for a second at a time.
+    Silence,
+    /// Some robots are cut off for a while.
+    Partition,
+    /// A robot stops for good.
+    Crash,
+    /// A robot stops, and comes back having forgotten everything.
+    Restart,
+    /// A robot joins late.
+    Late,
+    /// Moves end somewhere else, by this share of a step.
+    Motion(f64),
+    /// Positions are measured with an error, this share of the radio's range.
+    Position(f64),
+    /// All that can happen to messages, at once.
+    Radio,
+    /// Everything at once.
+    Everything,
+}
+
+impl Kind {
+    /// The kinds, from gentle to hostile.
+    pub const ALL: &'static [Kind] = &[
+        Kind::Loss { rate: 0.01, later: false },
+        Kind::Loss { rate: 0.03, later: false },
+        Kind::Loss { rate: 0.1, later: false },
+        Kind::Loss { rate: 0.3, later: false },
+        Kind::Loss { rate: 0.1, later: true },
+        Kind::Loss { rate: 0.2, later: true },
+        Kind::Loss { rate: 0.3, later: true },
+        Kind::Loss { rate: 0.6, later: true },
+        Kind::Delay,
+        Kind::Copies,
+        Kind::Silence,
+        Kind::Partition,
+        Kind::Radio,
+        Kind::Crash,
+        Kind::Restart,
+        Kind::Late,
+        Kind::Motion(0.003),
+        Kind::Motion(0.3),
+        Kind::Position(0.001),
+        Kind::Position(0.003),
+        Kind::Everything,
+    ];
+
+    /// What it is called.
+    pub fn name(self) -> String {
+        match self {
+            Kind::Loss { rate, later: false } => format!("loss {}%", rate * 100.0),
+            Kind::Loss { rate, later: true } => format!("loss {}% later", rate * 100.0),
+            Kind::Motion(share) => format!("motion {}% of a step", share * 100.0),
+            Kind::Position(share) => format!("position {}% of u", share * 100.0),
+            other => format!("{other:?}").to_lowercase(),
+        }
+    }
+}
+
+/// Seconds after which faults that come later begin.
+const LATER: f64 = 20.0;
+
+/// A source of draws: SplitMix64.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        mixed ^ (mixed >> 31)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.next() >> 11) as f64 * (-53_f64).exp2())
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.next() % count.max(1) as u64) as usize
+    }
+}
+
+/// The storm of this kind and seed for a mission that lasts about so many seconds.
+pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> Storm {
+    let mut dice = Dice(seed.wrapping_mul(0xD1B5_4A32_D192_ED03) ^ duration.to_bits());
+    let robots = scenario.robot.len();
+    let (step, range) = (scenario.settings().step_radius, scenario.settings().link.max_range);
+    let mut storm = Storm { seed, ..Storm::default() };
+    let weather = &mut storm.weather;
+    match kind {
+        Kind::Loss { rate, later } => {
+            weather.loss = rate;
+            weather.begin = if later { LATER } else { 0.0 };
+        }
+        Kind::Delay => (weather.lateness, weather.longest_delay) = (0.1, 6),
+        Kind::Copies => (weather.copies, weather.longest_delay) = (0.1, 60),
+        Kind::Silence => weather.silence = 0.1,
+        Kind::Partition => weather.partitions = partitions(&mut dice, robots, duration),
+        Kind::Radio => *weather = foul(&mut dice, robots, duration),
+        Kind::Crash | Kind::Restart => {
+            storm.troubles = vec![crash(&mut dice, robots, duration, kind == Kind::Restart)];
+        }
+        Kind::Late => {
+            let joins = Some(dice.between(5.0, duration / 2.0));
+            storm.troubles = vec![(dice.below(robots), Trouble { joins, ..Trouble::default() })];
+        }
+        Kind::Motion(share) => {
+            let trouble = Trouble { motion_error: share * step, ..Trouble::default() };
+            storm.troubles = (0..robots).map(|robot| (robot, trouble.clone())).collect();
+        }
+        Kind::Position(share) => {
+            let trouble = Trouble { position_error: share * range, ..Trouble::default() };
+            storm.troubles = (0..robots).map(|robot| (robot, trouble.clone())).collect();
+        }
+        Kind::Everything => {
+            *weather = foul(&mut dice, robots, duration);
+            for _ in 0..1 + dice.below(3) {
+                let comes_back = dice.below(2) == 0;
+                let trouble = crash(&mut dice, robots, duration, comes_back);
+                if storm.troubles.iter().all(|(node, _)| *node != trouble.0) {
+                    storm.troubles.push(trouble);
+                }
+            }
+        }
+    }
+    storm
+}
+
+fn foul(dice: &mut Dice, robots: usize, duration: f64) -> Weather {
+    Weather {
+        loss: dice.between(0.0, 0.5),
+        silence: dice.between(0.0, 0.1),
+        lateness: dice.between(0.0, 0.2),
+        copies: dice.between(0.0, 0.2),
+        longest_delay: 1 + dice.below(100) as u64,
+        partitions: partitions(dice, robots, duration),
+        begin: 0.0,
+        end: None,
+        wired_from: None,
+    }
+}
+
+fn partitions(dice: &mut Dice, robots: usize, duration: f64) -> Vec<Partition> {
+    (0..1 + dice.below(3))
+        .map(|_| {
+            let begin = dice.between(0.0, duration);
+            let end = begin + dice.between(1.0, 40.0);
+            let side = (0..robots).filter(|_| dice.below(3) == 0).collect();
+            Partition { begin, end, side }
+        })
+        .collect()
+}
+
+fn crash(dice: &mut Dice, robots: usize, duration: f64, comes_back: bool) -> (usize, Trouble) {
+    let time = dice.between(1.0, duration);
+    let back = comes_back.then(|| time + dice.between(1.0, 60.0));
+    let crash = Crash { time, inputs: dice.below(400) as u32, back };
+    (dice.below(robots), Trouble { crash: Some(crash), ..Trouble::default() })
+}

@@ -1,0 +1,191 @@
+//! The judge of storms: what must hold whatever fails, on true positions.
+
+use pleach_automaton::network::record::Snapshot;
+use pleach_automaton::network::scenario::ValidScenario;
+use pleach_automaton::network::{Frail, Trouble};
+use pleach_automaton::node::Observed;
+use pleach_discrete::network::Role;
+
+use super::super::period::{self, Period};
+use super::super::property::Property;
+use super::super::{Limits, SLACK, Violation, instant, link, tree};
+use super::Storm;
+use crate::network::violation::Instant;
+
+/// Judges a mission, one control period after the other, and keeps the first violation of each
+/// property. Nodes that do not run are bodies, and nothing else.
+#[derive(Debug)]
+pub struct Judge {
+    limits: Limits,
+    /// Whether nodes stop in this storm, or are cut off: what flowed there is lost.
+    loses_nodes: bool,
+    previous: Option<Snapshot>,
+    violations: Vec<Violation>,
+    last_motion: usize,
+}
+
+impl Judge {
+    /// A judge that has seen nothing yet.
+    pub fn new(scenario: &ValidScenario, storm: &Storm) -> Self {
+        let is_down = |trouble: &Trouble| trouble.crash.is_some() || trouble.joins.is_some();
+        let loses_nodes = storm.troubles.iter().any(|(_, trouble)| is_down(trouble))
+            || !storm.weather.partitions.is_empty();
+        Judge {
+            limits: Limits::of(scenario),
+            loses_nodes,
+            previous: None,
+            violations: Vec::new(),
+            last_motion: 0,
+        }
+    }
+
+    /// The first violation of each property, in the order in which they were found.
+    pub fn into_violations(self) -> Vec<Violation> {
+        self.violations
+    }
+
+    /// The last control period in which a robot moved.
+    pub const fn last_motion(&self) -> usize {
+        self.last_motion
+    }
+
+    /// Robots are about to move.
+    pub fn observe(&mut self, snapshot: &Snapshot, nodes: &[Frail]) {
+        let seen = of_running(snapshot, nodes);
+        self.look_at_instant(&seen, nodes);
+        if let Some(before) = self.previous.take()
+            && let Ok(period) = Period::between(&before, &seen)
+        {
+            if before.positions != seen.positions {
+                self.last_motion = before.step;
+            }
+            self.look_at_period(&period);
+        }
+        self.previous = Some(seen);
+    }
+
+    fn find(&mut self, found: Result<(), Violation>) {
+        if let Err(violation) = found
+            && self.violations.iter().all(|known| known.property != violation.property)
+        {
+            self.violations.push(violation);
+        }
+    }
+
+    fn look_at_period(&mut self, period: &Period) {
+        let limits = self.limits.clone();
+        self.find(period::separation(period, &limits).map(drop));
+        self.find(period::clearance(period, &limits).map(drop));
+        self.find(period::load(period, &limits).map(drop));
+        self.find(period::tree_range(period, &limits));
+    }
+
+    fn look_at_instant(&mut self, seen: &Snapshot, nodes: &[Frail]) {
+        let limits = self.limits.clone();
+        self.find(instant::shares(seen, &limits));
+        if !self.loses_nodes {
+            self.find(relayed(seen, &limits));
+        }
+        self.find(rooted(seen));
+        self.find(led(seen, nodes));
+        self.find(held_once(seen, nodes));
+    }
+}
+
+/// The same, with the bodies of nodes that do not run and nothing else of them.
+fn of_running(snapshot: &Snapshot, nodes: &[Frail]) -> Snapshot {
+    let runs = |node: usize| nodes.get(node).is_some_and(Frail::is_running);
+    let mut seen = snapshot.clone();
+    seen.routes.retain(|route| runs(route.from) && runs(route.to));
+    seen.tree.retain(|&(child, parent)| runs(child) && runs(parent));
+    for (robot, role) in seen.roles.iter_mut().enumerate() {
+        if !runs(robot) {
+            *role = Role::Redundant;
+        }
+    }
+    seen
+}
+
+/// [`Property::Residual`]: a robot to which others send passes on all of it, and what is its own.
+fn relayed(seen: &Snapshot, limits: &Limits) -> Result<(), Violation> {
+    let residuals = link::residuals(&seen.routes, limits.rates());
+    let bound = limits.least_residual();
+    let is_sent_to = |robot| {
+        seen.routes.iter().any(|route| route.to == robot && route.share * route.reliability > SLACK)
+    };
+    let short = |&robot: &usize| residuals[robot] < bound - SLACK && is_sent_to(robot);
+    match (0..residuals.len()).find(short) {
+        None => Ok(()),
+        Some(robot) => Err(Instant::of(seen).violation(
+            Property::Residual,
+            &[robot],
+            (residuals[robot], bound),
+            format!("robot {robot} is sent more than it passes on: c = {:.6}", residuals[robot]),
+        )),
+    }
+}
+
+/// [`Property::RootedTree`]: the path of no robot up the tree leads back to it.
+fn rooted(seen: &Snapshot) -> Result<(), Violation> {
+    let mut parents = vec![None; seen.roles.len()];
+    let instant = Instant::of(seen);
+    if let Err(robot) = tree::parents_of(&seen.tree, &mut parents) {
+        let sentence = format!("robot {robot} has two parents in the tree");
+        return Err(instant.violation(Property::SingleParent, &[robot], (0.0, 1.0), sentence));
+    }
+    let returns = |robot: usize| {
+        let mut at = parents[robot];
+        for _ in 0..parents.len() {
+            let Some(node) = at else { return false };
+            at = parents.get(node).copied().flatten();
+        }
+        at.is_some()
+    };
+    match (0..parents.len()).find(|&robot| returns(robot)) {
+        None => Ok(()),
+        Some(robot) => {
+            let sentence = format!("the path of robot {robot} up the tree is a cycle");
+            Err(instant.violation(Property::RootedTree, &[robot], (0.0, 1.0), sentence))
+        }
+    }
+}
+
+/// [`Property::SingleLeader`]: no two robots lead to the same task.
+fn led(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
+    let mut announcements = Vec::new();
+    for (robot, node) in nodes.iter().enumerate().take(seen.roles.len()) {
+        if let Some(known) = node.member().view().robot().filter(|_| node.is_running()) {
+            let leads = seen.roles[robot] == Role::Leader;
+            announcements.extend(leads.then_some((known.current_task(), robot)));
+        }
+    }
+    announcements.sort_unstable();
+    let Some(pair) = announcements.windows(2).find(|pair| pair[0].0 == pair[1].0) else {
+        return Ok(());
+    };
+    let leaders = [pair[0].1, pair[1].1];
+    let sentence = format!("robots {leaders:?} lead");
+    Err(Instant::of(seen).violation(Property::SingleLeader, &leaders, (0.0, 1.0), sentence))
+}
+
+/// [`Property::Duties`]: no two robots count as holders of one fixed post. Of two that exchange
+/// their duties the one that has given its own does not.
+fn held_once(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
+    let mut held = Vec::new();
+    for (number, node) in nodes.iter().enumerate().filter(|(_, node)| node.is_running()) {
+        let Some(robot) = node.member().view().robot() else { continue };
+        let Some(post) = robot.duty().post().filter(|post| post.is_fixed()) else { continue };
+        if robot.taking().is_none() {
+            held.push((post.id, number));
+        }
+    }
+    held.sort_unstable();
+    match held.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        None => Ok(()),
+        Some(pair) => {
+            let robots = [pair[0].1, pair[1].1];
+            let sentence = format!("robots {robots:?} both hold post {}", pair[0].0.0);
+            Err(Instant::of(seen).violation(Property::Duties, &robots, (0.0, 1.0), sentence))
+        }
+    }
+}

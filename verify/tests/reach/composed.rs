@@ -1,0 +1,137 @@
+//! Questions about compositions, through their products.
+
+use pleach_automaton::composition::{Policy, ProductError};
+use pleach_automaton::{Automaton, Composition, Name, Record, from};
+use pleach_guards::{Interval, always};
+use pleach_verify::reach::{Answer, Effort, Forbidden, Model, Settings, verify};
+
+use super::support::{Named, boxed, enclosed, escape};
+
+/// A room that is heated from 18 on until 22, by a heater and a controller that sees the temperature
+/// and measures the time between two switches.
+fn house() -> Composition {
+    let [off, on, watching] = ["off", "on", "watching"].map(Name::new);
+    let [turn_on, turn_off] = ["turn on", "turn off"].map(Name::new);
+    let room = Record::new([("T", 20.0)]).unwrap();
+    let t = &room.coordinates()[0];
+    let heater: Named = Automaton::starting_in(off)
+        .initially(room.clone())
+        .flow(off, t.rate(-0.1 * t))
+        .flow(on, t.rate(5.0 - 0.1 * t))
+        .transition(from(off).on(turn_on).to(on).may(always()))
+        .transition(from(on).on(turn_off).to(off).may(always()))
+        .build()
+        .unwrap();
+    let reading = Record::new([("T", 20.0), ("clock", 0.0)]).unwrap();
+    let [seen, clock] = &reading.coordinates()[..] else { unreachable!() };
+    let controller: Named = Automaton::starting_in(watching)
+        .initially(reading.clone())
+        .flow(watching, clock.rate(1.0))
+        .transition(
+            from(watching)
+                .on(turn_on)
+                .to(watching)
+                .must(seen.at_most(18.0))
+                .then(clock.becomes(0.0)),
+        )
+        .transition(
+            from(watching)
+                .on(turn_off)
+                .to(watching)
+                .must(seen.at_least(22.0))
+                .then(clock.becomes(0.0)),
+        )
+        .build()
+        .unwrap();
+    Composition::builder()
+        .add("heater", &heater)
+        .add("controller", &controller)
+        .connect("heater.T", "controller.T")
+        .label("turn on")
+        .label("turn off")
+        .build()
+        .unwrap()
+}
+
+#[test]
+fn a_composition_stays_between_its_bounds() {
+    let product = house().product().unwrap();
+    let model = Model::of(&product).unwrap();
+    assert_eq!(model.variables(), house().variables());
+    let names: Vec<&str> = model.locations().iter().map(|place| place.name.as_str()).collect();
+    assert_eq!(names, ["off, watching", "on, watching"]);
+    let settings = Settings { horizon: 4.0, step: 0.02, ..Settings::default() };
+    let start = boxed(&[(19.0, 21.0), (0.0, 0.0)]);
+    let temperature = pleach_guards::variable(&model.variables()[0]);
+    let ask = |forbidden| {
+        let forbidden = [Forbidden::anywhere(forbidden)];
+        verify(
+            &product,
+            &[],
+            std::slice::from_ref(&start),
+            &forbidden,
+            &settings,
+            &Effort::default(),
+        )
+        .unwrap()
+    };
+    assert!(matches!(
+        ask(temperature.at_most(17.9) | temperature.at_least(22.1)),
+        Answer::Holds(_)
+    ));
+    assert!(matches!(ask(temperature.at_most(18.1)), Answer::Violated(_)));
+    let (_, enclosure) = enclosed(&product, &[], &start, &settings);
+    // A run of the composition itself, whose locations are those of its components.
+    let run = house().run_with(
+        pleach_automaton::Settings { policy: Policy::Late, ..Default::default() },
+        settings.horizon,
+    );
+    let run = run.unwrap();
+    assert!(!run.jumps().is_empty());
+    for interval in run.intervals() {
+        let parts = run.components().iter().zip(&interval.locations);
+        let parts: Vec<&str> =
+            parts.map(|(component, place)| component.locations[*place].as_ref()).collect();
+        let location = names.iter().position(|name| *name == parts.join(", ")).unwrap();
+        for sample in &interval.samples {
+            let segments = enclosure.visits.iter().filter(|visit| visit.location == location);
+            let mut segments = segments.flat_map(|visit| &visit.segments);
+            let is_inside = |side: &Interval, value: &f64| {
+                side.lower() - 1e-9 <= *value && *value <= side.upper() + 1e-9
+            };
+            assert!(segments.any(|segment| {
+                let sides = segment.set.hull().unwrap();
+                segment.time.lower() - 1e-9 <= sample.t
+                    && sample.t <= segment.time.upper() + 1e-9
+                    && sides.iter().zip(&sample.values).all(|(side, value)| is_inside(side, value))
+            }));
+        }
+    }
+}
+
+/// The product runs as the composition does.
+#[test]
+fn a_product_runs_like_its_composition() {
+    let product = house().product().unwrap();
+    let alone = Composition::builder().add("house", &product).build().unwrap();
+    let [one, other] = [house(), alone].map(|it| it.run(6.0).unwrap());
+    assert_eq!(one.jumps().len(), other.jumps().len());
+    for (one, other) in one.jumps().iter().zip(other.jumps()) {
+        assert!((one.at.t - other.at.t).abs() < 1e-9);
+    }
+    let model = Model::of(&product).unwrap();
+    let settings = Settings { horizon: 6.0, step: 0.02, ..Settings::default() };
+    let (_, enclosure) = enclosed(&product, &[], &boxed(&[(20.0, 20.0), (0.0, 0.0)]), &settings);
+    assert_eq!(escape(&model, &enclosure, &other, 1e-9), None);
+}
+
+#[test]
+fn functions_have_no_product() {
+    let only = Name::new("flow");
+    let state = Record::new([("x", 0.0)]).unwrap();
+    let field = pleach_automaton::Flow::field("rest", |state: &Record| state.clone());
+    let automaton: Named =
+        Automaton::starting_in(only).initially(state).flow(only, field).build().unwrap();
+    let composition = Composition::builder().add("it", &automaton).build().unwrap();
+    assert!(matches!(composition.product(), Err(ProductError::Function { .. })));
+}
