@@ -35,7 +35,7 @@ pub struct Trouble {
 pub struct Crash {
     /// When.
     pub time: f64,
-    /// After so many inputs at that time: in the midst of the messages of a control period.
+    /// After this many inputs at that time: in the midst of the messages of a control period.
     pub inputs: u32,
     /// When it restarts, having forgotten everything but its number; none if it never does.
     pub back: Option<f64>,
