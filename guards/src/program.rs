@@ -1,8 +1,8 @@
 //! Expressions and predicates compiled against a list of variables, for hot loops.
 //!
-//! [`Expression::evaluate`] asks its state for every variable by name. A loop that evaluates the
-//! same guard millions of times compiles it once against the list of names that says which place
-//! of a slice holds which variable, and from then on only reads that slice:
+//! [`Expression::evaluate`](crate::Expression::evaluate) asks its state for every variable by name.
+//! A loop that evaluates the same guard millions of times compiles it once against the list of names
+//! that says which place of a slice holds which variable, and from then on only reads that slice:
 //!
 //! ```
 //! use pleach_guards::variable;
@@ -39,7 +39,7 @@ use crate::valuation::{EvaluationError, Valuation};
 /// hand rarely need more than five; what is deeper allocates its stack.
 const SHALLOW: usize = 16;
 
-/// An expression compiled by [`Expression::compile`].
+/// An expression compiled by [`Expression::compile`](crate::Expression::compile).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     start: Operand,
@@ -98,7 +98,7 @@ enum Test {
 
 impl Program {
     /// The value on a slice ordered as the variables were when compiling: what
-    /// [`Expression::evaluate`] gives, and NaN where that is an error or `values` is too short.
+    /// [`Expression::evaluate`](crate::Expression::evaluate) gives, and NaN where that is an error or `values` is too short.
     pub fn evaluate(&self, values: &[f64]) -> f64 {
         self.run(|variable| values.get(variable).copied())
     }

@@ -27,9 +27,9 @@ impl Relation {
 }
 
 impl Verdict {
-    /// What [`always()`] says.
+    /// What [`always()`](crate::always) says.
     pub const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
-    /// What [`never()`] says.
+    /// What [`never()`](crate::never) says.
     pub const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
 
     /// The verdict on a proposition in `state`.
