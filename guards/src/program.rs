@@ -98,7 +98,8 @@ enum Test {
 
 impl Program {
     /// The value on a slice ordered as the variables were when compiling: what
-    /// [`Expression::evaluate`](crate::Expression::evaluate) gives, and NaN where that is an error or `values` is too short.
+    /// [`Expression::evaluate`](crate::Expression::evaluate) gives, and NaN where that is an error or
+    /// `values` is too short.
     pub fn evaluate(&self, values: &[f64]) -> f64 {
         self.run(|variable| values.get(variable).copied())
     }
