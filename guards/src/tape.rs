@@ -94,8 +94,8 @@ struct Instruction {
 }
 
 /// How many results are computed at once by an instruction abreast: what fits into the registers of
-/// every machine. Numbers are also copied so many at a time, because a register is filled late from memory
-/// that was written in smaller parts.
+/// every machine. Numbers are copied in groups of the same size: loading a register from memory that was
+/// just written in smaller parts stalls.
 const LANES: usize = 2;
 
 impl Action {
