@@ -105,6 +105,7 @@ fn drawn_scenarios() -> impl Iterator<Item = ValidScenario> {
 fn explored() -> (usize, Rows) {
     let all = QUICK.iter().map(|campaign| campaign.run().unwrap());
     let findings = all.fold(Findings::default(), Findings::and);
+    assert!(findings.failures.is_empty(), "{:?}", findings.failures);
     (findings.counts.configurations, findings.rows)
 }
 

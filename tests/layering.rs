@@ -31,6 +31,19 @@ impl Source {
         self.path.split('/').next().unwrap_or_default()
     }
 
+    /// The lines that borrow a field of this name to change it.
+    fn borrows_of(&self, field: &str) -> Vec<usize> {
+        let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
+        let borrows = |line: &str| {
+            line.split("&mut ").skip(1).any(|borrowed| {
+                let rest = borrowed.trim_start_matches(is_name);
+                let rest = rest.strip_prefix('.').and_then(|rest| rest.strip_prefix(field));
+                rest.is_some_and(|rest| !rest.starts_with(is_name))
+            })
+        };
+        self.lines.iter().filter(|(_, line)| borrows(line)).map(|(number, _)| *number).collect()
+    }
+
     /// The lines that contain one of `words`, as `path:line: text`.
     fn lines_with(&self, words: &[&str]) -> Vec<String> {
         let found = self.lines.iter().filter(|(_, line)| words.iter().any(|w| line.contains(w)));
@@ -181,15 +194,24 @@ fn nothing_but_resets_changes_where_an_automaton_stands() {
     assert!(fields.iter().all(|field| !field.contains("pub")), "they are private: {fields:?}");
     let changes: Vec<String> = fields
         .iter()
-        .flat_map(|field| {
-            let (moved, borrowed) = (format!(".{field} = "), format!("&mut self.{field}"));
-            [moved, format!("({borrowed},"), format!("({borrowed})")]
-        })
-        .chain(["= Current::new(", ".current_mut()"].map(str::to_owned))
+        .flat_map(|field| [format!(".{field} ="), format!(".{field}.clone_from(")])
+        .chain(
+            ["= Current::new(", "= Robot {", "current_mut(self)", ".current_mut()"]
+                .map(str::to_owned),
+        )
         .collect();
     let changes: Vec<&str> = changes.iter().map(String::as_str).collect();
-    let offences = network().flat_map(|source| source.lines_with(&changes)).collect();
-    assert_none(offences, "only resets change where an automaton stands");
+    let offences = network().flat_map(|source| source.lines_with(&changes));
+    let is_change = |offence: &String| !offence.contains(" == ");
+    assert_none(
+        offences.filter(is_change).collect(),
+        "only resets change where an automaton stands",
+    );
+    // It is borrowed to be changed in one place: the `current_mut` of its owner.
+    for field in &fields {
+        let borrowed = network().flat_map(|source| source.borrows_of(field)).count();
+        assert!(borrowed <= 1, "`{field}` is borrowed to be changed in {borrowed} places");
+    }
     let callers: Vec<&Source> = sources
         .iter()
         .filter(|source| !source.lines_with(&[".current_mut()"]).is_empty())

@@ -2,6 +2,7 @@
 
 mod common;
 
+mod adversity;
 mod bouncing_ball;
 mod building;
 mod compile_fail;
@@ -13,6 +14,7 @@ mod error_messages;
 mod faulty_models;
 mod guarantees;
 mod literature;
+mod machines;
 mod many_components;
 mod messages;
 mod models;

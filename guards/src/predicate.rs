@@ -1,6 +1,5 @@
 //! Comparisons of expressions and their logic, with verdict and margin.
 
-use std::collections::BTreeSet;
 use std::ops;
 use std::sync::Arc;
 
@@ -10,6 +9,11 @@ use crate::valuation::{EvaluationError, Valuation};
 
 #[cfg(any(kani, test))]
 mod proofs;
+
+mod names;
+mod verdict;
+
+pub use verdict::Verdict;
 
 /// A statement about a state, as data: the one guard type of the project.
 ///
@@ -69,16 +73,6 @@ pub enum Relation {
     AtLeast,
     /// a > b
     MoreThan,
-}
-
-/// What a predicate says about one state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Verdict {
-    /// How far the state is from the other verdict, in the unit of what is compared: positive
-    /// where the predicate holds, negative where it does not, 0 on the boundary. Never NaN.
-    pub margin: f64,
-    /// Whether the predicate holds; on the boundary, its strictness decides.
-    pub holds: bool,
 }
 
 /// The predicate that every state satisfies, with margin ∞.
@@ -260,73 +254,6 @@ impl Predicate {
     pub fn margin(&self, state: &(impl Valuation + ?Sized)) -> Result<f64, EvaluationError> {
         self.evaluate(state).map(|verdict| verdict.margin)
     }
-
-    /// The names of the variables that occur, in alphabetical order; those that a function reads
-    /// are not known.
-    pub fn variables(&self) -> BTreeSet<&str> {
-        let mut names = BTreeSet::new();
-        self.collect_variables(&mut names);
-        names
-    }
-
-    fn collect_variables<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
-        match self {
-            Predicate::Comparison(comparison) => {
-                comparison.left.collect_variables(names);
-                comparison.right.collect_variables(names);
-            }
-            Predicate::Not(inner) => inner.collect_variables(names),
-            Predicate::All(parts) | Predicate::Any(parts) => {
-                parts.iter().for_each(|part| part.collect_variables(names));
-            }
-            Predicate::Proposition(_) | Predicate::Function(_) => {}
-        }
-    }
-
-    /// The names of the propositions that occur, in alphabetical order.
-    pub fn propositions(&self) -> BTreeSet<&str> {
-        let mut names = BTreeSet::new();
-        self.collect_propositions(&mut names);
-        names
-    }
-
-    fn collect_propositions<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
-        match self {
-            Predicate::Proposition(name) => {
-                names.insert(name);
-            }
-            Predicate::Not(inner) => inner.collect_propositions(names),
-            Predicate::All(parts) | Predicate::Any(parts) => {
-                parts.iter().for_each(|part| part.collect_propositions(names));
-            }
-            Predicate::Comparison(_) | Predicate::Function(_) => {}
-        }
-    }
-
-    /// The names of the functions that occur, in alphabetical order: what no analysis can check.
-    pub fn functions(&self) -> BTreeSet<&str> {
-        let mut names = BTreeSet::new();
-        self.collect_functions(&mut names);
-        names
-    }
-
-    /// Whether no function occurs, so that the whole predicate is data.
-    pub fn is_data(&self) -> bool {
-        self.functions().is_empty()
-    }
-
-    fn collect_functions<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
-        match self {
-            Predicate::Comparison(_) | Predicate::Proposition(_) => {}
-            Predicate::Not(inner) => inner.collect_functions(names),
-            Predicate::All(parts) | Predicate::Any(parts) => {
-                parts.iter().for_each(|part| part.collect_functions(names));
-            }
-            Predicate::Function(function) => {
-                names.insert(function.name());
-            }
-        }
-    }
 }
 
 impl Comparison {
@@ -334,64 +261,6 @@ impl Comparison {
     pub fn evaluate(&self, state: &(impl Valuation + ?Sized)) -> Result<Verdict, EvaluationError> {
         let (left, right) = (self.left.evaluate(state)?, self.right.evaluate(state)?);
         Ok(self.relation.judge(left, right))
-    }
-}
-
-impl Relation {
-    /// Equal sides have margin 0 also at infinity, where a difference would not be a number.
-    pub(crate) fn judge(self, left: f64, right: f64) -> Verdict {
-        let slack = if left == right { 0.0 } else { right - left };
-        match self {
-            Relation::AtMost => Verdict { margin: slack, holds: left <= right },
-            Relation::LessThan => Verdict { margin: slack, holds: left < right },
-            Relation::AtLeast => Verdict { margin: -slack, holds: left >= right },
-            Relation::MoreThan => Verdict { margin: -slack, holds: left > right },
-        }
-    }
-}
-
-impl Verdict {
-    /// What [`always()`] says.
-    pub const ALWAYS: Verdict = Verdict { margin: f64::INFINITY, holds: true };
-    /// What [`never()`] says.
-    pub const NEVER: Verdict = Verdict { margin: f64::NEG_INFINITY, holds: false };
-
-    /// The verdict on a proposition in `state`.
-    pub(crate) fn of(
-        proposition: &str,
-        state: &(impl Valuation + ?Sized),
-    ) -> Result<Verdict, EvaluationError> {
-        match state.truth(proposition) {
-            Some(true) => Ok(Verdict::ALWAYS),
-            Some(false) => Ok(Verdict::NEVER),
-            None => {
-                Err(EvaluationError::UnknownProposition { proposition: proposition.to_owned() })
-            }
-        }
-    }
-
-    /// Whether margin and verdict tell the same: a positive margin says that the predicate holds,
-    /// a negative one that it does not, and NaN says nothing.
-    pub fn is_consistent(self) -> bool {
-        if self.holds { self.margin >= 0.0 } else { self.margin <= 0.0 }
-    }
-
-    /// The verdict on a conjunction of which this and `other` are the parts.
-    #[must_use]
-    pub fn and(self, other: Verdict) -> Verdict {
-        Verdict { margin: self.margin.min(other.margin), holds: self.holds && other.holds }
-    }
-
-    /// The verdict on a disjunction of which this and `other` are the parts.
-    #[must_use]
-    pub fn or(self, other: Verdict) -> Verdict {
-        Verdict { margin: self.margin.max(other.margin), holds: self.holds || other.holds }
-    }
-
-    /// The verdict on the opposite.
-    #[must_use]
-    pub fn opposite(self) -> Verdict {
-        Verdict { margin: -self.margin, holds: !self.holds }
     }
 }
 

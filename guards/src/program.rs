@@ -1,8 +1,8 @@
 //! Expressions and predicates compiled against a list of variables, for hot loops.
 //!
-//! [`Expression::evaluate`] asks its state for every variable by name. A loop that evaluates the
-//! same guard millions of times compiles it once against the list of names that says which place
-//! of a slice holds which variable, and from then on only reads that slice:
+//! [`Expression::evaluate`](crate::Expression::evaluate) asks its state for every variable by name.
+//! A loop that evaluates the same guard millions of times compiles it once against the list of names
+//! that says which place of a slice holds which variable, and from then on only reads that slice:
 //!
 //! ```
 //! use pleach_guards::variable;
@@ -23,11 +23,12 @@
 //! The compiled form does the same operations in the same order, so that its results are those of
 //! the expression bit for bit. Operations on constants alone are done while compiling.
 
+mod compiler;
+
 use std::fmt;
 use std::sync::Arc;
 
-use crate::expression::{BinaryOperator, Choice, Expression, UnaryOperator};
-use crate::fold::Operands;
+use crate::expression::{BinaryOperator, Choice, UnaryOperator};
 use crate::function::NamedFunction;
 use crate::operator::raise;
 use crate::predicate::{Comparison, Predicate, Relation, Verdict};
@@ -38,7 +39,7 @@ use crate::valuation::{EvaluationError, Valuation};
 /// hand rarely need more than five; what is deeper allocates its stack.
 const SHALLOW: usize = 16;
 
-/// An expression compiled by [`Expression::compile`].
+/// An expression compiled by [`Expression::compile`](crate::Expression::compile).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     start: Operand,
@@ -95,25 +96,10 @@ enum Test {
     Function(NamedFunction),
 }
 
-impl Expression {
-    /// The expression as a program on slices in which place *i* holds the value of `variables[i]`;
-    /// of a name that is listed twice, the first place counts.
-    ///
-    /// # Errors
-    ///
-    /// [`EvaluationError::UnknownVariable`] if a variable of the expression is not listed.
-    pub fn compile(&self, variables: &[impl AsRef<str>]) -> Result<Program, EvaluationError> {
-        let mut compiler = Compiler { variables, tables: Vec::new() };
-        let code = self.fold(&mut |part, operands| compiler.part(part, operands))?;
-        let Code { start, instructions, depth } = code.unfolded();
-        let (instructions, tables) = (instructions.into(), compiler.tables.into());
-        Ok(Program { start, instructions, tables, depth })
-    }
-}
-
 impl Program {
     /// The value on a slice ordered as the variables were when compiling: what
-    /// [`Expression::evaluate`] gives, and NaN where that is an error or `values` is too short.
+    /// [`Expression::evaluate`](crate::Expression::evaluate) gives, and NaN where that is an error or
+    /// `values` is too short.
     pub fn evaluate(&self, values: &[f64]) -> f64 {
         self.run(|variable| values.get(variable).copied())
     }
@@ -166,128 +152,6 @@ impl Program {
             };
         }
         current
-    }
-}
-
-struct Compiler<'a, N> {
-    variables: &'a [N],
-    tables: Vec<Table>,
-}
-
-/// What a part of an expression is compiled to.
-enum Piece {
-    /// What needs no instruction of its own: the program of that part has just a start.
-    Operand(Operand),
-    Code(Code),
-}
-
-/// A program in the making.
-struct Code {
-    start: Operand,
-    instructions: Vec<Instruction>,
-    depth: usize,
-}
-
-impl Code {
-    fn then(mut self, instruction: Instruction) -> Piece {
-        self.instructions.push(instruction);
-        Piece::Code(self)
-    }
-
-    /// Both programs after one another; what the first computes is on a stack of this height, above
-    /// what it left there itself, while the second runs.
-    fn before(mut self, other: Code, height: usize) -> Code {
-        self.instructions.push(Instruction::Load(other.start));
-        self.instructions.extend(other.instructions);
-        self.depth = self.depth.max(height + 1 + other.depth);
-        self
-    }
-}
-
-impl Piece {
-    fn unfolded(self) -> Code {
-        match self {
-            Piece::Operand(start) => Code { start, instructions: Vec::new(), depth: 0 },
-            Piece::Code(code) => code,
-        }
-    }
-}
-
-impl<N: AsRef<str>> Compiler<'_, N> {
-    /// The program of a part, given those of its operands. Operations on constants are done.
-    fn part(
-        &mut self,
-        part: &Expression,
-        operands: Operands<Piece>,
-    ) -> Result<Piece, EvaluationError> {
-        if let Some(value) = folded(part, &operands) {
-            return Ok(Piece::Operand(Operand::Constant(value)));
-        }
-        Ok(match (part, operands) {
-            (Expression::Variable(name), _) => Piece::Operand(Operand::Variable(self.place(name)?)),
-            (Expression::Unary(operator, _), Operands::One(operand)) => {
-                operand.unfolded().then(Instruction::Unary(*operator))
-            }
-            (Expression::Power(_, exponent), Operands::One(base)) => {
-                base.unfolded().then(Instruction::Power(*exponent))
-            }
-            (Expression::Lookup(table, _), Operands::One(place)) => {
-                self.tables.push(table.clone());
-                place.unfolded().then(Instruction::Lookup(self.tables.len() - 1))
-            }
-            (Expression::Binary(operator, ..), Operands::Two(left, right)) => {
-                binary(*operator, left, right)
-            }
-            (Expression::Choice(choice), Operands::Four(parts)) => {
-                let [left, right, then, otherwise] = parts.map(Piece::unfolded);
-                let both = left.before(right, 0).before(then, 1).before(otherwise, 2);
-                both.then(Instruction::Select(choice.condition.relation))
-            }
-            // No part has other operands than its own.
-            _ => Piece::Operand(Operand::Constant(f64::NAN)),
-        })
-    }
-
-    fn place(&self, name: &str) -> Result<usize, EvaluationError> {
-        self.variables
-            .iter()
-            .position(|listed| listed.as_ref() == name)
-            .ok_or_else(|| EvaluationError::UnknownVariable { variable: name.to_string() })
-    }
-}
-
-/// The value of an operation on constants.
-fn folded(part: &Expression, operands: &Operands<Piece>) -> Option<f64> {
-    let constant = |piece: &Piece| match piece {
-        Piece::Operand(Operand::Constant(value)) => Some(*value),
-        _ => None,
-    };
-    let all = operands.listed().into_iter().flatten().all(|piece| constant(piece).is_some());
-    let values = all.then(|| operands.map_ref(|piece| constant(piece).unwrap_or(f64::NAN)))?;
-    part.computed(values)
-}
-
-fn binary(operator: BinaryOperator, left: Piece, right: Piece) -> Piece {
-    match (operator, left, right) {
-        (
-            BinaryOperator::Product,
-            Piece::Operand(Operand::Variable(variable)),
-            Piece::Operand(Operand::Constant(factor)),
-        )
-        | (
-            BinaryOperator::Product,
-            Piece::Operand(Operand::Constant(factor)),
-            Piece::Operand(Operand::Variable(variable)),
-        ) => Piece::Operand(Operand::Scaled(factor, variable)),
-        (_, left, Piece::Operand(right)) => {
-            left.unfolded().then(Instruction::WithRight(operator, right))
-        }
-        (_, Piece::Operand(left), right) => {
-            right.unfolded().then(Instruction::WithLeft(operator, left))
-        }
-        (_, left, right) => {
-            left.unfolded().before(right.unfolded(), 0).then(Instruction::Binary(operator))
-        }
     }
 }
 
@@ -418,7 +282,7 @@ impl Test {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::expression::{constant, variable};
+    use crate::expression::{Expression, constant, variable};
 
     const NAMES: [&str; 3] = ["x", "y", "z"];
 

@@ -43,8 +43,15 @@ pub struct Tape {
     computed: usize,
     instructions: Vec<Instruction>,
     tables: Vec<Table>,
-    /// The places of the results.
-    results: Vec<u32>,
+    /// Where the results are, in order.
+    results: Vec<Places>,
+}
+
+/// Places that follow each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Places {
+    first: u32,
+    count: u32,
 }
 
 /// What an instruction does to its operands.
@@ -60,6 +67,8 @@ enum Action {
     ProductLess,
     /// c − a · b, rounded twice.
     LessProduct,
+    /// −a
+    Opposite,
     Root,
     Unary(UnaryOperator),
     Binary(BinaryOperator),
@@ -84,14 +93,16 @@ struct Instruction {
     operands: [u32; 4],
 }
 
-/// How many results are computed at once by an instruction abreast.
-const LANES: usize = 4;
+/// How many results are computed at once by an instruction abreast: what fits into the registers of
+/// every machine. Numbers are copied in groups of the same size: loading a register from memory that was
+/// just written in smaller parts stalls.
+const LANES: usize = 2;
 
 impl Action {
     /// How many operands it needs.
     fn operands(self) -> usize {
         match self {
-            Action::Root | Action::Unary(_) | Action::Lookup(_) => 1,
+            Action::Opposite | Action::Root | Action::Unary(_) | Action::Lookup(_) => 1,
             Action::Sum | Action::Difference | Action::Product | Action::Quotient => 2,
             Action::Binary(_) | Action::Power => 2,
             Action::ProductSum | Action::ProductLess | Action::LessProduct => 3,
@@ -110,6 +121,7 @@ impl Action {
                 | Action::ProductSum
                 | Action::ProductLess
                 | Action::LessProduct
+                | Action::Opposite
         )
     }
 }
@@ -149,7 +161,7 @@ impl Tape {
     #[inline]
     pub fn evaluate(&self, values: &[f64], places: &mut [f64], results: &mut [f64]) {
         let given = self.variables.min(values.len());
-        places[..given].copy_from_slice(&values[..given]);
+        copy(&values[..given], &mut places[..given]);
         places[given..self.variables].fill(f64::NAN);
         for instruction in &self.instructions {
             if instruction.rows == 0 {
@@ -158,8 +170,11 @@ impl Tape {
                 abreast(instruction, places);
             }
         }
-        for (result, &place) in results.iter_mut().zip(&self.results) {
-            *result = places[place as usize];
+        let mut rest = results;
+        for Places { first, count } in &self.results {
+            let (next, later) = rest.split_at_mut((*count as usize).min(rest.len()));
+            copy(&places[*first as usize..][..next.len()], next);
+            rest = later;
         }
     }
 
@@ -175,7 +190,7 @@ impl Tape {
             Action::ProductLess => at(0) * at(1) - at(2),
             Action::LessProduct => at(2) - at(0) * at(1),
             Action::Root => at(0).sqrt(),
-            Action::Unary(UnaryOperator::Negation) => -at(0),
+            Action::Opposite => -at(0),
             Action::Unary(operator) => operator.apply(at(0)),
             Action::Binary(operator) => operator.apply(at(0), at(1)),
             Action::Power => raise(at(0), at(1)),
@@ -203,7 +218,21 @@ fn abreast(instruction: &Instruction, places: &mut [f64]) {
         Action::ProductSum => three(new, row(0), row(1), row(2), |a, b, c| a * b + c),
         Action::ProductLess => three(new, row(0), row(1), row(2), |a, b, c| a * b - c),
         Action::LessProduct => three(new, row(0), row(1), row(2), |a, b, c| c - a * b),
+        Action::Opposite => two(new, row(0), row(0), |a, _| -a),
         _ => {}
+    }
+}
+
+/// Copies numbers into a slice of the same length.
+#[inline]
+fn copy(from: &[f64], to: &mut [f64]) {
+    let (rows, rest) = from.as_chunks::<LANES>();
+    let (new, last) = to.as_chunks_mut::<LANES>();
+    for (new, row) in new.iter_mut().zip(rows) {
+        *new = std::array::from_fn(|lane| row[lane]);
+    }
+    if let ([new], [value]) = (last, rest) {
+        *new = *value;
     }
 }
 

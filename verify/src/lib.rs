@@ -7,6 +7,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may panic"))]
 
+mod draws;
 pub mod network;
 pub mod reach;
 pub mod temporal;

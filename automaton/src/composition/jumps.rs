@@ -215,7 +215,9 @@ impl Component {
                             within([lower, upper], share())
                         }
                     };
-                    if new.is_nan() {
+                    // Infinite values come from infinite ones only.
+                    let overflows = || self.slots.iter().all(|&slot| before[slot].is_finite());
+                    if new.is_nan() || new.is_infinite() && overflows() {
                         let expression =
                             format!("the new {}", self.blueprint.coordinates[*coordinate]);
                         return Err(EvaluationError::NotANumber { expression });

@@ -159,6 +159,9 @@ impl<'a> Solver<'a> {
         };
         let piece = self.complete(curved);
         let piece = if self.field.has_solutions() { self.fitted(&piece) } else { piece };
+        if self.overflows(&piece) {
+            return Err("the state grows beyond the largest number".to_owned());
+        }
         let bounded = self.check_rates(&piece);
         let end = bounded.as_ref().err().map_or(piece.end(), |(singularity, _)| *singularity);
         let progress = self.check_progress(&piece);
@@ -169,6 +172,16 @@ impl<'a> Solver<'a> {
         }
         bounded.map_err(|(_, reason)| reason)?;
         progress
+    }
+
+    /// Whether a variable that began with a finite value, or its rate, may have none in the piece.
+    fn overflows(&self, piece: &Piece) -> bool {
+        let size = |(power, coefficient): (usize, &f64)| (power + 1) as f64 * coefficient.abs();
+        let is_finite = |place: usize| {
+            let sizes = piece.coefficients(place).iter().enumerate().map(size);
+            sizes.sum::<f64>().is_finite() && piece.error(place).is_finite()
+        };
+        (0..piece.dimension()).any(|place| self.field.start[place].is_finite() && !is_finite(place))
     }
 
     /// The piece with all variables, given that of the curved ones.

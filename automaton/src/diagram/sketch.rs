@@ -112,7 +112,9 @@ impl Mode {
         let mut lines = vec![self.name.to_owned()];
         lines.extend(self.flow.iter().cloned());
         lines.extend(self.invariant.iter().map(|invariant| format!("while {invariant}")));
-        lines.extend(self.commands.iter().map(|(short, _)| short.clone()));
+        lines.extend(self.commands.iter().enumerate().map(|(number, (short, _))| {
+            if number == 0 { short.clone() } else { format!("else {short}") }
+        }));
         lines
     }
 }

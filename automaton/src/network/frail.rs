@@ -35,7 +35,7 @@ pub struct Trouble {
 pub struct Crash {
     /// When.
     pub time: f64,
-    /// After so many inputs at that time: in the midst of the messages of a control period.
+    /// After this many inputs at that time: in the midst of the messages of a control period.
     pub inputs: u32,
     /// When it restarts, having forgotten everything but its number; none if it never does.
     pub back: Option<f64>,
@@ -57,8 +57,7 @@ pub struct Frail {
     time: f64,
     period: f64,
     inputs: u32,
-    /// What the robot believed when its move began, and what disturbs the move.
-    believed: Point,
+    /// By how much the move that is under way ends elsewhere.
     disturbance: Option<Vector>,
 }
 
@@ -98,7 +97,6 @@ impl Frail {
             time: 0.0,
             period,
             inputs: 0,
-            believed: place,
             disturbance: None,
             trouble,
         }
@@ -114,17 +112,12 @@ impl Frail {
         self.state == State::Running
     }
 
-    /// Whether it will never run again.
-    pub fn is_gone(&self) -> bool {
-        self.state == State::Gone
-    }
-
     fn is_at(&self, time: f64) -> bool {
         self.time >= time - SAME * self.period
     }
 
-    /// Stops the node if its time has come.
-    fn suffer(&mut self) {
+    /// Stops the node if the time of its crash has come.
+    fn crash_if_due(&mut self) {
         let Some(crash) = self.trouble.crash.filter(|crash| self.is_at(crash.time)) else { return };
         if self.state != State::Running || self.inputs < crash.inputs {
             self.inputs += 1;
@@ -140,7 +133,7 @@ impl Frail {
     fn begin(&mut self) {
         self.state = State::Running;
         self.member = (self.maker)(self.true_position);
-        (self.believed, self.disturbance) = (self.true_position, None);
+        self.disturbance = None;
     }
 
     fn is_exact(&self) -> bool {
@@ -163,8 +156,7 @@ impl Frail {
         }
         self.disturbance = None;
         let error = self.somewhere(self.trouble.position_error);
-        self.believed = self.true_position + error;
-        Some(self.believed)
+        Some(self.true_position + error)
     }
 }
 
@@ -190,7 +182,7 @@ impl Node for Frail {
         {
             self.begin();
         }
-        self.suffer();
+        self.crash_if_due();
         if self.state != State::Running {
             return match input {
                 // What a person asks of the user is not forgotten.

@@ -109,7 +109,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     ///
     /// The error of the node.
     pub fn sense(&mut self, node: NodeId, sensed: N::Sense) -> Result<(), N::Error> {
-        self.look_round();
+        self.update_medium();
         if let Some(known) = self.nodes.get_mut(node) {
             known.step(Input::Sensed(sensed), self.outputs.now_of(node))?;
             self.seats[node].ask(known);
@@ -124,7 +124,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     }
 
     /// Tells the medium where the nodes are, if time has passed.
-    fn look_round(&mut self) {
+    fn update_medium(&mut self) {
         if std::mem::take(&mut self.has_moved) {
             self.bodies.clear();
             self.bodies.extend(self.nodes.iter().map(Node::body));
@@ -190,8 +190,13 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     fn record(&mut self, round: &mut Round<'_, NodeJump>, jump: NodeJump) {
         round.jumped_by(jump, || {
             let count = self.seats.len();
-            let who: Box<[NodeId]> = (0..count).filter(|&id| self.seats[id].takes_part).collect();
-            if who.len() == count { Participants::All } else { Participants::Some(who) }
+            let participants: Box<[NodeId]> =
+                (0..count).filter(|&id| self.seats[id].takes_part).collect();
+            if participants.len() == count {
+                Participants::All
+            } else {
+                Participants::Some(participants)
+            }
         });
         self.seats.iter_mut().for_each(|seat| seat.takes_part = false);
     }
@@ -239,7 +244,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
     }
 
     fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), N::Error> {
-        self.look_round();
+        self.update_medium();
         let arrives = self.medium.time_to_arrival().is_some_and(|wait| wait <= 0.0);
         if arrives && self.deliver()? {
             self.send();
@@ -441,5 +446,44 @@ mod tests {
         assert_eq!(ensemble.drain_reports().collect::<Vec<_>>(), [(0, 4), (2, 4)]);
         assert_eq!(ensemble.view(1), Some(&[][..]));
         assert_eq!(ensemble.view(3), None);
+    }
+
+    /// Burns for one second, its invariant, and is never put out.
+    struct Fuse(f64);
+
+    impl Node for Fuse {
+        type Message = ();
+        type Sense = ();
+        type Report = ();
+        type Body = ();
+        type Error = f64;
+
+        fn step(&mut self, _: Input<'_, (), ()>, _: &mut Outputs<(), ()>) -> Result<(), f64> {
+            Ok(())
+        }
+
+        fn time_to_tick(&self) -> Option<f64> {
+            None
+        }
+
+        fn flow(&mut self, duration: f64) {
+            self.0 += duration;
+        }
+
+        fn check_invariant(&self) -> Result<(), f64> {
+            if self.0 <= 1.0 { Ok(()) } else { Err(self.0) }
+        }
+
+        fn body(&self) {}
+    }
+
+    #[test]
+    fn a_flow_that_leaves_an_invariant_ends_the_run() {
+        let run = |horizon| {
+            let mut ensemble = Ensemble::new(vec![Fuse(0.0), Fuse(-1.0)], FullMesh::new());
+            Executor::new(horizon, 10).unwrap().run(&mut ensemble, &mut ())
+        };
+        assert!(run(1.0).is_ok());
+        assert_eq!(run(1.5).unwrap_err(), 1.5);
     }
 }

@@ -16,7 +16,7 @@ pub struct Weather {
     pub silence: f64,
     /// The probability that a message is late.
     pub lateness: f64,
-    /// A late message arrives after so many deliveries at most; others overtake it meanwhile.
+    /// A late message arrives after at most this many deliveries; others overtake it meanwhile.
     pub longest_delay: u64,
     /// The probability that a message that arrives does so once more, late.
     pub copies: f64,

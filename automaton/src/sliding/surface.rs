@@ -1,16 +1,18 @@
 //! The surface between two locations, and what the flows of both do on it.
 
+mod forms;
+
 use pleach_discrete::{Event, Location};
-use pleach_guards::expression::{BinaryOperator, UnaryOperator};
 use pleach_guards::{
-    Comparison, Expression, Predicate, Relation, Substitution, always, constant, maximum, never,
-    not,
+    Comparison, Expression, Predicate, Substitution, always, constant, maximum, never, not,
 };
 
 use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
 use crate::flow::{Flow, Rate};
 use crate::reset::{Assignment, NewValue, Reset};
+
+use forms::{are_opposite, conjuncts, margin, negated, plus, times, without};
 
 /// A surface σ = 0 between two locations.
 pub(super) struct Surface<L, S> {
@@ -46,8 +48,6 @@ const ON_IT: f64 = 1e-9;
 /// A state that leaves a surface is put beside it by this, relative to the same, so that rounding does
 /// not put it on the other side.
 const BESIDE: f64 = 1e-12;
-/// Coefficients of two comparisons that differ by rounding are the same.
-const ROUNDING: f64 = 1e-12;
 
 impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     /// The surfaces between the locations, in the order of the rows.
@@ -335,90 +335,5 @@ impl<L: Location, S: Coordinates> Surface<L, S> {
     fn is_its_own(&self, one: &Comparison) -> bool {
         let turned = Comparison { relation: one.relation.opposite(), ..one.clone() };
         [one, &turned].into_iter().any(|one| are_opposite(one, &self.comparison, &self.numbers))
-    }
-}
-
-/// What is positive where the comparison holds.
-fn margin(comparison: &Comparison) -> Expression {
-    let Comparison { left, relation, right } = comparison;
-    let is_lower = matches!(relation, Relation::AtMost | Relation::LessThan);
-    let (more, less) = if is_lower { (right, left) } else { (left, right) };
-    if *less == constant(0.0) {
-        more.clone()
-    } else if *more == constant(0.0) {
-        negated(less)
-    } else {
-        more - less
-    }
-}
-
-/// Whether the two compare the same numbers the other way round.
-fn are_opposite(one: &Comparison, other: &Comparison, numbers: &Substitution) -> bool {
-    let is_lower = |one: &Comparison| matches!(one.relation, Relation::AtMost | Relation::LessThan);
-    let is_turned = is_lower(one) != is_lower(other);
-    if is_turned && one.left == other.left && one.right == other.right
-        || !is_turned && one.left == other.right && one.right == other.left
-    {
-        return true;
-    }
-    let [first, second] = [one, other].map(margin);
-    let forms = [first, second].map(|margin| margin.substitute(numbers).linear_form());
-    let [Some(first), Some(second)] = forms else { return false };
-    let Some((name, coefficient)) = first.coefficients().next() else { return false };
-    let Some(ratio) = second.coefficient(name).map(|other| -other / coefficient) else {
-        return false;
-    };
-    let agree = |one: f64, other: f64| (one * ratio + other).abs() <= ROUNDING * other.abs();
-    let same =
-        |name: &str, value: f64| second.coefficient(name).is_some_and(|it| agree(value, *it));
-    ratio > 0.0
-        && first.coefficients().count() == second.coefficients().count()
-        && first.coefficients().all(|(name, value)| same(name, *value))
-        && agree(*first.constant(), *second.constant())
-}
-
-fn conjuncts(predicate: &Predicate) -> Vec<Predicate> {
-    match predicate {
-        Predicate::All(parts) => parts.iter().flat_map(conjuncts).collect(),
-        other => vec![other.clone()],
-    }
-}
-
-fn without(mut parts: Vec<Predicate>, place: usize) -> Predicate {
-    parts.remove(place);
-    Predicate::all(parts)
-}
-
-fn negated(expression: &Expression) -> Expression {
-    match expression {
-        Expression::Constant(value) => constant(-value),
-        Expression::Binary(BinaryOperator::Difference, left, right) => &**right - &**left,
-        Expression::Unary(UnaryOperator::Negation, operand) => (**operand).clone(),
-        other => -other,
-    }
-}
-
-fn plus(left: Expression, right: Expression) -> Expression {
-    if left == constant(0.0) {
-        right
-    } else if right == constant(0.0) {
-        left
-    } else {
-        left + right
-    }
-}
-
-fn times(left: &Expression, right: &Expression) -> Expression {
-    let (zero, one) = (constant(0.0), constant(1.0));
-    if *left == zero || *right == zero {
-        zero
-    } else if *left == one {
-        right.clone()
-    } else if *right == one {
-        left.clone()
-    } else if *left == constant(-1.0) {
-        negated(right)
-    } else {
-        left * right
     }
 }

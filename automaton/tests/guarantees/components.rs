@@ -1,10 +1,12 @@
 //! What happens in one component is no matter for others.
 
-use pleach_automaton::{Automaton, Composition, Limit, Policy, Reason, Settings, from};
+use pleach_automaton::{
+    Accumulation, Automaton, Composition, Limit, Policy, Reason, Settings, from,
+};
 
 use super::Cue::{Go, Rest};
 use super::Place::{Here, There};
-use super::{Machine, One, ball_and_table, built, metronome, ramp, run, times, x};
+use super::{Body, Machine, One, ball_and_table, built, metronome, ramp, run, times, x};
 
 #[test]
 fn what_happens_elsewhere_changes_nothing() {
@@ -93,4 +95,41 @@ fn an_event_costs_the_same_in_a_crowd() {
         // Powers of two leave a factor of 2, and so do the flows that the horizon cuts.
         assert!(of_each <= 4.0 * one, "{count}: {of_each}, of one: {one}");
     }
+}
+
+/// The pieces and spans looked at for a bounce, with this many bounces before the horizon.
+fn steps_per_bounce(bounces: u32) -> f64 {
+    let Body { h, v, .. } = Body::coordinates();
+    let ball = built(
+        Automaton::starting_in(Here)
+            .initially(Body { h: 1.0, v: 0.0, clock: 0.0 })
+            .flow(Here, [h.rate(&v), v.rate(-2.0)])
+            .transition(
+                from(Here)
+                    .on(Go)
+                    .to(Here)
+                    .must(h.at_most(0.0) & v.less_than(0.0))
+                    .then([v.becomes(-1.0 * &v), h.becomes(0.0)]),
+            ),
+    );
+    let run = |step_limit| {
+        let settings =
+            Settings { step_limit, accumulation: Accumulation::Off, ..Settings::default() };
+        ball.run_with(settings, 2.0 * f64::from(bounces)).expect("it can be run")
+    };
+    let (mut few, mut enough) = (0_u64, 1 << 24);
+    while enough - few > 1 + enough / 256 {
+        let steps = few.midpoint(enough);
+        let ends = run(steps).ending().reason == Reason::Limit(Limit::Steps(steps));
+        if ends { few = steps } else { enough = steps }
+    }
+    assert_eq!(run(enough).jumps().len(), bounces as usize);
+    enough as f64 / f64::from(bounces)
+}
+
+/// The work for a bounce is the same before a horizon that is far as before one that is near.
+#[test]
+fn a_bounce_costs_the_same_whatever_the_horizon() {
+    let [few, many] = [100, 3000].map(steps_per_bounce);
+    assert!(many <= 1.1 * few, "{many}, of few: {few}");
 }

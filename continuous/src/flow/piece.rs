@@ -45,7 +45,7 @@ impl Piece {
         Piece { start, end, origin, scale, coefficients, ends, errors }
     }
 
-    /// The same piece, with memory for this many components of so many coefficients.
+    /// The same piece, with memory for `components` components of `coefficients` coefficients each.
     #[must_use]
     pub fn with_room(mut self, components: usize, coefficients: usize) -> Self {
         self.coefficients.reserve_exact(components * coefficients);

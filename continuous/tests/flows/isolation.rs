@@ -248,6 +248,25 @@ fn steps_of_an_integration_are_pieces() {
     }
 }
 
+/// Pieces before, around and after the time that their powers count from.
+#[test]
+fn ranges_contain_what_pieces_are() {
+    for (start, end) in [(-3.0, -1.0), (-1.0, 2.0), (0.0, 1.0), (0.5, 4.0)] {
+        let mut piece = Piece::new(start, end, 0.0, 1.5);
+        piece.push([1.0, -2.0, 0.5, 3.0, -0.25], 1e-3);
+        piece.push([4.0], 0.0);
+        let ranges = [piece.range(0), piece.range(1)];
+        for step in 0..=1000 {
+            let time = start + 0.001 * f64::from(step) * (end - start);
+            for (component, range) in ranges.iter().enumerate() {
+                let (value, error) = (piece.value(component, time), piece.error(component));
+                assert!(range.contains(value - error) && range.contains(value + error), "{time}");
+            }
+        }
+        assert!(ranges[1].width() < 1e-13, "{}", ranges[1]);
+    }
+}
+
 /// How many different roots of the polynomial lie in (from, to], by Sturm's theorem.
 fn roots(polynomial: &[f64], from: f64, to: f64) -> i64 {
     let value = |p: &[f64], x: f64| p.iter().rev().fold(0.0, |sum, c| sum * x + c);

@@ -300,6 +300,32 @@ mod tests {
         assert!(DutyEvent::ALL.iter().all(|event| named(&event)));
     }
 
+    /// What a step of the mission asks for comes before what the robot finds itself; and a robot that
+    /// finds a better parent attaches to it before its post becomes fixed.
+    #[test]
+    fn rows_that_may_be_enabled_together_are_in_order() {
+        use Activity::{Following, Junction, Leading, Relay, Standby, Waiting};
+        use DutyEvent as On;
+        let priority = |source, event| {
+            let mut rows = DUTIES.enabled(source);
+            rows.find(|row| row.event == event).map(|row| row.priority).expect("there is a row")
+        };
+        for (source, first, then) in [
+            (Standby, On::Elected, On::Attached),
+            (Standby, On::Attached, On::Promoted),
+            (Waiting, On::TeamJoined, On::SetOut),
+            (Relay, On::PathJoined, On::Retired),
+            (Junction, On::PathJoined, On::Merged),
+            (Leading, On::TaskReached, On::Attached),
+            (Following, On::Settled, On::Attached),
+        ] {
+            assert!(
+                priority(source, first) < priority(source, then),
+                "{source:?}: {first:?}, {then:?}"
+            );
+        }
+    }
+
     #[test]
     fn no_transition_leaves_a_fixed_post_unheld() {
         for row in DUTIES.rows() {

@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_post_hangs_on_its_parent_alone() {
+    fn a_post_is_a_child_of_its_parent_alone() {
         let free = Post::redundant(PostId(1));
         let child = Post { parent: Some(Anchor::Post(PostId(2))), ..free };
         let rooted = Post { parent: Some(Anchor::Access(2)), ..free };

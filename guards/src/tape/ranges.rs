@@ -1,6 +1,6 @@
 //! What the expressions of a tape can be where their variables are in intervals.
 
-use super::{Action, LANES, Tape};
+use super::{Action, LANES, Places, Tape};
 use crate::expression::BinaryOperator;
 use crate::interval::Interval;
 use crate::range::Truth;
@@ -43,7 +43,9 @@ impl Tape {
             }
         }
         results.clear();
-        results.extend(self.results.iter().map(|&place| places[place as usize]));
+        for Places { first, count } in &self.results {
+            results.extend(&places[*first as usize..][..*count as usize]);
+        }
     }
 
     /// What the result of an instruction can be.
@@ -62,6 +64,7 @@ impl Tape {
             Action::ProductSum => product() + at(2),
             Action::ProductLess => product() - at(2),
             Action::LessProduct => at(2) - product(),
+            Action::Opposite => -at(0),
             Action::Root => at(0).power(0.5).unwrap_or(Interval::WHOLE),
             Action::Unary(operator) => operator.range(at(0)).unwrap_or(Interval::WHOLE),
             Action::Binary(operator) => operator.range(at(0), at(1)),

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Action, Instruction, LANES, Tape};
+use super::{Action, Instruction, LANES, Places, Tape};
 use crate::expression::Expression;
 use crate::fold::Operands;
 use crate::operator::{BinaryOperator, UnaryOperator};
@@ -130,22 +130,36 @@ impl<'a> Writer<'a> {
         }
         let stretches: Vec<&[usize]> =
             batches.iter().flat_map(|batch| self.stretches(batch, &merged, &order)).collect();
-        let places = self.places(variables, order, &stretches, &merged);
-        let mut target = places.computed;
+        let layout = self.layout(variables, order, &stretches, &merged);
+        let mut target = layout.computed;
         let instructions = stretches.iter().map(|numbers| {
             let (action, values) = self.deed(numbers[0], &merged);
-            let operands = values.map(|value| places.place(value));
+            let operands = values.map(|value| layout.place(value));
             let rows = (numbers.len() / LANES) as u32;
             let instruction = Instruction { action, rows, target, operands };
             target += numbers.len() as u32;
             instruction
         });
         let instructions = instructions.collect();
-        let widths = self.constants.iter().zip(&places.widths);
+        let widths = self.constants.iter().zip(&layout.widths);
         let constants = widths.flat_map(|(&value, &width)| (0..width).map(move |_| value));
         let (constants, computed) = (constants.collect(), batches.iter().map(Vec::len).sum());
-        let results = results.iter().map(|result| places.place(*result)).collect();
-        Tape { variables, constants, computed, instructions, tables: self.tables, results }
+        let mut result_places: Vec<Places> = Vec::new();
+        for result in results {
+            let place = layout.place(*result);
+            match result_places.last_mut() {
+                Some(last) if last.first + last.count == place => last.count += 1,
+                _ => result_places.push(Places { first: place, count: 1 }),
+            }
+        }
+        Tape {
+            variables,
+            constants,
+            computed,
+            instructions,
+            tables: self.tables,
+            results: result_places,
+        }
     }
 
     /// The batch as stretches whose operands lie abreast, as many times [`LANES`] long as they can
@@ -170,13 +184,13 @@ impl<'a> Writer<'a> {
     }
 
     /// A constant that is read abreast has as many places as results are computed from it.
-    fn places(
+    fn layout(
         &self,
         variables: usize,
         order: Vec<u32>,
         stretches: &[&[usize]],
         merged: &[bool],
-    ) -> Places {
+    ) -> Layout {
         let mut widths = vec![1; self.constants.len()];
         for numbers in stretches {
             let (action, values) = self.deed(numbers[0], merged);
@@ -194,7 +208,7 @@ impl<'a> Writer<'a> {
             start
         });
         let constants = starts.collect();
-        Places { constants, widths, computed: next, order }
+        Layout { constants, widths, computed: next, order }
     }
 
     /// All operations but merged products in batches of one action, each after those whose results
@@ -305,6 +319,7 @@ impl<'a> Writer<'a> {
             Operation::Binary(BinaryOperator::Product, a, b) => two(Action::Product, a, b),
             Operation::Binary(BinaryOperator::Quotient, a, b) => two(Action::Quotient, a, b),
             Operation::Binary(operator, a, b) => two(Action::Binary(operator), a, b),
+            Operation::Unary(UnaryOperator::Negation, a) => one(Action::Opposite, a),
             Operation::Unary(operator, a) => one(Action::Unary(operator), a),
             Operation::Power(a, exponent) if self.is(exponent, 2.0) => two(Action::Product, a, a),
             Operation::Power(a, exponent) if self.is(exponent, 0.5) => one(Action::Root, a),
@@ -347,7 +362,7 @@ impl Operation {
 }
 
 /// Where values lie: variables first, then constants, then what is computed.
-struct Places {
+struct Layout {
     /// By constant: the first place, and how many there are.
     constants: Vec<u32>,
     widths: Vec<usize>,
@@ -357,7 +372,7 @@ struct Places {
     order: Vec<u32>,
 }
 
-impl Places {
+impl Layout {
     fn place(&self, value: Value) -> u32 {
         match value {
             Value::Variable(index) => index,

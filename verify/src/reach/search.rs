@@ -10,6 +10,7 @@ use pleach_guards::Interval;
 
 use super::model::Uncertain;
 use super::set::StateSet;
+use crate::draws::Draws;
 
 /// How much is searched.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,29 +75,6 @@ struct Choices {
     start: usize,
     shares: Vec<f64>,
     policy: Policy,
-}
-
-/// Numbers that look random, the same for the same seed (Steele, Lea and Flood 2014, *Fast splittable
-/// pseudorandom number generators*).
-struct Draws(u64);
-
-impl Draws {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// From −1 to 1.
-    fn share(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() % count.max(1) as u64) as usize
-    }
 }
 
 /// What runs are drawn from.

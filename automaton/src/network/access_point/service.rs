@@ -104,7 +104,7 @@ impl Holds<Serving> for AccessPoint {
 }
 
 impl AccessPoint {
-    /// The task announced last and who elects its leader, if it matters and is known.
+    /// The task announced last and the electors of its leader, if they matter and are known.
     pub(super) fn announced(&self) -> Option<&Announced> {
         match &*self.service {
             Serving::Electing(Electing { announced })

@@ -233,6 +233,8 @@ fn malformed_messages_are_refused() {
         (json!({"request": [[0.0]]}), "array"),
         (json!({"proposal": {"from": [0, 0]}}), "missing field `to`"),
         (json!({"multiplier": {"parent": null}}), "missing field `report`"),
+        (json!({"multiplier": {"parent": null, "surprise": 1}}), "unknown field `surprise`"),
+        (json!({"beacon": {"period": 0, "surprise": 1}}), "unknown field `surprise`"),
         (beacon_with("surprise", json!(1)), "unknown field `surprise`"),
         (beacon_with("sender", json!(-1)), "invalid value"),
         (beacon_with("position", json!([0.0, 1.0, 2.0])), "array"),

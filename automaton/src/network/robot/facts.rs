@@ -257,7 +257,7 @@ impl Robot {
             distance: f64::INFINITY,
             ..Facts::default()
         };
-        self.measure_word(&mut facts);
+        self.measure_notice(&mut facts);
         let best = self.election.as_ref().and_then(|election| election.best());
         let won = best.is_some_and(|(bid, robot)| robot == self.id && bid.rank > 0);
         let over = self.election_is_over();
@@ -280,7 +280,7 @@ impl Robot {
     }
 
     /// What the newest notice asks of this robot.
-    fn measure_word(&self, facts: &mut Facts) {
+    fn measure_notice(&self, facts: &mut Facts) {
         let id = self.bulletin.id();
         let election = self.election.as_ref().map(|election| election.id());
         let path = self.agreement.as_ref().map(|agreement| agreement.id());

@@ -118,7 +118,7 @@ pub struct Robot {
     facts: Facts,
     is_quiet: bool,
 
-    // What has changed since it last deliberated, spoke and measured its facts.
+    // What has changed since it last processed messages, sent its beacon and measured its facts.
     has_news: bool,
     has_unsent_news: bool,
     is_unmeasured: bool,

@@ -63,9 +63,8 @@ impl Robot {
         }
     }
 
-    /// Whether a robot that is attached to the post that this one has left has not heard of it, and
-    /// is still attached to this one: it would keep to the one that goes, and not to the one that came.
-    /// Where none came, the robot stands for its post on the way.
+    /// Whether a child of the post that this robot has left is still attached to this robot, although
+    /// another one holds the post now. Where none does, this robot counts as its holder on the way.
     pub(super) fn is_held_by_old_news(&self) -> bool {
         self.duty.left().is_some_and(|left| {
             self.holder(left).is_some()

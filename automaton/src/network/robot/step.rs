@@ -220,3 +220,44 @@ impl Robot {
         Err(RobotFault::Zeno { robot: self.id }.into())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::scenario::Scenario;
+    use super::super::super::site::Site;
+    use super::*;
+    use pleach_continuous::Vector;
+    use pleach_continuous::geometry::HalfPlane;
+    use pleach_continuous::network::motion::MotionProblem;
+    use serde_json::json;
+
+    /// The executor checks the invariant of the location in which time passes; a robot that leaves it is named.
+    #[test]
+    fn a_robot_that_leaves_the_region_of_its_motion_problem_ends_the_run() {
+        let scenario: Scenario = serde_json::from_value(json!({
+            "name": "one robot",
+            "workspace": {"boundary": [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]},
+            "link": {"full_range": 1.0, "max_range": 2.0},
+            "access_point": [{"position": [1.0, 1.0]}],
+            "robot": [{"position": [2.0, 2.0], "rate": 0.1}],
+            "task": [{"position": [3.0, 3.0]}],
+        }))
+        .expect("it is a scenario");
+        let site = Arc::new(Site::new(&scenario).expect("its numbers make sense"));
+        let position = Point::new(2.0, 2.0);
+        let mut robot = Robot::new(0, position, 0.1, site);
+        let east = Vector::new(1.0, 0.0);
+        robot.problem = Some(MotionProblem {
+            position,
+            waypoint: position,
+            half_planes: vec![HalfPlane::new(east, 2.05)],
+            discs: Vec::new(),
+        });
+        (robot.clock, robot.velocity, robot.arrival) = (0.0, 0.2 * east, position + 0.2 * east);
+        Node::flow(&mut robot, 0.2);
+        assert!(Node::check_invariant(&robot).is_ok());
+        Node::flow(&mut robot, 0.2);
+        let error = Node::check_invariant(&robot).expect_err("it is 0.03 outside").to_string();
+        assert!(error.contains("node 0") && error.contains("outside"), "{error}");
+    }
+}

@@ -25,12 +25,8 @@ pub fn targets() -> Targets {
         .case(Leading, guards::leads(), "task", Robot::team_goal);
     let posted = [Standby, Relay, Junction, Leaf, Bound, Waiting, AwaitingRelease];
     posted.into_iter().fold(laws, |laws, activity| {
-        laws.case(activity, guards::gives_way(), "place aside", Robot::place_aside).case(
-            activity,
-            guards::returns(),
-            "own post",
-            Robot::own_reference,
-        )
+        laws.case(activity, guards::gives_way(), "place aside for a mover", Robot::place_aside)
+            .case(activity, guards::returns(), "own post", Robot::own_reference)
     })
 }
 

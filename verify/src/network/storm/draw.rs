@@ -5,6 +5,7 @@ use pleach_automaton::network::{Crash, Trouble};
 use pleach_automaton::node::{Partition, Weather};
 
 use super::Storm;
+use crate::draws::Draws;
 
 /// A kind of storm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,29 +83,9 @@ impl Kind {
 /// Seconds after which faults that come later begin.
 const LATER: f64 = 20.0;
 
-/// A source of draws: SplitMix64.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.next() >> 11) as f64 * (-53_f64).exp2())
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() % count.max(1) as u64) as usize
-    }
-}
-
-/// The storm of this kind and seed for a mission that lasts about so many seconds.
+/// The storm of this kind and seed for a mission that lasts about `duration` seconds.
 pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> Storm {
-    let mut dice = Dice(seed.wrapping_mul(0xD1B5_4A32_D192_ED03) ^ duration.to_bits());
+    let mut draws = Draws(seed.wrapping_mul(0xD1B5_4A32_D192_ED03) ^ duration.to_bits());
     let robots = scenario.robot.len();
     let (step, range) = (scenario.settings().step_radius, scenario.settings().link.max_range);
     let mut storm = Storm { seed, ..Storm::default() };
@@ -117,14 +98,14 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
         Kind::Delay => (weather.lateness, weather.longest_delay) = (0.1, 6),
         Kind::Copies => (weather.copies, weather.longest_delay) = (0.1, 60),
         Kind::Silence => weather.silence = 0.1,
-        Kind::Partition => weather.partitions = partitions(&mut dice, robots, duration),
-        Kind::Radio => *weather = foul(&mut dice, robots, duration),
+        Kind::Partition => weather.partitions = partitions(&mut draws, robots, duration),
+        Kind::Radio => *weather = foul(&mut draws, robots, duration),
         Kind::Crash | Kind::Restart => {
-            storm.troubles = vec![crash(&mut dice, robots, duration, kind == Kind::Restart)];
+            storm.troubles = vec![crash(&mut draws, robots, duration, kind == Kind::Restart)];
         }
         Kind::Late => {
-            let joins = Some(dice.between(5.0, duration / 2.0));
-            storm.troubles = vec![(dice.below(robots), Trouble { joins, ..Trouble::default() })];
+            let joins = Some(draws.between(5.0, duration / 2.0));
+            storm.troubles = vec![(draws.below(robots), Trouble { joins, ..Trouble::default() })];
         }
         Kind::Motion(share) => {
             let trouble = Trouble { motion_error: share * step, ..Trouble::default() };
@@ -135,10 +116,10 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
             storm.troubles = (0..robots).map(|robot| (robot, trouble.clone())).collect();
         }
         Kind::Everything => {
-            *weather = foul(&mut dice, robots, duration);
-            for _ in 0..1 + dice.below(3) {
-                let comes_back = dice.below(2) == 0;
-                let trouble = crash(&mut dice, robots, duration, comes_back);
+            *weather = foul(&mut draws, robots, duration);
+            for _ in 0..1 + draws.below(3) {
+                let comes_back = draws.below(2) == 0;
+                let trouble = crash(&mut draws, robots, duration, comes_back);
                 if storm.troubles.iter().all(|(node, _)| *node != trouble.0) {
                     storm.troubles.push(trouble);
                 }
@@ -148,34 +129,34 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
     storm
 }
 
-fn foul(dice: &mut Dice, robots: usize, duration: f64) -> Weather {
+fn foul(draws: &mut Draws, robots: usize, duration: f64) -> Weather {
     Weather {
-        loss: dice.between(0.0, 0.5),
-        silence: dice.between(0.0, 0.1),
-        lateness: dice.between(0.0, 0.2),
-        copies: dice.between(0.0, 0.2),
-        longest_delay: 1 + dice.below(100) as u64,
-        partitions: partitions(dice, robots, duration),
+        loss: draws.between(0.0, 0.5),
+        silence: draws.between(0.0, 0.1),
+        lateness: draws.between(0.0, 0.2),
+        copies: draws.between(0.0, 0.2),
+        longest_delay: 1 + draws.below(100) as u64,
+        partitions: partitions(draws, robots, duration),
         begin: 0.0,
         end: None,
         wired_from: None,
     }
 }
 
-fn partitions(dice: &mut Dice, robots: usize, duration: f64) -> Vec<Partition> {
-    (0..1 + dice.below(3))
+fn partitions(draws: &mut Draws, robots: usize, duration: f64) -> Vec<Partition> {
+    (0..1 + draws.below(3))
         .map(|_| {
-            let begin = dice.between(0.0, duration);
-            let end = begin + dice.between(1.0, 40.0);
-            let side = (0..robots).filter(|_| dice.below(3) == 0).collect();
+            let begin = draws.between(0.0, duration);
+            let end = begin + draws.between(1.0, 40.0);
+            let side = (0..robots).filter(|_| draws.below(3) == 0).collect();
             Partition { begin, end, side }
         })
         .collect()
 }
 
-fn crash(dice: &mut Dice, robots: usize, duration: f64, comes_back: bool) -> (usize, Trouble) {
-    let time = dice.between(1.0, duration);
-    let back = comes_back.then(|| time + dice.between(1.0, 60.0));
-    let crash = Crash { time, inputs: dice.below(400) as u32, back };
-    (dice.below(robots), Trouble { crash: Some(crash), ..Trouble::default() })
+fn crash(draws: &mut Draws, robots: usize, duration: f64, comes_back: bool) -> (usize, Trouble) {
+    let time = draws.between(1.0, duration);
+    let back = comes_back.then(|| time + draws.between(1.0, 60.0));
+    let crash = Crash { time, inputs: draws.below(400) as u32, back };
+    (draws.below(robots), Trouble { crash: Some(crash), ..Trouble::default() })
 }

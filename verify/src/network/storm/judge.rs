@@ -133,15 +133,7 @@ fn rooted(seen: &Snapshot) -> Result<(), Violation> {
         let sentence = format!("robot {robot} has two parents in the tree");
         return Err(instant.violation(Property::SingleParent, &[robot], (0.0, 1.0), sentence));
     }
-    let returns = |robot: usize| {
-        let mut at = parents[robot];
-        for _ in 0..parents.len() {
-            let Some(node) = at else { return false };
-            at = parents.get(node).copied().flatten();
-        }
-        at.is_some()
-    };
-    match (0..parents.len()).find(|&robot| returns(robot)) {
+    match (0..parents.len()).find(|&robot| tree::descends_from(&parents, robot, robot)) {
         None => Ok(()),
         Some(robot) => {
             let sentence = format!("the path of robot {robot} up the tree is a cycle");

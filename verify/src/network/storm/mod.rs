@@ -33,7 +33,7 @@ pub struct Storm {
     pub seed: u64,
     /// What becomes of messages.
     pub weather: Weather,
-    /// What befalls nodes, by number; nothing befalls the others.
+    /// The faults of nodes, by number; the others have none.
     pub troubles: Vec<(usize, Trouble)>,
 }
 

@@ -1,0 +1,283 @@
+//! Models that are made to be missed, to hang or to panic: of every event the run has it, or says that it
+//! is in doubt.
+
+use std::f64::consts::FRAC_PI_2;
+
+use pleach_automaton::{
+    Automaton, Builder, Coordinate, Coordinates, Reason, Settings, Trajectory, coordinates, from,
+};
+use pleach_discrete::vocabulary;
+use pleach_guards::{Expression, Predicate};
+
+vocabulary! {
+    enum Place: Location { Here = "here", There = "there" }
+    enum Cue: Event { Go = "go", Back = "back" }
+}
+coordinates! {
+    struct Line { x }
+    struct Body { place = "p", speed = "s", time = "t" }
+}
+use Cue::{Back, Go};
+use Place::{Here, There};
+
+fn x() -> Coordinate<Line> {
+    Line::coordinates().x
+}
+
+/// x from a start on at a constant rate.
+fn line(start: f64, rate: f64) -> Builder<Place, Cue, Line> {
+    Automaton::starting_in(Here).initially(Line { x: start }).flow(Here, x().rate(rate))
+}
+
+/// A body in the time t with these rates of place and speed.
+fn body(start: [f64; 2], rates: [Expression; 2]) -> Builder<Place, Cue, Body> {
+    let Body { place, speed, time } = Body::coordinates();
+    let [moves, speeds] = rates;
+    Automaton::starting_in(Here)
+        .initially(Body { place: start[0], speed: start[1], time: 0.0 })
+        .flow(Here, [place.rate(moves), speed.rate(speeds), time.rate(1.0)])
+}
+
+fn run<S: Coordinates>(parts: Builder<Place, Cue, S>, horizon: f64) -> Trajectory {
+    let automaton = parts.build().expect("the model can be built");
+    // What never ends would fail as a limit, and not hang.
+    let settings = Settings { step_limit: 1_000_000, ..Settings::default() };
+    automaton.run_with(settings, horizon).expect("it can be run")
+}
+
+/// The run until a guard holds.
+fn go<S: Coordinates>(parts: Builder<Place, Cue, S>, guard: Predicate, horizon: f64) -> Trajectory {
+    run(parts.transition(from(Here).on(Go).to(There).must(guard)), horizon)
+}
+
+/// The first event is near an instant.
+fn assert_event(trajectory: &Trajectory, exact: f64, tolerance: f64) {
+    let found = trajectory.jumps().first().map(|jump| jump.at.t);
+    let is_near = found.is_some_and(|found| (found - exact).abs() <= tolerance);
+    assert!(is_near, "{found:?} is not {exact}: {:?}", trajectory.ending());
+}
+
+/// Either the first event is near an instant, or a doubt is on record there.
+fn assert_said(trajectory: &Trajectory, exact: f64, tolerance: f64) {
+    let found = trajectory.jumps().first().map(|jump| jump.at.t);
+    let doubts = trajectory.doubts();
+    let is_met = found.is_some_and(|found| (found - exact).abs() <= tolerance);
+    let mut spans = doubts.iter().map(|doubt| (doubt.from - tolerance, doubt.to + tolerance));
+    let is_said = spans.any(|(first, last)| first <= exact && exact <= last);
+    assert!(is_met || is_said, "{found:?}, {doubts:?}: {exact}, {:?}", trajectory.ending());
+}
+
+/// Two roots that lie 2·10⁻⁷ s apart, on a parabola by a linear flow and on one that is integrated.
+#[test]
+fn a_dip_between_two_close_roots_is_met() {
+    let Body { place, speed, .. } = Body::coordinates();
+    let depth: f64 = 1e-14;
+    let linear = body([1.0, -2.0], [Expression::from(&speed), 2.0.into()]);
+    let trajectory = go(linear, place.at_most(depth), 5.0);
+    assert_said(&trajectory, 1.0 - depth.sqrt(), 1e-9);
+    let bent = body([1.0, -2.0], [&speed + 0.0 * speed.power(2.0), 2.0.into()]);
+    assert_said(&go(bent, place.at_most(depth), 5.0), 1.0 - depth.sqrt(), 1e-6);
+}
+
+#[test]
+fn a_guard_that_touches_its_bound_is_said() {
+    let Body { place, speed, .. } = Body::coordinates();
+    let parabola = || body([1.0, -2.0], [Expression::from(&speed), 2.0.into()]);
+    assert_said(&go(parabola(), place.at_most(0.0), 5.0), 1.0, 1e-6);
+    assert_said(&go(line(0.0, 1.0), (x() - 1.0).abs().at_most(0.0), 5.0), 1.0, 1e-6);
+    assert_said(&go(line(0.0, 1.0), (x() - 1.0).power(2.0).at_most(0.0), 5.0), 1.0, 1e-6);
+    assert_said(&go(line(0.0, 1.0), (x() - 1.0).power(4.0).at_most(0.0), 5.0), 1.0, 1e-3);
+}
+
+/// x ≥ c and x ≤ c hold at one instant, which lies between two numbers.
+#[test]
+fn an_equality_on_a_curve_is_said() {
+    let Body { place, speed, .. } = Body::coordinates();
+    let wave = body([0.0, 1.0], [Expression::from(&speed), -&place]);
+    let guard = place.at_least(0.7) & place.at_most(0.7);
+    assert_said(&go(wave, guard, 1.0), 0.7f64.asin(), 1e-12);
+    let third = x().at_least(1.0 / 3.0) & x().at_most(1.0 / 3.0);
+    assert_said(&go(line(0.0, 0.1), third, 10.0), 10.0 / 3.0, 1e-12);
+}
+
+/// A bump of a millionth of a second in a quarter of an hour.
+#[test]
+fn a_narrow_bump_is_met() {
+    let bump = (-((x() - 437.5) / 1e-6).power(2.0)).exp();
+    let exact = 437.5 - 1e-6 * 2f64.ln().sqrt();
+    assert_event(&go(line(0.0, 1.0), bump.at_least(0.5), 1000.0), exact, 1e-12);
+}
+
+#[test]
+fn sawteeth_and_fast_waves_are_met() {
+    let tooth = x() - x().floor();
+    assert_event(&go(line(0.0, 1.0), tooth.at_least(0.999), 1e6), 0.999, 1e-12);
+    let wave = (1e6 * x()).sin();
+    let exact = 0.999_999_9f64.asin() / 1e6;
+    assert_event(&go(line(0.0, 1.0), wave.at_least(0.999_999_9), 1e3), exact, 1e-15);
+    let step = x().floor().at_least(3.0) & (x() - 3.5).sign().at_least(0.0);
+    assert_said(&go(line(0.0, 1.0), step, 10.0), 3.5, 1e-12);
+}
+
+#[test]
+fn scales_at_the_ends_of_the_numbers_are_met() {
+    assert_event(&go(line(0.0, 1e300), x().at_least(1e305), 1e6), 1e5, 1e-9);
+    assert_event(&go(line(0.0, 1e-300), x().at_least(1e-299), 1e6), 10.0, 1e-12);
+    assert_event(&go(line(0.0, 1e-320), x().at_least(1e-319), 1e6), 10.0, 1e-2);
+    assert_event(&go(line(0.0, 1.0), x().at_least(1e15), 2e15), 1e15, 0.5);
+    assert_event(&go(line(1e17, 1.0), x().at_least(1e17 + 64.0), 1e3), 64.0, 16.0);
+    let Body { place, speed, .. } = Body::coordinates();
+    let fall = || body([1e-160, 0.0], [Expression::from(&speed), (-2e-160).into()]);
+    assert_event(&go(fall(), place.at_most(0.0), 1e3), 1.0, 1e-9);
+    let far = || body([1e160, 0.0], [Expression::from(&speed), (-2e160).into()]);
+    assert_event(&go(far(), place.at_most(0.0), 1e3), 1.0, 1e-9);
+}
+
+/// Growth to the end of the numbers is met, and what grows beyond ends the run with a reason.
+#[test]
+fn growth_beyond_the_numbers_ends_the_run() {
+    let Body { place, .. } = Body::coordinates();
+    let growth = || body([1.0, 0.0], [Expression::from(&place), 0.0.into()]);
+    assert_event(&go(growth(), place.at_least(1e300), 1e3), 300.0 * 10f64.ln(), 1e-6);
+    let trajectory = run(growth(), 1000.0);
+    assert!(matches!(trajectory.ending().reason, Reason::Finished(_)), "{:?}", trajectory.ending());
+    let last = trajectory.ending().at.t;
+    assert!(last > 600.0 && last < 709.8, "{last}");
+    let blows_up = body([1.0, 0.0], [place.power(2.0), 0.0.into()]);
+    let trajectory = run(blows_up, 5.0);
+    assert!(matches!(trajectory.ending().reason, Reason::Finished(_)), "{:?}", trajectory.ending());
+    assert!((trajectory.ending().at.t - 1.0).abs() < 1e-3, "{:?}", trajectory.ending());
+}
+
+/// Formulas with poles and ends of their domains.
+#[test]
+fn poles_and_domains_of_guards_are_met_or_said() {
+    // The formula has no value at the pole, and the guard holds right behind it.
+    let pole = go(line(0.0, 1.0), (1.0 / (x() - 1.0)).at_least(1e6), 5.0);
+    match &pole.ending().reason {
+        Reason::Finished(_) => assert!((pole.ending().at.t - 1.0).abs() < 1e-5),
+        _ => assert_said(&pole, 1.0, 1e-5),
+    }
+    let before = go(line(0.0, 1.0), (1.0 / (1.0 - x())).at_least(1e6), 5.0);
+    assert_event(&before, 1.0 - 1e-6, 1e-12);
+    let root = go(line(0.0, 1.0), (1.0 - x()).square_root().at_most(0.1), 5.0);
+    assert_event(&root, 0.99, 1e-12);
+    let late = go(line(0.0, 1.0), (1.0 - x()).square_root().less_than(0.0), 5.0);
+    assert!(matches!(late.ending().reason, Reason::Finished(_)), "{:?}", late.ending());
+    assert!((late.ending().at.t - 1.0).abs() < 1e-12, "{:?}", late.ending());
+}
+
+#[test]
+fn strict_guards_are_taken_at_the_next_number() {
+    let trajectory = go(line(0.0, 1.0), x().more_than(1.0), 5.0);
+    let found = trajectory.jumps()[0].at.t;
+    assert!(found > 1.0 && found - 1.0 <= 1e-15, "{found}");
+    let Body { place, speed, .. } = Body::coordinates();
+    let wave = body([0.0, 1.0], [Expression::from(&speed), -&place]);
+    let trajectory = go(wave, place.more_than(0.5), 5.0);
+    assert_event(&trajectory, 0.5f64.asin(), 1e-14);
+    // At a bound that is reached and not passed a strict guard never holds.
+    let trajectory = go(line(0.0, 1.0), (x() - 1.0).abs().less_than(0.0), 5.0);
+    assert!(trajectory.jumps().is_empty());
+}
+
+#[test]
+fn events_at_the_start_and_at_the_horizon_are_taken() {
+    assert_event(&go(line(0.0, 1.0), x().at_least(0.0), 0.0), 0.0, 0.0);
+    assert_event(&go(line(0.0, 1.0), x().at_least(1.0), 1.0), 1.0, 0.0);
+    assert_event(&go(line(0.0, 0.1), x().at_least(0.3), 3.0), 3.0, 1e-15);
+    let Body { place, speed, .. } = Body::coordinates();
+    let wave = || body([0.0, 1.0], [Expression::from(&speed), -&place]);
+    let quarter = 0.5f64.asin();
+    assert_said(&go(wave(), place.at_least(0.5), quarter), quarter, 1e-14);
+    // Strict at the very start: the guard begins to hold right after it.
+    assert_event(&go(wave(), place.more_than(0.0), 1.0), 0.0, 1e-15);
+    assert_event(&go(wave(), place.more_than(0.0) & speed.less_than(0.0), 3.0), FRAC_PI_2, 1e-14);
+}
+
+/// A flow so stiff that its fast part is over after a hundred millionth of a second.
+#[test]
+fn an_event_on_a_stiff_flow_is_met() {
+    let Body { place, speed, time } = Body::coordinates();
+    let follow = -1e8 * (&place - time.sin()) + 0.0 * speed.power(2.0);
+    let stiff = body([1.0, 0.0], [follow, 0.0.into()]);
+    assert_event(&go(stiff, place.at_least(0.5) & time.at_least(0.1), 3.0), 0.5f64.asin(), 1e-6);
+    let linear = body([1.0, 0.0], [-1e8 * &place, 1.0.into()]);
+    assert_event(&go(linear, (&place + &speed).at_least(2.0), 3.0), 2.0, 1e-12);
+}
+
+/// Back and forth without time, with guards that hold together: the run says so.
+#[test]
+fn jumps_without_time_end_the_run() {
+    let back = from(There).on(Back).to(Here).must(x().at_least(1.0));
+    let trajectory = go(line(0.0, 1.0).transition(back), x().at_least(1.0), 5.0);
+    assert!(
+        matches!(trajectory.ending().reason, Reason::JumpLimit | Reason::Sliding(_)),
+        "{:?}",
+        trajectory.ending()
+    );
+    assert!((trajectory.ending().at.t - 1.0).abs() < 1e-12);
+}
+
+/// Hops that become shorter by half each, to clocks: 1 − 2⁻ⁿ.
+#[test]
+fn hops_that_accumulate_end_the_run_at_their_limit() {
+    let Body { place, speed, .. } = Body::coordinates();
+    let hop = from(Here)
+        .on(Go)
+        .to(Here)
+        .must(place.at_least(&speed))
+        .then([place.becomes(0.0), speed.becomes(0.5 * &speed)]);
+    let parts = body([0.0, 0.5], [1.0.into(), 0.0.into()]).transition(hop);
+    let trajectory = run(parts, 5.0);
+    let Reason::Zeno(zeno) = &trajectory.ending().reason else {
+        panic!("{:?}", trajectory.ending())
+    };
+    assert!((zeno.accumulation - 1.0).abs() < 1e-9, "{zeno:?}");
+}
+
+/// Resets to what is no number, and infinite ones, end the run and name the coordinate or formula.
+#[test]
+fn resets_without_a_value_end_the_run() {
+    for value in [x() / (x() - 1.0), (1.0 - 2.0 * x()).ln(), 1.0 / (x() - 1.0)] {
+        let jump = from(Here).on(Go).to(There).must(x().at_least(1.0)).then(x().becomes(value));
+        let trajectory = run(line(0.0, 1.0).transition(jump), 3.0);
+        assert!(
+            matches!(trajectory.ending().reason, Reason::Finished(_)),
+            "{:?}",
+            trajectory.ending()
+        );
+        assert_eq!(trajectory.ending().at.t, 1.0);
+    }
+}
+
+/// An invariant that ends with nothing to do blocks the run on the side where it holds.
+#[test]
+fn an_invariant_that_ends_blocks_the_run() {
+    let Body { place, speed, .. } = Body::coordinates();
+    let wave = || body([0.0, 1.0], [Expression::from(&speed), -&place]);
+    for invariant in [place.at_most(0.5), place.less_than(0.5)] {
+        let trajectory = run(wave().invariant(Here, invariant), 5.0);
+        assert_eq!(trajectory.ending().reason, Reason::Blocked);
+        assert!((trajectory.ending().at.t - 0.5f64.asin()).abs() < 1e-14);
+    }
+    // It is left for 10⁻⁶ s only.
+    let brief = x().power(2.0) - 2.0 * x() + 1.0;
+    let trajectory = run(line(0.0, 1.0).invariant(Here, brief.at_least(2.5e-13)), 5.0);
+    assert_eq!(trajectory.ending().reason, Reason::Blocked);
+    assert!((trajectory.ending().at.t - (1.0 - 5e-7)).abs() < 1e-9, "{:?}", trajectory.ending());
+}
+
+/// A thousand transitions that are due at one instant: the first in order is taken.
+#[test]
+fn of_many_transitions_at_one_instant_the_first_is_taken() {
+    let mut parts = line(0.0, 1.0);
+    for number in 0..1000 {
+        let value = f64::from(number);
+        let jump = from(Here).on(Go).to(There).must(x().at_least(2.0)).then(x().becomes(value));
+        parts = parts.transition(jump);
+    }
+    let trajectory = run(parts, 3.0);
+    assert_eq!(trajectory.jumps().len(), 1);
+    assert_eq!(trajectory.value("x", 2.5), Some(0.0));
+}
