@@ -32,7 +32,7 @@ fn single(
         uncertain: Vec::new(),
         forbidden,
         settings,
-        measured: None,
+        measured: Vec::new(),
     })
 }
 
@@ -100,7 +100,7 @@ pub fn laub_loomis(width: f64, limit: f64, settings: Settings) -> TestResult<Ins
     };
     let high = Forbidden::anywhere(variable("x4").at_least(limit));
     let mut instance = single(&sides, rates, vec![high], settings)?;
-    instance.measured = Some(Measure::Width("x4"));
+    instance.measured = vec![Measure::Width("x4")];
     Ok(instance)
 }
 
@@ -116,7 +116,7 @@ pub fn robertson(beta: f64, gamma: f64, settings: Settings) -> TestResult<Instan
         ]
     };
     let mut instance = single(&sides, rates, Vec::new(), settings)?;
-    instance.measured = Some(Measure::Sum);
+    instance.measured = vec![Measure::Sum];
     Ok(instance)
 }
 

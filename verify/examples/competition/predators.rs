@@ -3,10 +3,12 @@
 //!
 //! Model and numbers as in the ARCH-COMP reports (NLN), where the circle has the radius 0.161. The square
 //! of the distance from the equilibrium is a coordinate of its own, with the rate that follows from the
-//! others: so the circle is a half-space.
+//! others: so the circle is a half-space. A cycle touches the circle above and below its center; a run
+//! that has left it above comes back below, so each side has a location of its own, and no run enters
+//! twice where it only touches.
 
 use pleach_automaton::{Automaton, Name, Record, from};
-use pleach_guards::Interval;
+use pleach_guards::{Interval, Predicate};
 use pleach_verify::reach::{Settings, StateSet, Zonotope};
 
 use crate::{Instance, Measure, TestResult};
@@ -19,27 +21,40 @@ const SPREAD: f64 = 0.012;
 
 /// A cycle from `parts` parts of the initial states.
 pub fn cycle(parts: usize, settings: Settings) -> TestResult<Instance> {
-    let state = Record::new([("x", PREY), ("y", 1.0), ("d", (PREY - 1.0).powi(2))])?;
+    let start_distance = (PREY - 1.0).powi(2);
+    let state = Record::new([("x", PREY), ("y", 1.0), ("d", start_distance), ("inside", 0.0)])?;
     let coordinates = state.coordinates();
-    let [x, y, d] = &coordinates[..] else { return Err("three coordinates".into()) };
-    let [outside, inside] = ["outside", "inside"].map(Name::new);
+    let [x, y, d, inside] = &coordinates[..] else { return Err("four coordinates".into()) };
+    let [begin, above, left, below, right] =
+        ["begin", "in the circle above", "left", "in the circle below", "right"].map(Name::new);
     let [enter, leave] = ["enter", "leave"].map(Name::new);
     let (prey, predators) = (3.0 * x - 3.0 * (x * y), x * y - y);
     let circle = RADIUS.powi(2);
-    let distance = 2.0 * ((x - 1.0) * &prey + (y - 1.0) * &predators);
-    let flow = || [x.rate(&prey), y.rate(&predators), d.rate(&distance)];
-    let automaton = Automaton::<Name, Name, Record>::starting_in(outside)
+    let growth = 2.0 * ((x - 1.0) * &prey + (y - 1.0) * &predators);
+    let flow =
+        |clock: f64| [x.rate(&prey), y.rate(&predators), d.rate(&growth), inside.rate(clock)];
+    let [in_circle, out_of_circle] = [d.at_most(circle), d.at_least(circle)];
+    let [upper, lower] = [y.at_least(1.0), y.at_most(1.0)];
+    let entered = |side: &Predicate| in_circle.clone() & growth.less_than(0.0) & side.clone();
+    let left_again = || out_of_circle.clone() & growth.more_than(0.0);
+    let automaton = Automaton::<Name, Name, Record>::starting_in(begin)
         .initially(state.clone())
-        .flow(outside, flow())
-        .flow(inside, flow())
-        .invariant(outside, d.at_least(circle))
-        .invariant(inside, d.at_most(circle))
-        .transition(
-            from(outside).on(enter).to(inside).must(d.at_most(circle) & distance.less_than(0.0)),
-        )
-        .transition(
-            from(inside).on(leave).to(outside).must(d.at_least(circle) & distance.more_than(0.0)),
-        )
+        .flow(begin, flow(0.0))
+        .flow(above, flow(1.0))
+        .flow(left, flow(0.0))
+        .flow(below, flow(1.0))
+        .flow(right, flow(0.0))
+        .invariant(begin, out_of_circle.clone())
+        .invariant(above, in_circle.clone())
+        .invariant(left, upper.clone() | out_of_circle.clone())
+        .invariant(below, in_circle.clone())
+        .invariant(right, lower.clone() | out_of_circle.clone())
+        .transition(from(begin).on(enter).to(above).must(entered(&upper)))
+        .transition(from(begin).on(enter).to(below).must(entered(&lower)))
+        .transition(from(above).on(leave).to(left).must(left_again()))
+        .transition(from(left).on(enter).to(below).must(entered(&lower)))
+        .transition(from(below).on(leave).to(right).must(left_again()))
+        .transition(from(right).on(enter).to(above).must(entered(&upper)))
         .build()?;
     Ok(Instance {
         automaton,
@@ -47,7 +62,7 @@ pub fn cycle(parts: usize, settings: Settings) -> TestResult<Instance> {
         uncertain: Vec::new(),
         forbidden: Vec::new(),
         settings: Settings { horizon: HORIZON, ..settings },
-        measured: Some(Measure::Area("x", "y")),
+        measured: vec![Measure::Area("x", "y"), Measure::Clock("inside")],
     })
 }
 
@@ -62,7 +77,7 @@ fn start(part: usize, parts: usize) -> StateSet {
     let slope = Interval::point(2.0) * from_equilibrium * half;
     let nothing = Interval::point(0.0);
     StateSet::from_zonotope(Zonotope::from_intervals(
-        &[center, Interval::point(1.0), from_equilibrium * from_equilibrium + square],
-        &[vec![half, nothing, slope]],
+        &[center, Interval::point(1.0), from_equilibrium * from_equilibrium + square, nothing],
+        &[vec![half, nothing, slope, nothing]],
     ))
 }
