@@ -3,8 +3,8 @@
 //! A [`Tape`] computes a list of expressions in one pass over numbered places. Parts that occur
 //! more than once, also in different expressions, are computed once, and a product that is added to
 //! something is one instruction. Instructions of one kind whose operands lie side by side, as in the
-//! equations of many equal parts, are carried out together. The operations and their order are those of the expressions, so
-//! that the results agree with [`Expression::evaluate`] bit for bit.
+//! equations of many equal parts, are carried out together. The operations and their order are
+//! those of the expressions, so that the results agree with [`Expression::evaluate`] bit for bit.
 //!
 //! ```
 //! use pleach_guards::{Tape, variable};
@@ -22,6 +22,8 @@
 
 mod ranges;
 mod writer;
+
+use std::array::from_fn;
 
 use crate::expression::{Choice, Expression};
 use crate::operator::{BinaryOperator, UnaryOperator, raise};
@@ -42,6 +44,8 @@ pub struct Tape {
     /// How many places hold what is computed.
     computed: usize,
     instructions: Vec<Instruction>,
+    /// The places that are gathered.
+    gathered: Vec<u32>,
     tables: Vec<Table>,
     /// Where the results are, in order.
     results: Vec<Places>,
@@ -69,6 +73,9 @@ enum Action {
     LessProduct,
     /// −a
     Opposite,
+    /// A copy of places that do not follow each other, to places that do. Its operand is where they
+    /// are listed.
+    Gather,
     Root,
     Unary(UnaryOperator),
     Binary(BinaryOperator),
@@ -84,24 +91,24 @@ enum Action {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Instruction {
     action: Action,
-    /// How often [`LANES`] results are computed at once, each from operands one place after those of
-    /// the result before it; 0 for a single result.
-    rows: u32,
+    /// How many results are computed at once, each from operands one place after those of the result
+    /// before it: 1 or one of [`WIDTHS`].
+    width: u32,
     /// Where the first result goes.
     target: u32,
     /// The places of the operands of the first result, from the first on as many as the action needs.
     operands: [u32; 4],
 }
 
-/// How many results are computed at once by an instruction abreast: what fits into the registers of
-/// every machine. Numbers are copied in groups of the same size: loading a register from memory that was
-/// just written in smaller parts stalls.
-const LANES: usize = 2;
+/// How many results an instruction abreast computes, widest first. Widths are known to the compiler,
+/// which keeps the operands of each in registers.
+const WIDTHS: [usize; 3] = [8, 4, 2];
 
 impl Action {
     /// How many operands it needs.
     fn operands(self) -> usize {
         match self {
+            Action::Gather => 0,
             Action::Opposite | Action::Root | Action::Unary(_) | Action::Lookup(_) => 1,
             Action::Sum | Action::Difference | Action::Product | Action::Quotient => 2,
             Action::Binary(_) | Action::Power => 2,
@@ -162,12 +169,15 @@ impl Tape {
     pub fn evaluate(&self, values: &[f64], places: &mut [f64], results: &mut [f64]) {
         let given = self.variables.min(values.len());
         copy(&values[..given], &mut places[..given]);
-        places[given..self.variables].fill(f64::NAN);
+        if given < self.variables {
+            places[given..self.variables].fill(f64::NAN);
+        }
         for instruction in &self.instructions {
-            if instruction.rows == 0 {
-                self.once(instruction, places);
-            } else {
-                abreast(instruction, places);
+            match instruction.width {
+                8 => self.abreast::<8>(instruction, places),
+                4 => self.abreast::<4>(instruction, places),
+                2 => self.abreast::<2>(instruction, places),
+                _ => self.once(instruction, places),
             }
         }
         let mut rest = results;
@@ -189,6 +199,7 @@ impl Tape {
             Action::ProductSum => at(0) * at(1) + at(2),
             Action::ProductLess => at(0) * at(1) - at(2),
             Action::LessProduct => at(2) - at(0) * at(1),
+            Action::Gather => places[self.gathered[instruction.operands[0] as usize] as usize],
             Action::Root => at(0).sqrt(),
             Action::Opposite => -at(0),
             Action::Unary(operator) => operator.apply(at(0)),
@@ -199,61 +210,70 @@ impl Tape {
         };
         places[instruction.target as usize] = result;
     }
-}
 
-/// Computes the rows of an instruction; the writer makes them of arithmetic only.
-#[inline]
-fn abreast(instruction: &Instruction, places: &mut [f64]) {
-    let (known, new) = places.split_at_mut(instruction.target as usize);
-    let count = instruction.rows as usize;
-    let new = &mut new.as_chunks_mut::<LANES>().0[..count];
-    let row = |number: usize| -> &[[f64; LANES]] {
-        &known[instruction.operands[number] as usize..].as_chunks::<LANES>().0[..count]
-    };
-    match instruction.action {
-        Action::Sum => two(new, row(0), row(1), |a, b| a + b),
-        Action::Difference => two(new, row(0), row(1), |a, b| a - b),
-        Action::Product => two(new, row(0), row(1), |a, b| a * b),
-        Action::Quotient => two(new, row(0), row(1), |a, b| a / b),
-        Action::ProductSum => three(new, row(0), row(1), row(2), |a, b, c| a * b + c),
-        Action::ProductLess => three(new, row(0), row(1), row(2), |a, b, c| a * b - c),
-        Action::LessProduct => three(new, row(0), row(1), row(2), |a, b, c| c - a * b),
-        Action::Opposite => two(new, row(0), row(0), |a, _| -a),
-        _ => {}
+    /// Computes results abreast; the writer makes such instructions of arithmetic only.
+    #[inline]
+    fn abreast<const WIDTH: usize>(&self, instruction: &Instruction, places: &mut [f64]) {
+        let at = |number: usize| -> [f64; WIDTH] {
+            let first = instruction.operands[number] as usize;
+            let row = &places[first..first + WIDTH];
+            from_fn(|lane| row[lane])
+        };
+        let results: [f64; WIDTH] = match instruction.action {
+            Action::Sum => two(at(0), at(1), |a, b| a + b),
+            Action::Difference => two(at(0), at(1), |a, b| a - b),
+            Action::Product => two(at(0), at(1), |a, b| a * b),
+            Action::Quotient => two(at(0), at(1), |a, b| a / b),
+            Action::ProductSum => three(at(0), at(1), at(2), |a, b, c| a * b + c),
+            Action::ProductLess => three(at(0), at(1), at(2), |a, b, c| a * b - c),
+            Action::LessProduct => three(at(0), at(1), at(2), |a, b, c| c - a * b),
+            Action::Opposite => at(0).map(|a| -a),
+            Action::Gather => {
+                let first = instruction.operands[0] as usize;
+                let sources = &self.gathered[first..first + WIDTH];
+                from_fn(|lane| places[sources[lane] as usize])
+            }
+            _ => return,
+        };
+        let target = instruction.target as usize;
+        places[target..target + WIDTH].copy_from_slice(&results);
     }
 }
 
-/// Copies numbers into a slice of the same length.
+#[inline]
+fn two<const WIDTH: usize>(
+    a: [f64; WIDTH],
+    b: [f64; WIDTH],
+    result: impl Fn(f64, f64) -> f64,
+) -> [f64; WIDTH] {
+    from_fn(|lane| result(a[lane], b[lane]))
+}
+
+#[inline]
+fn three<const WIDTH: usize>(
+    a: [f64; WIDTH],
+    b: [f64; WIDTH],
+    c: [f64; WIDTH],
+    result: impl Fn(f64, f64, f64) -> f64,
+) -> [f64; WIDTH] {
+    from_fn(|lane| result(a[lane], b[lane], c[lane]))
+}
+
+/// Copies numbers into a slice of the same length, in groups no wider than those in which they are
+/// written and read next: loading a register from memory that was just written in smaller parts stalls.
 #[inline]
 fn copy(from: &[f64], to: &mut [f64]) {
-    let (rows, rest) = from.as_chunks::<LANES>();
-    let (new, last) = to.as_chunks_mut::<LANES>();
-    for (new, row) in new.iter_mut().zip(rows) {
-        *new = std::array::from_fn(|lane| row[lane]);
+    let (fours, rest) = from.as_chunks::<4>();
+    let (new, last) = to.as_chunks_mut::<4>();
+    for (new, row) in new.iter_mut().zip(fours) {
+        *new = from_fn(|lane| row[lane]);
+    }
+    let (twos, rest) = rest.as_chunks::<2>();
+    let (new, last) = last.as_chunks_mut::<2>();
+    if let ([new], [row]) = (new, twos) {
+        *new = from_fn(|lane| row[lane]);
     }
     if let ([new], [value]) = (last, rest) {
         *new = *value;
-    }
-}
-
-type Rows<'a> = &'a [[f64; LANES]];
-
-#[inline]
-fn two(new: &mut [[f64; LANES]], a: Rows<'_>, b: Rows<'_>, result: impl Fn(f64, f64) -> f64) {
-    for ((new, a), b) in new.iter_mut().zip(a).zip(b) {
-        *new = std::array::from_fn(|lane| result(a[lane], b[lane]));
-    }
-}
-
-#[inline]
-fn three(
-    new: &mut [[f64; LANES]],
-    a: Rows<'_>,
-    b: Rows<'_>,
-    c: Rows<'_>,
-    result: impl Fn(f64, f64, f64) -> f64,
-) {
-    for (((new, a), b), c) in new.iter_mut().zip(a).zip(b).zip(c) {
-        *new = std::array::from_fn(|lane| result(a[lane], b[lane], c[lane]));
     }
 }

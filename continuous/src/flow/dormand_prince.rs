@@ -7,8 +7,6 @@
 //! doi:10.1016/0771-050X(81)90010-3. Twelve stages; a thirteenth is evaluated at the end of the step
 //! and so is the first of the next one. Three more give the extension.
 
-use std::array::from_fn;
-
 /// Where in the step stages 2 to 11 are evaluated, as fractions of it; 12 and 13 are at its end.
 pub(super) const NODES: [f64; 10] = [
     0.05260015195876773,
@@ -213,9 +211,6 @@ pub(super) const EXTENSION: [[f64; 12]; 4] = [
     ],
 ];
 
-/// How many components are combined at once.
-const LANES: usize = 4;
-
 /// target = base + step · Σ weight · stage.
 #[inline]
 pub(super) fn combine<const N: usize>(
@@ -226,25 +221,15 @@ pub(super) fn combine<const N: usize>(
     stages: [&[f64]; N],
 ) {
     let weights = weights.map(|weight| step * weight);
+    // Slices of one known length spare the loop its bounds checks.
     let dimension = target.len();
     let (base, stages) = (&base[..dimension], stages.map(|stage| &stage[..dimension]));
-    let (rows, rest) = target.as_chunks_mut::<LANES>();
-    let first = LANES * rows.len();
-    for (row, target) in rows.iter_mut().enumerate() {
-        let mut sums = [0.0; LANES];
-        for stage in 0..N {
-            let values = stages[stage].as_chunks::<LANES>().0[row];
-            sums = from_fn(|lane| sums[lane] + weights[stage] * values[lane]);
-        }
-        let base = base.as_chunks::<LANES>().0[row];
-        *target = from_fn(|lane| base[lane] + sums[lane]);
-    }
-    for (i, target) in (first..dimension).zip(rest) {
+    for i in 0..dimension {
         let mut sum = 0.0;
         for stage in 0..N {
             sum += weights[stage] * stages[stage][i];
         }
-        *target = base[i] + sum;
+        target[i] = base[i] + sum;
     }
 }
 
@@ -259,23 +244,12 @@ pub(super) fn combine_differences<const N: usize>(
 ) {
     let dimension = target.len();
     let stages = stages.map(|stage| &stage[..dimension]);
-    let (rows, rest) = target.as_chunks_mut::<LANES>();
-    let first = LANES * rows.len();
-    for (row, target) in rows.iter_mut().enumerate() {
-        let mut sums = [0.0; LANES];
-        let origin = stages[0].as_chunks::<LANES>().0[row];
-        for stage in 0..N {
-            let values = stages[stage].as_chunks::<LANES>().0[row];
-            sums = from_fn(|lane| sums[lane] + weights[stage] * (values[lane] - origin[lane]));
-        }
-        *target = sums.map(|sum| step * sum);
-    }
-    for (i, target) in (first..dimension).zip(rest) {
+    for i in 0..dimension {
         let mut sum = 0.0;
         for stage in 0..N {
             sum += weights[stage] * (stages[stage][i] - stages[0][i]);
         }
-        *target = step * sum;
+        target[i] = step * sum;
     }
 }
 

@@ -1,6 +1,6 @@
 //! What the expressions of a tape can be where their variables are in intervals.
 
-use super::{Action, LANES, Places, Tape};
+use super::{Action, Places, Tape};
 use crate::expression::BinaryOperator;
 use crate::interval::Interval;
 use crate::range::Truth;
@@ -34,12 +34,12 @@ impl Tape {
         places.extend(values.iter().take(self.variables));
         places.resize(self.variables, Interval::WHOLE);
         places.extend(self.constants.iter().map(|&value| Interval::point(value)));
+        places.resize(places.len() + self.computed, Interval::WHOLE);
         for instruction in &self.instructions {
-            let results = (LANES as u32 * instruction.rows).max(1);
-            for number in 0..results {
+            for number in 0..instruction.width {
                 let operands = instruction.operands.map(|place| place + number);
                 let range = self.range(instruction.action, operands, places);
-                places.push(range);
+                places[(instruction.target + number) as usize] = range;
             }
         }
         results.clear();
@@ -65,6 +65,7 @@ impl Tape {
             Action::ProductLess => product() - at(2),
             Action::LessProduct => at(2) - product(),
             Action::Opposite => -at(0),
+            Action::Gather => places[self.gathered[operands[0] as usize] as usize],
             Action::Root => at(0).power(0.5).unwrap_or(Interval::WHOLE),
             Action::Unary(operator) => operator.range(at(0)).unwrap_or(Interval::WHOLE),
             Action::Binary(operator) => operator.range(at(0), at(1)),

@@ -2,8 +2,9 @@
 //! after another.
 
 use std::collections::BTreeMap;
+use std::iter::from_fn;
 
-use super::{Action, Instruction, LANES, Places, Tape};
+use super::{Action, Instruction, Places, Tape, WIDTHS};
 use crate::expression::Expression;
 use crate::fold::Operands;
 use crate::operator::{BinaryOperator, UnaryOperator};
@@ -131,19 +132,28 @@ impl<'a> Writer<'a> {
         let stretches: Vec<&[usize]> =
             batches.iter().flat_map(|batch| self.stretches(batch, &merged, &order)).collect();
         let layout = self.layout(variables, order, &stretches, &merged);
+        let computed: usize = stretches.iter().map(|numbers| numbers.len()).sum();
+
+        let mut gathered = Gathered::new(layout.computed + computed as u32);
+        let mut instructions = Vec::new();
         let mut target = layout.computed;
-        let instructions = stretches.iter().map(|numbers| {
-            let (action, values) = self.deed(numbers[0], &merged);
-            let operands = values.map(|value| layout.place(value));
-            let rows = (numbers.len() / LANES) as u32;
-            let instruction = Instruction { action, rows, target, operands };
-            target += numbers.len() as u32;
-            instruction
-        });
-        let instructions = instructions.collect();
+        for numbers in stretches {
+            let (action, width) = (self.deed(numbers[0], &merged).0, numbers.len() as u32);
+            let mut operands = [0; 4];
+            for (place, values) in operands.iter_mut().zip(self.operands(numbers, &merged)) {
+                *place = if follow_each_other(&values, &layout.order) {
+                    layout.place(values[0])
+                } else {
+                    let sources = values.into_iter().map(|value| layout.place(value)).collect();
+                    gathered.place(sources, &mut instructions)
+                };
+            }
+            instructions.push(Instruction { action, width, target, operands });
+            target += width;
+        }
+
         let widths = self.constants.iter().zip(&layout.widths);
         let constants = widths.flat_map(|(&value, &width)| (0..width).map(move |_| value));
-        let (constants, computed) = (constants.collect(), batches.iter().map(Vec::len).sum());
         let mut result_places: Vec<Places> = Vec::new();
         for result in results {
             let place = layout.place(*result);
@@ -154,33 +164,47 @@ impl<'a> Writer<'a> {
         }
         Tape {
             variables,
-            constants,
-            computed,
+            constants: constants.collect(),
+            computed: computed + gathered.sources.len(),
             instructions,
+            gathered: gathered.sources,
             tables: self.tables,
             results: result_places,
         }
     }
 
-    /// The batch as stretches whose operands lie abreast, as many times [`LANES`] long as they can
-    /// be, and single operations.
+    /// The batch as stretches of one of [`WIDTHS`] and single operations: such that each result takes
+    /// as few instructions as can be, with those that gather operands which do not lie abreast.
     fn stretches<'b>(
         &self,
         batch: &'b [usize],
         merged: &[bool],
         order: &[u32],
     ) -> impl Iterator<Item = &'b [usize]> {
-        let follows = |one: &usize, next: &usize| {
-            let [(action, one), (_, next)] = [one, next].map(|&number| self.deed(number, merged));
-            let mut operands = one.into_iter().zip(next).take(action.operands());
-            action.is_arithmetic() && operands.all(|operands| follow_each_other(operands, order))
+        let gathers = |numbers: &[usize]| {
+            let operands = self.operands(numbers, merged);
+            operands.iter().filter(|values| !follow_each_other(values, order)).count()
         };
-        let stretches: Vec<&[usize]> = batch.chunk_by(follows).collect();
-        stretches.into_iter().flat_map(|numbers| {
-            let (rows, rest) = numbers.split_at(numbers.len() / LANES * LANES);
-            let rows = (!rows.is_empty()).then_some(rows);
-            rows.into_iter().chain(rest.chunks(1))
+        let [widest, ..] = WIDTHS;
+        let mut rest = batch;
+        from_fn(move || {
+            let first = *rest.first()?;
+            let is_arithmetic = self.deed(first, merged).0.is_arithmetic();
+            let widths = if is_arithmetic { &WIDTHS[..] } else { &[] };
+            let fitting = widths.iter().copied().filter(|&width| width <= rest.len());
+            let for_as_many = |width: &usize| (1 + gathers(&rest[..*width])) * widest / width;
+            let width = fitting.chain([1]).min_by_key(for_as_many)?;
+            let (stretch, later) = rest.split_at(width);
+            rest = later;
+            Some(stretch)
         })
+    }
+
+    /// The operands of operations of one action: the first of each, then the second of each.
+    fn operands(&self, numbers: &[usize], merged: &[bool]) -> Vec<Vec<Value>> {
+        let deeds: Vec<Deed> = numbers.iter().map(|&number| self.deed(number, merged)).collect();
+        let count = deeds.first().map_or(0, |(action, _)| action.operands());
+        (0..count).map(|place| deeds.iter().map(|(_, values)| values[place]).collect()).collect()
     }
 
     /// A constant that is read abreast has as many places as results are computed from it.
@@ -334,16 +358,16 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Whether two operands can be those of neighbours among operations abreast.
-fn follow_each_other((one, next): (Value, Value), order: &[u32]) -> bool {
-    match (one, next) {
+/// Whether operands are in places one after another, as those of operations abreast are.
+fn follow_each_other(values: &[Value], order: &[u32]) -> bool {
+    values.windows(2).all(|pair| match (pair[0], pair[1]) {
         (Value::Variable(one), Value::Variable(next)) => next == one + 1,
         (Value::Computed(one), Value::Computed(next)) => {
             order[next as usize] == order[one as usize] + 1
         }
         (Value::Constant(one), Value::Constant(next)) => one == next,
         _ => false,
-    }
+    })
 }
 
 impl Operation {
@@ -379,5 +403,35 @@ impl Layout {
             Value::Constant(index) => self.constants[index as usize],
             Value::Computed(number) => self.computed + self.order[number as usize],
         }
+    }
+}
+
+/// The places that are gathered, after all others.
+struct Gathered {
+    /// The first of them.
+    first: u32,
+    /// What they are copies of.
+    sources: Vec<u32>,
+    /// Where groups of sources begin that are gathered already.
+    known: BTreeMap<Vec<u32>, u32>,
+}
+
+impl Gathered {
+    fn new(first: u32) -> Self {
+        Gathered { first, sources: Vec::new(), known: BTreeMap::new() }
+    }
+
+    /// The first place of copies of these; an instruction that makes them is added if none has.
+    fn place(&mut self, sources: Vec<u32>, instructions: &mut Vec<Instruction>) -> u32 {
+        let list = self.sources.len() as u32;
+        let target = self.first + list;
+        if let Some(&known) = self.known.get(&sources) {
+            return known;
+        }
+        self.sources.extend(&sources);
+        let (action, width) = (Action::Gather, sources.len() as u32);
+        instructions.push(Instruction { action, width, target, operands: [list; 4] });
+        self.known.insert(sources, target);
+        target
     }
 }
