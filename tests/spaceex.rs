@@ -1,5 +1,6 @@
 //! Models of SpaceEx: what is read, written and refused.
 
+use crate::generated::keep_up_to_date;
 use pleach::guards::Interval;
 use pleach::spaceex::{self, Problem, Verdict};
 use pleach::verify::reach::{Completion, Directions, Effort};
@@ -357,4 +358,16 @@ fn alternatives_of_initial_states_are_kept_apart() {
     let open = (vec!["waiting, open".to_owned()], "[1, 1.2]".to_owned());
     let shut = (vec!["waiting, shut".to_owned()], "[0.5, 0.5]".to_owned());
     assert_eq!(found, [open, shut]);
+}
+
+/// The picture of the book is what the program draws; its runs are curves, and not chords.
+#[test]
+fn the_picture_of_the_book_is_up_to_date() {
+    let ball = problem(BALL);
+    let solution = ball.solve(&Effort::default(), &mut |_| ControlFlow::Continue(())).unwrap();
+    let picture = solution.picture(&ball.system, ["t", "x"], &ball.runs(12)).unwrap();
+    assert!(picture.runs.iter().all(|phase| phase.len() > 1));
+    let svg = picture.to_svg();
+    assert!(svg.matches(" C ").count() >= picture.runs.len());
+    keep_up_to_date("docs/pictures/reach-ball.svg", &svg, "spaceex");
 }

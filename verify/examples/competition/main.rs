@@ -10,6 +10,7 @@
 //! with it. A number at the end draws as many simulated runs of each instance and fails if one leaves its
 //! enclosure.
 
+mod building;
 mod gearbox;
 mod heat;
 mod nonlinear;
@@ -219,7 +220,11 @@ fn violation(instance: &Instance) -> Option<Counterexample> {
 /// A line of the table.
 fn line(name: &str, outcome: &Outcome, seconds: f64) -> String {
     let Outcome { answer, sets, away, measured, .. } = outcome;
-    let away = away.map(|away| format!("{away:.3}")).unwrap_or_default();
+    let away = away.map(|away| match away.abs() {
+        small if small > 0.0 && small < 1e-3 => format!("{away:.1e}"),
+        _ => format!("{away:.3}"),
+    });
+    let away = away.unwrap_or_default();
     format!("| {name} | {answer} | {seconds:.2} s | {sets} | {away} | {measured} |\n")
 }
 
@@ -302,6 +307,8 @@ fn automata() -> TestResult<Vec<(&'static str, Instance)>> {
         ("SRA02", rendezvous::mission(Some((120.0, 125.0)), approach(4, 0.04))?),
         ("SRA03", rendezvous::mission(Some((120.0, 145.0)), approach(4, 0.04))?),
         ("SRA04", rendezvous::mission(Some((240.0, 240.0)), approach(40, 0.02))?),
+        ("BLDF01", building::shaken(true, affine(20.0, 0.002))?),
+        ("BLDC01", building::shaken(false, affine(20.0, 0.002))?),
         ("VDP, in 16 parts", nonlinear::oscillator(smooth(7.0, 1e-7, 8, 3, 4))?.cut(&[8, 2])),
         (
             "CVDP23, in 64 parts",
