@@ -366,8 +366,8 @@ fn the_picture_of_the_book_is_up_to_date() {
     let ball = problem(BALL);
     let solution = ball.solve(&Effort::default(), &mut |_| ControlFlow::Continue(())).unwrap();
     let picture = solution.picture(&ball.system, ["t", "x"], &ball.runs(12)).unwrap();
-    assert!(picture.runs.iter().all(|phase| phase.len() > 1));
+    let flights = picture.runs.iter().filter(|phase| phase.len() > 1).count();
     let svg = picture.to_svg();
-    assert!(svg.matches(" C ").count() >= picture.runs.len());
+    assert!(flights >= 12 && svg.matches(" C ").count() >= flights);
     keep_up_to_date("docs/pictures/reach-ball.svg", &svg, "spaceex");
 }
