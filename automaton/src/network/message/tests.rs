@@ -15,6 +15,7 @@ use super::super::duty::{
     Relay, Shifting, Standby, Station, Waiting,
 };
 use super::super::record::Outcome;
+use super::super::robot::RequestNumber;
 use super::super::shared::Shared;
 use super::*;
 use crate::located::Place as _;
@@ -137,6 +138,7 @@ fn messages() -> Vec<Message> {
     let of_notice = |notice| beacon(talkative(duties()[0], notice));
     let news = |notice| Message::News(Bulletin::first(Shared::new(notice)));
     let report = NeighbourReport { multiplier: 0.1, mismatch: -0.2, crowding: 1.0 };
+    let number = RequestNumber { period: 3, number: 1 };
     let mut messages = vec![
         beacon(silent()),
         Message::Multiplier { report, parent: None },
@@ -144,7 +146,8 @@ fn messages() -> Vec<Message> {
         Message::Flow(0.075),
         Message::Demand(f64::MIN_POSITIVE),
         Message::Shortage,
-        Message::Restore,
+        Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075 }),
+        Message::GrantFlow(FlowGrant { number, flow: 0.05 }),
         Message::Proposal(Segment::new(Point::new(0.1, 0.2), Point::new(1.0 / 3.0, 0.2))),
         Message::Objection,
         Message::Request(Arc::from([])),
@@ -164,7 +167,8 @@ fn kind(message: &Message) -> &'static str {
         Message::Flow(_) => "flow",
         Message::Demand(_) => "demand",
         Message::Shortage => "shortage",
-        Message::Restore => "restore",
+        Message::AskFlow(_) => "ask_flow",
+        Message::GrantFlow(_) => "grant_flow",
         Message::Proposal(_) => "proposal",
         Message::Objection => "objection",
         Message::Request(_) => "request",
