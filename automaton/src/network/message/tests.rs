@@ -205,7 +205,7 @@ fn every_kind_of_message_is_read_back_as_it_was_written() {
         texts.insert(text);
     }
     assert_eq!(texts.len(), messages().len(), "unlike messages are written unlike");
-    assert_eq!(kinds.len(), 10);
+    assert_eq!(kinds.len(), 11);
     let named: BTreeSet<_> = duties().iter().map(|duty| duty.location()).collect();
     assert_eq!(named.len(), Activity::ALL.len());
     assert_eq!(notices().iter().map(kind_of_notice).collect::<BTreeSet<_>>().len(), 7);
@@ -233,6 +233,15 @@ fn malformed_messages_are_refused() {
         (json!({"flow": 0.1, "demand": 0.1}), "single key"),
         (json!({"flow": null}), "expected f64"),
         (json!({"flow": "0.1"}), "expected f64"),
+        (json!({"ask_flow": {"held": 0.1, "wanted": 0.2}}), "missing field `number`"),
+        (
+            json!({"grant_flow": {"number": {"period": -1, "number": 0}, "flow": 0.1}}),
+            "invalid value",
+        ),
+        (
+            json!({"grant_flow": {"number": {"period": 1, "number": 0}, "flow": null}}),
+            "expected f64",
+        ),
         (json!({"request": [[0.0, null]]}), "expected f64"),
         (json!({"request": [[0.0]]}), "array"),
         (json!({"proposal": {"from": [0, 0]}}), "missing field `to`"),

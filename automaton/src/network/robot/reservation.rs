@@ -143,7 +143,7 @@ impl Robot {
             held.wanted = if link.is_retiring { 0.0 } else { planned };
             if link.to >= robots {
                 // An access point takes everything.
-                (held.granted, held.until) = (f64::INFINITY, heard_in + LEASE);
+                (held.granted, held.until) = (f64::INFINITY, heard_in.saturating_add(LEASE));
             }
             if held.until < period {
                 (held.flow, held.granted) = (0.0, 0.0);
@@ -202,7 +202,8 @@ impl Robot {
         };
         let kept = &mut self.reservations[at];
         let flow = kept.flow.min(held).max(0.0);
-        *kept = Reservation { from, flow, wanted, asked: number, until: self.period + LEASE };
+        let until = self.period.saturating_add(LEASE);
+        *kept = Reservation { from, flow, wanted, asked: number, until };
         self.settle_in_time(Some(from), outputs);
     }
 
@@ -211,7 +212,7 @@ impl Robot {
         let Ok(at) = self.links.binary_search_by_key(&from, |link| link.to) else { return };
         let held = &mut self.links[at].held;
         if held.asked == grant.number {
-            (held.is_open, held.until) = (false, grant.number.period + LEASE);
+            (held.is_open, held.until) = (false, grant.number.period.saturating_add(LEASE));
             held.granted = held.granted.max(grant.flow);
             self.settle_in_time(None, outputs);
         }
