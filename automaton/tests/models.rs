@@ -13,7 +13,7 @@ use pleach_automaton::{
     sweep,
 };
 use pleach_discrete::vocabulary;
-use pleach_guards::{Table, variable};
+use pleach_guards::{Expression, Table, piecewise, variable};
 
 vocabulary! {
     enum Motion: Location { Falling = "falling" }
@@ -152,7 +152,7 @@ fn time_is_a_coordinate_that_moves_throughout() {
         .unwrap();
     let trajectory = room.run(5.0).unwrap();
     let end = trajectory.value("T", 5.0).unwrap();
-    assert!((end - 21.0).abs() < 1e-6, "{end}");
+    assert!((end - 21.0).abs() < 1e-13, "{end}");
     assert_eq!(trajectory.value("t", 5.0), Some(5.0));
     let function = Flow::field("drift", |room: &Room| *room);
     let error = Automaton::<Motion, Contact, Room>::starting_in(Falling)
@@ -161,6 +161,40 @@ fn time_is_a_coordinate_that_moves_throughout() {
         .build()
         .unwrap_err();
     assert_eq!(error, BuildError::NoRates { location: "falling" });
+}
+
+/// Integration steps end where tables have their points and where cases change: the integral of a saw, of
+/// steps and of cases, also backwards, and of a pulse of a millisecond in a quarter of an hour.
+#[test]
+fn steps_end_at_the_points_of_tables() {
+    let Room { temperature, time } = Room::coordinates();
+    let integral = |rate: Expression, start: f64, slope: f64, until: f64| {
+        let room = Automaton::<Motion, Contact, Room>::starting_in(Falling)
+            .initially(Room { temperature: 0.0, time: start })
+            .flow(Falling, [temperature.rate(rate), time.rate(slope)])
+            .build()
+            .unwrap();
+        room.run(until).unwrap().value("T", until).unwrap()
+    };
+    let saw: Vec<(f64, f64)> =
+        (0..40).map(|tooth| (0.37 * f64::from(tooth), f64::from(tooth % 2))).collect();
+    let teeth = Table::linear(&*saw).unwrap();
+    let steps = Table::steps(saw).unwrap();
+    let exact = 0.5 * 0.37 * 39.0;
+    for (rate, exact) in [(teeth.at(&time), exact), (steps.at(&time), 19.0 * 0.37)] {
+        let end = integral(rate.clone(), 0.0, 1.0, 0.37 * 39.0);
+        assert!((end - exact).abs() < 1e-10, "{end} {exact}");
+        let end = integral(rate, 0.37 * 39.0 - 1e-9, -2.0, 0.5 * 0.37 * 39.0);
+        assert!((end - 0.5 * exact).abs() < 1e-8, "{end} {exact}");
+    }
+    let pulse = Table::linear([(500.0, 0.0), (500.001, 1000.0), (500.002, 0.0)]).unwrap();
+    let block = Table::steps([(0.0, 0.0), (500.0, 1000.0), (500.001, 0.0)]).unwrap();
+    let case = time.at_least(500.0) & time.less_than(500.001);
+    let cases = piecewise([(case, 1000.0.into())], 0.0).unwrap();
+    for rate in [pulse.at(&time), block.at(&time), cases] {
+        let end = integral(rate, 0.0, 1.0, 900.0);
+        assert!((end - 1.0).abs() < 1e-8, "{end}");
+    }
 }
 
 /// A cascade of tanks, each of which opens the next one when it is full: as many as the data say.

@@ -178,7 +178,7 @@ impl Tracker {
         let context = Context { states, slots, half_width, slack };
         let (course, definedness) = self.root.course(&self.comparisons, &context, known);
         match definedness {
-            Definedness::Everywhere => course,
+            Definedness::Everywhere | Definedness::Steep => course,
             Definedness::Blurred => Course::Blurred,
             Definedness::Open => Course::Open,
         }
@@ -231,7 +231,7 @@ impl Tracked {
         } else if is_exact && is_strict && upper.range.upper() <= lower.range.lower() {
             Course::Never
         } else {
-            let is_blurred = margin.is_blurred();
+            let is_blurred = margin.is_blurred() || definedness == Definedness::Steep;
             match (margin.rate.lower() >= 0.0, margin.rate.upper() <= 0.0) {
                 (true, _) if is_blurred => Course::FaintlyRising,
                 (true, _) => Course::Rising,

@@ -47,6 +47,9 @@ pub struct Enclosure {
 pub(crate) enum Definedness {
     /// It has.
     Everywhere,
+    /// It has, but a pole lies so near that rounding hides its place: a shorter span tells no more
+    /// of the values.
+    Steep,
     /// It may have none somewhere, and rounding alone says so: a shorter span tells no more.
     Blurred,
     /// It may have none somewhere; a shorter span may tell.
@@ -59,6 +62,7 @@ impl Definedness {
         match (self, other) {
             (Definedness::Open, _) | (_, Definedness::Open) => Definedness::Open,
             (Definedness::Blurred, _) | (_, Definedness::Blurred) => Definedness::Blurred,
+            (Definedness::Steep, _) | (_, Definedness::Steep) => Definedness::Steep,
             _ => Definedness::Everywhere,
         }
     }
@@ -211,15 +215,29 @@ impl Enclosure {
         }
     }
 
+    /// Where `self` is an operand with which a function may have a pole.
+    fn beside_a_pole(&self, is_met: impl Fn(Interval) -> bool) -> Definedness {
+        if is_met(self.middle) && self.is_blurred() {
+            Definedness::Steep
+        } else {
+            Definedness::Everywhere
+        }
+    }
+
     pub(crate) fn raised(&self, exponent: f64) -> (Self, Definedness) {
-        let slope = |base: Interval| Some(Interval::point(exponent) * base.power(exponent - 1.0)?);
+        let slope = |base: Interval| {
+            // The slopes on both sides of a pole have one sign, and the values jump.
+            let has_pole = exponent < 0.0 && base.contains(0.0);
+            (!has_pole).then_some(Interval::point(exponent) * base.power(exponent - 1.0)?)
+        };
         let power = match exponent {
             0.0 => Enclosure::constant(1.0),
             1.0 => *self,
             _ => self.mapped(|base| base.power(exponent), slope),
         };
+        let steep = self.beside_a_pole(|base| exponent < 0.0 && base.contains(0.0));
         let is_whole = exponent % 1.0 == 0.0;
-        (power, if is_whole { Definedness::Everywhere } else { self.not_negative() })
+        (power, if is_whole { steep } else { self.not_negative().and(steep) })
     }
 }
 
@@ -241,8 +259,11 @@ impl UnaryOperator {
                 everywhere(operand.mapped(|x| Some(x.cos()), |x| Some(-x.sin())))
             }
             UnaryOperator::Tangent => {
-                let slope = |x: Interval| Some(Interval::point(1.0) + x.tan().power(2.0)?);
-                everywhere(operand.mapped(|x| Some(x.tan()), slope))
+                // The slopes on both sides of a pole have one sign, and the values jump.
+                let tangent = |x: Interval| Some(x.tan()).filter(|tan| *tan != Interval::WHOLE);
+                let slope = |x: Interval| Some(Interval::point(1.0) + tangent(x)?.power(2.0)?);
+                let steep = operand.beside_a_pole(|x| tangent(x).is_none());
+                (operand.mapped(tangent, slope), steep)
             }
             UnaryOperator::HyperbolicTangent => {
                 let slope = |x: Interval| Some(Interval::point(1.0) - x.tanh().power(2.0)?);
@@ -283,7 +304,8 @@ impl BinaryOperator {
                 let met = |one: Interval, other: Interval| one.contains(0.0) && other.contains(0.0);
                 let everywhere = !met(left.range, right.range);
                 let in_the_middle = !met(left.middle, right.middle);
-                (left.over(right), right.defined(everywhere, in_the_middle))
+                let steep = right.beside_a_pole(|right| right.contains(0.0));
+                (left.over(right), right.defined(everywhere, in_the_middle).and(steep))
             }
         }
     }

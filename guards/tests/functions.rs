@@ -1,8 +1,10 @@
 //! Tangents, angles, jumps, choices and tables: values, enclosures, derivatives and text.
 
+use std::f64::consts::FRAC_PI_2;
+
 use pleach_guards::{
-    Expression, Interval, InvalidTable, Predicate, Table, constant, maximum, minimum, piecewise,
-    variable,
+    Course, Enclosure, Expression, Interval, InvalidTable, Predicate, Table, constant, maximum,
+    minimum, piecewise, variable,
 };
 
 fn at(expression: &Expression, x: f64) -> f64 {
@@ -59,6 +61,25 @@ fn derivatives_hide_no_jump() {
         assert_eq!(derivative.evaluate(&[("x", 0.25)]), Ok(0.0), "{derivative}");
         let around = Interval::new(-0.5, 0.5).expect("in order");
         assert_eq!(derivative.range(&[("x", around)]), Ok(Interval::WHOLE), "{derivative}");
+    }
+}
+
+/// What jumps from one end of the numbers to the other at a pole does not rise or fall there.
+#[test]
+fn poles_hide_behind_no_slope() {
+    let x = variable("x");
+    let around = Enclosure {
+        middle: Interval::point(0.25),
+        range: Interval::new(-0.75, 1.25).expect("in order"),
+        rate: Interval::point(1.0),
+    };
+    let poles = [x.power(-1.0), x.power(-3.0), -x.power(-5.0), 1.0 / &x, (&x + FRAC_PI_2).tan()];
+    for pole in poles {
+        for guard in [pole.at_least(10.0), pole.at_most(-10.0)] {
+            let tracker = guard.track(&["x"]).expect("x is the only variable");
+            let course = tracker.course(&[around], &[0], 1.0, 0.0, &|_| None);
+            assert_eq!(course, Course::Open, "{guard}");
+        }
     }
 }
 

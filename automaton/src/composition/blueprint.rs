@@ -10,6 +10,7 @@ use pleach_guards::{
     Verdict,
 };
 
+use super::kinks::Kinks;
 use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
 use crate::diagram::sketch::Sketch;
@@ -71,6 +72,8 @@ pub(crate) struct RateProgram {
     pub(crate) form: Option<LinearForm>,
     /// Follows the rate, where it could grow without bound.
     pub(crate) tracker: Option<Tracker>,
+    /// Where it has kinks or jumps.
+    pub(super) kinks: Box<[Kinks]>,
 }
 
 /// A reset.
@@ -185,7 +188,7 @@ impl RateProgram {
         let form = rate.linear_form();
         let tracker =
             may_be_unbounded(rate).then(|| rate.at_least(0.0).track(names)).transpose()?;
-        Ok(RateProgram { coordinate, form, tracker })
+        Ok(RateProgram { coordinate, form, tracker, kinks: Kinks::of(rate, names)? })
     }
 }
 

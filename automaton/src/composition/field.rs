@@ -219,6 +219,23 @@ impl<'a> Field<'a> {
         })
     }
 
+    /// The first time after `after` at which a rate is known to have a kink or a jump.
+    pub(super) fn next_kink(&self, after: f64) -> Option<f64> {
+        let kinks = self.moving.iter().flat_map(|(component, mode)| {
+            let line = |coordinate: usize| match self.rows[component.places[coordinate]] {
+                Row::Line(rate) => Some((self.start[component.places[coordinate]], rate)),
+                Row::Curved | Row::Solved => None,
+            };
+            let rates: &[RateProgram] = match &mode.motion {
+                ModeMotion::Rates(rates) => rates,
+                ModeMotion::Field(_) | ModeMotion::Exact(_) => &[],
+            };
+            let kinks = rates.iter().flat_map(|rate| &rate.kinks);
+            kinks.filter_map(move |kinks| kinks.next(after, line))
+        });
+        kinks.reduce(f64::min)
+    }
+
     /// Rates that could grow without bound, with where their variables are.
     pub(super) fn unbounded_rates(&self) -> impl Iterator<Item = (&'a Component, &'a RateProgram)> {
         self.moving.iter().flat_map(|(component, mode)| {

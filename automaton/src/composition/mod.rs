@@ -73,6 +73,7 @@ mod field;
 mod flight;
 mod group;
 mod jumps;
+mod kinks;
 mod linear;
 mod models;
 mod picture;

@@ -153,7 +153,9 @@ impl<'a> Solver<'a> {
                 flow.piece(start).ok_or("the flow has no solution")?.within(start, limit)
             }
             Method::Steps(integrator) => {
-                let step = integrator.step(limit).map_err(|fault| without_time(&fault))?;
+                let kink = self.field.next_kink(start).unwrap_or(limit);
+                let step =
+                    integrator.step(limit.min(kink)).map_err(|fault| without_time(&fault))?;
                 step.piece(start).ok_or("the flow has no solution")?
             }
         };

@@ -288,7 +288,7 @@ fn automata() -> TestResult<Vec<(&'static str, Instance)>> {
     let approach = |clusters, step| Settings { clusters, ..jumping(300.0, step) };
     let stiff = |order| Settings {
         directions: Directions::Listed(vec![vec![1.0; 3]]),
-        ..smooth(40.0, 1e-9, order, 1, 4)
+        ..smooth(40.0, 1e-13, order, 1, 4)
     };
     let alike = [(1.25, 1.55); 2];
     let crossing = Settings {
