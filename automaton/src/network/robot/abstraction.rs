@@ -172,6 +172,7 @@ impl Robot {
             must_judge_moves: _,
             consents: _,
             to_answer: _,
+            consented: _,
             arrival: _,
             resting_places: _,
         } = self;

@@ -194,6 +194,8 @@ pub struct Robot {
     /// The robots that consent to its move, and those that wait for its own consent.
     consents: Vec<NodeId>,
     to_answer: Vec<NodeId>,
+    /// The robots to whose moves it has consented, each with the control period in which it did last.
+    consented: Vec<(NodeId, u32)>,
     arrival: Point,
     /// Where it has been, from the last place on, each off those before.
     resting_places: VecDeque<Point>,
@@ -290,6 +292,7 @@ impl Robot {
             must_judge_moves: false,
             consents: Vec::new(),
             to_answer: Vec::new(),
+            consented: Vec::new(),
             arrival: position,
             resting_places: VecDeque::from([position]),
             still_periods: 0,

@@ -9,8 +9,8 @@
 //!
 //! A robot moves only with the consent of all that rely on it. A message that is lost takes away the
 //! right to move and never gives one: a robot whose proposal is not heard stays where others take it to
-//! be, and a robot that has not heard in this control period where those are on which it relies
-//! consents to nothing and stays.
+//! be, and a robot that does not know where those are on which it relies consents to nothing and
+//! stays.
 
 use pleach_continuous::Point;
 use pleach_continuous::network::acceptance::Segment;
@@ -123,7 +123,11 @@ impl Robot {
         }
         self.must_judge_moves = false;
         let period = self.period;
-        self.to_answer.drain(..).for_each(|mover| outputs.send(mover, Message::Consent { period }));
+        for mover in std::mem::take(&mut self.to_answer) {
+            outputs.send(mover, Message::Consent { period });
+            self.consented.retain(|&(other, _)| other != mover);
+            self.consented.push((mover, period));
+        }
     }
 
     /// Whether all moves together are acceptable; if not, those that could be the cause are told so.
@@ -144,13 +148,21 @@ impl Robot {
         false
     }
 
-    /// Whether it has not heard in this control period where a robot is on which it relies.
+    /// Whether it does not know where a robot is on which it relies.
     fn is_unsure(&self) -> bool {
-        let is_unheard = |node: NodeId| {
-            node < self.site.robots
-                && self.neighbour(node).is_none_or(|known| known.heard_in != self.period)
-        };
-        self.routes().any(|link| is_unheard(link.to)) || self.tree_parent().is_some_and(is_unheard)
+        let relied_on = self.routes().map(|link| link.to).chain(self.tree_parent());
+        relied_on.filter(|&node| node < self.site.robots).any(|node| !self.knows_place_of(node))
+    }
+
+    /// Whether a robot on which this one relies is where it was heard last: it has been heard in this
+    /// control period, or it could not move since, because this robot sends to it and has not
+    /// consented.
+    fn knows_place_of(&self, node: NodeId) -> bool {
+        let Some(known) = self.neighbour(node) else { return false };
+        let has_consented =
+            |&(mover, period): &(NodeId, u32)| mover == node && period >= known.heard_in;
+        known.heard_in == self.period
+            || self.sends_to(node) && !self.consented.iter().any(has_consented)
     }
 
     /// Whether the robot neither proposes a move nor has heard of one that it has not answered.
