@@ -1,7 +1,7 @@
 //! Models that are made to be missed, to hang or to panic: of every event the run has it, or says that it
 //! is in doubt.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use pleach_automaton::{
     Automaton, Builder, Coordinate, Coordinates, Reason, Settings, Trajectory, coordinates, from,
@@ -167,6 +167,40 @@ fn poles_and_domains_of_guards_are_met_or_said() {
     assert!((late.ending().at.t - 1.0).abs() < 1e-12, "{:?}", late.ending());
 }
 
+/// On both sides of these poles the formulas rise, or on both they fall, and across them they jump.
+#[test]
+fn poles_between_slopes_of_one_sign_are_met() {
+    for horizon in [3.0, 10.0, 1e3] {
+        assert_event(&go(line(0.0, 1.0), x().tan().at_least(1.0), horizon), FRAC_PI_4, 1e-14);
+        let behind = go(line(0.0, 1.0), x().tan().at_most(-1e3), horizon);
+        assert_event(&behind, FRAC_PI_2, 1e-14);
+        for exponent in [-1.0, -3.0] {
+            let pole = || (x() - 1.1).power(exponent);
+            assert_event(&go(line(0.0, 1.0), pole().at_least(1e3), horizon), 1.1, 1e-14);
+            let before = 1.1 - 1e3f64.powf(1.0 / exponent);
+            assert_event(&go(line(0.0, 1.0), pole().at_most(-1e3), horizon), before, 1e-13);
+        }
+    }
+}
+
+/// The error of an integrated flow hides where exactly a pole is: that costs no endless halving.
+#[test]
+fn poles_are_met_on_integrated_flows() {
+    let Body { place, .. } = Body::coordinates();
+    let rates = || [1.0 + 0.0 * place.power(2.0), 0.0.into()];
+    let pole = |formula: Expression| {
+        let settings = Settings { step_limit: 10_000, ..Settings::default() };
+        let jump = from(Here).on(Go).to(There).must(formula.at_least(1e3));
+        let automaton = body([0.0, 0.0], rates()).transition(jump).build();
+        automaton.expect("it is sound").run_with(settings, 3.0).expect("it can be run")
+    };
+    assert_event(&pole(1.0 / (&place - 1.1)), 1.1, 1e-8);
+    assert_event(&pole((&place - 1.1).power(-1.0)), 1.1, 1e-8);
+    assert_event(&pole(-(&place + FRAC_PI_2 - 1.1).tan()), 1.1, 1e-8);
+    assert_event(&pole((&place - 1.1).power(-2.0)), 1.1 - 1e-3f64.sqrt(), 1e-8);
+    assert_said(&pole((&place - 1.1).power(-2.0) * 1e-12), 1.1, 1e-6);
+}
+
 #[test]
 fn strict_guards_are_taken_at_the_next_number() {
     let trajectory = go(line(0.0, 1.0), x().more_than(1.0), 5.0);
@@ -266,6 +300,24 @@ fn an_invariant_that_ends_blocks_the_run() {
     let trajectory = run(line(0.0, 1.0).invariant(Here, brief.at_least(2.5e-13)), 5.0);
     assert_eq!(trajectory.ending().reason, Reason::Blocked);
     assert!((trajectory.ending().at.t - (1.0 - 5e-7)).abs() < 1e-9, "{:?}", trajectory.ending());
+}
+
+/// A ball that may bounce where its invariant ends lands below the ground by rounding, and goes on.
+#[test]
+fn what_may_be_taken_beside_an_invariant_is_taken() {
+    let Body { place, speed, .. } = Body::coordinates();
+    let bounce = from(Here)
+        .on(Go)
+        .to(Here)
+        .may(place.at_most(0.0) & speed.less_than(0.0))
+        .then(speed.becomes(-&speed));
+    let ball = body([1.0, 0.0], [Expression::from(&speed), (-2.0).into()])
+        .invariant(Here, place.at_least(0.0))
+        .transition(bounce);
+    let trajectory = run(ball, 100.5);
+    assert_eq!((&trajectory.ending().reason, trajectory.jumps().len()), (&Reason::Horizon, 50));
+    let near = |(number, found): (i32, f64)| (found - f64::from(2 * number - 1)).abs() < 1e-10;
+    assert!((1..).zip(trajectory.jumps().iter().map(|jump| jump.at.t)).all(near));
 }
 
 /// A thousand transitions that are due at one instant: the first in order is taken.
