@@ -151,7 +151,8 @@ fn a_mission_takes_no_more_control_periods_than_allowed() {
 
 // ---- The monitor -------------------------------------------------------------------------------
 
-/// The radio stops for one robot, so that what it generates goes nowhere.
+/// The radio stops for one robot: what others have granted it counts as inflow although it does not
+/// send all of it, so that their accounts are not those of the routes.
 #[test]
 fn the_monitor_stops_a_mission_at_the_first_violation() {
     let (muted, from) = (0, 20);
@@ -162,7 +163,7 @@ fn the_monitor_stops_a_mission_at_the_first_violation() {
     assert_eq!(mission.end.outcome, Outcome::InvariantViolated);
     assert_eq!(mission.last().step, from);
     let reason = &mission.end.reason;
-    for said in ["residual", "step 20", "t = 20.000 s", "robot 0"] {
+    for said in ["accounting", "step 20", "t = 20.000 s", "robot 3"] {
         assert!(reason.contains(said), "{said}: {reason}");
     }
 }

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use crate::automaton::diagram::{FlowpipePicture, Patch};
+use crate::automaton::trajectory::Sample;
 use crate::guards::Interval;
 use crate::verify::reach::{
-    Counterexample, Effort, Model, Polytope, Proof, ReachError, Run, TimedState, falsify, followed,
-    prove, runs,
+    Counterexample, Effort, Model, Polytope, Proof, ReachError, Run, falsify, prove, runs,
 };
 
 use super::Problem;
@@ -142,16 +142,16 @@ impl Solution {
                 Some(Patch { location: visit.location, across, up })
             })
         });
-        let curve = |run: &Run| -> Vec<Vec<[f64; 2]>> {
-            let point = |(t, values): &TimedState| {
-                let value = |quantity: Option<usize>| {
-                    quantity.map_or(Some(*t), |place| values.get(place).copied())
-                };
-                Some([value(across)?, value(up)?])
+        let shown = |sample: &Sample| -> Option<Sample> {
+            let along = |quantity: Option<usize>| match quantity {
+                Some(place) => Some((*sample.values.get(place)?, *sample.rates.get(place)?)),
+                None => Some((sample.t, 1.0)),
             };
-            let phases = followed(&run.trajectory).into_iter();
-            phases.map(|(_, states)| states.iter().filter_map(point).collect()).collect()
+            let ((x, x_rate), (y, y_rate)) = (along(across)?, along(up)?);
+            Some(Sample { t: sample.t, values: vec![x, y], rates: vec![x_rate, y_rate] })
         };
+        let phases = runs.iter().flat_map(|run| run.trajectory.intervals());
+        let phases = phases.map(|phase| phase.samples.iter().filter_map(shown).collect());
         let segments: usize = self
             .proofs
             .iter()
@@ -167,7 +167,7 @@ impl Solution {
             names: names.map(str::to_owned),
             locations: self.model.locations().iter().map(|place| place.name.clone()).collect(),
             patches: patches.collect(),
-            runs: runs.iter().map(curve).collect(),
+            runs: phases.collect(),
         })
     }
 }

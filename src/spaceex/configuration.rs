@@ -1,10 +1,22 @@
 //! The configuration: lines `key = value`.
 
 use super::SpaceExError;
-use super::formula::{self, Clause};
+use super::formula::{self, Clause, Side};
+use super::network::{Bound, Network};
 
 /// A value with its line.
 pub(super) type Line<T> = (usize, T);
+
+/// Directions in which sets are bounded.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Bounded {
+    /// Those of the axes.
+    Box,
+    /// Those between any two axes too.
+    Octagon,
+    /// Across the boundaries of linear constraints.
+    Across(Vec<Clause>),
+}
 
 /// What a configuration says.
 #[derive(Debug, Default)]
@@ -15,7 +27,8 @@ pub(super) struct Options {
     pub forbidden: Line<Vec<Vec<Clause>>>,
     pub horizon: Option<f64>,
     pub step: Option<f64>,
-    pub directions: Option<Line<String>>,
+    /// What is said of directions; all of it together.
+    pub directions: Vec<Line<Bounded>>,
     pub jumps: Option<usize>,
     pub shown: Line<Vec<String>>,
 }
@@ -34,7 +47,9 @@ impl Options {
                 return Err(wrong(format!("`{content}` is no line `key = value`")));
             };
             let key = key.trim();
-            if let Some((_, first)) = known.iter().find(|(one, _)| *one == key) {
+            let may_repeat = key == "directions";
+            let before = known.iter().find(|(one, _)| *one == key && !may_repeat);
+            if let Some((_, first)) = before {
                 return Err(wrong(format!(
                     "`{key}` stands in line {first} already: leave one out"
                 )));
@@ -56,14 +71,16 @@ impl Options {
                     options.forbidden = (line, formula::alternatives(value).map_err(wrong)?);
                 }
                 "time-horizon" => match number()? {
-                    horizon if horizon >= 0.0 => options.horizon = Some(horizon),
-                    _ => return Err(wrong(format!("{value} is no duration: write 0 or more"))),
+                    horizon if horizon < 0.0 => options.horizon = Some(f64::INFINITY),
+                    horizon => options.horizon = Some(horizon),
                 },
                 "sampling-time" | "flowpipe-tolerance-step" => match number()? {
                     step if step > 0.0 && step.is_finite() => options.step = Some(step),
                     _ => return Err(wrong(format!("{value} is no step: write more than 0"))),
                 },
-                "directions" => options.directions = Some((line, value.to_owned())),
+                "directions" => {
+                    options.directions.push((line, Bounded::read(value).map_err(wrong)?));
+                }
                 "iter-max" | "max-iterations" => {
                     let limit: i64 = value
                         .parse()
@@ -84,9 +101,13 @@ impl Options {
                 | "verbosity"
                 | "set-aggregation"
                 | "flowpipe-tolerance"
+                | "flowpipe-tolerance-rel"
                 | "clustering"
+                | "intersection-error"
+                | "intersection-error-rel"
+                | "intersection-method"
+                | "error-model"
                 | "output-error"
-                | "local-time-horizon"
                 | "map-zero-duration-jump-sets"
                 | "simu-init-sampling-points" => {}
                 other => {
@@ -98,6 +119,53 @@ impl Options {
             }
         }
         Ok(options)
+    }
+
+    /// The same, in names of the whole network in place of those of its inner components.
+    pub fn in_names_of(mut self, network: &Network<'_>) -> Self {
+        let clauses = [&mut self.initially.1, &mut self.forbidden.1].into_iter().flatten();
+        let directions = self.directions.iter_mut().filter_map(|(_, bounded)| match bounded {
+            Bounded::Across(clauses) => Some(clauses),
+            Bounded::Box | Bounded::Octagon => None,
+        });
+        for clause in clauses.chain(directions).flatten() {
+            let Clause::Compare { left, right, .. } = clause else { continue };
+            for side in [left, right] {
+                if let Side::Formula(formula) = side {
+                    *formula = network.in_names_of_the_whole(formula);
+                }
+            }
+        }
+        for name in &mut self.shown.1 {
+            if let Some(Bound::Name(global)) = network.inner.get(name) {
+                name.clone_from(global);
+            }
+        }
+        self
+    }
+}
+
+impl Bounded {
+    fn read(text: &str) -> Result<Self, String> {
+        // Octagons stand in for uniform directions.
+        let is_uniform = || {
+            let count = text.strip_prefix("uni").and_then(|count| count.trim().parse().ok());
+            count.is_some_and(|count: usize| count > 0)
+        };
+        if let Some(inner) = text.strip_prefix('{') {
+            let inner =
+                inner.strip_suffix('}').ok_or_else(|| format!("`{text}` lacks its `}}`"))?;
+            return formula::conjunction(inner).map(Bounded::Across);
+        }
+        match text {
+            "box" => Ok(Bounded::Box),
+            "oct" => Ok(Bounded::Octagon),
+            _ if is_uniform() => Ok(Bounded::Octagon),
+            _ => Err(format!(
+                "directions `{text}` are not known: box, oct, uni with a number, or linear constraints as \
+                 {{x + y <= 0 & x <= 0}}"
+            )),
+        }
     }
 }
 

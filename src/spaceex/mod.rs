@@ -14,6 +14,9 @@
 //! | `x' >= a & x' <= b` in an assignment | any value within the bounds |
 //! | flow `false` | the state rests |
 //! | no `loc(…)` in `initially` | every location is initial |
+//! | `component.x` in the configuration | what `x` of an inner component is bound to, or else its own number |
+//! | `directions = "{x + y <= 0 & …}"` | bounds across these constraints, and on every variable |
+//! | `time-horizon` | how long runs last, with all their jumps; of SpaceEx each flow. Below 0: for ever |
 //!
 //! What is not supported is refused with its line: inclusions of rates, vectors and matrices as
 //! parameters, equalities with alternatives in invariants and guards.
@@ -92,5 +95,5 @@ pub enum SpaceExError {
 pub fn read(model: &str, configuration: &str) -> Result<Problem, SpaceExError> {
     let components = document::read(model)?;
     let options = configuration::Options::read(configuration)?;
-    product::problem(&components, &options)
+    product::problem(&components, options)
 }

@@ -41,6 +41,8 @@ pub(super) struct Known {
 pub(super) struct Network<'a> {
     pub instances: Vec<Instance<'a>>,
     pub known: BTreeMap<String, Known>,
+    /// What numbers of inner components stand for, as `component.number`.
+    pub inner: BTreeMap<String, Bound>,
 }
 
 /// How deep components may contain each other.
@@ -49,8 +51,11 @@ const DEPTH: usize = 32;
 impl<'a> Network<'a> {
     /// The instances in `system`.
     pub fn of(components: &'a [Component], system: &'a Component) -> Result<Self, SpaceExError> {
-        let mut network = Network { instances: Vec::new(), known: BTreeMap::new() };
+        let mut network =
+            Network { instances: Vec::new(), known: BTreeMap::new(), inner: BTreeMap::new() };
         network.add(components, system, "", BTreeMap::new(), 0)?;
+        let Network { known, inner, .. } = &mut network;
+        inner.retain(|name, _| !known.contains_key(name));
         Ok(network)
     }
 
@@ -71,6 +76,9 @@ impl<'a> Network<'a> {
             let bound = names.entry(parameter.name.clone());
             // What is not bound, as what is local, is the instance's own.
             let bound = bound.or_insert_with(|| Bound::Name(format!("{prefix}{}", parameter.name)));
+            if !parameter.is_label && !name.is_empty() {
+                self.inner.insert(format!("{prefix}{}", parameter.name), bound.clone());
+            }
             if let Bound::Name(global) = bound {
                 let Parameter { line, is_label, is_constant, .. } = *parameter;
                 let known = Known { line, is_label, is_constant };
@@ -141,6 +149,13 @@ impl<'a> Network<'a> {
     }
 }
 
+impl Network<'_> {
+    /// Names of the whole in the place of those of inner components.
+    pub fn in_names_of_the_whole(&self, formula: &Expression) -> Expression {
+        formula.substitute(&substitution(&self.inner))
+    }
+}
+
 impl Instance<'_> {
     /// The name of a parameter in the whole.
     pub fn global(&self, name: &str) -> Option<&str> {
@@ -152,13 +167,7 @@ impl Instance<'_> {
 
     /// Names and numbers of the whole in the place of parameters.
     fn substitution(&self) -> Substitution {
-        Substitution::new(self.names.iter().map(|(name, bound)| {
-            let value = match bound {
-                Bound::Name(global) => crate::guards::variable(global),
-                Bound::Number(value) => constant(*value),
-            };
-            (name, value)
-        }))
+        substitution(&self.names)
     }
 
     /// A conjunction of the component, in names of the whole.
@@ -311,6 +320,17 @@ impl Instance<'_> {
             None => Ok(assigned),
         }
     }
+}
+
+/// What parameters stand for in their place.
+fn substitution(names: &BTreeMap<String, Bound>) -> Substitution {
+    Substitution::new(names.iter().map(|(name, bound)| {
+        let value = match bound {
+            Bound::Name(global) => crate::guards::variable(global),
+            Bound::Number(value) => constant(*value),
+        };
+        (name, value)
+    }))
 }
 
 /// What a variable becomes.

@@ -16,7 +16,6 @@ use super::document::Component;
 use super::network::{Bound, Network};
 use super::{Initial, Problem, SpaceExError};
 use clause::fixed;
-use question::settings;
 
 /// How many locations a product may have.
 const LOCATIONS: usize = 4096;
@@ -24,11 +23,12 @@ const LOCATIONS: usize = 4096;
 type Result<T> = std::result::Result<T, SpaceExError>;
 
 /// The problem that components and configuration pose.
-pub(super) fn problem(components: &[Component], options: &Options) -> Result<Problem> {
-    let system = system(components, options)?;
+pub(super) fn problem(components: &[Component], options: Options) -> Result<Problem> {
+    let system = system(components, &options)?;
     let network = Network::of(components, system)?;
-    let product = Product::of(&network, system.line, options)?;
-    product.problem(system.id.clone(), options)
+    let options = options.in_names_of(&network);
+    let product = Product::of(&network, system.line, &options)?;
+    product.problem(system.id.clone(), &options)
 }
 
 /// The component that the configuration names, or else the last.
@@ -197,7 +197,7 @@ impl<'a> Product<'a> {
             uncertain,
             initial,
             forbidden: self.forbidden(options)?,
-            settings: settings(options)?,
+            settings: self.settings(options)?,
             shown: self.shown(options)?,
         })
     }

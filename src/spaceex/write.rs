@@ -19,7 +19,7 @@ pub struct Written {
 /// The automaton and its question in the files of SpaceEx, as one base component called `system`.
 ///
 /// Inputs become numbers that invariants bound. A transition that has to be taken gets
-/// `asap="true"`.
+/// `asap="true"`. `shown` are the variables to be shown.
 ///
 /// # Errors
 ///
@@ -31,11 +31,12 @@ pub fn write<L: Location, E: Event, S: Coordinates>(
     initial: &[Initial],
     forbidden: &[Forbidden],
     settings: &Settings,
+    shown: &[String],
 ) -> Result<Written, String> {
     let writer = Writer { automaton, uncertain };
     Ok(Written {
         model: writer.model()?,
-        configuration: writer.configuration(initial, forbidden, settings)?,
+        configuration: writer.configuration(initial, forbidden, settings, shown)?,
     })
 }
 
@@ -146,6 +147,7 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
         initial: &[Initial],
         forbidden: &[Forbidden],
         settings: &Settings,
+        shown: &[String],
     ) -> Result<String, String> {
         let resting =
             self.uncertain.iter().filter(|one| !one.varies).map(|one| one.parameter.as_str());
@@ -185,20 +187,34 @@ impl<L: Location, E: Event, S: Coordinates> Writer<'_, L, E, S> {
                 });
             }
         }
-        let directions = match settings.directions {
-            Directions::Boxes => "box",
-            Directions::Octagons | Directions::Listed(_) => "oct",
+        let directions = match &settings.directions {
+            Directions::Boxes => "box".to_owned(),
+            Directions::Octagons => "oct".to_owned(),
+            Directions::Listed(listed) => {
+                let across = listed.iter().map(|direction| across(direction, &names));
+                format!("{{{}}}", across.collect::<Vec<_>>().join(" & "))
+            }
         };
+        // A negative horizon is none.
+        let horizon = if settings.horizon.is_finite() { settings.horizon } else { -1.0 };
         Ok(format!(
-            "system = \"system\"\ninitially = \"{}\"\nforbidden = \"{}\"\ntime-horizon = {}\n\
-             sampling-time = {}\niter-max = {}\ndirections = \"{directions}\"\n",
+            "system = \"system\"\ninitially = \"{}\"\nforbidden = \"{}\"\ntime-horizon = {horizon}\n\
+             sampling-time = {}\niter-max = {}\ndirections = \"{directions}\"\n\
+             output-variables = \"{}\"\n",
             begins.join(" | "),
             ends.join(" | "),
-            settings.horizon,
             settings.step,
-            settings.jump_limit
+            settings.jump_limit,
+            shown.join(", ")
         ))
     }
+}
+
+/// A linear constraint whose boundary a direction is across.
+fn across(direction: &[f64], names: &[&str]) -> String {
+    let terms = direction.iter().zip(names).filter(|(entry, _)| **entry != 0.0);
+    let terms = terms.map(|(entry, name)| format!("{entry} * {name}"));
+    format!("{} <= 0", terms.collect::<Vec<_>>().join(" + "))
 }
 
 /// A conjunction of comparisons, in the spelling of keyboards.

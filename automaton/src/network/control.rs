@@ -43,6 +43,8 @@ stages! {
     ),
     /// It waits for demands, flows, shortages and reliefs, in turn.
     Sweeps,
+    /// It waits for the answers of those to which it sends.
+    Reserving,
     /// It is about to propose a move.
     Planning,
     /// It waits for proposals and objections, in turn.

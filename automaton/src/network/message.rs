@@ -27,6 +27,7 @@ use pleach_discrete::network::NodeId;
 use serde::{Deserialize, Serialize};
 
 use super::beacon::{Beacon, Bulletin};
+use super::robot::{FlowGrant, FlowRequest};
 use super::wire;
 
 /// A message of the network. All of them go through the same medium.
@@ -57,9 +58,10 @@ pub enum Message {
     Demand(#[serde(with = "wire")] f64),
     /// The sender cannot pass on what it is sent, to all nodes in range.
     Shortage,
-    /// The sender goes back to its flows of the period before, to the nodes with which it shares a
-    /// flow that has changed.
-    Restore,
+    /// The sender asks the receiver for a flow towards it.
+    AskFlow(#[serde(with = "wire")] FlowRequest),
+    /// The sender grants the receiver a flow towards itself.
+    GrantFlow(#[serde(with = "wire")] FlowGrant),
     /// The move that the sender intends, to all nodes in range.
     Proposal(#[serde(with = "wire")] Segment),
     /// The sender cannot accept the move that the receiver intends.

@@ -12,6 +12,7 @@ use pleach_continuous::network::routing::adal::NeighbourReport;
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
+use super::robot::{FlowGrant, FlowRequest};
 use super::shared::Shared;
 
 /// A part of a message.
@@ -69,6 +70,18 @@ impl Numbers for Segment {
     }
 }
 
+impl Numbers for FlowRequest {
+    fn not_finite(&self) -> Option<f64> {
+        self.held.not_finite().or(self.wanted.not_finite())
+    }
+}
+
+impl Numbers for FlowGrant {
+    fn not_finite(&self) -> Option<f64> {
+        self.flow.not_finite()
+    }
+}
+
 impl Numbers for NeighbourReport {
     fn not_finite(&self) -> Option<f64> {
         let NeighbourReport { multiplier, mismatch, crowding } = self;
@@ -107,7 +120,7 @@ macro_rules! finite_parts {
     };
 }
 
-finite_parts!(f64, Point, Option<Point>, Segment, NeighbourReport);
+finite_parts!(f64, Point, Option<Point>, Segment, FlowRequest, FlowGrant, NeighbourReport);
 
 /// Distances, which are infinite where no way leads: written as none, since not every format has
 /// infinite numbers.

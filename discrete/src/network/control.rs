@@ -2,8 +2,8 @@
 //!
 //! Control is sampled. Time passes in one location only, [`Stage::Moving`]; at the sample the robot
 //! goes through the others, which take no time. In each it waits for what its neighbours send, up to
-//! the next tick of its clock; then it processes what it has received, and sends. Sweeps and negotiation
-//! have a fixed number of rounds, in which a robot with nothing to do does not tick.
+//! the next tick of its clock; then it processes what it has received, and sends. Sweeps, reservation and
+//! negotiation have a fixed number of rounds, in which a robot with nothing to do does not tick.
 
 use crate::{Row, TransitionTable, Urgency, vocabulary};
 
@@ -22,6 +22,8 @@ vocabulary! {
         Flows = "flows",
         /// In turn, demands of its children in the tree, flows, shortages and flows taken back.
         Sweeps = "sweeps",
+        /// Grants of the flows that it plans.
+        Reserving = "reserving",
         /// Nothing: it is about to propose a move.
         Planning = "planning",
         /// In turn, proposals of moves and objections to its own.
@@ -51,11 +53,15 @@ vocabulary! {
         /// A sweep is over, and another one may be needed.
         SweepOver = "sweep over",
         /// The last sweep is over.
-        RoutesDone = "routes done",
+        SweepsOver = "sweeps over",
         /// Shortages have been forwarded from robot to robot.
         ShortagesHeard = "shortages heard",
         /// Every neighbour has sent the flows that it has taken back.
         ReliefsHeard = "reliefs heard",
+        /// Requests have been answered, or are made again.
+        GrantsHeard = "grants heard",
+        /// No flow changes any more in this period.
+        RoutesDone = "routes done",
         /// The routes are as they will be.
         MoveDue = "move due",
         /// Every neighbour has sent its proposal.
@@ -104,9 +110,11 @@ pub const CONTROL: TransitionTable<Stage, StageEvent> = {
         row(Flows, On::SweepDue, Sweeps),
         row(Sweeps, On::DemandsHeard, Sweeps),
         row(Sweeps, On::SweepOver, Sweeps),
-        row(Sweeps, On::RoutesDone, Planning),
+        row(Sweeps, On::SweepsOver, Reserving),
         row(Sweeps, On::ShortagesHeard, Sweeps),
         row(Sweeps, On::ReliefsHeard, Sweeps),
+        row(Reserving, On::GrantsHeard, Reserving),
+        row(Reserving, On::RoutesDone, Planning),
         row(Planning, On::MoveDue, Negotiation),
         row(Negotiation, On::ProposalsHeard, Negotiation),
         row(Negotiation, On::NextAttempt, Negotiation),

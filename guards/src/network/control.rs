@@ -52,8 +52,18 @@ pub fn sweep_over() -> Guard {
 }
 
 /// The last sweep is over.
+pub fn sweeps_over() -> Guard {
+    Guard::new("sweeps over", proposition("hears_flows").and(proposition("last_sweep")))
+}
+
+/// Requests that have not been answered are made again.
+pub fn grants_heard() -> Guard {
+    Guard::new("grants heard", !proposition("last_answers"))
+}
+
+/// The last answers to requests have arrived.
 pub fn routes_done() -> Guard {
-    Guard::new("routes done", proposition("hears_flows").and(proposition("last_sweep")))
+    Guard::new("routes done", proposition("last_answers"))
 }
 
 /// Shortages have been told from robot to robot.

@@ -2,9 +2,9 @@
 
 use super::clause::{fixed, predicate};
 use super::{Product, Result, location_name};
-use crate::guards::{Interval, Predicate, Substitution, constant};
-use crate::spaceex::configuration::Options;
-use crate::spaceex::formula::Clause;
+use crate::guards::{Expression, Predicate, Substitution, constant};
+use crate::spaceex::configuration::{Bounded, Options};
+use crate::spaceex::formula::{Clause, Side};
 use crate::spaceex::network::Instance;
 use crate::spaceex::{Initial, SpaceExError};
 use crate::verify::reach::{Directions, Forbidden, Polytope, Region, Settings, StateSet, Template};
@@ -65,14 +65,17 @@ impl Product<'_> {
         tuples.iter().map(|tuple| self.names[*tuple].as_str().to_owned()).collect()
     }
 
+    /// The names of what sets of states are over: coordinates, and constants within bounds.
+    fn names_of_states(&self) -> Vec<String> {
+        let resting = self.constants.iter().filter(|(_, values)| values.width() > 0.0);
+        self.variables.iter().chain(resting.map(|(name, _)| name)).cloned().collect()
+    }
+
     /// Where runs begin, one for each alternative.
     pub(super) fn initial(&self, options: &Options) -> Result<Vec<Initial>> {
         let (line, alternatives) = &options.initially;
         let wrong = |problem: String| SpaceExError::Configuration { line: *line, problem };
-        let resting: Vec<&(String, Interval)> =
-            self.constants.iter().filter(|(_, values)| values.width() > 0.0).collect();
-        let names: Vec<String> =
-            self.variables.iter().chain(resting.iter().map(|(name, _)| name)).cloned().collect();
+        let names = self.names_of_states();
         let mut initial = Vec::new();
         for clauses in alternatives {
             for clause in clauses {
@@ -128,6 +131,60 @@ impl Product<'_> {
         }
     }
 
+    /// Settings as the configuration says them.
+    pub(super) fn settings(&self, options: &Options) -> Result<Settings> {
+        let defaults = Settings::default();
+        Ok(Settings {
+            horizon: options.horizon.unwrap_or(defaults.horizon),
+            step: options.step.unwrap_or(defaults.step),
+            jump_limit: options.jumps.unwrap_or(defaults.jump_limit),
+            directions: self.directions(options)?,
+            enters_invariants: true,
+            ..defaults
+        })
+    }
+
+    /// The directions of all that the configuration names.
+    fn directions(&self, options: &Options) -> Result<Directions> {
+        let names = self.names_of_states();
+        let (mut listed, mut has_octagons) = (Vec::new(), false);
+        for (line, bounded) in &options.directions {
+            match bounded {
+                Bounded::Box => {}
+                Bounded::Octagon => has_octagons = true,
+                Bounded::Across(clauses) => {
+                    let wrong = |problem| SpaceExError::Configuration { line: *line, problem };
+                    for clause in clauses {
+                        listed.push(self.across(clause, &names).map_err(wrong)?);
+                    }
+                }
+            }
+        }
+        Ok(match (listed.is_empty(), has_octagons) {
+            (true, false) => Directions::Boxes,
+            (true, true) => Directions::Octagons,
+            (false, false) => Directions::Listed(listed),
+            (false, true) => {
+                let octagons = Template::octagons(names.len()).directions().to_vec();
+                Directions::Listed([octagons, listed].concat())
+            }
+        })
+    }
+
+    /// The direction across the boundary of a linear constraint.
+    fn across(&self, clause: &Clause, names: &[String]) -> std::result::Result<Vec<f64>, String> {
+        let constraint = "a direction is given by a linear constraint as x + y <= 0";
+        let Clause::Compare { left: Side::Formula(left), right: Side::Formula(right), .. } = clause
+        else {
+            return Err(constraint.into());
+        };
+        let difference = left - right;
+        self.knows_all_of(&difference.at_most(0.0))?;
+        let direction = coefficients(&difference, names);
+        let direction = direction.filter(|entries| entries.iter().any(|entry| *entry != 0.0));
+        direction.ok_or_else(|| format!("`{difference}` has no direction: {constraint}"))
+    }
+
     /// The variables to be shown.
     pub(super) fn shown(&self, options: &Options) -> Result<Vec<String>> {
         let (line, shown) = &options.shown;
@@ -168,35 +225,10 @@ impl Product<'_> {
     }
 }
 
-/// Settings as the configuration says them.
-pub(super) fn settings(options: &Options) -> Result<Settings> {
-    let defaults = Settings::default();
-    let directions = match &options.directions {
-        None => Directions::Boxes,
-        Some((_, name)) if name == "box" => Directions::Boxes,
-        // Octagons stand in for uniform directions.
-        Some((_, name)) if name == "oct" || is_uniform(name) => Directions::Octagons,
-        Some((line, name)) => {
-            return Err(SpaceExError::Configuration {
-                line: *line,
-                problem: format!(
-                    "directions `{name}` are not known: box, oct or uni with a number"
-                ),
-            });
-        }
-    };
-    Ok(Settings {
-        horizon: options.horizon.unwrap_or(defaults.horizon),
-        step: options.step.unwrap_or(defaults.step),
-        jump_limit: options.jumps.unwrap_or(defaults.jump_limit),
-        directions,
-        enters_invariants: true,
-        ..defaults
-    })
-}
-
-/// `uni` with a number of directions.
-fn is_uniform(name: &str) -> bool {
-    let count = name.strip_prefix("uni").and_then(|count| count.trim().parse::<usize>().ok());
-    count.is_some_and(|count| count > 0)
+/// The coefficients of the variables in a formula, if it is linear in them.
+fn coefficients(formula: &Expression, variables: &[String]) -> Option<Vec<f64>> {
+    let form = formula.linear_form()?;
+    let entry = |name: &String| form.coefficient(name).copied().unwrap_or(0.0);
+    let entries: Vec<f64> = variables.iter().map(entry).collect();
+    entries.iter().all(|entry| entry.is_finite()).then_some(entries)
 }

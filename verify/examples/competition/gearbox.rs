@@ -110,6 +110,6 @@ pub fn shift(spread: (f64, f64), mut settings: Settings) -> TestResult<Instance>
         uncertain: Vec::new(),
         forbidden: vec![Forbidden::anywhere(impulse.at_least(20.0))],
         settings,
-        measured: None,
+        measured: Vec::new(),
     })
 }

@@ -10,10 +10,12 @@
 //! with it. A number at the end draws as many simulated runs of each instance and fails if one leaves its
 //! enclosure.
 
+mod building;
 mod gearbox;
 mod heat;
 mod nonlinear;
 mod platoon;
+mod predators;
 mod rendezvous;
 
 use std::ops::ControlFlow;
@@ -22,8 +24,8 @@ use std::time::Instant;
 use pleach_automaton::{Automaton, Name, Record};
 use pleach_guards::Interval;
 use pleach_verify::reach::{
-    Completion, Directions, Forbidden, Model, Polytope, Proof, Settings, Span, StateSet, Uncertain,
-    prove, runs,
+    Completion, Counterexample, Directions, Effort, Forbidden, Model, Polytope, Proof, Settings,
+    Span, StateSet, Uncertain, falsify, prove, runs,
 };
 
 use heat::Heat;
@@ -59,7 +61,7 @@ pub struct Instance {
     uncertain: Vec<Uncertain>,
     forbidden: Vec<Forbidden>,
     settings: Settings,
-    measured: Option<Measure>,
+    measured: Vec<Measure>,
 }
 
 impl Instance {
@@ -79,6 +81,8 @@ pub enum Measure {
     Area(&'static str, &'static str),
     /// The width of the sum of all.
     Sum,
+    /// The largest value of a clock, in seconds.
+    Clock(&'static str),
 }
 
 /// The lines between which the table stands in a document.
@@ -184,41 +188,64 @@ fn simulated(
 }
 
 fn outcome(instance: &Instance, model: &Model, proof: &Proof) -> Outcome {
-    let answer = match (proof.holds(), instance.forbidden.is_empty()) {
-        (true, true) => "enclosed",
-        (true, false) => "holds",
-        (false, _) => "undecided",
+    let found = if proof.holds() { None } else { violation(instance) };
+    let answer = match (proof.holds(), instance.forbidden.is_empty(), &found) {
+        (true, true, _) => "enclosed",
+        (true, false, _) => "holds",
+        (false, _, Some(_)) => "violated",
+        (false, _, None) => "undecided",
     };
     let sets = proof.enclosure.visits.iter().map(|visit| visit.segments.len()).sum();
     let nearest = proof.clearances.iter().copied().fold(f64::INFINITY, f64::min);
     let away = nearest.is_finite().then_some(nearest);
-    let measured = measured(instance, model, proof).unwrap_or_default();
+    let measured = match found {
+        Some(found) => format!("a run is beyond by {:.3} at {:.2} s", found.margin, found.at.t),
+        None => {
+            let measures = instance.measured.iter();
+            let texts = measures.filter_map(|measure| measured(*measure, instance, model, proof));
+            texts.collect::<Vec<_>>().join(", ")
+        }
+    };
     Outcome { answer, sets, away, measured, spans: Vec::new() }
+}
+
+/// A run that comes to forbidden states.
+fn violation(instance: &Instance) -> Option<Counterexample> {
+    let Instance { automaton, starts, uncertain, forbidden, settings, .. } = instance;
+    let effort = Effort::default();
+    let found = falsify(automaton, uncertain, starts, forbidden, settings.horizon, &effort)?;
+    found.is_violation.then_some(found)
 }
 
 /// A line of the table.
 fn line(name: &str, outcome: &Outcome, seconds: f64) -> String {
     let Outcome { answer, sets, away, measured, .. } = outcome;
-    let away = away.map(|away| format!("{away:.3}")).unwrap_or_default();
+    let away = away.map(|away| match away.abs() {
+        small if small > 0.0 && small < 1e-3 => format!("{away:.1e}"),
+        _ => format!("{away:.3}"),
+    });
+    let away = away.unwrap_or_default();
     format!("| {name} | {answer} | {seconds:.2} s | {sets} | {away} | {measured} |\n")
 }
 
-/// What the list asks to be measured of the sets that hold the states at the horizon.
-fn measured(instance: &Instance, model: &Model, proof: &Proof) -> Option<String> {
+/// A measure of the sets that hold the states at the horizon.
+fn measured(measure: Measure, instance: &Instance, model: &Model, proof: &Proof) -> Option<String> {
     let segments = proof.enclosure.visits.iter().flat_map(|visit| &visit.segments);
     let horizon = instance.settings.horizon;
     let last: Vec<&Polytope> = segments
         .filter(|segment| segment.time.upper() >= horizon)
         .map(|segment| &segment.set)
         .collect();
-    let width = |name: &str| {
+    let values = |name: &str| {
         let place = model.variables().iter().position(|variable| variable == name)?;
         let sides = last.iter().filter_map(|set| set.hull()).map(|sides| sides[place]);
-        sides.reduce(Interval::hull).map(|side| side.width())
+        sides.reduce(Interval::hull)
     };
-    Some(match instance.measured? {
+    let width = |name: &str| values(name).map(|side| side.width());
+    Some(match measure {
         Measure::Width(name) => format!("width of {name} {:.4}", width(name)?),
         Measure::Area(one, other) => format!("area {:.2e}", width(one)? * width(other)?),
+        Measure::Clock(name) => format!("{name} for at most {:.3} s", values(name)?.upper()),
         Measure::Sum => {
             let bound = |sign: f64| {
                 let direction = vec![sign; model.variables().len()];
@@ -258,27 +285,43 @@ fn automata() -> TestResult<Vec<(&'static str, Instance)>> {
     let jumping = |horizon, step| Settings { enters_invariants: true, ..affine(horizon, step) };
     let sharp = Settings { generators: 100, ..affine(20.0, 0.02) };
     let gears = |step| Settings { clusters: 4, ..jumping(0.2, step) };
-    let approach = |clusters| Settings { clusters, ..jumping(300.0, 0.04) };
+    let approach = |clusters, step| Settings { clusters, ..jumping(300.0, step) };
     let stiff = |order| Settings {
         directions: Directions::Listed(vec![vec![1.0; 3]]),
-        ..smooth(40.0, 1e-9, order, 1, 4)
+        ..smooth(40.0, 1e-13, order, 1, 4)
     };
     let alike = [(1.25, 1.55); 2];
+    let crossing = Settings {
+        directions: Directions::Octagons,
+        clusters: 40,
+        step: 0.01,
+        ..smooth(3.64, 1e-8, 5, 1, 10)
+    };
     Ok(vec![
         ("PLAD01-BND42", platoon::deterministic(42.0, affine(20.0, 0.02))?),
         ("PLAD01-BND30", platoon::deterministic(30.0, sharp)?),
         ("GRBX01", gearbox::shift((0.0001, 0.0001), gears(0.0005))?),
         ("GRBX02", gearbox::shift((0.00005, 0.00015), gears(0.0005))?),
-        ("SRNA01", rendezvous::mission(None, approach(1))?),
-        ("SRA01", rendezvous::mission(Some((120.0, 120.0)), approach(1))?),
-        ("SRA02", rendezvous::mission(Some((120.0, 125.0)), approach(4))?),
+        ("SRNA01", rendezvous::mission(None, approach(1, 0.04))?),
+        ("SRA01", rendezvous::mission(Some((120.0, 120.0)), approach(1, 0.04))?),
+        ("SRA02", rendezvous::mission(Some((120.0, 125.0)), approach(4, 0.04))?),
+        ("SRA03", rendezvous::mission(Some((120.0, 145.0)), approach(4, 0.04))?),
+        ("SRA04", rendezvous::mission(Some((240.0, 240.0)), approach(40, 0.02))?),
+        ("BLDF01", building::shaken(true, affine(20.0, 0.002))?),
+        ("BLDC01", building::shaken(false, affine(20.0, 0.002))?),
         ("VDP, in 16 parts", nonlinear::oscillator(smooth(7.0, 1e-7, 8, 3, 4))?.cut(&[8, 2])),
-        ("CVDP23", nonlinear::van_der_pol(alike, (1.0, 3.0), 2.75, smooth(7.0, 1e-5, 8, 3, 4))?),
+        (
+            "CVDP23, in 64 parts",
+            nonlinear::van_der_pol(alike, (1.0, 3.0), 2.75, smooth(7.0, 1e-6, 8, 3, 10))?
+                .cut(&[4, 1, 4, 1, 4]),
+        ),
         ("LALO20, W = 0.01", nonlinear::laub_loomis(0.01, 4.5, smooth(20.0, 1e-7, 6, 2, 4))?),
         ("LALO20, W = 0.05", nonlinear::laub_loomis(0.05, 4.5, smooth(20.0, 1e-5, 6, 2, 4))?),
         ("LALO20, W = 0.1", nonlinear::laub_loomis(0.1, 5.0, smooth(20.0, 1e-5, 6, 2, 4))?),
-        ("LOVO", nonlinear::lotka_volterra(smooth(3.64, 1e-9, 8, 2, 20))?),
-        ("ROBE, case 1", nonlinear::robertson(1e2, 1e3, stiff(8))?),
+        ("LOVO25, in 16 parts", predators::cycle(16, crossing)?),
+        ("ROBE25, case 1", nonlinear::robertson(1e2, 1e3, stiff(8))?),
+        ("ROBE25, case 2", nonlinear::robertson(1e3, 1e5, stiff(8))?),
+        ("ROBE25, case 3", nonlinear::robertson(1e3, 1e7, stiff(8))?),
         ("QUAD, ± 0.1", nonlinear::quadrotor(0.1, smooth(5.0, 1e-7, 6, 2, 4))?),
         ("QUAD, ± 0.4", nonlinear::quadrotor(0.4, smooth(5.0, 1e-7, 6, 2, 4))?),
         ("QUAD, ± 0.8", nonlinear::quadrotor(0.8, smooth(5.0, 1e-6, 6, 3, 4))?),

@@ -1,5 +1,5 @@
 //! Flows that are not affine: van der Pol's oscillator, alone (VDP) and coupled (CVDP), enzyme
-//! activities in a cell (LALO20), predators and prey (LOVO), a stiff reaction (ROBE), a quadrotor (QUAD).
+//! activities in a cell (LALO20), a stiff reaction (ROBE), a quadrotor (QUAD).
 //!
 //! Models and numbers as in the ARCH-COMP reports (NLN): L. Geretti et al., *ARCH-COMP category
 //! report: continuous and hybrid systems with nonlinear dynamics*, 2020 to 2025.
@@ -32,7 +32,7 @@ fn single(
         uncertain: Vec::new(),
         forbidden,
         settings,
-        measured: None,
+        measured: Vec::new(),
     })
 }
 
@@ -100,19 +100,7 @@ pub fn laub_loomis(width: f64, limit: f64, settings: Settings) -> TestResult<Ins
     };
     let high = Forbidden::anywhere(variable("x4").at_least(limit));
     let mut instance = single(&sides, rates, vec![high], settings)?;
-    instance.measured = Some(Measure::Width("x4"));
-    Ok(instance)
-}
-
-/// Predators and prey, without the guard of LOVO25: the states at its end.
-pub fn lotka_volterra(settings: Settings) -> TestResult<Instance> {
-    let sides = [("x", 1.3 - 0.012, 1.3 + 0.012), ("y", 1.0, 1.0)];
-    let rates = |c: &[Coordinate<Record>]| {
-        let [x, y] = c else { return Vec::new() };
-        vec![x.rate(3.0 * x - 3.0 * (x * y)), y.rate(x * y - y)]
-    };
-    let mut instance = single(&sides, rates, Vec::new(), settings)?;
-    instance.measured = Some(Measure::Area("x", "y"));
+    instance.measured = vec![Measure::Width("x4")];
     Ok(instance)
 }
 
@@ -128,7 +116,7 @@ pub fn robertson(beta: f64, gamma: f64, settings: Settings) -> TestResult<Instan
         ]
     };
     let mut instance = single(&sides, rates, Vec::new(), settings)?;
-    instance.measured = Some(Measure::Sum);
+    instance.measured = vec![Measure::Sum];
     Ok(instance)
 }
 

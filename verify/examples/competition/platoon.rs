@@ -64,7 +64,7 @@ pub fn deterministic(distance: f64, settings: Settings) -> TestResult<Instance> 
         }],
         forbidden: close.map(Forbidden::anywhere).to_vec(),
         settings,
-        measured: None,
+        measured: Vec::new(),
     })
 }
 

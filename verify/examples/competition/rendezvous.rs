@@ -55,7 +55,7 @@ pub fn mission(abort: Option<(f64, f64)>, settings: Settings) -> TestResult<Inst
         uncertain: Vec::new(),
         forbidden: specification(abort.is_some()),
         settings,
-        measured: None,
+        measured: Vec::new(),
     })
 }
 

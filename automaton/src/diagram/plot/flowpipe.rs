@@ -1,9 +1,11 @@
 //! Flowpipes: boxes around sets of states in the plane of two quantities, with runs drawn inside.
 
-use pleach_drawing::{Axis, named, number};
+use pleach_drawing::{Axis, named};
 
+use super::curve::{self, Quantity};
 use super::sheet::{Sheet, WIDTH, area_colour, text_width};
 use super::{LEFT, RIGHT};
+use crate::trajectory::Sample;
 
 /// The height of the panel, in pixels.
 const PANEL: f64 = 480.0;
@@ -27,8 +29,8 @@ pub struct FlowpipePicture {
     pub locations: Vec<String>,
     /// The sets, in the order in which they are drawn.
     pub patches: Vec<Patch>,
-    /// Runs inside them, each a list of curves without jumps.
-    pub runs: Vec<Vec<Vec<[f64; 2]>>>,
+    /// Runs inside them, phase by phase: samples whose values and rates are those of the two quantities.
+    pub runs: Vec<Vec<Sample>>,
 }
 
 /// A box around states.
@@ -46,22 +48,20 @@ impl FlowpipePicture {
     /// The picture as an SVG document. Boxes have the colour of their location, and runs are dark.
     pub fn to_svg(&self) -> String {
         let right = WIDTH - RIGHT;
-        let points = || self.runs.iter().flatten().flatten();
+        let quantities = [Quantity::Variable(0), Quantity::Variable(1)];
+        let along = |quantity: Quantity| self.runs.iter().flat_map(move |run| quantity.values(run));
         let across = self.patches.iter().flat_map(|patch| patch.across);
-        let across = Axis::roomy(across.chain(points().map(|point| point[0])), LEFT, right);
+        let across = Axis::roomy(across.chain(along(quantities[0])), LEFT, right);
         let up = self.patches.iter().flat_map(|patch| patch.up);
-        let up = Axis::roomy(up.chain(points().map(|point| point[1])), TOP + PANEL, TOP);
+        let up = Axis::roomy(up.chain(along(quantities[1])), TOP + PANEL, TOP);
         let mut sheet = Sheet::default();
         sheet.text(LEFT, 24.0, &self.title, "title");
         sheet.text(LEFT, 46.0, &self.subtitle, "quiet");
         self.draw_frame(&mut sheet, &across, &up);
         self.draw_patches(&mut sheet, &across, &up);
-        for curve in self.runs.iter().flatten().filter(|curve| curve.len() > 1) {
-            let place = |[x, y]: &[f64; 2]| {
-                format!("{} {}", number(across.place(*x)), number(up.place(*y)))
-            };
-            let places: Vec<String> = curve.iter().map(place).collect();
-            sheet.curve(&format!("M{}", places.join(" L")), Some("#1b1f24; stroke-width: 0.8"));
+        for phase in self.runs.iter().filter(|phase| phase.len() > 1) {
+            let path = curve::path(phase, (quantities[0], &across), (quantities[1], &up));
+            sheet.curve(&path, Some("#1b1f24; stroke-width: 0.8"));
         }
         self.draw_legend(&mut sheet);
         sheet.finish(TOP + PANEL + FOOT)

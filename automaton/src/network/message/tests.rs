@@ -15,6 +15,7 @@ use super::super::duty::{
     Relay, Shifting, Standby, Station, Waiting,
 };
 use super::super::record::Outcome;
+use super::super::robot::RequestNumber;
 use super::super::shared::Shared;
 use super::*;
 use crate::located::Place as _;
@@ -137,6 +138,7 @@ fn messages() -> Vec<Message> {
     let of_notice = |notice| beacon(talkative(duties()[0], notice));
     let news = |notice| Message::News(Bulletin::first(Shared::new(notice)));
     let report = NeighbourReport { multiplier: 0.1, mismatch: -0.2, crowding: 1.0 };
+    let number = RequestNumber { period: 3, number: 1 };
     let mut messages = vec![
         beacon(silent()),
         Message::Multiplier { report, parent: None },
@@ -144,7 +146,8 @@ fn messages() -> Vec<Message> {
         Message::Flow(0.075),
         Message::Demand(f64::MIN_POSITIVE),
         Message::Shortage,
-        Message::Restore,
+        Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075 }),
+        Message::GrantFlow(FlowGrant { number, flow: 0.05 }),
         Message::Proposal(Segment::new(Point::new(0.1, 0.2), Point::new(1.0 / 3.0, 0.2))),
         Message::Objection,
         Message::Request(Arc::from([])),
@@ -164,7 +167,8 @@ fn kind(message: &Message) -> &'static str {
         Message::Flow(_) => "flow",
         Message::Demand(_) => "demand",
         Message::Shortage => "shortage",
-        Message::Restore => "restore",
+        Message::AskFlow(_) => "ask_flow",
+        Message::GrantFlow(_) => "grant_flow",
         Message::Proposal(_) => "proposal",
         Message::Objection => "objection",
         Message::Request(_) => "request",
@@ -201,7 +205,7 @@ fn every_kind_of_message_is_read_back_as_it_was_written() {
         texts.insert(text);
     }
     assert_eq!(texts.len(), messages().len(), "unlike messages are written unlike");
-    assert_eq!(kinds.len(), 10);
+    assert_eq!(kinds.len(), 11);
     let named: BTreeSet<_> = duties().iter().map(|duty| duty.location()).collect();
     assert_eq!(named.len(), Activity::ALL.len());
     assert_eq!(notices().iter().map(kind_of_notice).collect::<BTreeSet<_>>().len(), 7);
@@ -229,6 +233,15 @@ fn malformed_messages_are_refused() {
         (json!({"flow": 0.1, "demand": 0.1}), "single key"),
         (json!({"flow": null}), "expected f64"),
         (json!({"flow": "0.1"}), "expected f64"),
+        (json!({"ask_flow": {"held": 0.1, "wanted": 0.2}}), "missing field `number`"),
+        (
+            json!({"grant_flow": {"number": {"period": -1, "number": 0}, "flow": 0.1}}),
+            "invalid value",
+        ),
+        (
+            json!({"grant_flow": {"number": {"period": 1, "number": 0}, "flow": null}}),
+            "expected f64",
+        ),
         (json!({"request": [[0.0, null]]}), "expected f64"),
         (json!({"request": [[0.0]]}), "array"),
         (json!({"proposal": {"from": [0, 0]}}), "missing field `to`"),

@@ -14,7 +14,8 @@ use crate::{Automaton, BuildError, Flow, Transfer};
 
 use super::super::act::{self, acting};
 use super::super::control::{
-    Beacons, Control, Flows, Moving, Multipliers, Negotiation, OldFlows, Planning, Sweeps,
+    Beacons, Control, Flows, Moving, Multipliers, Negotiation, OldFlows, Planning, Reserving,
+    Sweeps,
 };
 use super::super::message::Message;
 use super::super::record::MissionEvent;
@@ -53,8 +54,6 @@ acts! {
     Deliberate = "deliberate",
     /// It tells its public state, unless it has told it often enough.
     TellBeacon = "tell beacon",
-    /// It keeps the flows of the period before.
-    KeepFlows = "keep flows",
     /// The links over which it can route.
     SurveyLinks = "survey links",
     /// It tells its flows to those who receive them.
@@ -79,9 +78,11 @@ acts! {
     AdmitShortage = "admit shortage",
     /// Overloaded robots are relieved of what does not come over the tree, and a sweep begins.
     SweepAgain = "relieve, begin sweep",
-    /// If its routes do not fit, it goes back to the flows that it has kept.
-    SettleRoutes = "restore flows if c < −c_min",
-    /// The routes of this period stand.
+    /// It asks the receivers of its flows for what it plans to send.
+    AskForFlows = "ask for flows",
+    /// It asks again where it has had no answer.
+    AskAgain = "ask again",
+    /// The flows in use are those of this period.
     EndRoutes = "end routes",
     /// u := QP(ψ, cell): target, geodesic and motion problem (lines 4 to 7).
     Propose = "u := QP(ψ, cell)",
@@ -145,7 +146,6 @@ impl Robot {
                 self.deliberate()?;
             }
             Act::TellBeacon => self.tell_beacon(outputs),
-            Act::KeepFlows => self.keep_flows(),
             Act::SurveyLinks => {
                 self.is_new = false;
                 self.survey_links();
@@ -161,7 +161,8 @@ impl Robot {
             Act::SettleResidual => self.settle_residual(),
             Act::AdmitShortage => self.admit_shortage(outputs),
             Act::SweepAgain => self.sweep_again(outputs),
-            Act::SettleRoutes => self.settle_routes(outputs),
+            Act::AskForFlows => self.ask_for_flows(outputs),
+            Act::AskAgain => self.ask_again(outputs),
             Act::EndRoutes => self.end_routes(),
             Act::Propose => self.propose()?,
             Act::TellProposal => self.tell_proposal(outputs),
@@ -208,13 +209,13 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(
             On::RoutesDue,
             guards::routes_due(),
-            &[Deliberate, Jump, KeepFlows, SurveyLinks, TellMultiplier],
+            &[Deliberate, Jump, SurveyLinks, TellMultiplier],
             |_: &Beacons| Multipliers { iteration: 1 },
         ))
         .carried_out(row(
             On::OldFlowsDue,
             guards::old_flows_due(),
-            &[Deliberate, Jump, KeepFlows, SurveyLinks, TellFlows],
+            &[Deliberate, Jump, SurveyLinks, TellFlows],
             |_: &Beacons| OldFlows {},
         ))
         .carried_out(row(
@@ -254,10 +255,10 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
             |_: &Sweeps| Sweeps {},
         ))
         .carried_out(row(
-            On::RoutesDone,
-            guards::routes_done(),
-            &[SettleResidual, SettleRoutes],
-            |_: &Sweeps| Planning {},
+            On::SweepsOver,
+            guards::sweeps_over(),
+            &[SettleResidual, AskForFlows, CountRounds],
+            |_: &Sweeps| Reserving {},
         ))
         .carried_out(row(
             On::ShortagesHeard,
@@ -268,10 +269,16 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(On::ReliefsHeard, guards::reliefs_heard(), &[SweepAgain], |_: &Sweeps| {
             Sweeps {}
         }))
+        .carried_out(row(On::GrantsHeard, guards::grants_heard(), &[AskAgain], |_: &Reserving| {
+            Reserving {}
+        }))
+        .carried_out(row(On::RoutesDone, guards::routes_done(), &[EndRoutes], |_: &Reserving| {
+            Planning {}
+        }))
         .carried_out(row(
             On::MoveDue,
             guards::heard(),
-            &[EndRoutes, Propose, TellProposal, CountRounds],
+            &[Propose, TellProposal, CountRounds],
             |_: &Planning| Negotiation {},
         ))
         .carried_out(row(

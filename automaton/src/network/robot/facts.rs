@@ -203,6 +203,8 @@ facts! {
             hears_shortages: robot.round_count.of_sweep() == SweepRound::Shortages,
             /// This sweep is the last of the control period.
             last_sweep: robot.round_count.is_last_sweep(),
+            /// The last requests for flows of the control period have been answered.
+            last_answers: robot.round_count.is_last_of_reservation(),
             /// This round of the negotiation is for proposals.
             hears_proposals: robot.round_count.is_for_proposals(),
             /// Moves have been judged for the last time in this control period.

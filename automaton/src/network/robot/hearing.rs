@@ -22,7 +22,7 @@ pub(super) struct Neighbour {
     /// Where the robot stood when it measured the link.
     measured_at: Point,
     /// The control period in which it was heard last.
-    heard_in: u32,
+    pub heard_in: u32,
     /// Whether it has been heard in this round.
     is_heard: bool,
     /// Rounds since it was heard.
@@ -151,7 +151,8 @@ impl Robot {
 
     /// A neighbour that the robot knows is not heard; returns the index of the next one. One that was
     /// near when it was heard last is not out of range: it stays where it is taken to be, and this
-    /// robot does not leave its place meanwhile.
+    /// robot does not leave its place meanwhile. Nor is one to which packets flow, as long as it has
+    /// granted them.
     fn miss(&mut self, at: usize) -> usize {
         let known = &mut self.neighbours[at];
         let silent_rounds = known.silent_rounds.saturating_add(1).min(ROUNDS_TO_BE_HEARD as u8);
@@ -161,7 +162,8 @@ impl Robot {
         known.silent_rounds = silent_rounds;
         let is_lost = usize::from(silent_rounds) == ROUNDS_TO_BE_HEARD
             && (known.is_access_point() || !self.site.is_near(known.distance));
-        if is_lost || known.reliability <= 0.0 {
+        let (id, reliability) = (known.id(), known.reliability);
+        if is_lost && !self.sends_to(id) || reliability <= 0.0 {
             self.neighbours.remove(at);
             self.receive_news();
             return at;

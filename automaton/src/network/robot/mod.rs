@@ -6,7 +6,7 @@
 //! control period. The chapters follow that period: it receives beacons (`hearing`), keeps its place
 //! in the tree (`attachment`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
-//! (`yielding`), routes its packets (`routing`, `standing`) and moves (`motion`);
+//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`motion`);
 //! what its guards see of all this are `facts`.
 
 #[cfg(feature = "abstraction")]
@@ -25,9 +25,9 @@ mod motion;
 mod partner;
 mod path;
 mod recruit;
+mod reservation;
 mod rounds;
 mod routing;
-mod standing;
 mod step;
 mod target;
 mod team;
@@ -52,6 +52,7 @@ pub use facts::{Facts, GLOSSARY};
 pub use lineage::{AttachmentAutomaton, PlaceInTree, attachment_automaton};
 pub use links::TreeLink;
 pub use mission::{MissionAutomaton, MissionEffect, mission_automaton};
+pub use reservation::{FlowGrant, FlowRequest, RequestNumber};
 pub use routing::RouteLink;
 pub use step::{RobotError, RobotFault};
 pub use target::{Targets, targets};
@@ -73,6 +74,7 @@ use duties::Label;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
+use reservation::Reservation;
 use rounds::Rounds;
 
 /// A robot of the network.
@@ -170,7 +172,8 @@ pub struct Robot {
     inflow: f64,
     inflows: Vec<(NodeId, f64)>,
     residual: f64,
-    standing: standing::StandingFlows,
+    reservations: Vec<Reservation>,
+    last_request: RequestNumber,
     has_swept: bool,
     has_no_reserve: bool,
     has_shortage_news: bool,
@@ -265,7 +268,8 @@ impl Robot {
             inflows: Vec::new(),
             demands: Vec::new(),
             residual: 0.0,
-            standing: standing::StandingFlows::default(),
+            reservations: Vec::new(),
+            last_request: RequestNumber::default(),
             has_swept: false,
             has_no_reserve: false,
             has_shortage_news: false,

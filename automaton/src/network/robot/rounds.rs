@@ -1,4 +1,4 @@
-//! Rounds of beacons, of sweeps and of the negotiation: the discrete clock of a robot.
+//! Rounds of beacons, of sweeps, of the reservation and of the negotiation: the discrete clock of a robot.
 //!
 //! All have a fixed number of rounds, which all robots count alike. Where a robot has nothing to do
 //! until it hears something, it lets rounds pass; its count goes on, as τ does while time passes.
@@ -11,6 +11,10 @@ use super::hearing::ROUNDS_TO_BE_HEARD;
 /// Sweeps until the routes are feasible: with each, overloaded robots are relieved of what does
 /// not come over the tree, and a tree that can carry the rates needs few.
 const SWEEPS: usize = 6;
+/// Rounds of a reservation: requests and grants cross a tree of up to a third as many levels.
+const RESERVATION: usize = 96;
+/// Rounds after which a request that has not been answered is made again.
+const ROUNDS_FOR_AN_ANSWER: usize = 8;
 /// How often proposals are judged and halved; a mover that still meets an objection the time after
 /// them gives its move up.
 const ATTEMPTS: usize = 8;
@@ -28,8 +32,8 @@ pub(super) enum SweepRound {
     Reliefs,
 }
 
-/// The number of the round of beacons, of sweeps or of the negotiation that is over at this tick,
-/// from 1; 0 before the first.
+/// The number of the round of beacons, of sweeps, of the reservation or of the negotiation that is
+/// over at this tick, from 1; 0 before the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Rounds(usize);
 
@@ -67,6 +71,11 @@ impl Rounds {
         self.0 >= Self::LAST_OF_SWEEPS
     }
 
+    /// Whether the reservation is over.
+    pub const fn is_last_of_reservation(self) -> bool {
+        self.0 >= RESERVATION
+    }
+
     pub const fn is_for_proposals(self) -> bool {
         self.0 % 2 == 1
     }
@@ -88,10 +97,20 @@ impl Robot {
         let (has_nothing_to_do, last) = match self.stage() {
             Stage::Beacons => (self.needs_no_round(), self.rounds_of_this_period()),
             Stage::Sweeps => (self.routes_stand(), Rounds::LAST_OF_SWEEPS),
+            Stage::Reserving => (true, self.next_of_reservation()),
             Stage::Negotiation => (self.has_no_moves_to_judge(), Rounds::LAST_OF_NEGOTIATION),
             _ => return 0,
         };
         if has_nothing_to_do { last.saturating_sub(self.round_count.count() + 1) } else { 0 }
+    }
+
+    /// The round of the reservation in which the robot asks again, or the last one.
+    fn next_of_reservation(&self) -> usize {
+        if self.requests_are_answered() {
+            return RESERVATION;
+        }
+        let asked = self.round_count.count() / ROUNDS_FOR_AN_ANSWER;
+        ((asked + 1) * ROUNDS_FOR_AN_ANSWER).min(RESERVATION)
     }
 
     /// Whether it has heard nothing new, told its beacon often enough, and counts no rounds: of

@@ -19,6 +19,7 @@ use super::super::message::Message;
 use super::super::record::MissionEvent;
 use super::super::scenario::RoutingMethod;
 use super::Robot;
+use super::reservation::HeldFlow;
 use crate::node::Outputs;
 
 /// Links with less reliability than this carry nothing unless they belong to the tree: a step of
@@ -30,7 +31,7 @@ const BUDGET: f64 = 0.9;
 /// Shares below this are not used.
 const LEAST_SHARE: f64 = 1e-6;
 /// Residuals are sums of a few flows; this much of them is rounding.
-const RESIDUAL_ROUNDING: f64 = 1e-9;
+pub(super) const RESIDUAL_ROUNDING: f64 = 1e-9;
 
 /// What a robot carries from one iteration of its routing method to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,20 +69,23 @@ pub struct RouteLink {
     pub share: f64,
     /// T_ij as the routing method left it, before the sweep.
     iterate: f64,
-    /// F_ij as the receiver has been told in this period.
+    /// F_ij of the plan as the receiver has been told in this period.
     told: f64,
+    /// Whether it is too unreliable to be planned with, and stays only until its flow has ended.
+    pub(super) is_retiring: bool,
+    /// The flow in use.
+    pub(super) held: HeldFlow,
 }
 
 impl RouteLink {
-    /// A link that carries this flow until the end of the period.
-    pub(super) fn of_flow(to: NodeId, reliability: f64, flow: f64) -> Self {
-        let share = flow / reliability;
-        RouteLink { to, reliability, weight: 0.0, report: None, share, iterate: 0.0, told: flow }
-    }
-
     /// F_ij = T_ij R_ij.
     pub fn flow(&self) -> f64 {
         self.share * self.reliability
+    }
+
+    /// T_ij of the flow in use.
+    pub(super) fn load(&self) -> f64 {
+        self.held.flow / self.reliability
     }
 }
 
@@ -97,11 +101,13 @@ impl Robot {
             let to = neighbour.id();
             let reliability = neighbour.reliability;
             let in_tree = tree.iter().any(|link| link.to == to);
-            if reliability < LEAST_USEFUL_RELIABILITY && !in_tree || reliability <= 0.0 {
+            let known = old.binary_search_by_key(&to, |link| link.to).ok().map(|at| &old[at]);
+            let held = known.map_or(HeldFlow::default(), |link| link.held);
+            let is_retiring = reliability < LEAST_USEFUL_RELIABILITY && !in_tree;
+            if is_retiring && held.flow == 0.0 || reliability <= 0.0 {
                 continue;
             }
-            let known = old.iter().find(|link| link.to == to);
-            let iterate = known.map_or(0.0, |link| link.iterate);
+            let iterate = known.filter(|_| !is_retiring).map_or(0.0, |link| link.iterate);
             self.links.push(RouteLink {
                 to,
                 reliability,
@@ -110,6 +116,8 @@ impl Robot {
                 share: iterate,
                 iterate,
                 told: 0.0,
+                is_retiring,
+                held,
             });
         }
         self.expected_link = 0;
@@ -189,7 +197,7 @@ impl Robot {
             RoutingState::Adal(state) => self.approach_minimiser(state),
         }
         for link in &mut self.links {
-            if link.share < LEAST_SHARE {
+            if link.share < LEAST_SHARE || link.is_retiring {
                 link.share = 0.0;
             }
             link.iterate = link.share;
@@ -473,6 +481,7 @@ impl Robot {
 
     /// The routes of the period stand.
     pub(super) fn end_routes(&mut self) {
+        self.adopt_flows();
         if self.is_infeasible() {
             self.report(MissionEvent::RouteInfeasible { robot: self.id });
         }

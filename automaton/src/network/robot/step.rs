@@ -182,18 +182,33 @@ impl Robot {
     fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
         match message {
             Message::Beacon { period, beacon } => self.hear_beacon(*period, beacon),
-            _ => self.hear_of_routes_or_moves(from, message, outputs),
+            _ if self.is_planning_routes() => self.hear_of_routes(from, message, outputs),
+            _ => self.hear_of_flows_or_moves(from, message, outputs),
         }
     }
 
+    /// Whether the plan of its routes can still change: what is heard later does not.
+    fn is_planning_routes(&self) -> bool {
+        use Stage::{Flows, Multipliers, OldFlows, Sweeps};
+        matches!(self.stage(), OldFlows | Multipliers | Flows | Sweeps)
+    }
+
     #[inline(never)]
-    fn hear_of_routes_or_moves(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
+    fn hear_of_routes(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
         match message {
             Message::Multiplier { report, parent } => self.hear_multiplier(from, *report, *parent),
             Message::Flow(flow) => self.hear_flow(from, *flow),
             Message::Demand(more) => self.hear_demand(from, *more, outputs),
             Message::Shortage => self.hear_shortage(from, outputs),
-            Message::Restore => self.restore_flows(outputs),
+            _ => self.hear_of_flows_or_moves(from, message, outputs),
+        }
+    }
+
+    #[inline(never)]
+    fn hear_of_flows_or_moves(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
+        match message {
+            Message::AskFlow(request) => self.hear_request(from, *request, outputs),
+            Message::GrantFlow(grant) => self.hear_grant(from, *grant, outputs),
             Message::Proposal(segment) => self.hear_proposal(from, *segment),
             Message::Objection => self.yield_to_objection(),
             _ => {}

@@ -1,0 +1,291 @@
+//! Reservation: a robot sends to another only what that one has granted.
+//!
+//! The routing method and its sweeps say which flows would be best. The flows in use are held from one
+//! control period to the next and change on request. A robot asks for the flows of its plan; it raises
+//! F_ij to what the receiver has granted, and grants only what its own flows forward. It lowers F_ij
+//! where the rest still carries what it has granted and its rate, and tells the receiver. So
+//!
+//! ```text
+//! Σ_j F_ij − Σ_j (granted to j) − r_i ≥ 0
+//! ```
+//!
+//! holds from the first period in which it does, whatever becomes of messages: a message that is lost
+//! leaves flows as they are. A grant answers one request, and a new request voids the grants before it,
+//! so that late messages and copies change nothing.
+//!
+//! A grant holds for [`LEASE`] control periods. The sender counts them from its request and the receiver
+//! from its answer, so that the sender stops first.
+
+use pleach_discrete::network::{NodeId, Stage};
+use serde::{Deserialize, Serialize};
+
+use super::super::message::Message;
+use super::super::record::MissionEvent;
+use super::Robot;
+use super::routing::{RESIDUAL_ROUNDING, RouteLink};
+use crate::node::Outputs;
+
+/// Control periods for which a grant holds. Every flow is asked for again in each of them.
+const LEASE: u32 = 8;
+/// Flows that differ by less are the same.
+const SAME_FLOW: f64 = 1e-12;
+/// Passes in which some flows are raised and others lowered to make room for them.
+const PASSES: usize = 4;
+
+/// The number of a request, by which its grants are known: later ones are greater.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RequestNumber {
+    /// The control period in which it is made.
+    pub period: u32,
+    /// Its number among the sender's requests.
+    pub number: u32,
+}
+
+/// A request for a flow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FlowRequest {
+    /// Its number.
+    pub number: RequestNumber,
+    /// F_ij as it is in use.
+    pub held: f64,
+    /// F_ij as the sender plans it.
+    pub wanted: f64,
+}
+
+/// An answer to a request for a flow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FlowGrant {
+    /// The number of the request.
+    pub number: RequestNumber,
+    /// The largest F_ij that the sender may use.
+    pub flow: f64,
+}
+
+/// What a sender uses of a link, and what it may use.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct HeldFlow {
+    /// F_ij as it is in use.
+    pub flow: f64,
+    /// F_ij as it is planned.
+    wanted: f64,
+    /// The largest F_ij that the receiver has granted.
+    granted: f64,
+    /// The number of the last request.
+    asked: RequestNumber,
+    /// Whether the last request waits for an answer.
+    is_open: bool,
+    /// The last control period in which the grant holds.
+    until: u32,
+}
+
+/// What a receiver keeps for a sender.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reservation {
+    from: NodeId,
+    /// The largest F_ij that the sender may use.
+    flow: f64,
+    wanted: f64,
+    /// The number of the last request.
+    asked: RequestNumber,
+    /// The last control period in which the grant holds.
+    until: u32,
+}
+
+type Out = Outputs<Message, MissionEvent>;
+
+impl HeldFlow {
+    /// What the plan and the receiver's grant allow.
+    fn allowed(&self) -> f64 {
+        self.wanted.min(self.granted)
+    }
+
+    /// Raises the flow to what is allowed, by at most `most`; returns by how much.
+    fn raise(&mut self, most: f64) -> f64 {
+        let raised = self.allowed().min(self.flow + most);
+        self.change_to(if raised > self.flow { raised } else { self.flow })
+    }
+
+    /// Lowers the flow to what is planned, by at most `most`; returns by how much.
+    fn lower(&mut self, most: f64) -> f64 {
+        let lowered = self.wanted.max(self.flow - most);
+        -self.change_to(if lowered < self.flow { lowered } else { self.flow })
+    }
+
+    /// Returns by how much the flow has grown.
+    fn change_to(&mut self, flow: f64) -> f64 {
+        let before = self.flow;
+        if (flow - before).abs() > SAME_FLOW {
+            self.flow = if flow > SAME_FLOW { flow } else { 0.0 };
+        }
+        self.flow - before
+    }
+
+    /// Whether the receiver keeps more for the sender than it has a use for.
+    fn can_be_given_back(&self) -> bool {
+        self.granted > self.flow + SAME_FLOW && self.wanted <= self.flow + SAME_FLOW
+    }
+}
+
+impl Robot {
+    /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
+    pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
+        let (period, robots) = (self.period, self.site.robots);
+        self.reservations.retain(|kept| kept.until >= period);
+        for at in 0..self.links.len() {
+            let heard_in = self.neighbour(self.links[at].to).map_or(0, |known| known.heard_in);
+            let link = &mut self.links[at];
+            // Where flows are not reported, the plan can be none.
+            let planned = link.flow().clamp(0.0, link.reliability);
+            let held = &mut link.held;
+            held.wanted = if link.is_retiring { 0.0 } else { planned };
+            if link.to >= robots {
+                // An access point takes everything.
+                (held.granted, held.until) = (f64::INFINITY, heard_in.saturating_add(LEASE));
+            }
+            if held.until < period {
+                (held.flow, held.granted) = (0.0, 0.0);
+            }
+            let is_in_use = held.flow > 0.0 || held.wanted > 0.0;
+            if link.to < robots && (is_in_use || held.is_open) {
+                self.ask(at, outputs);
+            }
+        }
+        self.settle_flows(None, outputs);
+    }
+
+    /// Asks again where there is no answer.
+    pub(super) fn ask_again(&mut self, outputs: &mut Out) {
+        for at in 0..self.links.len() {
+            if self.links[at].held.is_open {
+                self.ask(at, outputs);
+            }
+        }
+    }
+
+    /// Whether every request has been answered.
+    pub(super) fn requests_are_answered(&self) -> bool {
+        !self.links.iter().any(|link| link.held.is_open)
+    }
+
+    /// Whether packets flow to this node.
+    pub(super) fn sends_to(&self, node: NodeId) -> bool {
+        let link = self.links.binary_search_by_key(&node, |link| link.to);
+        link.is_ok_and(|at| self.links[at].held.flow > 0.0)
+    }
+
+    fn ask(&mut self, at: usize, outputs: &mut Out) {
+        let RequestNumber { period, number } = self.last_request;
+        let number = if period == self.period { number + 1 } else { 1 };
+        self.last_request = RequestNumber { period: self.period, number };
+        let RouteLink { to, held, .. } = &mut self.links[at];
+        // What was granted before is void, beyond what is in use.
+        (held.asked, held.granted, held.is_open) = (self.last_request, held.flow, true);
+        let HeldFlow { asked: number, flow, wanted, .. } = *held;
+        outputs.send(*to, Message::AskFlow(FlowRequest { number, held: flow, wanted }));
+    }
+
+    /// A sender asks for a flow.
+    pub(super) fn hear_request(&mut self, from: NodeId, request: FlowRequest, outputs: &mut Out) {
+        let FlowRequest { number, held, wanted } = request;
+        let known = self.reservations.binary_search_by_key(&from, |kept| kept.from);
+        let at = match known {
+            Ok(at) if number <= self.reservations[at].asked => return,
+            Ok(at) => at,
+            Err(at) => {
+                let none = Reservation { from, flow: 0.0, wanted, asked: number, until: 0 };
+                self.reservations.insert(at, none);
+                at
+            }
+        };
+        let kept = &mut self.reservations[at];
+        let flow = kept.flow.min(held).max(0.0);
+        let until = self.period.saturating_add(LEASE);
+        *kept = Reservation { from, flow, wanted, asked: number, until };
+        self.settle_in_time(Some(from), outputs);
+    }
+
+    /// A receiver answers a request.
+    pub(super) fn hear_grant(&mut self, from: NodeId, grant: FlowGrant, outputs: &mut Out) {
+        let Ok(at) = self.links.binary_search_by_key(&from, |link| link.to) else { return };
+        let held = &mut self.links[at].held;
+        if held.asked == grant.number {
+            (held.is_open, held.until) = (false, grant.number.period.saturating_add(LEASE));
+            held.granted = held.granted.max(grant.flow);
+            self.settle_in_time(None, outputs);
+        }
+    }
+
+    /// Once moves are judged, flows stay as they are until the next control period.
+    fn settle_in_time(&mut self, asking: Option<NodeId>, outputs: &mut Out) {
+        if self.stage() == Stage::Reserving {
+            self.settle_flows(asking, outputs);
+        }
+    }
+
+    /// Raises flows as they are granted, lowers others that are not needed, gives back what it does
+    /// not use, and grants what it can forward. The robot that is `asking` gets an answer.
+    fn settle_flows(&mut self, asking: Option<NodeId>, outputs: &mut Out) {
+        let needed = self.granted_to_others() + self.rate;
+        for _ in 0..PASSES {
+            let mut room = 1.0 - self.links.iter().map(|link| link.load()).sum::<f64>();
+            for link in &mut self.links {
+                room -= link.held.raise(room.max(0.0) * link.reliability) / link.reliability;
+            }
+            let mut spare = self.held_outflow() - needed;
+            for link in &mut self.links {
+                spare -= link.held.lower(spare.max(0.0));
+            }
+        }
+        for at in 0..self.links.len() {
+            let held = &mut self.links[at].held;
+            if held.allowed() > held.flow + SAME_FLOW {
+                // There is no room for more in this period.
+                held.wanted = held.flow;
+            }
+            if self.links[at].to < self.site.robots && self.links[at].held.can_be_given_back() {
+                self.ask(at, outputs);
+            }
+        }
+        let mut spare = (self.held_outflow() - needed).max(0.0);
+        for kept in &mut self.reservations {
+            let flow = kept.wanted.min(kept.flow + spare);
+            let can_grant = flow > kept.flow + SAME_FLOW;
+            if can_grant {
+                spare -= flow - kept.flow;
+                kept.flow = flow;
+            }
+            if can_grant || asking == Some(kept.from) {
+                let grant = FlowGrant { number: kept.asked, flow: kept.flow };
+                outputs.send(kept.from, Message::GrantFlow(grant));
+            }
+        }
+    }
+
+    fn held_outflow(&self) -> f64 {
+        self.links.iter().map(|link| link.held.flow).sum()
+    }
+
+    /// What others may send to this robot.
+    fn granted_to_others(&self) -> f64 {
+        self.reservations.iter().map(|kept| kept.flow).sum()
+    }
+
+    /// The flows of this period are those in use, and c_i of eq. (5) is what they leave of what others
+    /// may send, whether or not they do.
+    pub(super) fn adopt_flows(&mut self) {
+        for link in &mut self.links {
+            link.share = link.load();
+        }
+        let kept = self.reservations.iter().filter(|kept| kept.flow > 0.0);
+        self.inflows.clear();
+        self.inflows.extend(kept.map(|kept| (kept.from, kept.flow)));
+        self.inflow = self.granted_to_others();
+        self.residual = self.held_outflow() - self.inflow - self.rate;
+        if self.residual.abs() < RESIDUAL_ROUNDING {
+            self.residual = 0.0;
+        }
+    }
+}

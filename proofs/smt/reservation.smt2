@@ -1,0 +1,116 @@
+; A sender never uses more of a link than its receiver keeps for it, whatever becomes of messages.
+;
+; One link of `reservation.rs`. The sender uses `held`, may use up to `granted`, and has asked last
+; with the number `asked`. The receiver keeps `kept`, and has taken in last what bore the number
+; `known`. Messages stay on their way for ever: what is heard is any of them, at any time, any number
+; of times, or never. An ask carries what is in use when it is sent, a grant what is kept then.
+(declare-sort Message 0)
+(declare-fun was-ask (Message) Bool)    ; sent before this step, by the sender
+(declare-fun was-grant (Message) Bool)  ; sent before this step, by the receiver
+(declare-fun is-ask (Message) Bool)     ; sent up to now
+(declare-fun is-grant (Message) Bool)
+(declare-fun number (Message) Int)
+(declare-fun flow (Message) Real)
+(declare-const new Message)             ; the message sent in this step, if one is
+(declare-const heard Message)           ; the message heard in this step, if one is
+(declare-const held Real) (declare-const granted Real) (declare-const asked Int)
+(declare-const kept Real) (declare-const known Int)
+(declare-const held2 Real) (declare-const granted2 Real) (declare-const asked2 Int)
+(declare-const kept2 Real) (declare-const known2 Int)
+; The promise is the first line; the rest is what makes it inductive.
+(define-fun before () Bool
+  (and (<= held granted) (<= granted kept)
+       (<= known asked)
+       (forall ((m Message)) (=> (was-ask m)
+         (and (<= (number m) asked) (=> (> (number m) known) (<= granted (flow m))))))
+       (forall ((m Message)) (=> (was-grant m)
+         (and (<= (number m) known) (=> (= (number m) known) (<= (flow m) kept)))))))
+(define-fun after () Bool
+  (and (<= held2 granted2) (<= granted2 kept2)
+       (<= known2 asked2)
+       (forall ((m Message)) (=> (is-ask m)
+         (and (<= (number m) asked2) (=> (> (number m) known2) (<= granted2 (flow m))))))
+       (forall ((m Message)) (=> (is-grant m)
+         (and (<= (number m) known2) (=> (= (number m) known2) (<= (flow m) kept2)))))))
+(define-fun sends-ask () Bool
+  (forall ((m Message)) (and (= (is-ask m) (or (was-ask m) (= m new))) (= (is-grant m) (was-grant m)))))
+(define-fun sends-grant () Bool
+  (forall ((m Message)) (and (= (is-grant m) (or (was-grant m) (= m new))) (= (is-ask m) (was-ask m)))))
+(define-fun sends-nothing () Bool
+  (forall ((m Message)) (and (= (is-grant m) (was-grant m)) (= (is-ask m) (was-ask m)))))
+(define-fun sender-rests () Bool (and (= held2 held) (= granted2 granted) (= asked2 asked)))
+(define-fun receiver-rests () Bool (and (= kept2 kept) (= known2 known)))
+(assert before)
+(check-sat) ; expect sat
+; The sender uses more or less, within what is granted.
+(push)
+(assert (and sends-nothing receiver-rests (= granted2 granted) (= asked2 asked) (<= held2 granted)))
+(assert (not after))
+(check-sat) ; expect unsat
+(pop)
+; It asks: what was granted before is void, beyond what is in use.
+(push)
+(assert (and sends-ask receiver-rests (= held2 held) (= granted2 held) (> asked2 asked)
+             (= (number new) asked2) (= (flow new) held)))
+(assert (not after))
+(check-sat) ; expect unsat
+(pop)
+; The receiver takes in a request that is newer than the last, and keeps what is in use.
+(push)
+(assert (and sends-nothing sender-rests (was-ask heard) (> (number heard) known)
+             (= known2 (number heard)) (= kept2 (ite (< (flow heard) kept) (flow heard) kept))))
+(assert (not after))
+(check-sat) ; expect unsat
+(pop)
+; It grants: it keeps as much or more, and tells the sender.
+(push)
+(assert (and sends-grant sender-rests (= known2 known) (>= kept2 kept)
+             (= (number new) known) (= (flow new) kept2)))
+(assert (not after))
+(check-sat) ; expect unsat
+(pop)
+; The sender takes in a grant that answers its last request.
+(push)
+(assert (and sends-nothing receiver-rests (was-grant heard) (= (number heard) asked)
+             (= held2 held) (= asked2 asked) (= granted2 (ite (> (flow heard) granted) (flow heard) granted))))
+(assert (not after))
+(check-sat) ; expect unsat
+(pop)
+; If the numbers are not compared, a late grant is for something that is not kept any more.
+(push)
+(assert (and sends-nothing receiver-rests (was-grant heard)
+             (= held2 held) (= asked2 asked) (= granted2 (ite (> (flow heard) granted) (flow heard) granted))))
+(assert (not after))
+(check-sat) ; expect sat
+(pop)
+
+; A lease ends at the sender first. It counts `lease` periods from the one in which it asked, the
+; receiver from the one in which it took the request in, which is not earlier.
+(push)
+(declare-const lease Int) (declare-const period Int)
+(declare-const asked-in Int) (declare-const answered-in Int)
+(assert (and (<= asked-in answered-in) (>= lease 0)))
+(define-fun sender-uses () Bool (<= period (+ asked-in lease)))
+(define-fun receiver-keeps () Bool (<= period (+ answered-in lease)))
+(push)
+(assert (and sender-uses (not receiver-keeps)))
+(check-sat) ; expect unsat
+(pop)
+(assert (and (not sender-uses) receiver-keeps))
+(check-sat) ; expect sat
+(pop)
+
+; A robot that lowers its flows by at most what it has to spare, and grants at most that, keeps
+; c = (flows out) − (granted to others) − r ≥ 0.
+(declare-const out Real) (declare-const given Real) (declare-const rate Real)
+(declare-const out2 Real) (declare-const given2 Real)
+(define-fun spare () Real (- (- out given) rate))
+(assert (>= spare 0.0))
+(push)
+(assert (or (and (>= out2 (- out spare)) (= given2 given))
+            (and (= out2 out) (<= given2 (+ given spare)))))
+(assert (< (- (- out2 given2) rate) 0.0))
+(check-sat) ; expect unsat
+(pop)
+(assert (and (< out2 (- out spare)) (= given2 given) (< (- (- out2 given2) rate) 0.0)))
+(check-sat) ; expect sat
