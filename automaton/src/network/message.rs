@@ -63,9 +63,24 @@ pub enum Message {
     /// The sender grants the receiver a flow towards itself.
     GrantFlow(#[serde(with = "wire")] FlowGrant),
     /// The move that the sender intends, to all nodes in range.
-    Proposal(#[serde(with = "wire")] Segment),
+    Proposal {
+        /// The control period.
+        period: u32,
+        /// From where it is to where it would be.
+        #[serde(with = "wire")]
+        segment: Segment,
+    },
     /// The sender cannot accept the move that the receiver intends.
-    Objection,
+    Objection {
+        /// The control period.
+        period: u32,
+    },
+    /// The sender, which relies on the receiver, accepts the move that the receiver intends and
+    /// every part of it.
+    Consent {
+        /// The control period.
+        period: u32,
+    },
     /// The tasks of a user in their order, to the first access point.
     Request(#[serde(with = "wire")] Arc<[Point]>),
     /// The newest notice on the mission, from the first access point to the user.

@@ -138,6 +138,7 @@ fn messages() -> Vec<Message> {
     let of_notice = |notice| beacon(talkative(duties()[0], notice));
     let news = |notice| Message::News(Bulletin::first(Shared::new(notice)));
     let report = NeighbourReport { multiplier: 0.1, mismatch: -0.2, crowding: 1.0 };
+    let segment = Segment::new(Point::new(0.1, 0.2), Point::new(1.0 / 3.0, 0.2));
     let number = RequestNumber { period: 3, number: 1 };
     let mut messages = vec![
         beacon(silent()),
@@ -148,8 +149,9 @@ fn messages() -> Vec<Message> {
         Message::Shortage,
         Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075 }),
         Message::GrantFlow(FlowGrant { number, flow: 0.05 }),
-        Message::Proposal(Segment::new(Point::new(0.1, 0.2), Point::new(1.0 / 3.0, 0.2))),
-        Message::Objection,
+        Message::Proposal { period: 5, segment },
+        Message::Objection { period: 5 },
+        Message::Consent { period: 5 },
         Message::Request(Arc::from([])),
         Message::Request(Arc::from([Point::new(1.33, 1.42), Point::new(1.6, 0.52)])),
     ];
@@ -169,8 +171,9 @@ fn kind(message: &Message) -> &'static str {
         Message::Shortage => "shortage",
         Message::AskFlow(_) => "ask_flow",
         Message::GrantFlow(_) => "grant_flow",
-        Message::Proposal(_) => "proposal",
-        Message::Objection => "objection",
+        Message::Proposal { .. } => "proposal",
+        Message::Objection { .. } => "objection",
+        Message::Consent { .. } => "consent",
         Message::Request(_) => "request",
         Message::News(_) => "news",
     }
@@ -205,7 +208,7 @@ fn every_kind_of_message_is_read_back_as_it_was_written() {
         texts.insert(text);
     }
     assert_eq!(texts.len(), messages().len(), "unlike messages are written unlike");
-    assert_eq!(kinds.len(), 11);
+    assert_eq!(kinds.len(), 12);
     let named: BTreeSet<_> = duties().iter().map(|duty| duty.location()).collect();
     assert_eq!(named.len(), Activity::ALL.len());
     assert_eq!(notices().iter().map(kind_of_notice).collect::<BTreeSet<_>>().len(), 7);
@@ -244,7 +247,8 @@ fn malformed_messages_are_refused() {
         ),
         (json!({"request": [[0.0, null]]}), "expected f64"),
         (json!({"request": [[0.0]]}), "array"),
-        (json!({"proposal": {"from": [0, 0]}}), "missing field `to`"),
+        (json!({"proposal": {"period": 0, "segment": {"from": [0, 0]}}}), "missing field `to`"),
+        (json!({"consent": {}}), "missing field `period`"),
         (json!({"multiplier": {"parent": null}}), "missing field `report`"),
         (json!({"multiplier": {"parent": null, "surprise": 1}}), "unknown field `surprise`"),
         (json!({"beacon": {"period": 0, "surprise": 1}}), "unknown field `surprise`"),

@@ -166,9 +166,13 @@ impl Robot {
             destination: _,
             waypoint: _,
             proposal: _,
+            told_move: _,
             problem: _,
             heard_moves: _,
             must_judge_moves: _,
+            consents: _,
+            to_answer: _,
+            consented: _,
             arrival: _,
             resting_places: _,
         } = self;

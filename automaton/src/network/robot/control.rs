@@ -88,8 +88,10 @@ acts! {
     Propose = "u := QP(ψ, cell)",
     /// It tells the move that it intends.
     TellProposal = "tell proposal",
-    /// It objects to moves that it cannot accept.
-    Object = "object",
+    /// It consents to the moves that it has heard of, or objects.
+    JudgeMoves = "judge moves",
+    /// Without the consent of all that rely on it, it does not move.
+    StayWithoutConsent = "u := 0 without consent",
     /// The certified move begins (line 8).
     SetOff = "set off",
 }
@@ -166,7 +168,8 @@ impl Robot {
             Act::EndRoutes => self.end_routes(),
             Act::Propose => self.propose()?,
             Act::TellProposal => self.tell_proposal(outputs),
-            Act::Object => self.object(outputs),
+            Act::JudgeMoves => self.judge_moves(outputs),
+            Act::StayWithoutConsent => self.stay_without_consent(),
             Act::SetOff => self.set_off(),
         }
         Ok(())
@@ -284,7 +287,7 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(
             On::ProposalsHeard,
             guards::proposals_heard(),
-            &[Object],
+            &[JudgeMoves],
             |_: &Negotiation| Negotiation {},
         ))
         .carried_out(row(
@@ -296,7 +299,7 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(
             On::MoveCertified,
             guards::move_certified(),
-            &[SetOff, Jump],
+            &[StayWithoutConsent, SetOff, Jump],
             |_: &Negotiation| Moving {},
         ))
         .build()

@@ -50,7 +50,7 @@ impl Robot {
     }
 
     /// The robots that report that they are attached to this one.
-    fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
+    pub(super) fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
         self.neighbours.iter().filter(|neighbour| neighbour.beacon.parent == Some(self.id))
     }
 

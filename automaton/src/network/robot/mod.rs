@@ -6,7 +6,7 @@
 //! control period. The chapters follow that period: it receives beacons (`hearing`), keeps its place
 //! in the tree (`attachment`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
-//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`motion`);
+//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`motion`, `negotiation`);
 //! what its guards see of all this are `facts`.
 
 #[cfg(feature = "abstraction")]
@@ -22,6 +22,7 @@ mod lineage;
 mod links;
 mod mission;
 mod motion;
+mod negotiation;
 mod partner;
 mod path;
 mod recruit;
@@ -184,10 +185,17 @@ pub struct Robot {
     destination: Option<Destination>,
     waypoint: Option<Point>,
     proposal: Option<Segment>,
+    /// Its proposal as it has been told.
+    told_move: Option<Segment>,
     /// Problem (21) of the last sample, if it has one: the region in which the robot moves.
     problem: Option<MotionProblem>,
     heard_moves: Vec<(NodeId, Segment)>,
     must_judge_moves: bool,
+    /// The robots that consent to its move, and those that wait for its own consent.
+    consents: Vec<NodeId>,
+    to_answer: Vec<NodeId>,
+    /// The robots to whose moves it has consented, each with the control period in which it did last.
+    consented: Vec<(NodeId, u32)>,
     arrival: Point,
     /// Where it has been, from the last place on, each off those before.
     resting_places: VecDeque<Point>,
@@ -278,9 +286,13 @@ impl Robot {
             destination: None,
             waypoint: None,
             proposal: None,
+            told_move: None,
             problem: None,
             heard_moves: Vec::new(),
             must_judge_moves: false,
+            consents: Vec::new(),
+            to_answer: Vec::new(),
+            consented: Vec::new(),
             arrival: position,
             resting_places: VecDeque::from([position]),
             still_periods: 0,

@@ -1,10 +1,7 @@
-//! Motion: target, proposals and objections (Sec. IV, Algorithm 5).
+//! Motion: target, motion problem and move (Sec. IV, Algorithm 5).
 //!
 //! The robot solves the motion problem (21)–(22) with all other robots fixed, and proposes the
-//! solution. A robot that hears a proposal that could overload it or overstretch its link to the tree,
-//! whichever of the proposed moves are carried out, objects; a mover that hears an objection
-//! halves its move. Shrinking moves never creates a new objection, so that what is left after the
-//! last round is safe, and every robot that moves knows it from its own neighbours.
+//! solution. What becomes of the proposal is told in `negotiation`.
 
 use std::sync::Arc;
 
@@ -12,17 +9,14 @@ use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic, HalfPlane, cell};
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
-use pleach_discrete::network::{NodeId, Phase, Stage};
+use pleach_discrete::network::{NodeId, Phase};
 
 use super::super::duty::Duty;
-use super::super::message::Message;
-use super::super::record::MissionEvent;
 use super::super::scenario::MotionSolver;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::links::TreeLink;
 use crate::automaton::TransitionError;
-use crate::node::Outputs;
 
 /// A robot this share of ρ from the reference of its post has settled.
 const SETTLED: f64 = 0.02;
@@ -49,8 +43,6 @@ const RESTING_PLACES: usize = 8;
 const LEAST_MOVE: f64 = 1e-6;
 /// Relative slack when lengths are compared with limits: they are sums of rounded ones.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// How much of a load a sender may be given, just below its whole time.
-const FULL_LOAD: f64 = 1.0 - 1e-9;
 
 impl Robot {
     /// Whether the robot stands still unless it is asked for; robots that settle on their post
@@ -136,8 +128,7 @@ impl Robot {
     /// Solves the motion problem towards `goal` and keeps its solution as the proposal.
     fn approach(&mut self, goal: Option<Point>) {
         (self.proposal, self.problem) = (None, None);
-        self.heard_moves.clear();
-        self.must_judge_moves = true;
+        self.begin_negotiation();
         let Some(goal) = goal else {
             self.waypoint = None;
             return;
@@ -287,103 +278,6 @@ impl Robot {
         let spare = (link.limit - path.length).max(0.0);
         let corner = self.next_corner(&path)?;
         Some(Disc { center: corner, radius: (corner - self.position).norm() + spare })
-    }
-
-    /// Sends its proposed move, if it has one.
-    pub(super) fn tell_proposal(&self, outputs: &mut Outputs<Message, MissionEvent>) {
-        if let Some(segment) = self.proposal {
-            outputs.broadcast(Message::Proposal(segment));
-        }
-    }
-
-    /// Where this robot would be.
-    fn own_move(&self) -> Segment {
-        self.proposal.unwrap_or(Segment::still(self.position))
-    }
-
-    /// The proposal of a neighbour is received.
-    pub(super) fn hear_proposal(&mut self, from: NodeId, segment: Segment) {
-        match self.heard_moves.iter_mut().find(|(mover, _)| *mover == from) {
-            Some((_, known)) if *known == segment => return,
-            Some((_, known)) => *known = segment,
-            None => self.heard_moves.push((from, segment)),
-        }
-        self.must_judge_moves = true;
-    }
-
-    fn move_of(&self, node: NodeId) -> Segment {
-        let heard = self.heard_moves.iter().find(|(from, _)| *from == node);
-        match (heard, self.neighbour(node)) {
-            (Some((_, segment)), _) => *segment,
-            (None, Some(neighbour)) => Segment::still(neighbour.position()),
-            (None, None) => Segment::still(self.position),
-        }
-    }
-
-    /// Asks the movers whose moves this robot cannot accept, whichever of them are carried out, to
-    /// shorten theirs; it may be one of them. Moves that are as they were when it accepted them
-    /// are not judged again.
-    pub(super) fn object(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
-        if !std::mem::take(&mut self.must_judge_moves)
-            || self.heard_moves.is_empty() && self.proposal.is_none()
-        {
-            return;
-        }
-        let is_overloaded = self.is_overloaded();
-        let overstretched = self.overstretched_parent();
-        if !is_overloaded && overstretched.is_none() {
-            return;
-        }
-        self.must_judge_moves = true;
-        let receives = |node| is_overloaded && self.routes().any(|link| link.to == node);
-        for &(mover, _) in &self.heard_moves {
-            if overstretched == Some(mover) || receives(mover) {
-                outputs.send(mover, Message::Objection);
-            }
-        }
-        self.yield_to_objection();
-    }
-
-    /// Whether the robot neither proposes a move nor has heard of one that it has not judged.
-    pub(super) fn has_no_moves_to_judge(&self) -> bool {
-        self.proposal.is_none() && (self.heard_moves.is_empty() || !self.must_judge_moves)
-    }
-
-    fn is_overloaded(&self) -> bool {
-        let load: f64 = self.routes().map(|link| link.share).sum();
-        let worst = self.worst_load(self.own_move(), |node| self.move_of(node));
-        worst > FULL_LOAD.max(load + ROUNDING)
-    }
-
-    /// The parent, if the link to it could become longer than its limit and than it is now.
-    fn overstretched_parent(&self) -> Option<NodeId> {
-        let link = self.parent_link()?;
-        let (own, other) = (self.own_move(), self.move_of(link.to));
-        if own.length() == 0.0 && other.length() == 0.0 {
-            return None;
-        }
-        let neighbour = self.neighbour(link.to)?;
-        let limit = link.limit.max(self.walk_to(neighbour)) * (1.0 + ROUNDING);
-        let length = |a: Point, b: Point| self.site.free_space.distance(a, b);
-        let longest = [(own.to, other.from), (own.from, other.to), (own.to, other.to)]
-            .into_iter()
-            .map(|(a, b)| length(a, b))
-            .fold(0.0, f64::max);
-        (longest > limit).then_some(link.to)
-    }
-
-    /// A neighbour, or the robot itself, objects to its move: it halves it or, in the last round,
-    /// gives it up.
-    pub(super) fn yield_to_objection(&mut self) {
-        if self.proposal.is_some() {
-            self.must_judge_moves = true;
-        }
-        let is_last_chance =
-            self.stage() == Stage::Negotiation && self.round_count.is_last_chance();
-        self.proposal = match is_last_chance {
-            false => self.proposal.map(|segment| segment.halved()),
-            true => None,
-        };
     }
 
     /// The robot measures at a sample that it is not quite where its move was to end.

@@ -176,6 +176,17 @@ impl Robot {
         link.is_ok_and(|at| self.links[at].held.flow > 0.0)
     }
 
+    /// Whether it has ever asked this node for a flow over the link that it has to it now.
+    pub(super) fn has_asked(&self, node: NodeId) -> bool {
+        let link = self.links.binary_search_by_key(&node, |link| link.to);
+        link.is_ok_and(|at| self.links[at].held.asked != RequestNumber::default())
+    }
+
+    /// The robots that may send to this one.
+    pub(super) fn senders(&self) -> impl Iterator<Item = NodeId> {
+        self.reservations.iter().filter(|kept| kept.flow > 0.0).map(|kept| kept.from)
+    }
+
     fn ask(&mut self, at: usize, outputs: &mut Out) {
         let RequestNumber { period, number } = self.last_request;
         let number = if period == self.period { number + 1 } else { 1 };

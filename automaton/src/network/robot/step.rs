@@ -209,8 +209,9 @@ impl Robot {
         match message {
             Message::AskFlow(request) => self.hear_request(from, *request, outputs),
             Message::GrantFlow(grant) => self.hear_grant(from, *grant, outputs),
-            Message::Proposal(segment) => self.hear_proposal(from, *segment),
-            Message::Objection => self.yield_to_objection(),
+            Message::Proposal { period, segment } => self.hear_proposal(from, *period, *segment),
+            Message::Objection { period } => self.hear_objection(*period),
+            Message::Consent { period } => self.hear_consent(from, *period),
             _ => {}
         }
     }

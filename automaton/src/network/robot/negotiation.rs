@@ -1,0 +1,217 @@
+//! Negotiation: proposals of moves, objections to them, and consent (Sec. IV, Algorithm 5).
+//!
+//! A robot *relies* on those to which it sends and on its parent in the tree: their moves change its
+//! load and the length of its link. A robot that hears of moves on which its load could depend judges
+//! them all together, whichever of them are carried out, with its own. If it could be overloaded, or
+//! its link to the tree overstretched, it objects; a mover that hears an objection halves its move.
+//! Otherwise it consents. Shrinking moves never creates a new objection, so that consent to a move
+//! is consent to what is left of it.
+//!
+//! A robot moves only with the consent of all that rely on it. A message that is lost takes away the
+//! right to move and never gives one: a robot whose proposal is not heard stays where others take it to
+//! be, and a robot that does not know where those are on which it relies consents to nothing and
+//! stays.
+
+use pleach_continuous::Point;
+use pleach_continuous::network::acceptance::Segment;
+use pleach_discrete::network::{NodeId, Stage};
+
+use super::super::message::Message;
+use super::super::record::MissionEvent;
+use super::Robot;
+use super::hearing::Neighbour;
+use super::motion::ROUNDING;
+use crate::node::Outputs;
+
+/// How much of a load a sender may be given, just below its whole time.
+const FULL_LOAD: f64 = 1.0 - 1e-9;
+
+impl Robot {
+    /// A new proposal is about to be made: nothing has been heard of others, and nobody consents.
+    pub(super) fn begin_negotiation(&mut self) {
+        self.heard_moves.clear();
+        self.consents.clear();
+        self.to_answer.clear();
+        self.told_move = None;
+        self.must_judge_moves = true;
+    }
+
+    /// Sends its proposed move, if it has one, until all that rely on it consent.
+    pub(super) fn tell_proposal(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if let Some(segment) = self.proposal
+            && (self.told_move != self.proposal || !self.has_all_consents())
+        {
+            self.told_move = self.proposal;
+            outputs.broadcast(Message::Proposal { period: self.period, segment });
+        }
+    }
+
+    /// Where this robot would be.
+    pub(super) fn own_move(&self) -> Segment {
+        self.proposal.unwrap_or(Segment::still(self.position))
+    }
+
+    /// The proposal of a neighbour is received.
+    pub(super) fn hear_proposal(&mut self, from: NodeId, period: u32, segment: Segment) {
+        if period != self.period {
+            return;
+        }
+        if self.relies_on(from) && !self.to_answer.contains(&from) {
+            self.to_answer.push(from);
+        }
+        match self.heard_moves.iter_mut().find(|(mover, _)| *mover == from) {
+            // Moves only shrink within a control period: a longer one is late.
+            Some((_, known)) if known.length() <= segment.length() => return,
+            Some((_, known)) => *known = segment,
+            None => self.heard_moves.push((from, segment)),
+        }
+        self.must_judge_moves = true;
+    }
+
+    fn move_of(&self, node: NodeId) -> Segment {
+        let heard = self.heard_moves.iter().find(|(from, _)| *from == node);
+        match (heard, self.neighbour(node)) {
+            (Some((_, segment)), _) => *segment,
+            (None, Some(neighbour)) => Segment::still(neighbour.position()),
+            (None, None) => Segment::still(self.position),
+        }
+    }
+
+    /// Whether the robot could be harmed by a move of this node: it sends to it, or may have to be
+    /// told that it still may, or is attached to it in the tree.
+    fn relies_on(&self, node: NodeId) -> bool {
+        self.has_asked(node) || self.tree_parent() == Some(node)
+    }
+
+    /// The robots that rely on this one, as far as it knows: those to which it has granted a flow, and
+    /// those that report that they are attached to it.
+    fn reliant(&self) -> impl Iterator<Item = NodeId> {
+        self.senders().chain(self.tree_children().map(Neighbour::id))
+    }
+
+    /// A robot that relies on this one consents to its move.
+    pub(super) fn hear_consent(&mut self, from: NodeId, period: u32) {
+        if period == self.period && !self.consents.contains(&from) {
+            self.consents.push(from);
+        }
+    }
+
+    /// Without the consent of all that rely on it the robot stays.
+    pub(super) fn stay_without_consent(&mut self) {
+        if !self.has_all_consents() {
+            self.proposal = None;
+        }
+    }
+
+    fn has_all_consents(&self) -> bool {
+        self.reliant().all(|robot| self.consents.contains(&robot))
+    }
+
+    /// Judges the moves that it has heard of together with its own: objects, and halves its own, or
+    /// consents. Moves that are as they were when it accepted them are not judged again.
+    pub(super) fn judge_moves(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        if self.heard_moves.is_empty() && self.proposal.is_none() {
+            self.must_judge_moves = false;
+            return;
+        }
+        if self.is_unsure() {
+            self.proposal = None;
+            return;
+        }
+        if self.must_judge_moves && !self.accepts_moves(outputs) {
+            return;
+        }
+        self.must_judge_moves = false;
+        let period = self.period;
+        for mover in std::mem::take(&mut self.to_answer) {
+            outputs.send(mover, Message::Consent { period });
+            self.consented.retain(|&(other, _)| other != mover);
+            self.consented.push((mover, period));
+        }
+    }
+
+    /// Whether all moves together are acceptable; if not, those that could be the cause are told so.
+    fn accepts_moves(&mut self, outputs: &mut Outputs<Message, MissionEvent>) -> bool {
+        let is_overloaded = self.is_overloaded();
+        let overstretched = self.overstretched_parent();
+        if !is_overloaded && overstretched.is_none() {
+            return true;
+        }
+        let receives = |node| is_overloaded && self.routes().any(|link| link.to == node);
+        let period = self.period;
+        for &(mover, _) in &self.heard_moves {
+            if overstretched == Some(mover) || receives(mover) {
+                outputs.send(mover, Message::Objection { period });
+            }
+        }
+        self.yield_to_objection();
+        false
+    }
+
+    /// Whether it does not know where a robot is on which it relies.
+    fn is_unsure(&self) -> bool {
+        let relied_on = self.routes().map(|link| link.to).chain(self.tree_parent());
+        relied_on.filter(|&node| node < self.site.robots).any(|node| !self.knows_place_of(node))
+    }
+
+    /// Whether a robot on which this one relies is where it was heard last: it has been heard in this
+    /// control period, or it could not move since, because this robot sends to it and has not
+    /// consented.
+    fn knows_place_of(&self, node: NodeId) -> bool {
+        let Some(known) = self.neighbour(node) else { return false };
+        let has_consented =
+            |&(mover, period): &(NodeId, u32)| mover == node && period >= known.heard_in;
+        known.heard_in == self.period
+            || self.sends_to(node) && !self.consented.iter().any(has_consented)
+    }
+
+    /// Whether the robot neither proposes a move nor has heard of one that it has not answered.
+    pub(super) fn has_no_moves_to_judge(&self) -> bool {
+        let is_answered = !self.must_judge_moves && self.to_answer.is_empty();
+        self.proposal.is_none() && (self.heard_moves.is_empty() || is_answered)
+    }
+
+    fn is_overloaded(&self) -> bool {
+        let load: f64 = self.routes().map(|link| link.share).sum();
+        let worst = self.worst_load(self.own_move(), |node| self.move_of(node));
+        worst > FULL_LOAD.max(load + ROUNDING)
+    }
+
+    /// The parent, if the link to it could become longer than its limit and than it is now.
+    fn overstretched_parent(&self) -> Option<NodeId> {
+        let link = self.parent_link()?;
+        let (own, other) = (self.own_move(), self.move_of(link.to));
+        if own.length() == 0.0 && other.length() == 0.0 {
+            return None;
+        }
+        let neighbour = self.neighbour(link.to)?;
+        let limit = link.limit.max(self.walk_to(neighbour)) * (1.0 + ROUNDING);
+        let length = |a: Point, b: Point| self.site.free_space.distance(a, b);
+        let longest = [(own.to, other.from), (own.from, other.to), (own.to, other.to)]
+            .into_iter()
+            .map(|(a, b)| length(a, b))
+            .fold(0.0, f64::max);
+        (longest > limit).then_some(link.to)
+    }
+
+    /// A neighbour objects to the move that this robot has proposed in this control period.
+    pub(super) fn hear_objection(&mut self, period: u32) {
+        if period == self.period {
+            self.yield_to_objection();
+        }
+    }
+
+    /// A neighbour, or the robot itself, objects to its move: it halves it or, in the last round,
+    /// gives it up.
+    fn yield_to_objection(&mut self) {
+        if self.proposal.is_some() {
+            self.must_judge_moves = true;
+        }
+        let is_last_chance =
+            self.stage() == Stage::Negotiation && self.round_count.is_last_chance();
+        self.proposal = match is_last_chance {
+            false => self.proposal.map(|segment| segment.halved()),
+            true => None,
+        };
+    }
+}
