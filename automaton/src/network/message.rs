@@ -27,6 +27,7 @@ use pleach_discrete::network::NodeId;
 use serde::{Deserialize, Serialize};
 
 use super::beacon::{Beacon, Bulletin};
+use super::roll::Roll;
 use super::robot::{FlowGrant, FlowRequest};
 use super::wire;
 
@@ -40,6 +41,8 @@ pub enum Message {
         /// The control period in which it is sent. All nodes count their periods alike; one that
         /// begins later takes the number from the first beacon that it receives.
         period: u32,
+        /// The newest roll that the sender knows.
+        roll: Roll,
         /// The public state.
         #[serde(with = "wire")]
         beacon: Arc<Beacon>,

@@ -49,6 +49,9 @@ impl AccessPoint {
             agreement,
             route,
             crossing,
+            attached,
+            serves,
+            tasks_serviced,
             roster,
             settled_rounds,
             service,
@@ -65,7 +68,9 @@ impl AccessPoint {
             is_new: _,
             last_beacon: _,
             log: _,
-            // The explorer stands for time.
+            // The explorer stands for time; without it nobody is missed.
+            attendees: _,
+            roll: _,
             clock: _,
             period: _,
         } = self;
@@ -79,7 +84,7 @@ impl AccessPoint {
             "{:?}",
             (
                 (number, bulletin, &**service, election, rounds),
-                (agreement, route, crossing, roster, settled),
+                (agreement, route, crossing, (attached, serves, tasks_serviced.len(), roster), settled),
             )
         )
     }

@@ -107,9 +107,12 @@ impl Robot {
             parent,
             place,
             below,
+            serves,
             can_detach,
             unused_periods,
+            orphaned_periods,
             bulletin,
+            epoch,
             tasks,
             roster,
             eligible,
@@ -145,6 +148,10 @@ impl Robot {
             partner: _,
             taking_over: _,
             log: _,
+            // Nobody is missed where no time passes.
+            roll: _,
+            out_of_sight: _,
+            wrecks: _,
             // Routes and motion.
             velocity: _,
             clock: _,
@@ -185,9 +192,9 @@ impl Robot {
         format!(
             "{:?}",
             (
-                (id, position, still_periods, &**duty, &**mission, unused_periods),
-                (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
-                (bulletin, tasks, roster, eligible, election, bid, waited, route),
+                (id, position, still_periods, &**duty, &**mission, unused_periods, orphaned_periods),
+                (&**exchange, answered, last_partner, parent, &**place, (below, serves), can_detach),
+                ((bulletin, epoch), tasks, roster, eligible, election, bid, waited, route),
                 (agreement, team, silences),
             )
         )

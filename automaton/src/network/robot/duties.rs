@@ -170,19 +170,19 @@ impl Robot {
 
     /// Whether Σ is no longer of use.
     pub(super) fn is_called_off(&self) -> bool {
-        use MissionStep::{Announced, Ended, Resumed, Serviced};
-        [Announced, Ended, Resumed, Serviced].into_iter().any(|step| self.takes_step(step))
+        use MissionStep::{Announced, Ended, Overtaken, Resumed, Serviced};
+        [Announced, Ended, Overtaken, Resumed, Serviced].into_iter().any(|step| self.takes_step(step))
     }
 
-    /// Whether another task is announced.
+    /// Whether another task is announced, or its own again.
     pub(super) fn is_superseded(&self) -> bool {
-        self.takes_step(MissionStep::Announced)
+        self.takes_step(MissionStep::Announced) || self.takes_step(MissionStep::Overtaken)
     }
 
     /// Whether the primary team is dissolved.
     pub(super) fn is_dissolved(&self) -> bool {
-        use MissionStep::{Announced, Ended, Serviced};
-        [Announced, Ended, Serviced].into_iter().any(|step| self.takes_step(step))
+        use MissionStep::{Announced, Ended, Overtaken, Serviced};
+        [Announced, Ended, Overtaken, Serviced].into_iter().any(|step| self.takes_step(step))
     }
 
     /// Whether it takes the post ahead now: its subgroup has arrived, or the mission goes on.
@@ -196,11 +196,31 @@ impl Robot {
         self.next_hop().is_some()
             && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
                 || self.takes_step(MissionStep::Resumed)
-                || self.takes_step(MissionStep::Announced))
+                || self.is_superseded())
     }
 
-    pub(super) fn post_ahead(&self) -> Option<Post> {
-        self.next_hop().map(|hop| hop.post)
+    /// The post that a robot on its way along Σ takes next: the one ahead or, where its task is announced
+    /// again before it has arrived, the one that it left.
+    pub(super) fn coming_post(&self) -> Option<Post> {
+        let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
+        if !self.turns_back() {
+            return self.next_hop().map(|hop| hop.post);
+        }
+        let hop = self.mission.path()?.hops.get(place)?;
+        // The robot behind holds the post of the first of a subgroup; others may have gone on.
+        let is_first = || self.active_subgroup().is_none_or(|it| it.first == place);
+        let is_held =
+            left.is_some() && is_first() || self.takes_step(MissionStep::Overtaken);
+        Some(if is_held { self.new_post() } else { hop.post })
+    }
+
+    /// Whether it stops on its way along Σ: the task that it moves for is announced again, to the robots
+    /// that are left, and it has not arrived.
+    fn turns_back(&self) -> bool {
+        let is_same = matches!(*self.notice(),
+            Notice::Task { task, .. } if Some(task) == self.current_task());
+        self.takes_step(MissionStep::Overtaken)
+            || self.takes_step(MissionStep::Announced) && is_same && !self.has_arrived()
     }
 
     /// Whether its turn on Σ has come: its subgroup is the active team, and its post is held by
@@ -272,14 +292,15 @@ fn set_out(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Shifting 
     Shifting { place, left: (place > 0).then_some(waiting.held.station.post.id) }
 }
 
-/// Eq. (26): the robot holds the post that it has come to. A plain node that queues behind the next
+/// Eq. (26): the robot holds the post that it has come to, or takes a post where it stands if it turns
+/// back. A plain node that queues behind the next
 /// member makes its place where it stands.
 fn take_post_ahead<B: From<Held>>(
     shifting: &Shifting,
     robot: &Robot,
     effects: &mut Effects,
 ) -> Option<B> {
-    let hop = robot.next_hop()?;
+    let post = robot.coming_post()?;
     if !robot.takes_step(MissionStep::SubgroupArrived) {
         effects.push(DutyEffect::Restart);
     } else if let Some(active) =
@@ -288,10 +309,10 @@ fn take_post_ahead<B: From<Held>>(
         let (subgroup, robots) = (robot.subgroups_done(), robot.robots_at(active));
         effects.push(DutyEffect::Report(MissionEvent::SubgroupArrived { subgroup, robots }));
     }
-    let place = hop.place.reference;
+    let place = robot.next_hop()?.place.reference;
     let queues = (robot.position - place).norm() > robot.site.settings.service_radius;
-    let reference = if queues { robot.position } else { place };
-    Some(B::from(Held { station: Station { post: hop.post, reference }, left: None }))
+    let reference = if queues || robot.turns_back() { robot.position } else { place };
+    Some(B::from(Held { station: Station { post, reference }, left: None }))
 }
 
 /// The post that the last robot of Σ gets in the primary team.
@@ -342,7 +363,7 @@ fn retire(relay: &Relay, _: &Robot, _: &mut Effects) -> Standby {
     Standby(with_kind(relay.0, PostKind::Redundant))
 }
 
-/// Another parent in the tree, for a redundant robot or p₁ (Remark 5.6).
+/// Another parent in the tree: for a redundant robot or p₁ (Remark 5.6), or where the parent is gone.
 fn attach<A: Holder + From<Held>>(duty: &A, robot: &Robot, effects: &mut Effects) -> A {
     let mut held = *duty.held();
     if let Some(desired) = robot.desired_parent {
@@ -522,6 +543,9 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
         .carried_out(settled::<Following>())
         .carried_out(Transfer::new(On::SetOut, guards::set_out(), "leave the post", set_out))
         .carried_out(attached::<Standby>())
+        .carried_out(attached::<Relay>())
+        .carried_out(attached::<Junction>())
+        .carried_out(attached::<Leaf>())
         .carried_out(attached::<Following>())
         .carried_out(attached::<Leading>())
         .carried_out(Transfer::new(

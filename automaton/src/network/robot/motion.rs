@@ -172,6 +172,7 @@ impl Robot {
             .iter()
             .filter(|neighbour| !neighbour.is_access_point() && neighbour.beacon.parked)
             .map(|n| Disc { center: n.position(), radius: KEEP_OUT * self.clearance() })
+            .chain(self.keep_out_discs(KEEP_OUT * self.clearance()))
             .collect();
         let allowance = DETOUR_ALLOWANCE * self.clearance();
         let around = |from: Point, direct: Geodesic| match free_space.detour(from, goal, &parked) {
@@ -222,6 +223,7 @@ impl Robot {
             waypoint,
             step,
         ));
+        half_planes.extend(self.sides_of_wrecks(2.0 * clearance));
         half_planes.extend(self.linearised_residual());
         let mut discs = vec![Disc { center: self.position, radius: step }];
         discs.extend(self.post_discs());

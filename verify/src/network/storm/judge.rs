@@ -142,13 +142,13 @@ fn rooted(seen: &Snapshot) -> Result<(), Violation> {
     }
 }
 
-/// [`Property::SingleLeader`]: no two robots lead to the same task.
+/// [`Property::SingleLeader`]: no two robots lead by the same announcement.
 fn led(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
     let mut announcements = Vec::new();
     for (robot, node) in nodes.iter().enumerate().take(seen.roles.len()) {
         if let Some(known) = node.member().view().robot().filter(|_| node.is_running()) {
             let leads = seen.roles[robot] == Role::Leader;
-            announcements.extend(leads.then_some((known.current_task(), robot)));
+            announcements.extend(leads.then_some((known.announcement(), robot)));
         }
     }
     announcements.sort_unstable();
