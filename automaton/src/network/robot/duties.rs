@@ -200,7 +200,7 @@ impl Robot {
     }
 
     /// The post that a robot on its way along Σ takes next: the one ahead or, where its task is announced
-    /// again before it has arrived, the one that it left.
+    /// again before its subgroup has arrived, the one that it left.
     pub(super) fn coming_post(&self) -> Option<Post> {
         let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
         if !self.turns_back() {
@@ -215,12 +215,16 @@ impl Robot {
     }
 
     /// Whether it stops on its way along Σ: the task that it moves for is announced again, to the robots
-    /// that are left, and it has not arrived.
+    /// that are left, and its subgroup has not arrived.
     fn turns_back(&self) -> bool {
         let is_same = matches!(*self.notice(),
             Notice::Task { task, .. } if Some(task) == self.current_task());
+        let have_arrived = || {
+            let agreement = self.agreement.as_ref().zip(self.active_subgroup());
+            agreement.is_some_and(|(known, active)| known.have_arrived(active.places()))
+        };
         self.takes_step(MissionStep::Overtaken)
-            || self.takes_step(MissionStep::Announced) && is_same && !self.has_arrived()
+            || self.takes_step(MissionStep::Announced) && is_same && !have_arrived()
     }
 
     /// Whether its turn on Σ has come: its subgroup is the active team, and its post is held by
@@ -231,6 +235,12 @@ impl Robot {
             active.places().contains(&place)
                 && (place == 0 || place > active.first || self.is_relieved_of(held.station.post.id))
         })
+    }
+
+    /// Whether it waits on Σ, and the robot behind holds its post.
+    pub(super) fn is_superfluous(&self) -> bool {
+        let held = self.duty.held().filter(|_| self.duty.place().is_some());
+        held.is_some_and(|held| self.holder(held.station.post.id).is_some())
     }
 
     /// Whether another parent has been found to be better.
@@ -274,6 +284,20 @@ fn await_release(bound: &Bound, robot: &Robot, _: &mut Effects) -> AwaitingRelea
 fn leave_path<B: From<Held>>(waiting: &Waiting, _: &Robot, effects: &mut Effects) -> B {
     effects.push(DutyEffect::Restart);
     B::from(waiting.held)
+}
+
+fn stand_by(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Standby {
+    match robot.is_superfluous() {
+        true => leave_post(waiting, robot, effects),
+        false => leave_path(waiting, robot, effects),
+    }
+}
+
+/// The post is left to the robot behind.
+fn leave_post<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Standby {
+    effects.push(DutyEffect::Restart);
+    let station = Station { post: robot.new_post(), reference: robot.position };
+    Standby(Held { station, left: robot.duty.post().map(|post| post.id) })
 }
 
 fn stop_awaiting<B: From<Held>>(waiting: &AwaitingRelease, _: &Robot, effects: &mut Effects) -> B {
@@ -501,9 +525,20 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             "wait on Σ",
             await_release,
         ))
-        .carried_out(kept::<Standby>(On::StandbyKept, guards::standby_kept()))
+        .carried_out(Transfer::new(
+            On::StandbyKept,
+            guards::standby_kept(),
+            "keep the post, or take a new one",
+            stand_by,
+        ))
         .carried_out(kept::<Relay>(On::RelayKept, guards::relay_kept()))
         .carried_out(kept::<Leaf>(On::LeafKept, guards::leaf_kept()))
+        .carried_out(Transfer::new(
+            On::StandbyKept,
+            guards::release_missed(),
+            "take a new post",
+            leave_post::<AwaitingRelease>,
+        ))
         .carried_out(Transfer::new(
             On::BoundKept,
             guards::bound_kept(),

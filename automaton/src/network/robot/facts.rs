@@ -147,6 +147,8 @@ facts! {
             free: robot.duty.is_redundant(),
             /// A task is serviced from its post.
             serves: robot.duty.post().is_some_and(|post| post.task.is_some()),
+            /// The robot behind on Σ holds its post.
+            superfluous: robot.is_superfluous(),
             /// It holds a fixed post, or robots attached to it find no other parent.
             has_past_duties: robot.has_past_duties(),
             /// The leader election is over now, and it has won it.
