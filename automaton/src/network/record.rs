@@ -126,7 +126,8 @@ pub enum MissionEvent {
     Reattached { robot: usize, parent: usize },
     /// The leader's tree has no recruit left; the election is repeated among the others.
     ElectionRepeated { task: usize },
-    /// Robots of the election are gone: the task is announced again to those that are left.
+    /// Robots are gone that take part in the elections for the task, or serviced it: it is announced again
+    /// to those that are left.
     TaskReannounced { task: usize, gone: Vec<usize> },
 }
 

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{ATTENDANCE, Attendance, AttendanceEvent, IdSet};
+use pleach_discrete::network::{ATTENDANCE, Attendance, AttendanceEvent, IdSet, NodeId};
 use pleach_guards::network::attendance as guards;
 
 use crate::automaton::TransitionError;
@@ -173,6 +173,12 @@ impl AccessPoint {
             }
         }
         absent
+    }
+
+    /// The robots that are gone.
+    pub(super) fn gone(&self) -> Vec<NodeId> {
+        let attendees = self.attendees.iter().enumerate();
+        attendees.filter(|(_, attendee)| attendee.is_gone()).map(|(robot, _)| robot).collect()
     }
 
     /// Whether robots that it has heard of do not take part.

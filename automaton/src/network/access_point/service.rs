@@ -218,7 +218,10 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
     let roster = Arc::clone(&point.roster);
     let announced = Some(Announced { task, roster: Arc::clone(&roster) });
     let eligible = Arc::new((0..point.site.access_points.len()).collect());
-    effects.push(ServiceEffect::Report(MissionEvent::TaskAnnounced { task }));
+    effects.push(ServiceEffect::Report(match point.abandoned_task() {
+        Some(task) => MissionEvent::TaskReannounced { task, gone: point.gone() },
+        None => MissionEvent::TaskAnnounced { task },
+    }));
     let notice = Notice::Task { task, position, roster, eligible };
     effects.push(match point.misses_robots() {
         // They may still go by an earlier announcement when they come back.
@@ -239,9 +242,7 @@ fn announce_again<A: Knows>(
     let roster = Arc::clone(&point.roster);
     let announced = Some(Announced { task, roster: Arc::clone(&roster) });
     let eligible = Arc::new((0..point.site.access_points.len()).collect());
-    let electors = point.announced().into_iter().flat_map(|announced| announced.roster.iter());
-    let gone = electors.filter(|&robot| point.attendees.get(robot).is_some_and(Attendee::is_gone));
-    let gone = gone.collect();
+    let gone = point.gone();
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone }));
     effects.push(ServiceEffect::Supersede(Notice::Task { task, position, roster, eligible }));
     Some(Electing { announced })
