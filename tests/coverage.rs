@@ -20,10 +20,6 @@ const SEEDS: u64 = 2;
 /// target.
 const REASONS: &[([&str; 4], &str)] = &[
     (
-        ["control period", "reserving", "grants heard", ""],
-        "a request or its answer is lost; taken in `storms.rs`",
-    ),
-    (
         ["duty", "", "takes ", ""],
         "every two duties that an exchange may join have a row, so that none can fail half way; \
          robots with these two meet rarely",

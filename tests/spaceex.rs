@@ -328,6 +328,24 @@ fn what_is_not_supported_is_refused_with_its_line() {
 }
 
 /// Locations of one name are told apart by their ids.
+/// Where no initial state satisfies the invariant there are no runs, and nothing would be shown of any.
+#[test]
+fn a_question_about_no_run_is_refused() {
+    let configuration =
+        include_str!("spaceex/bouncing-ball.cfg").replace("10 <= x <= 10.2", "x == -3");
+    let file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("below-the-ground.cfg");
+    std::fs::write(&file, configuration).expect("it can be written");
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/spaceex/bouncing-ball.xml");
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_pleach"))
+        .args(["reach", model, "--cfg"])
+        .arg(&file)
+        .output()
+        .expect("the program starts");
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("no run begins there"), "{said}");
+}
+
 #[test]
 fn locations_of_one_name_are_told_apart() {
     let model = BALL[0].replace(

@@ -75,6 +75,15 @@ pub fn reach(arguments: &ReachArguments) -> Result<Status, Failure> {
     let begin = Instant::now();
     let solution = solve(&problem, arguments.quiet)?;
     let seconds = begin.elapsed().as_secs_f64();
+    for (initial, proof) in problem.initial.iter().zip(&solution.proofs) {
+        if proof.enclosure.visits.is_empty() {
+            return Err(Failure::Usage(format!(
+                "{}: `initially`: no state that it admits satisfies the invariant of `{}`: no run begins there",
+                arguments.cfg.display(),
+                initial.locations.join("`, `")
+            )));
+        }
+    }
     if let Some((path, axes)) = picture {
         let runs = problem.runs(arguments.runs);
         let picture = solution.picture(&problem.system, [&axes[0], &axes[1]], &runs);

@@ -158,6 +158,7 @@ impl Robot {
             residual: _,
             reservations: _,
             last_request: _,
+            has_flow_news: _,
             has_swept: _,
             has_no_reserve: _,
             has_shortage_news: _,

@@ -80,8 +80,9 @@ acts! {
     SweepAgain = "relieve, begin sweep",
     /// It asks the receivers of its flows for what it plans to send.
     AskForFlows = "ask for flows",
-    /// It asks again where it has had no answer.
-    AskAgain = "ask again",
+    /// It changes its flows as they are granted, grants others what it can forward, and asks again
+    /// where it has had no answer.
+    SettleFlows = "settle flows",
     /// The flows in use are those of this period.
     EndRoutes = "end routes",
     /// u := QP(ψ, cell): target, geodesic and motion problem (lines 4 to 7).
@@ -164,7 +165,9 @@ impl Robot {
             Act::AdmitShortage => self.admit_shortage(outputs),
             Act::SweepAgain => self.sweep_again(outputs),
             Act::AskForFlows => self.ask_for_flows(outputs),
-            Act::AskAgain => self.ask_again(outputs),
+            Act::SettleFlows => {
+                self.take_in_requests(self.round_count.is_for_asking_again(), outputs);
+            }
             Act::EndRoutes => self.end_routes(),
             Act::Propose => self.propose()?,
             Act::TellProposal => self.tell_proposal(outputs),
@@ -272,9 +275,12 @@ pub fn control_automaton() -> Result<ControlAutomaton, BuildError> {
         .carried_out(row(On::ReliefsHeard, guards::reliefs_heard(), &[SweepAgain], |_: &Sweeps| {
             Sweeps {}
         }))
-        .carried_out(row(On::GrantsHeard, guards::grants_heard(), &[AskAgain], |_: &Reserving| {
-            Reserving {}
-        }))
+        .carried_out(row(
+            On::GrantsHeard,
+            guards::grants_heard(),
+            &[SettleFlows],
+            |_: &Reserving| Reserving {},
+        ))
         .carried_out(row(On::RoutesDone, guards::routes_done(), &[EndRoutes], |_: &Reserving| {
             Planning {}
         }))

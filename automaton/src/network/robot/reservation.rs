@@ -16,7 +16,7 @@
 //! A grant holds for [`LEASE`] control periods. The sender counts them from its request and the receiver
 //! from its answer, so that the sender stops first.
 
-use pleach_discrete::network::{NodeId, Stage};
+use pleach_discrete::network::NodeId;
 use serde::{Deserialize, Serialize};
 
 use super::super::message::Message;
@@ -77,6 +77,8 @@ pub(super) struct HeldFlow {
     asked: RequestNumber,
     /// Whether the last request waits for an answer.
     is_open: bool,
+    /// Whether a request is to be made.
+    is_due: bool,
     /// The last control period in which the grant holds.
     until: u32,
 }
@@ -88,8 +90,9 @@ pub(super) struct Reservation {
     /// The largest F_ij that the sender may use.
     flow: f64,
     wanted: f64,
-    /// The number of the last request.
+    /// The number of the last request, and whether it has been answered.
     asked: RequestNumber,
+    is_answered: bool,
     /// The last control period in which the grant holds.
     until: u32,
 }
@@ -149,19 +152,19 @@ impl Robot {
                 (held.flow, held.granted) = (0.0, 0.0);
             }
             let is_in_use = held.flow > 0.0 || held.wanted > 0.0;
-            if link.to < robots && (is_in_use || held.is_open) {
-                self.ask(at, outputs);
-            }
+            held.is_due = link.to < robots && (is_in_use || held.is_open);
         }
-        self.settle_flows(None, outputs);
+        self.settle_flows(outputs);
     }
 
-    /// Asks again where there is no answer.
-    pub(super) fn ask_again(&mut self, outputs: &mut Out) {
-        for at in 0..self.links.len() {
-            if self.links[at].held.is_open {
-                self.ask(at, outputs);
-            }
+    /// Takes in the requests and grants of the round; asks again where there is no answer, if
+    /// `is_late`.
+    pub(super) fn take_in_requests(&mut self, is_late: bool, outputs: &mut Out) {
+        if is_late {
+            self.links.iter_mut().for_each(|link| link.held.is_due = link.held.is_open);
+        }
+        if is_late || self.has_flow_news {
+            self.settle_flows(outputs);
         }
     }
 
@@ -199,14 +202,16 @@ impl Robot {
     }
 
     /// A sender asks for a flow.
-    pub(super) fn hear_request(&mut self, from: NodeId, request: FlowRequest, outputs: &mut Out) {
+    pub(super) fn hear_request(&mut self, from: NodeId, request: FlowRequest) {
         let FlowRequest { number, held, wanted } = request;
         let known = self.reservations.binary_search_by_key(&from, |kept| kept.from);
         let at = match known {
             Ok(at) if number <= self.reservations[at].asked => return,
             Ok(at) => at,
             Err(at) => {
-                let none = Reservation { from, flow: 0.0, wanted, asked: number, until: 0 };
+                let (flow, until) = (0.0, 0);
+                let none =
+                    Reservation { from, flow, wanted, asked: number, is_answered: false, until };
                 self.reservations.insert(at, none);
                 at
             }
@@ -214,40 +219,43 @@ impl Robot {
         let kept = &mut self.reservations[at];
         let flow = kept.flow.min(held).max(0.0);
         let until = self.period.saturating_add(LEASE);
-        *kept = Reservation { from, flow, wanted, asked: number, until };
-        self.settle_in_time(Some(from), outputs);
+        *kept = Reservation { from, flow, wanted, asked: number, is_answered: false, until };
+        self.has_flow_news = true;
     }
 
     /// A receiver answers a request.
-    pub(super) fn hear_grant(&mut self, from: NodeId, grant: FlowGrant, outputs: &mut Out) {
+    pub(super) fn hear_grant(&mut self, from: NodeId, grant: FlowGrant) {
         let Ok(at) = self.links.binary_search_by_key(&from, |link| link.to) else { return };
         let held = &mut self.links[at].held;
         if held.asked == grant.number {
             (held.is_open, held.until) = (false, grant.number.period.saturating_add(LEASE));
             held.granted = held.granted.max(grant.flow);
-            self.settle_in_time(None, outputs);
+            self.has_flow_news = true;
         }
     }
 
-    /// Once moves are judged, flows stay as they are until the next control period.
-    fn settle_in_time(&mut self, asking: Option<NodeId>, outputs: &mut Out) {
-        if self.stage() == Stage::Reserving {
-            self.settle_flows(asking, outputs);
-        }
-    }
-
-    /// Raises flows as they are granted, lowers others that are not needed, gives back what it does
-    /// not use, and grants what it can forward. The robot that is `asking` gets an answer.
-    fn settle_flows(&mut self, asking: Option<NodeId>, outputs: &mut Out) {
+    /// Raises flows as they are granted, lowers others that are not needed, makes the requests that
+    /// are due, gives back what it does not use, and grants what it can forward. Every request gets an
+    /// answer.
+    fn settle_flows(&mut self, outputs: &mut Out) {
+        self.has_flow_news = false;
         let needed = self.granted_to_others() + self.rate;
         for _ in 0..PASSES {
+            let mut change = 0.0;
             let mut room = 1.0 - self.links.iter().map(|link| link.load()).sum::<f64>();
             for link in &mut self.links {
-                room -= link.held.raise(room.max(0.0) * link.reliability) / link.reliability;
+                let more = link.held.raise(room.max(0.0) * link.reliability);
+                room -= more / link.reliability;
+                change += more;
             }
             let mut spare = self.held_outflow() - needed;
             for link in &mut self.links {
-                spare -= link.held.lower(spare.max(0.0));
+                let less = link.held.lower(spare.max(0.0));
+                spare -= less;
+                change += less;
+            }
+            if change == 0.0 {
+                break;
             }
         }
         for at in 0..self.links.len() {
@@ -256,7 +264,8 @@ impl Robot {
                 // There is no room for more in this period.
                 held.wanted = held.flow;
             }
-            if self.links[at].to < self.site.robots && self.links[at].held.can_be_given_back() {
+            let is_due = std::mem::take(&mut held.is_due) || held.can_be_given_back();
+            if is_due && self.links[at].to < self.site.robots {
                 self.ask(at, outputs);
             }
         }
@@ -268,7 +277,7 @@ impl Robot {
                 spare -= flow - kept.flow;
                 kept.flow = flow;
             }
-            if can_grant || asking == Some(kept.from) {
+            if can_grant || !std::mem::replace(&mut kept.is_answered, true) {
                 let grant = FlowGrant { number: kept.asked, flow: kept.flow };
                 outputs.send(kept.from, Message::GrantFlow(grant));
             }

@@ -71,6 +71,11 @@ impl Rounds {
         self.0 >= Self::LAST_OF_SWEEPS
     }
 
+    /// Whether requests that have not been answered are made again.
+    pub const fn is_for_asking_again(self) -> bool {
+        self.0.is_multiple_of(ROUNDS_FOR_AN_ANSWER)
+    }
+
     /// Whether the reservation is over.
     pub const fn is_last_of_reservation(self) -> bool {
         self.0 >= RESERVATION
@@ -97,7 +102,7 @@ impl Robot {
         let (has_nothing_to_do, last) = match self.stage() {
             Stage::Beacons => (self.needs_no_round(), self.rounds_of_this_period()),
             Stage::Sweeps => (self.routes_stand(), Rounds::LAST_OF_SWEEPS),
-            Stage::Reserving => (true, self.next_of_reservation()),
+            Stage::Reserving => (!self.has_flow_news, self.next_of_reservation()),
             Stage::Negotiation => (self.has_no_moves_to_judge(), Rounds::LAST_OF_NEGOTIATION),
             _ => return 0,
         };

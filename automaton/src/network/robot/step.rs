@@ -183,7 +183,7 @@ impl Robot {
         match message {
             Message::Beacon { period, beacon } => self.hear_beacon(*period, beacon),
             _ if self.is_planning_routes() => self.hear_of_routes(from, message, outputs),
-            _ => self.hear_of_flows_or_moves(from, message, outputs),
+            _ => self.hear_of_flows_or_moves(from, message),
         }
     }
 
@@ -200,15 +200,15 @@ impl Robot {
             Message::Flow(flow) => self.hear_flow(from, *flow),
             Message::Demand(more) => self.hear_demand(from, *more, outputs),
             Message::Shortage => self.hear_shortage(from, outputs),
-            _ => self.hear_of_flows_or_moves(from, message, outputs),
+            _ => self.hear_of_flows_or_moves(from, message),
         }
     }
 
     #[inline(never)]
-    fn hear_of_flows_or_moves(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
+    fn hear_of_flows_or_moves(&mut self, from: NodeId, message: &Message) {
         match message {
-            Message::AskFlow(request) => self.hear_request(from, *request, outputs),
-            Message::GrantFlow(grant) => self.hear_grant(from, *grant, outputs),
+            Message::AskFlow(request) => self.hear_request(from, *request),
+            Message::GrantFlow(grant) => self.hear_grant(from, *grant),
             Message::Proposal { period, segment } => self.hear_proposal(from, *period, *segment),
             Message::Objection { period } => self.hear_objection(*period),
             Message::Consent { period } => self.hear_consent(from, *period),
