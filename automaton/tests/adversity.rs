@@ -302,6 +302,24 @@ fn an_invariant_that_ends_blocks_the_run() {
     assert!((trajectory.ending().at.t - (1.0 - 5e-7)).abs() < 1e-9, "{:?}", trajectory.ending());
 }
 
+/// A ball that may bounce where its invariant ends lands below the ground by rounding, and goes on.
+#[test]
+fn what_may_be_taken_beside_an_invariant_is_taken() {
+    let Body { place, speed, .. } = Body::coordinates();
+    let bounce = from(Here)
+        .on(Go)
+        .to(Here)
+        .may(place.at_most(0.0) & speed.less_than(0.0))
+        .then(speed.becomes(-&speed));
+    let ball = body([1.0, 0.0], [Expression::from(&speed), (-2.0).into()])
+        .invariant(Here, place.at_least(0.0))
+        .transition(bounce);
+    let trajectory = run(ball, 100.5);
+    assert_eq!((&trajectory.ending().reason, trajectory.jumps().len()), (&Reason::Horizon, 50));
+    let near = |(number, found): (i32, f64)| (found - f64::from(2 * number - 1)).abs() < 1e-10;
+    assert!((1..).zip(trajectory.jumps().iter().map(|jump| jump.at.t)).all(near));
+}
+
 /// A thousand transitions that are due at one instant: the first in order is taken.
 #[test]
 fn of_many_transitions_at_one_instant_the_first_is_taken() {

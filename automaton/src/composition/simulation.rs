@@ -83,9 +83,11 @@ struct GroupState {
     chance: Chance,
     /// What has to be taken now, whatever its guard says: a component and an event.
     compelled: Option<(usize, usize)>,
-    /// How far, in the margin of a guard, the last flow has landed beyond the boundary: the state
-    /// may be outside an invariant by as much. It is a rounding error of the instant of the event.
+    /// How far, in the margin of a guard or an invariant, the last flow has landed beyond the boundary:
+    /// the state may be outside an invariant by as much. It is a rounding error of the instant of the event.
     allowance: f64,
+    /// Whether the last flow has ended because an invariant does, and nothing was taken since.
+    has_left: bool,
     zeno: ZenoDetector,
     /// How long the last flight was, in seconds; infinite before the first.
     last: f64,
@@ -137,6 +139,7 @@ impl<'a> Simulation<'a> {
             chance: Chance::new(seed, number),
             compelled: None,
             allowance: 0.0,
+            has_left: false,
             zeno: ZenoDetector::new(horizon),
             last: f64::INFINITY,
             linear: LinearFlows::default(),
@@ -209,6 +212,9 @@ impl System for Simulation<'_> {
     fn jump(&mut self, round: &mut Round<'_, Taken>) -> Result<(), Halt> {
         let awake = self.awake.clone();
         let mut jumped = self.take_round(round, &awake, Readiness::Forced)?;
+        if !jumped {
+            jumped = self.leave(round, &awake)?;
+        }
         // At the horizon there is no flow to come.
         if !jumped && self.now.seconds() < self.horizon {
             let mut stuck = BTreeSet::new();

@@ -184,21 +184,19 @@ impl<'a> Tension<'a> {
         self.course_of(&[], 0.0)
     }
 
+    /// Whether an invariant is known to be violated throughout the window, without following any curve.
+    pub(super) fn is_outside(&self) -> bool {
+        self.outside(&[], 0.0) == Course::Always
+    }
+
     /// The conditions that it is made of.
     pub(super) fn conditions(&self) -> &Conditions<'a> {
         &self.conditions
     }
 
     fn course_of(&self, states: &[Enclosure], half_width: f64) -> Course {
-        let Conditions { standing, group, allowance, .. } = self.conditions;
-        let mut course = Course::Never;
-        for (number, &index) in group.components.iter().enumerate() {
-            if let Some(invariant) = self.conditions.invariant(index) {
-                let context = Follow { states, half_width, slack: allowance };
-                let own = self.follow(&invariant.tracker, (number, index, 0), &context);
-                course = course.or(own.opposite());
-            }
-        }
+        let Conditions { standing, group, .. } = self.conditions;
+        let mut course = self.outside(states, half_width);
         for (number, &index) in group.components.iter().enumerate() {
             let labels = &standing.composition.components[index].labels;
             for (transition, leaving) in standing.leaving(index).iter().enumerate() {
@@ -214,6 +212,20 @@ impl<'a> Tension<'a> {
             .labels
             .iter()
             .fold(course, |course, &label| course.or(self.label_course(label, states, half_width)))
+    }
+
+    /// The course of being outside an invariant.
+    fn outside(&self, states: &[Enclosure], half_width: f64) -> Course {
+        let Conditions { group, allowance, .. } = self.conditions;
+        let mut course = Course::Never;
+        for (number, &index) in group.components.iter().enumerate() {
+            if let Some(invariant) = self.conditions.invariant(index) {
+                let context = Follow { states, half_width, slack: allowance };
+                let own = self.follow(&invariant.tracker, (number, index, 0), &context);
+                course = course.or(own.opposite());
+            }
+        }
+        course
     }
 
     fn label_course(&self, label: usize, states: &[Enclosure], half_width: f64) -> Course {

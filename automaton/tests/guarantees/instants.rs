@@ -1,10 +1,10 @@
 //! Instants do not drift.
 
-use pleach_automaton::{Automaton, from};
+use pleach_automaton::{Automaton, Reason, from};
 
 use super::Cue::Go;
 use super::Place::Here;
-use super::{Body, built, go, metronome, run, times, x};
+use super::{Body, built, go, metronome, ramp, run, times, x};
 
 #[test]
 fn ticks_at_the_horizon_are_taken() {
@@ -66,6 +66,30 @@ fn sampled_controls_do_not_drift() {
     for (tick, found) in (1..).zip(found) {
         assert!(nearest_multiple(tick, 0.01, 1.0).contains(&found), "tick {tick} at {found}");
     }
+}
+
+/// A clock that may be set back where its invariant ends is set back at the last instant that the
+/// invariant allows, also at the horizon.
+#[test]
+fn what_may_happen_where_an_invariant_ends_does_not_drift() {
+    let due = |period: f64| x().at_least(period) & x().at_most(period);
+    for period in [0.1, 0.3, 1.0] {
+        for invariant in [x().at_most(period), x().less_than(period)] {
+            for guard in [x().at_least(period), due(period)] {
+                let back = from(Here).on(Go).to(Here).may(guard).then(x().becomes(0.0));
+                let clock = built(ramp().invariant(Here, invariant.clone()).transition(back));
+                let found = times(&run(&clock, 1000.0 * period));
+                assert_eq!(found.len(), 1000, "{period}");
+                for (tick, found) in (1..).zip(found) {
+                    let exact = nearest_multiple(tick, period, 1.0);
+                    assert!(exact.contains(&found), "{found} {exact:?}");
+                }
+            }
+        }
+    }
+    // Without a transition the run lasts to the horizon.
+    let clock = built(ramp().invariant(Here, x().at_most(1.0)));
+    assert_eq!(run(&clock, 1.0).ending().reason, Reason::Horizon);
 }
 
 #[test]

@@ -21,7 +21,9 @@ impl Search<'_, '_> {
         limit: f64,
         failed: impl Fn(Fault) -> Halt,
     ) -> Result<Flight, Halt> {
+        let leaves = matches!(end, End::Leaving(_));
         let duration = match end {
+            End::Leaving(time) => time,
             End::Never => Moment::from(limit),
             End::At(time) if self.can_jump(time, &failed)? => time,
             End::At(time) => {
@@ -44,6 +46,7 @@ impl Search<'_, '_> {
             pieces: pieces.map_err(|reason| failed(reason.into()))?,
             landing,
             doubts: self.doubts,
+            leaves,
             halt: None,
         })
     }

@@ -8,7 +8,7 @@ use crate::composition::jumps::Standing;
 use crate::composition::settings::Settings;
 use crate::composition::simulation::{Failure, Halt};
 use crate::composition::solver::Solver;
-use crate::composition::tension::{Conditions, Tension};
+use crate::composition::tension::{Conditions, Readiness, Tension};
 use crate::executor::Limit;
 use crate::moment::Moment;
 
@@ -18,6 +18,8 @@ pub(super) enum End {
     At(Moment),
     /// Something begins to have to happen.
     Onset(Onset),
+    /// An invariant ends right after this time, at which something can be taken.
+    Leaving(Moment),
     /// Nothing happens.
     Never,
 }
@@ -82,6 +84,10 @@ impl<'a> Search<'a, '_> {
                 self.tension.set_window(from, to);
                 match self.tension.known_course() {
                     Course::Never => {}
+                    // No time can pass: what can be taken is taken at this very instant.
+                    Course::Always if self.tension.is_outside() && self.can_jump_at(from)? => {
+                        return Ok(End::Leaving(from));
+                    }
                     Course::Always => {
                         if let Some(onset) = self.right_after(from, to)? {
                             return Ok(End::Onset(onset));
@@ -153,6 +159,14 @@ impl<'a> Search<'a, '_> {
             }
             if self.holds_at(middle)? { after = middle } else { before = middle }
         }
+    }
+
+    fn can_jump_at(&mut self, time: Moment) -> Result<bool, Stop> {
+        let is_start = time == Moment::default();
+        let state = if is_start { self.solver.start().to_vec() } else { self.state_at(time)? };
+        let verdict = self.tension.conditions().any_transition(&state, Readiness::Possible);
+        let failed = |fault: Failure| Stop { at: time.seconds(), halt: fault.into() };
+        verdict.map(|verdict| verdict.holds).map_err(failed)
     }
 
     fn holds_at(&mut self, time: f64) -> Result<bool, Stop> {

@@ -1,13 +1,13 @@
 //! Flights of groups: planned, ended, and what comes of them.
 
 use pleach_continuous::flow::VectorField;
-use pleach_guards::{Enclosure, Interval};
+use pleach_guards::{Enclosure, Interval, Verdict};
 
 use super::{Due, Failure, Halt, Simulation};
 use crate::composition::field::Field;
 use crate::composition::flight::{Flight, Plan};
 use crate::composition::jumps::Standing;
-use crate::composition::tension::Readiness;
+use crate::composition::tension::{Conditions, Readiness};
 use crate::composition::{Accumulation, Policy};
 use crate::executor::Sliding;
 use crate::moment::Moment;
@@ -79,7 +79,9 @@ impl<'a> Simulation<'a> {
         for (&slot, &value) in parts.slots.iter().zip(&flight.landing) {
             self.values[slot] = value;
         }
-        self.groups[group].allowance = self.allowance_of(group, &flight.landing)?;
+        let outside = self.outside(group)?;
+        self.groups[group].allowance = self.allowance_of(group, outside, &flight.landing)?;
+        self.groups[group].has_left = flight.leaves || outside.holds;
         self.awake.insert(group);
         let duration = flight.duration.seconds();
         if duration > 0.0 {
@@ -169,10 +171,22 @@ impl<'a> Simulation<'a> {
         })
     }
 
-    /// How far beyond the boundary of its guard a flow has landed, as far as that is rounding.
-    fn allowance_of(&self, group: usize, landing: &[f64]) -> Result<f64, Failure> {
+    /// Whether the group is outside an invariant, by however little.
+    fn outside(&self, group: usize) -> Result<Verdict, Failure> {
+        let conditions = Conditions { allowance: 0.0, ..self.conditions(group) };
+        Ok(conditions.invariants(&self.values)?.opposite())
+    }
+
+    /// How far beyond the boundary of its guard, or of an invariant, a flow has landed, as far as that
+    /// is rounding.
+    fn allowance_of(
+        &self,
+        group: usize,
+        outside: Verdict,
+        landing: &[f64],
+    ) -> Result<f64, Failure> {
         let forced = self.conditions(group).any_transition(&self.values, Readiness::Forced)?;
-        let beyond = forced.margin.max(0.0);
+        let beyond = forced.margin.max(outside.margin).max(0.0);
         let largest = landing.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
         Ok(if beyond.is_finite() { beyond.min(LARGEST_ALLOWANCE * largest) } else { 0.0 })
     }

@@ -35,6 +35,27 @@ impl Simulation<'_> {
         Ok(any)
     }
 
+    /// Takes one round of jumps of those of the groups whose last flow has ended because an invariant
+    /// does, so that no time can pass for them; says whether there was one.
+    pub(super) fn leave(
+        &mut self,
+        round: &mut Round<'_, Taken>,
+        groups: &BTreeSet<usize>,
+    ) -> Result<bool, Halt> {
+        let leaving = groups.iter().copied().filter(|&group| self.groups[group].has_left);
+        let leaving: BTreeSet<usize> = leaving.collect();
+        let jumped =
+            !leaving.is_empty() && self.take_round(round, &leaving, Readiness::Possible)?;
+        for group in leaving {
+            let state = &mut self.groups[group];
+            if std::mem::take(&mut state.has_left) {
+                // What cannot leave is outside, if only by rounding.
+                state.allowance = 0.0;
+            }
+        }
+        Ok(jumped)
+    }
+
     /// The first jump in total order that `component` can take part in.
     fn next_of(
         &mut self,
@@ -131,6 +152,7 @@ impl Simulation<'_> {
         // What was planned was planned for other locations.
         self.ground(group);
         self.groups[group].is_eager = false;
+        self.groups[group].has_left = false;
         if let Some(record) = &mut self.record {
             record.jumped(
                 round.now(),
