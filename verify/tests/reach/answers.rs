@@ -65,6 +65,32 @@ fn a_ball_stays_below_where_it_begins() {
     assert!(!proof.doubts.is_empty());
 }
 
+/// An invariant of two alternatives keeps runs in both of them.
+#[test]
+fn every_alternative_of_an_invariant_counts() {
+    let state = Record::new([("x", 0.0)]).unwrap();
+    let coordinates = state.coordinates();
+    let [x] = &coordinates[..] else { unreachable!() };
+    let apart = Name::new("apart");
+    let drifting = Automaton::<Name, Name, Record>::starting_in(apart)
+        .initially(state.clone())
+        .flow(apart, [x.rate(0.1)])
+        .invariant(apart, x.at_most(1.0) | x.at_least(2.0))
+        .build()
+        .unwrap();
+    let settings = Settings { horizon: 1.0, step: 0.1, ..Settings::default() };
+    for (start, reached) in [((0.0, 0.1), 0.15), ((2.0, 2.1), 2.15)] {
+        let comes_there = variable("x").at_least(reached) & variable("x").at_most(reached + 0.01);
+        let answer = asked(&drifting, &[start], comes_there, &settings);
+        assert!(matches!(answer, Answer::Violated(_)), "from {start:?}: {answer:?}");
+        let beyond = variable("x").at_least(reached + 0.1);
+        assert!(matches!(asked(&drifting, &[start], beyond, &settings), Answer::Holds(_)));
+    }
+    // Begun between them on, runs go through both.
+    let far = variable("x").at_least(2.15);
+    assert!(!matches!(asked(&drifting, &[(0.0, 2.1)], far, &settings), Answer::Holds(_)));
+}
+
 #[test]
 fn the_margin_of_a_predicate_is_kept() {
     let settings = Settings { horizon: 3.0, step: 0.01, ..Settings::default() };
