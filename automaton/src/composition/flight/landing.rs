@@ -5,7 +5,6 @@ use pleach_continuous::flow::Onset;
 use super::Flight;
 use super::search::{End, Fault, Search};
 use crate::composition::simulation::Halt;
-use crate::composition::tension::Readiness;
 use crate::moment::Moment;
 
 /// An invariant that ends at most this many spacings of the numbers around the present time after the start
@@ -78,8 +77,7 @@ impl Search<'_, '_> {
 
     fn can_jump(&mut self, time: Moment, failed: &impl Fn(Fault) -> Halt) -> Result<bool, Halt> {
         let state = self.solver.state_at(time).map_err(|reason| failed(reason.into()))?;
-        let conditions = self.tension.conditions();
-        Ok(conditions.any_transition(&state, Readiness::Possible)?.holds)
+        Ok(self.can_jump_in(&state)?)
     }
 
     /// The last number of seconds before `time` at which time need not stop yet.
