@@ -13,6 +13,7 @@ mod endings;
 mod error_messages;
 mod faulty_models;
 mod guarantees;
+mod kinks;
 mod literature;
 mod machines;
 mod many_components;

@@ -21,6 +21,9 @@ use crate::valuation::EvaluationError;
 
 /// Expressions compiled by [`Sides::compile`] to smooth ones.
 ///
+/// On the sides of a state they have the values of the expressions, but for the last digits on the lines
+/// of tables. Beyond a kink, and on a line of a table at an infinite place, they may have none.
+///
 /// ```
 /// use pleach_guards::{Sides, variable};
 ///
@@ -140,7 +143,8 @@ impl Sides {
             let first = self.variables + kink.first;
             let before = values[first];
             kink.choose(values, first);
-            if values[first] != before && changed.is_none() {
+            let is_same = values[first] == before || values[first].is_nan() && before.is_nan();
+            if !is_same && changed.is_none() {
                 changed = Some(&kink.source);
             }
         }
