@@ -12,6 +12,7 @@ mod diagrams;
 mod endings;
 mod error_messages;
 mod faulty_models;
+mod first_roots;
 mod guarantees;
 mod kinks;
 mod literature;
