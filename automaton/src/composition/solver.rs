@@ -18,8 +18,6 @@ use crate::trajectory::Why;
 const CRAWLING: f64 = 1024.0 * f64::EPSILON;
 /// A flow that crawls for this many steps in a row has met a singularity.
 const MOST_CRAWLING: u32 = 100;
-/// With sides held that have no value beyond a kink, steps crawl; after so many the rates are as they are.
-const MOST_HELD: u32 = 10;
 /// A part of a step beside its ends, where its inside is as exact as they are.
 const BESIDE: f64 = 0.01;
 /// The largest error, relative to its size, with which the polynomial of a function stands for it.
@@ -196,9 +194,7 @@ impl<'a> Solver<'a> {
 
     /// The same with rates that have kinks: on one side of each, and up to where the state passes one.
     fn held(&mut self, hold: &Hold<'a>, limit: f64) -> Result<Piece, String> {
-        if self.kink.take().is_none() && self.crawled > MOST_HELD {
-            self.release(hold);
-        }
+        self.kink = None;
         if hold.is_active() {
             if let Some(piece) = self.up_to_kink(hold, limit) {
                 return Ok(piece);
