@@ -154,7 +154,10 @@ fn double_and_close_roots_are_met_in_order() {
     assert_near(go(line(), pair.less_than(0.0), 10.0).jumps()[0].at.t, 1.0, 1e-14);
     assert_near(first(line(), (-pair).at_most(0.0) & place.at_least(0.5), 10.0), 0.5, 0.0);
     let pole = (&place - 1.0 - 1e-9) / (&place - 1.0);
-    assert_near(go(line(), pole.at_least(1e6), 5.0).jumps()[0].at.t, 1.0, 1e-14);
+    // It holds at nine numbers, right before the pole.
+    let trajectory = go(line(), pole.at_least(1e6), 5.0);
+    let is_met = trajectory.jumps().first().is_some_and(|jump| (jump.at.t - 1.0).abs() < 1e-14);
+    assert!(is_met || trajectory.doubts().iter().any(|one| one.from < 1.0 - 1e-15 && 1.0 < one.to));
 }
 
 /// A peak that is beyond its bound by less than the errors that the tolerances allow, and by more than
@@ -163,7 +166,7 @@ fn double_and_close_roots_are_met_in_order() {
 fn peaks_within_the_errors_of_a_flow_are_met_or_said() {
     let [place, speed, _] = coordinates();
     for part in 1..=8 {
-        let above = 2e-9 * f64::from(part);
+        let above = 5e-11 * f64::from(part);
         let trajectory = go(wave(true), place.at_least(1.0 - above), 3.0);
         let found = trajectory.jumps().first().map(|jump| jump.at.t);
         let width = 2.0 * (2.0 * above).sqrt();
