@@ -15,10 +15,14 @@ const DURATION: f64 = 300.0;
 /// A mission in a storm without partitions: robots that approach each other while no message gets
 /// through between them cannot know of each other.
 fn storm(name: &str, kind: Kind, seed: u64) -> Verdict {
+    storm_for(PERIODS, name, kind, seed)
+}
+
+fn storm_for(periods: usize, name: &str, kind: Kind, seed: u64) -> Verdict {
     let scenario = ValidScenario::new(shipped(name)).expect("it is valid");
     let mut storm = draw(kind, seed, &scenario, DURATION);
     storm.weather.partitions.clear();
-    ride(&scenario, &storm, PERIODS).expect("nodes go on whatever they receive")
+    ride(&scenario, &storm, periods).expect("nodes go on whatever they receive")
 }
 
 /// What no loss of messages breaks.
@@ -71,6 +75,19 @@ fn robots_that_join_late_or_restart_go_on() {
         for seed in 0..6 {
             let verdict = storm("study-2", kind, seed);
             assert!(verdict.periods > 0, "{} {seed}", kind.name());
+        }
+    }
+}
+
+/// A robot that stops is given up. The others go round it, and service all tasks.
+#[test]
+fn the_mission_goes_on_without_a_robot_that_stops() {
+    for (name, seeds) in [("corridor", 0..4), ("study-2", 0..2)] {
+        for seed in seeds {
+            let verdict = storm_for(1_500, name, Kind::Crash, seed);
+            assert!(verdict.violations.is_empty(), "{name} {seed}: {}", verdict.violations[0]);
+            let end = verdict.end.expect("it ends in time");
+            assert_eq!(end.outcome, Outcome::Serviced, "{name} {seed}: {}", end.reason);
         }
     }
 }

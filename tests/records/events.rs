@@ -270,7 +270,7 @@ pub const FALSE: &[Change] = changes! {
             tell(record, site, Event::ElectionRepeated { task });
         }
     };
-    "false: a task is announced again" => |record, site| {
+    "false: a task is announced again to those that are left" => |record, site| {
         if let Some(task) = record.at(site).task {
             tell(record, site, Event::TaskReannounced { task, gone: vec![0] });
         }

@@ -237,7 +237,8 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
         let limit = self.site.settings.max_steps;
         let running = || self.nodes.nodes().iter().filter(|node| node.is_running());
         let is_active = |robot: RobotView<'_>| robot.is_active();
-        let is_at_rest = || !running().any(|node| node.member().view().robot().is_some_and(is_active));
+        let is_at_rest =
+            || !running().any(|node| node.member().view().robot().is_some_and(is_active));
         self.announced_end().filter(|_| is_at_rest()).or_else(|| {
             (self.step >= limit).then(|| End {
                 outcome: Outcome::StepLimit,

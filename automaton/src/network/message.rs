@@ -27,8 +27,8 @@ use pleach_discrete::network::NodeId;
 use serde::{Deserialize, Serialize};
 
 use super::beacon::{Beacon, Bulletin};
-use super::roll::Roll;
 use super::robot::{FlowGrant, FlowRequest};
+use super::roll::Roll;
 use super::wire;
 
 /// A message of the network. All of them go through the same medium.

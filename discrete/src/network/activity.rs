@@ -84,6 +84,8 @@ vocabulary! {
         Retired = "retired",
         /// It attaches to another parent in the tree.
         Attached = "attached",
+        /// It joins a mission under way, and its post is a new one.
+        Joined = "joined",
         /// It exchanges duties with a robot that stands by.
         TakesStandby = "takes standby",
         /// It exchanges duties with a relay.
@@ -242,6 +244,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
     use Activity::*;
     use DutyEvent as On;
     TransitionTable::new(rows![
+        row(Standby, On::Joined, Standby),
         row(Standby, On::Elected, Leading),
         row(Standby, On::Bound, Bound),
         row(Relay, On::Bound, Bound),

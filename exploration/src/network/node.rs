@@ -200,8 +200,11 @@ impl Nodes {
     fn hear(&self, node: &mut Node, beacons: &[BeaconId]) -> Result<(), RobotError> {
         beacons.iter().try_for_each(|&id| {
             let beacon = &self.beacons[id as usize];
-            let message =
-                Message::Beacon { period: PERIOD, roll: Roll::default(), beacon: Arc::clone(beacon) };
+            let message = Message::Beacon {
+                period: PERIOD,
+                roll: Roll::default(),
+                beacon: Arc::clone(beacon),
+            };
             node.step(Input::Heard { from: beacon.sender, message: &message })
         })
     }

@@ -15,6 +15,11 @@ fn disengaged(name: &str, predicate: Predicate) -> Guard {
     Guard::new(name, predicate.and(!proposition("engaged")))
 }
 
+/// It joins a mission under way.
+pub fn joined() -> Guard {
+    named("joined", proposition("joins_late"))
+}
+
 /// It has won the leader election, and nothing depends on it.
 pub fn elected() -> Guard {
     named("elected", proposition("wins").and(!proposition("has_past_duties")))

@@ -84,7 +84,13 @@ impl AccessPoint {
             "{:?}",
             (
                 (number, bulletin, &**service, election, rounds),
-                (agreement, route, crossing, (attached, serves, tasks_serviced.len(), roster), settled),
+                (
+                    agreement,
+                    route,
+                    crossing,
+                    (attached, serves, tasks_serviced.len(), roster),
+                    settled
+                ),
             )
         )
     }

@@ -100,8 +100,12 @@ impl Holds<Standing> for Attendee {
 impl Attendee {
     /// A robot that has never been heard of.
     pub(super) fn new(validity: u32) -> Self {
-        let standing = Current::new(Standing::Present(Present));
-        Attendee { standing, silence: None, age: 0, validity }
+        Attendee {
+            standing: Current::new(Standing::Present(Present)),
+            silence: None,
+            age: 0,
+            validity,
+        }
     }
 
     /// The robot is heard of.
@@ -230,12 +234,18 @@ pub fn attendance_automaton() -> Result<AttendanceAutomaton, BuildError> {
             |_: &Suspended, _, _| Gone,
         ))
         .carried_out(row(On::HeardAgain, guards::heard_again(), expect, |_: &Gone, _, _| Returning))
-        .carried_out(row(On::Missed, guards::missed(), "others go round it", |_: &Returning, _, _| {
-            Gone
-        }))
-        .carried_out(row(On::Readmitted, guards::readmitted(), "it may move", |_: &Returning, _, _| {
-            Present
-        }))
+        .carried_out(row(
+            On::Missed,
+            guards::missed(),
+            "others go round it",
+            |_: &Returning, _, _| Gone,
+        ))
+        .carried_out(row(
+            On::Readmitted,
+            guards::readmitted(),
+            "it may move",
+            |_: &Returning, _, _| Present,
+        ))
         .build()
 }
 

@@ -133,6 +133,7 @@ impl Robot {
             is_new: _,
             heard_way: _,
             is_displaced: _,
+            is_late: _,
             label: _,
             facts: _,
             is_quiet: _,
@@ -192,8 +193,24 @@ impl Robot {
         format!(
             "{:?}",
             (
-                (id, position, still_periods, &**duty, &**mission, unused_periods, orphaned_periods),
-                (&**exchange, answered, last_partner, parent, &**place, (below, serves), can_detach),
+                (
+                    id,
+                    position,
+                    still_periods,
+                    &**duty,
+                    &**mission,
+                    unused_periods,
+                    orphaned_periods
+                ),
+                (
+                    &**exchange,
+                    answered,
+                    last_partner,
+                    parent,
+                    &**place,
+                    (below, serves),
+                    can_detach
+                ),
                 ((bulletin, epoch), tasks, roster, eligible, election, bid, waited, route),
                 (agreement, team, silences),
             )

@@ -113,7 +113,8 @@ impl Robot {
 
     /// Once a period: for how long no robot has held the post that its own is attached to.
     pub(super) fn count_orphaned_periods(&mut self) {
-        let is_orphan = matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none();
+        let is_orphan =
+            matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none();
         let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
         self.orphaned_periods = if is_orphan { longer } else { 0 };
     }

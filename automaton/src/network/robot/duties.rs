@@ -67,7 +67,7 @@ impl Holds<Duty> for Robot {
 
     fn carry_out(&mut self, effects: Effects) {
         (self.desired_parent, self.reattaches_to) = (None, None);
-        self.unused_periods = 0;
+        (self.unused_periods, self.is_late) = (0, false);
         for effect in effects {
             match effect {
                 DutyEffect::Report(event) => self.report(event),
@@ -171,7 +171,9 @@ impl Robot {
     /// Whether Σ is no longer of use.
     pub(super) fn is_called_off(&self) -> bool {
         use MissionStep::{Announced, Ended, Overtaken, Resumed, Serviced};
-        [Announced, Ended, Overtaken, Resumed, Serviced].into_iter().any(|step| self.takes_step(step))
+        [Announced, Ended, Overtaken, Resumed, Serviced]
+            .into_iter()
+            .any(|step| self.takes_step(step))
     }
 
     /// Whether another task is announced, or its own again.
@@ -209,8 +211,7 @@ impl Robot {
         let hop = self.mission.path()?.hops.get(place)?;
         // The robot behind holds the post of the first of a subgroup; others may have gone on.
         let is_first = || self.active_subgroup().is_none_or(|it| it.first == place);
-        let is_held =
-            left.is_some() && is_first() || self.takes_step(MissionStep::Overtaken);
+        let is_held = left.is_some() && is_first() || self.takes_step(MissionStep::Overtaken);
         Some(if is_held { self.new_post() } else { hop.post })
     }
 
@@ -235,6 +236,11 @@ impl Robot {
             active.places().contains(&place)
                 && (place == 0 || place > active.first || self.is_relieved_of(held.station.post.id))
         })
+    }
+
+    /// Whether it joins a mission under way: its first post may be that of another robot by now.
+    pub(super) fn joins_late(&self) -> bool {
+        self.label == Label::Alone && self.is_late
     }
 
     /// Whether it waits on Σ, and the robot behind holds its post.
@@ -293,7 +299,7 @@ fn stand_by(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Standby 
     }
 }
 
-/// The post is left to the robot behind.
+/// A new post where the robot stands: the one before is left to the robot that holds it.
 fn leave_post<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Standby {
     effects.push(DutyEffect::Restart);
     let station = Station { post: robot.new_post(), reference: robot.position };
@@ -465,9 +471,10 @@ fn attached<A: DataOf<Duty> + Holder + From<Held>>() -> Row {
 /// What a jump takes place together with, a step of the mission or an exchange of duties, is one
 /// thing at a time: the propositions about it exclude each other, and `step`, which says
 /// something of several steps.
-fn labels(step: &'static str) -> [&'static str; 15] {
+fn labels(step: &'static str) -> [&'static str; 16] {
     [
         step,
+        "joins_late",
         "wins",
         "on_coming_path",
         "is_relieved",
@@ -498,6 +505,12 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
         .at_most_one(&labels("superseded"))
         .at_most_one(&labels("dissolved"))
         .at_most_one(&labels("takes_post_ahead"))
+        .carried_out(Transfer::new(
+            On::Joined,
+            guards::joined(),
+            "take a new post",
+            leave_post::<Standby>,
+        ))
         .carried_out(Transfer::new(On::Elected, guards::elected(), "lead", lead))
         .carried_out(bound::<Standby>())
         .carried_out(bound::<Relay>())

@@ -147,6 +147,8 @@ facts! {
             free: robot.duty.is_redundant(),
             /// A task is serviced from its post.
             serves: robot.duty.post().is_some_and(|post| post.task.is_some()),
+            /// It joins a mission under way, and has no post of its own yet.
+            joins_late: robot.joins_late(),
             /// The robot behind on Σ holds its post.
             superfluous: robot.is_superfluous(),
             /// It holds a fixed post, or robots attached to it find no other parent.

@@ -180,8 +180,13 @@ fn resumed<A: DataOf<Mission>>() -> Row {
 pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
     // A notice has one content; an election has a winner or not; at most one subgroup is moving.
-    let notices =
-        ["announced", "called", "path_announced", "resumed", "service_announced", "end_announced",
+    let notices = [
+        "announced",
+        "called",
+        "path_announced",
+        "resumed",
+        "service_announced",
+        "end_announced",
         "overtaken",
     ];
     Automaton::builder(MISSION, Phase::Idle)

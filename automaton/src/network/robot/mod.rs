@@ -165,6 +165,8 @@ pub struct Robot {
     reattaches_to: Option<NodeId>,
     can_detach: bool,
     unused_periods: u32,
+    /// It has joined a mission under way, and not taken a new post yet.
+    is_late: bool,
     orphaned_periods: u32,
 
     // What it knows of the mission.
@@ -279,6 +281,7 @@ impl Robot {
             reattaches_to: None,
             can_detach: false,
             unused_periods: 0,
+            is_late: false,
             orphaned_periods: 0,
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             epoch: 0,
@@ -325,12 +328,11 @@ impl Robot {
         }
     }
 
-    /// A robot that joins a mission under way begins with a post that no robot has ever had.
-    pub(super) fn join_in(&mut self, period: u32) {
+    /// Control periods begin together: a robot that begins later learns from the others which one this is.
+    fn join_in(&mut self, period: u32) {
         self.period = period;
         if period > 1 {
-            let station = Station { post: self.new_post(), reference: self.position };
-            self.duty = Current::new(Duty::Standby(Standby(Held { station, left: None })));
+            self.is_late = true;
             self.note_change();
         }
     }
