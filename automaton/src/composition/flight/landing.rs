@@ -20,7 +20,7 @@ impl Search<'_, '_> {
         limit: f64,
         failed: impl Fn(Fault) -> Halt,
     ) -> Result<Flight, Halt> {
-        let leaves = matches!(end, End::Leaving(_));
+        let must_leave = matches!(end, End::Leaving(_));
         let duration = match end {
             End::Leaving(time) => time,
             End::Never => Moment::from(limit),
@@ -45,7 +45,7 @@ impl Search<'_, '_> {
             pieces: pieces.map_err(|reason| failed(reason.into()))?,
             landing,
             doubts: self.doubts,
-            leaves,
+            must_leave,
             halt: None,
         })
     }
