@@ -37,6 +37,8 @@ const NEARBY: f64 = 0.1;
 const OBSTINACY: u32 = 3;
 /// A robot that stays within this share of ρ or σ, the smaller one, stands still.
 const STILL: f64 = 0.3;
+/// Control periods without progress after which a robot measures its position anew.
+const PERSISTENCE: u32 = 4;
 /// A robot that returns to one of this many previous places counts as standing still.
 const RESTING_PLACES: usize = 8;
 /// A proposed move shorter than this share of σ is not made.
@@ -326,9 +328,11 @@ impl Robot {
     }
 
     /// The robot measures its position at a sample. One that has not moved stays where it has measured
-    /// itself before: that is as near to its true place, and what it has told of itself remains true.
+    /// itself before: that is as near to its true place, and what it has told of itself remains true. One
+    /// that wants to go on and cannot measures itself anew from time to time: with other errors it may.
     pub(super) fn correct_position(&mut self, position: Point) {
-        let has_moved = self.velocity != Vector::zeros();
+        let tries_again = self.waypoint.is_some() && (self.still_periods + 1) % PERSISTENCE == 0;
+        let has_moved = self.velocity != Vector::zeros() || tries_again;
         let off = (position - self.position).norm();
         if has_moved || off > 2.0 * self.site.settings.errors.position * (1.0 + ROUNDING) {
             (self.position, self.arrival) = (position, position);

@@ -167,16 +167,25 @@ impl Robot {
         self.proposal.is_none() && (self.heard_moves.is_empty() || is_answered)
     }
 
-    /// Where a robot that makes this move may measure itself then: a robot that stays has been measured,
-    /// one that moves may stray.
-    fn reach_of(&self, axis: Segment) -> Capsule {
-        Capsule { axis, radius: if axis.length() > 0.0 { self.stray() } else { 0.0 } }
+    /// Where a robot that makes this move may measure itself then: one that moves may stray, one that stays
+    /// although it wants to go on may measure itself anew, and the others stay where they are known to be.
+    fn reach_of(&self, axis: Segment, is_parked: bool) -> Capsule {
+        let radius = match (axis.length() > 0.0, is_parked) {
+            (true, _) => self.stray(),
+            (false, false) => 2.0 * self.site.settings.errors.position,
+            (false, true) => 0.0,
+        };
+        Capsule { axis, radius }
     }
 
     fn is_overloaded(&self) -> bool {
         let load: f64 = self.routes().map(|link| link.share).sum();
-        let own = self.reach_of(self.own_move());
-        let worst = self.worst_load(own, |node| self.reach_of(self.move_of(node)));
+        let own = self.reach_of(self.own_move(), self.is_parked());
+        let worst = self.worst_load(own, |node| {
+            let rests = |known: &Neighbour| known.is_access_point() || known.beacon.parked;
+            let is_parked = self.neighbour(node).is_none_or(rests);
+            self.reach_of(self.move_of(node), is_parked)
+        });
         worst > FULL_LOAD.max(load + ROUNDING)
     }
 
