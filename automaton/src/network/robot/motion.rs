@@ -331,7 +331,8 @@ impl Robot {
     /// itself before: that is as near to its true place, and what it has told of itself remains true. One
     /// that wants to go on and cannot measures itself anew from time to time: with other errors it may.
     pub(super) fn correct_position(&mut self, position: Point) {
-        let tries_again = self.waypoint.is_some() && (self.still_periods + 1) % PERSISTENCE == 0;
+        let tries_again =
+            self.waypoint.is_some() && (self.still_periods + 1).is_multiple_of(PERSISTENCE);
         let has_moved = self.velocity != Vector::zeros() || tries_again;
         let off = (position - self.position).norm();
         if has_moved || off > 2.0 * self.site.settings.errors.position * (1.0 + ROUNDING) {
