@@ -8,7 +8,7 @@ use pleach::{mission, scenario_file};
 use std::path::Path;
 use std::process::{Command, Output};
 
-fn pleach(arguments: &[&str]) -> Output {
+pub fn pleach(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_pleach")).args(arguments).output().expect("the program starts")
 }
 

@@ -1,5 +1,6 @@
 //! Models of SpaceEx: what is read, written and refused.
 
+use crate::command_line::pleach;
 use crate::generated::keep_up_to_date;
 use pleach::guards::Interval;
 use pleach::spaceex::{self, Problem, Verdict};
@@ -335,12 +336,8 @@ fn a_question_about_no_run_is_refused() {
         include_str!("spaceex/bouncing-ball.cfg").replace("10 <= x <= 10.2", "x == -3");
     let file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("below-the-ground.cfg");
     std::fs::write(&file, configuration).expect("it can be written");
-    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/spaceex/bouncing-ball.xml");
-    let output = std::process::Command::new(env!("CARGO_BIN_EXE_pleach"))
-        .args(["reach", model, "--cfg"])
-        .arg(&file)
-        .output()
-        .expect("the program starts");
+    let file = file.to_str().expect("it is text");
+    let output = pleach(&["reach", "tests/spaceex/bouncing-ball.xml", "--cfg", file]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.contains("no run begins there"), "{said}");

@@ -36,7 +36,7 @@ pub(super) struct Flight {
     /// Why something may be missed at any time of it.
     pub(super) unknowns: Vec<Why>,
     /// Whether no time can pass at its end, because an invariant ends right after it.
-    pub(super) leaves: bool,
+    pub(super) must_leave: bool,
     /// Why it cannot go on at its end.
     pub(super) halt: Option<Halt>,
 }
@@ -86,7 +86,7 @@ impl Plan<'_> {
             landing: field.start.clone(),
             doubts: Vec::new(),
             unknowns: Vec::new(),
-            leaves: false,
+            must_leave: false,
             halt: None,
         };
         if conditions.tension(&field.start)?.holds {
@@ -153,7 +153,7 @@ impl Flight {
             landing,
             doubts: Vec::new(),
             unknowns: Vec::new(),
-            leaves: false,
+            must_leave: false,
             halt: None,
         }
     }
@@ -166,6 +166,6 @@ impl Flight {
             self.pieces.push(last.within(0.0, time));
         }
         self.doubts.retain(|doubt| doubt.from <= time);
-        Flight { duration: Moment::from(time), leaves: false, ..self }
+        Flight { duration: Moment::from(time), must_leave: false, ..self }
     }
 }

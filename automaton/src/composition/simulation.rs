@@ -86,8 +86,8 @@ struct GroupState {
     /// How far, in the margin of a guard or an invariant, the last flow has landed beyond the boundary:
     /// the state may be outside an invariant by as much. It is a rounding error of the instant of the event.
     allowance: f64,
-    /// Whether the last flow has ended because an invariant does, and nothing was taken since.
-    has_left: bool,
+    /// Whether no time can pass, because an invariant has ended the last flow and nothing was taken since.
+    must_leave: bool,
     zeno: ZenoDetector,
     /// How long the last flight was, in seconds; infinite before the first.
     last: f64,
@@ -139,7 +139,7 @@ impl<'a> Simulation<'a> {
             chance: Chance::new(seed, number),
             compelled: None,
             allowance: 0.0,
-            has_left: false,
+            must_leave: false,
             zeno: ZenoDetector::new(horizon),
             last: f64::INFINITY,
             linear: LinearFlows::default(),

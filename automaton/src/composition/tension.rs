@@ -298,7 +298,8 @@ impl Knowledge {
         slack: f64,
         field: &Field<'_>,
     ) -> Knowledge {
-        let mut margin = Moment::from(form.constant) + Moment::from(slack);
+        let zero = Moment::default();
+        let mut margin = Moment::from(form.constant);
         let mut slope = Moment::default();
         for &(variable, coefficient) in &form.coefficients {
             let place = places[variable];
@@ -306,7 +307,9 @@ impl Knowledge {
             margin = margin + Moment::product(coefficient, field.start[place]);
             slope = slope + Moment::product(coefficient, rate);
         }
-        let zero = Moment::default();
+        // Slack is for a start on the wrong side; elsewhere it would only put off the instant.
+        let slack = if margin > zero { 0.0 } else { slack };
+        margin = margin + Moment::from(slack);
         if !(margin.seconds().is_finite() && slope.seconds().is_finite()) {
             return Knowledge::Nothing;
         }

@@ -87,6 +87,20 @@ fn what_may_happen_where_an_invariant_ends_does_not_drift() {
             }
         }
     }
+    // The sum of two clocks, 0.03 + 0.27, is rounded to a number beyond 0.3.
+    let Body { h, v, clock } = Body::coordinates();
+    let sum = || &clock + &h;
+    let back = [clock.becomes(0.0), h.becomes(0.0)];
+    let clocks = Automaton::starting_in(Here)
+        .initially(Body { h: 0.0, v: 0.0, clock: 0.0 })
+        .flow(Here, [h.rate(9.0), v.rate(0.0), clock.rate(1.0)])
+        .invariant(Here, sum().at_most(0.3))
+        .transition(from(Here).on(Go).to(Here).may(sum().at_least(0.3)).then(back));
+    let found = times(&run(&built(clocks), 300.0));
+    assert_eq!(found.len(), 10_000);
+    for (tick, found) in (1..).zip(found) {
+        assert!(nearest_multiple(tick, 0.3, 10.0).contains(&found), "tick {tick} at {found}");
+    }
     // Without a transition the run lasts to the horizon.
     let clock = built(ramp().invariant(Here, x().at_most(1.0)));
     assert_eq!(run(&clock, 1.0).ending().reason, Reason::Horizon);

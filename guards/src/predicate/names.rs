@@ -9,48 +9,34 @@ impl Predicate {
     /// are not known.
     pub fn variables(&self) -> BTreeSet<&str> {
         let mut names = BTreeSet::new();
-        self.collect_variables(&mut names);
+        self.each_atom(&mut |atom| {
+            if let Predicate::Comparison(comparison) = atom {
+                comparison.left.collect_variables(&mut names);
+                comparison.right.collect_variables(&mut names);
+            }
+        });
         names
-    }
-
-    fn collect_variables<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
-        match self {
-            Predicate::Comparison(comparison) => {
-                comparison.left.collect_variables(names);
-                comparison.right.collect_variables(names);
-            }
-            Predicate::Not(inner) => inner.collect_variables(names),
-            Predicate::All(parts) | Predicate::Any(parts) => {
-                parts.iter().for_each(|part| part.collect_variables(names));
-            }
-            Predicate::Proposition(_) | Predicate::Function(_) => {}
-        }
     }
 
     /// The names of the propositions that occur, in alphabetical order.
     pub fn propositions(&self) -> BTreeSet<&str> {
         let mut names = BTreeSet::new();
-        self.collect_propositions(&mut names);
+        self.each_atom(&mut |atom| {
+            if let Predicate::Proposition(name) = atom {
+                names.insert(&**name);
+            }
+        });
         names
-    }
-
-    fn collect_propositions<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
-        match self {
-            Predicate::Proposition(name) => {
-                names.insert(name);
-            }
-            Predicate::Not(inner) => inner.collect_propositions(names),
-            Predicate::All(parts) | Predicate::Any(parts) => {
-                parts.iter().for_each(|part| part.collect_propositions(names));
-            }
-            Predicate::Comparison(_) | Predicate::Function(_) => {}
-        }
     }
 
     /// The names of the functions that occur, in alphabetical order: what no analysis can check.
     pub fn functions(&self) -> BTreeSet<&str> {
         let mut names = BTreeSet::new();
-        self.collect_functions(&mut names);
+        self.each_atom(&mut |atom| {
+            if let Predicate::Function(function) = atom {
+                names.insert(function.name());
+            }
+        });
         names
     }
 
@@ -59,15 +45,15 @@ impl Predicate {
         self.functions().is_empty()
     }
 
-    fn collect_functions<'a>(&'a self, names: &mut BTreeSet<&'a str>) {
+    /// Shows `visit` the comparisons, propositions and functions that the predicate is made of.
+    fn each_atom<'a>(&'a self, visit: &mut dyn FnMut(&'a Predicate)) {
         match self {
-            Predicate::Comparison(_) | Predicate::Proposition(_) => {}
-            Predicate::Not(inner) => inner.collect_functions(names),
+            Predicate::Not(inner) => inner.each_atom(visit),
             Predicate::All(parts) | Predicate::Any(parts) => {
-                parts.iter().for_each(|part| part.collect_functions(names));
+                parts.iter().for_each(|part| part.each_atom(visit));
             }
-            Predicate::Function(function) => {
-                names.insert(function.name());
+            Predicate::Comparison(_) | Predicate::Proposition(_) | Predicate::Function(_) => {
+                visit(self);
             }
         }
     }

@@ -111,11 +111,11 @@ fn nearest(run: &Run, forbidden: &[Forbidden]) -> Option<Nearest> {
 }
 
 /// A time in seconds, and the values of the variables then.
-pub type TimedState = (f64, Vec<f64>);
+type TimedState = (f64, Vec<f64>);
 
 /// What lies between the jumps of a run: the number of the location of its first component, and times
 /// with states, also between the samples.
-pub fn followed(trajectory: &Trajectory) -> Vec<(usize, Vec<TimedState>)> {
+fn followed(trajectory: &Trajectory) -> Vec<(usize, Vec<TimedState>)> {
     /// How many states there are from one sample to the next.
     const PARTS: u32 = 8;
     let between = |phase: pleach_automaton::trajectory::FlowInterval| {

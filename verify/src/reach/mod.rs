@@ -43,7 +43,7 @@ pub use confirm::{Confirmed, Reachability, confirm};
 pub use containment::Escape;
 pub use explore::{Completion, Enclosure, Segment, Visit, explore};
 pub use exponential::exponential;
-pub use falsify::{Counterexample, TimedState, falsify, followed};
+pub use falsify::{Counterexample, falsify};
 pub use model::{Assignments, Dynamics, Jump, Mode, Model, ModelError, Uncertain};
 pub use polytope::{Bound, Polytope, Template};
 pub use question::{Answer, Doubt, Forbidden, Proof, ReachError, prove, verify};

@@ -5,7 +5,6 @@ use pleach_continuous::flow::Onset;
 use super::Flight;
 use super::search::{End, Fault, Search};
 use crate::composition::simulation::Halt;
-use crate::composition::tension::Readiness;
 use crate::moment::Moment;
 
 /// An invariant that ends at most this many spacings of the numbers around the present time after the start
@@ -21,7 +20,7 @@ impl Search<'_, '_> {
         limit: f64,
         failed: impl Fn(Fault) -> Halt,
     ) -> Result<Flight, Halt> {
-        let leaves = matches!(end, End::Leaving(_));
+        let must_leave = matches!(end, End::Leaving(_));
         let duration = match end {
             End::Leaving(time) => time,
             End::Never => Moment::from(limit),
@@ -46,7 +45,7 @@ impl Search<'_, '_> {
             pieces: pieces.map_err(|reason| failed(reason.into()))?,
             landing,
             doubts: self.doubts,
-            leaves,
+            must_leave,
             halt: None,
         })
     }
@@ -78,8 +77,7 @@ impl Search<'_, '_> {
 
     fn can_jump(&mut self, time: Moment, failed: &impl Fn(Fault) -> Halt) -> Result<bool, Halt> {
         let state = self.solver.state_at(time).map_err(|reason| failed(reason.into()))?;
-        let conditions = self.tension.conditions();
-        Ok(conditions.any_transition(&state, Readiness::Possible)?.holds)
+        Ok(self.can_jump_in(&state)?)
     }
 
     /// The last number of seconds before `time` at which time need not stop yet.

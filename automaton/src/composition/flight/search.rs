@@ -164,9 +164,14 @@ impl<'a> Search<'a, '_> {
     fn can_jump_at(&mut self, time: Moment) -> Result<bool, Stop> {
         let is_start = time == Moment::default();
         let state = if is_start { self.solver.start().to_vec() } else { self.state_at(time)? };
-        let verdict = self.tension.conditions().any_transition(&state, Readiness::Possible);
         let failed = |fault: Failure| Stop { at: time.seconds(), halt: fault.into() };
-        verdict.map(|verdict| verdict.holds).map_err(failed)
+        self.can_jump_in(&state).map_err(failed)
+    }
+
+    /// Whether a transition can be taken in this state.
+    pub(super) fn can_jump_in(&self, state: &[f64]) -> Result<bool, Failure> {
+        let verdict = self.tension.conditions().any_transition(state, Readiness::Possible)?;
+        Ok(verdict.holds)
     }
 
     fn holds_at(&mut self, time: f64) -> Result<bool, Stop> {

@@ -81,7 +81,7 @@ impl<'a> Simulation<'a> {
         }
         let outside = self.outside(group)?;
         self.groups[group].allowance = self.allowance_of(group, outside, &flight.landing)?;
-        self.groups[group].has_left = flight.leaves || outside.holds;
+        self.groups[group].must_leave = flight.must_leave || outside.holds;
         self.awake.insert(group);
         let duration = flight.duration.seconds();
         if duration > 0.0 {

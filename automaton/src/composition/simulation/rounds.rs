@@ -42,13 +42,13 @@ impl Simulation<'_> {
         round: &mut Round<'_, Taken>,
         groups: &BTreeSet<usize>,
     ) -> Result<bool, Halt> {
-        let leaving = groups.iter().copied().filter(|&group| self.groups[group].has_left);
+        let leaving = groups.iter().copied().filter(|&group| self.groups[group].must_leave);
         let leaving: BTreeSet<usize> = leaving.collect();
         let jumped =
             !leaving.is_empty() && self.take_round(round, &leaving, Readiness::Possible)?;
         for group in leaving {
             let state = &mut self.groups[group];
-            if std::mem::take(&mut state.has_left) {
+            if std::mem::take(&mut state.must_leave) {
                 // What cannot leave is outside, if only by rounding.
                 state.allowance = 0.0;
             }
@@ -152,7 +152,7 @@ impl Simulation<'_> {
         // What was planned was planned for other locations.
         self.ground(group);
         self.groups[group].is_eager = false;
-        self.groups[group].has_left = false;
+        self.groups[group].must_leave = false;
         if let Some(record) = &mut self.record {
             record.jumped(
                 round.now(),

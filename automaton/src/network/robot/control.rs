@@ -165,9 +165,7 @@ impl Robot {
             Act::AdmitShortage => self.admit_shortage(outputs),
             Act::SweepAgain => self.sweep_again(outputs),
             Act::AskForFlows => self.ask_for_flows(outputs),
-            Act::SettleFlows => {
-                self.take_in_requests(self.round_count.is_for_asking_again(), outputs);
-            }
+            Act::SettleFlows => self.take_in_requests(outputs),
             Act::EndRoutes => self.end_routes(),
             Act::Propose => self.propose()?,
             Act::TellProposal => self.tell_proposal(outputs),

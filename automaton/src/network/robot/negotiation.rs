@@ -52,10 +52,7 @@ impl Robot {
     }
 
     /// The proposal of a neighbour is received.
-    pub(super) fn hear_proposal(&mut self, from: NodeId, period: u32, segment: Segment) {
-        if period != self.period {
-            return;
-        }
+    pub(super) fn hear_proposal(&mut self, from: NodeId, segment: Segment) {
         if self.relies_on(from) && !self.to_answer.contains(&from) {
             self.to_answer.push(from);
         }
@@ -90,8 +87,8 @@ impl Robot {
     }
 
     /// A robot that relies on this one consents to its move.
-    pub(super) fn hear_consent(&mut self, from: NodeId, period: u32) {
-        if period == self.period && !self.consents.contains(&from) {
+    pub(super) fn hear_consent(&mut self, from: NodeId) {
+        if !self.consents.contains(&from) {
             self.consents.push(from);
         }
     }
@@ -194,16 +191,9 @@ impl Robot {
         (longest > limit).then_some(link.to)
     }
 
-    /// A neighbour objects to the move that this robot has proposed in this control period.
-    pub(super) fn hear_objection(&mut self, period: u32) {
-        if period == self.period {
-            self.yield_to_objection();
-        }
-    }
-
     /// A neighbour, or the robot itself, objects to its move: it halves it or, in the last round,
     /// gives it up.
-    fn yield_to_objection(&mut self) {
+    pub(super) fn yield_to_objection(&mut self) {
         if self.proposal.is_some() {
             self.must_judge_moves = true;
         }

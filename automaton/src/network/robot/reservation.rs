@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 use super::super::message::Message;
 use super::super::record::MissionEvent;
 use super::Robot;
-use super::routing::{RESIDUAL_ROUNDING, RouteLink};
+use super::routing::{RESIDUAL_ROUNDING, RouteLink, link_at};
 use crate::node::Outputs;
 
 /// Control periods for which a grant holds. Every flow is asked for again in each of them.
@@ -107,14 +107,12 @@ impl HeldFlow {
 
     /// Raises the flow to what is allowed, by at most `most`; returns by how much.
     fn raise(&mut self, most: f64) -> f64 {
-        let raised = self.allowed().min(self.flow + most);
-        self.change_to(if raised > self.flow { raised } else { self.flow })
+        self.change_to(self.allowed().min(self.flow + most).max(self.flow))
     }
 
     /// Lowers the flow to what is planned, by at most `most`; returns by how much.
     fn lower(&mut self, most: f64) -> f64 {
-        let lowered = self.wanted.max(self.flow - most);
-        -self.change_to(if lowered < self.flow { lowered } else { self.flow })
+        -self.change_to(self.wanted.max(self.flow - most).min(self.flow))
     }
 
     /// Returns by how much the flow has grown.
@@ -157,9 +155,10 @@ impl Robot {
         self.settle_flows(outputs);
     }
 
-    /// Takes in the requests and grants of the round; asks again where there is no answer, if
-    /// `is_late`.
-    pub(super) fn take_in_requests(&mut self, is_late: bool, outputs: &mut Out) {
+    /// Takes in the requests and grants of the round; asks again, every few rounds, where there is no
+    /// answer.
+    pub(super) fn take_in_requests(&mut self, outputs: &mut Out) {
+        let is_late = self.round_count.is_for_asking_again();
         if is_late {
             self.links.iter_mut().for_each(|link| link.held.is_due = link.held.is_open);
         }
@@ -175,14 +174,12 @@ impl Robot {
 
     /// Whether packets flow to this node.
     pub(super) fn sends_to(&self, node: NodeId) -> bool {
-        let link = self.links.binary_search_by_key(&node, |link| link.to);
-        link.is_ok_and(|at| self.links[at].held.flow > 0.0)
+        self.link(node).is_some_and(|link| link.held.flow > 0.0)
     }
 
     /// Whether it has ever asked this node for a flow over the link that it has to it now.
     pub(super) fn has_asked(&self, node: NodeId) -> bool {
-        let link = self.links.binary_search_by_key(&node, |link| link.to);
-        link.is_ok_and(|at| self.links[at].held.asked != RequestNumber::default())
+        self.link(node).is_some_and(|link| link.held.asked != RequestNumber::default())
     }
 
     /// The robots that may send to this one.
@@ -205,27 +202,22 @@ impl Robot {
     pub(super) fn hear_request(&mut self, from: NodeId, request: FlowRequest) {
         let FlowRequest { number, held, wanted } = request;
         let known = self.reservations.binary_search_by_key(&from, |kept| kept.from);
-        let at = match known {
-            Ok(at) if number <= self.reservations[at].asked => return,
-            Ok(at) => at,
-            Err(at) => {
-                let (flow, until) = (0.0, 0);
-                let none =
-                    Reservation { from, flow, wanted, asked: number, is_answered: false, until };
-                self.reservations.insert(at, none);
-                at
-            }
-        };
-        let kept = &mut self.reservations[at];
-        let flow = kept.flow.min(held).max(0.0);
+        if known.is_ok_and(|at| number <= self.reservations[at].asked) {
+            return;
+        }
+        let flow = known.map_or(0.0, |at| self.reservations[at].flow.min(held).max(0.0));
         let until = self.period.saturating_add(LEASE);
-        *kept = Reservation { from, flow, wanted, asked: number, is_answered: false, until };
+        let kept = Reservation { from, flow, wanted, asked: number, is_answered: false, until };
+        match known {
+            Ok(at) => self.reservations[at] = kept,
+            Err(at) => self.reservations.insert(at, kept),
+        }
         self.has_flow_news = true;
     }
 
     /// A receiver answers a request.
     pub(super) fn hear_grant(&mut self, from: NodeId, grant: FlowGrant) {
-        let Ok(at) = self.links.binary_search_by_key(&from, |link| link.to) else { return };
+        let Some(at) = link_at(&self.links, from) else { return };
         let held = &mut self.links[at].held;
         if held.asked == grant.number {
             (held.is_open, held.until) = (false, grant.number.period.saturating_add(LEASE));

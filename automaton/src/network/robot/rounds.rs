@@ -1,4 +1,5 @@
-//! Rounds of beacons, of sweeps, of the reservation and of the negotiation: the discrete clock of a robot.
+//! Rounds of beacons, of sweeps, of the reservation and of the negotiation: the discrete clock of a
+//! robot.
 //!
 //! All have a fixed number of rounds, which all robots count alike. Where a robot has nothing to do
 //! until it hears something, it lets rounds pass; its count goes on, as τ does while time passes.

@@ -89,6 +89,11 @@ impl RouteLink {
     }
 }
 
+/// Where the link to `node` is among links, which are in the order of their receivers.
+pub(super) fn link_at(links: &[RouteLink], node: NodeId) -> Option<usize> {
+    links.binary_search_by_key(&node, |link| link.to).ok()
+}
+
 impl Robot {
     /// Finds the links over which the robot may send from here, keeping what it knows of them.
     pub(super) fn survey_links(&mut self) {
@@ -101,7 +106,7 @@ impl Robot {
             let to = neighbour.id();
             let reliability = neighbour.reliability;
             let in_tree = tree.iter().any(|link| link.to == to);
-            let known = old.binary_search_by_key(&to, |link| link.to).ok().map(|at| &old[at]);
+            let known = link_at(&old, to).map(|at| &old[at]);
             let held = known.map_or(HeldFlow::default(), |link| link.held);
             let is_retiring = reliability < LEAST_USEFUL_RELIABILITY && !in_tree;
             if is_retiring && held.flow == 0.0 || reliability <= 0.0 {
@@ -173,6 +178,11 @@ impl Robot {
         {
             self.demands.insert(at, (from, None));
         }
+    }
+
+    /// The link over which the robot may send to `node`.
+    pub(super) fn link(&self, node: NodeId) -> Option<&RouteLink> {
+        link_at(&self.links, node).map(|at| &self.links[at])
     }
 
     /// The link over which the robot may send to `node`. Multipliers of an iteration mostly come in
@@ -439,7 +449,7 @@ impl Robot {
     ) {
         if self.upstream == Some(overloaded) {
             self.give_up_reserve(outputs);
-        } else if let Ok(at) = self.links.binary_search_by_key(&overloaded, |link| link.to) {
+        } else if let Some(at) = link_at(&self.links, overloaded) {
             let had_share = self.links[at].share > 0.0;
             self.has_shortage_news |= had_share;
             self.has_untold_flows |= had_share;

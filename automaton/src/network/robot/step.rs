@@ -204,14 +204,19 @@ impl Robot {
         }
     }
 
+    /// Of moves only what concerns this control period counts.
     #[inline(never)]
     fn hear_of_flows_or_moves(&mut self, from: NodeId, message: &Message) {
         match message {
             Message::AskFlow(request) => self.hear_request(from, *request),
             Message::GrantFlow(grant) => self.hear_grant(from, *grant),
-            Message::Proposal { period, segment } => self.hear_proposal(from, *period, *segment),
-            Message::Objection { period } => self.hear_objection(*period),
-            Message::Consent { period } => self.hear_consent(from, *period),
+            Message::Proposal { period, .. }
+            | Message::Objection { period }
+            | Message::Consent { period }
+                if *period != self.period => {}
+            Message::Proposal { segment, .. } => self.hear_proposal(from, *segment),
+            Message::Objection { .. } => self.yield_to_objection(),
+            Message::Consent { .. } => self.hear_consent(from),
             _ => {}
         }
     }
@@ -247,7 +252,8 @@ mod tests {
     use pleach_continuous::network::motion::MotionProblem;
     use serde_json::json;
 
-    /// The executor checks the invariant of the location in which time passes; a robot that leaves it is named.
+    /// The executor checks the invariant of the location in which time passes; a robot that leaves it
+    /// is named.
     #[test]
     fn a_robot_that_leaves_the_region_of_its_motion_problem_ends_the_run() {
         let scenario: Scenario = serde_json::from_value(json!({
