@@ -31,6 +31,9 @@ const QUEUED_BATCHES: u32 = 16;
 /// Microseconds after which a packet is dropped for which there is no room.
 const BEFORE_DROP: u32 = 20_000;
 
+/// The most bytes that Zenoh puts together to one message.
+const LONGEST_MESSAGE: u32 = 1 << 20;
+
 /// What a process says of itself, until it runs and then from time to time.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -330,5 +333,6 @@ fn configuration(
         set(&format!("{queue}/size/{priority}"), QUEUED_BATCHES.into())?;
     }
     set(&format!("{queue}/congestion_control/drop/wait_before_drop"), BEFORE_DROP.into())?;
+    set("transport/link/rx/max_message_size", LONGEST_MESSAGE.into())?;
     Ok(config)
 }
