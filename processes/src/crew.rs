@@ -4,12 +4,12 @@
 //! messages are heard before clocks tick, and a node may let rounds pass.
 
 use crate::packet::Letter;
-use pleach::automaton::network::record::{End, MissionEvent};
-use pleach::automaton::network::robot::RobotError;
-use pleach::automaton::network::{AccessPoint, Member, MemberView, Message, Robot, Sense, User};
 use pleach::automaton::network::beacon::Notice;
 use pleach::automaton::network::observer::RobotReport;
+use pleach::automaton::network::record::{End, MissionEvent};
+use pleach::automaton::network::robot::RobotError;
 use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::network::{AccessPoint, Member, MemberView, Message, Robot, Sense, User};
 use pleach::automaton::node::{Input, Node, NodeId, Observed, Outputs, Traffic};
 use pleach::continuous::Point;
 use std::sync::Arc;

@@ -174,7 +174,14 @@ mod tests {
     }
 
     fn packet(stamp: Stamp) -> Packet {
-        Packet { stamp, next: Some(9), asks: false, is_over: false, position: [0.0; 2], letters: Vec::new() }
+        Packet {
+            stamp,
+            next: Some(9),
+            asks: false,
+            is_over: false,
+            position: [0.0; 2],
+            letters: Vec::new(),
+        }
     }
 
     fn missing(lockstep: &Lockstep) -> Vec<NodeId> {

@@ -35,7 +35,12 @@ impl Memory {
     ///
     /// # Errors
     /// The file cannot be read, or belongs to another robot or scenario.
-    pub fn open(path: &Path, scenario: &str, robot: usize, start: [f64; 2]) -> Result<Self, Failure> {
+    pub fn open(
+        path: &Path,
+        scenario: &str,
+        robot: usize,
+        start: [f64; 2],
+    ) -> Result<Self, Failure> {
         let told = |what: String| Failure::Usage(format!("{}: {what}", path.display()));
         let state = State { scenario: scenario.into(), robot, position: start };
         let state = match fs::read_to_string(path) {

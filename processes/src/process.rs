@@ -17,7 +17,7 @@ use pleach::cli::output::tell;
 use pleach::cli::status::{Failure, Status};
 use pleach::continuous::Point;
 use pleach::scenario_file;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::path::Path;
 use std::thread;
@@ -129,8 +129,8 @@ struct Process<'a> {
     hears_all: bool,
     is_running: bool,
     last_hello: Option<Instant>,
-    /// Nodes with other scenarios that have been told of, with the names of these.
-    strangers: BTreeMap<NodeId, String>,
+    /// Nodes with other scenarios that have been told of.
+    strangers: BTreeSet<NodeId>,
     events: Vec<Vec<(u32, u32, MissionEvent)>>,
     interrupt: Interrupt,
 }
@@ -172,7 +172,7 @@ impl<'a> Process<'a> {
             hears_all: false,
             is_running: false,
             last_hello: None,
-            strangers: BTreeMap::new(),
+            strangers: BTreeSet::new(),
             events: vec![Vec::new(); ids.len()],
             interrupt: Interrupt::listen()?,
             ids,
@@ -262,21 +262,18 @@ impl<'a> Process<'a> {
     }
 
     fn nobody_is_heard(&self) -> String {
-        let session = format!("scenario {} ({})", self.scenario.name, self.parts.digest);
-        let seconds = self.parts.wait.as_secs_f64();
-        match self.strangers.iter().next() {
-            None => format!(
-                "{} has heard no other node of the {session} within {seconds} s: are they started, \
-                 with the same --session, and does --connect name an endpoint at which one listens?",
-                self.own_name()
-            ),
-            Some((node, other)) => format!(
-                "{} has heard nobody with the {session}, but {} with the scenario {other}: start \
-                 all processes with the same file",
-                self.own_name(),
-                name_of(self.scenario, *node)
-            ),
-        }
+        let (own, seconds) = (self.own_name(), self.parts.wait.as_secs_f64());
+        let Some(name) = self.strangers.first().map(|_| &self.scenario.name) else {
+            return format!(
+                "{own} has heard no other node within {seconds} s: are they started, with the same \
+                 --session, and does --connect name an endpoint at which one listens?"
+            );
+        };
+        let others = self.strangers.len();
+        format!(
+            "{own} has heard no other node with the scenario {name:?} within {seconds} s, and {others} \
+             with another one"
+        )
     }
 
     fn say_hello(&mut self) {
@@ -285,14 +282,16 @@ impl<'a> Process<'a> {
             return;
         }
         self.last_hello = Some(Instant::now());
-        let hello = Hello {
-            scenario: self.scenario.name.clone(),
-            digest: self.parts.digest.clone(),
-            started: self.started,
-            hears_all: self.hears_all,
-            is_running: self.is_running,
-        };
-        self.senders.iter().for_each(|sender| sender.say_hello(&hello));
+        for (id, sender) in self.ids.iter().zip(&self.senders) {
+            sender.say_hello(&Hello {
+                name: name_of(self.scenario, *id),
+                scenario: self.scenario.name.clone(),
+                digest: self.parts.digest.clone(),
+                started: self.started,
+                hears_all: self.hears_all,
+                is_running: self.is_running,
+            });
+        }
     }
 
     // ---- What arrives ------------------------------------------------------------------------
@@ -303,11 +302,12 @@ impl<'a> Process<'a> {
             Arrival::Packet(from, _) | Arrival::Hello(from, _) if from >= count => {
                 Err(crate::packet::Refusal::NoSuchNode)
             }
-            Arrival::Packet(from, _) if self.ids.contains(&from) && !self.is_running => {
-                return Err(self.runs_already(from));
-            }
-            Arrival::Packet(from, bytes) => Packet::decode(&bytes, count)
-                .and_then(|packet| self.lockstep.receive(from, packet)),
+            Arrival::Packet(from, bytes) => match Packet::decode(&bytes, count) {
+                Ok(_) if self.ids.contains(&from) && !self.is_running => {
+                    return Err(self.runs_already(from));
+                }
+                packet => packet.and_then(|packet| self.lockstep.receive(from, packet)),
+            },
             Arrival::Hello(from, hello) => return self.take_hello(from, hello),
             Arrival::Refused(refusal) => Err(refusal),
             Arrival::Report(..) | Arrival::Alive(..) => Ok(()),
@@ -320,16 +320,12 @@ impl<'a> Process<'a> {
 
     fn take_hello(&mut self, from: NodeId, hello: Hello) -> Result<(), Failure> {
         if hello.digest != self.parts.digest {
-            let other = format!("{:?} ({})", hello.scenario, hello.digest);
-            if self.strangers.get(&from) != Some(&other) {
-                tell(format_args!(
-                    "warning: {} of this session has another scenario, {other}, and is not heard; \
-                     this one is {:?} ({})",
-                    name_of(self.scenario, from),
-                    self.scenario.name,
-                    self.parts.digest
-                ));
-                self.strangers.insert(from, other);
+            if self.strangers.insert(from) {
+                let Hello { name, scenario, digest, .. } = hello;
+                let other = format!("{name:?} of this session has the scenario {scenario:?}");
+                let own = format!("{:?} ({})", self.scenario.name, self.parts.digest);
+                let rule = "all processes start with the same file";
+                tell(format_args!("warning: {other} ({digest}) and not {own}; {rule}"));
             }
         } else if self.ids.contains(&from) && hello.started != self.started {
             // Of two processes that wait, the one that was started later gives way.
@@ -374,7 +370,9 @@ impl<'a> Process<'a> {
             heard = self.receiver.messages(&self.ids, &packets, &mut self.refusals);
             stamp = next;
         }
-        Err(internal(format!("control period {period} has not ended in {MOST_EXCHANGES} exchanges")))
+        Err(internal(format!(
+            "control period {period} has not ended in {MOST_EXCHANGES} exchanges"
+        )))
     }
 
     /// Sends the packets of a round, which are returned.
@@ -396,7 +394,9 @@ impl<'a> Process<'a> {
             let bytes = packet.encode().map_err(internal)?;
             if bytes.len() > LONGEST_PACKET {
                 let length = bytes.len();
-                return Err(internal(format!("a packet has {length} bytes, more than {LONGEST_PACKET}")));
+                return Err(internal(format!(
+                    "a packet has {length} bytes, more than {LONGEST_PACKET}"
+                )));
             }
             sender.send(bytes);
             packets.push((seat.id, packet));

@@ -73,7 +73,8 @@ impl Receiver {
         }
         match self.read(from, letter) {
             Ok(message) => hearers.into_iter().for_each(|to| {
-                let envelope = Envelope { from, to: Destination::One(to), message: message.clone() };
+                let envelope =
+                    Envelope { from, to: Destination::One(to), message: message.clone() };
                 Medium::<Message, Point>::send(&mut self.air, envelope);
             }),
             Err(refusal) => refusals.count(refusal),

@@ -102,9 +102,9 @@ fn names_what_is_there(event: &MissionEvent, scenario: &Scenario) -> bool {
     let robots = scenario.robot.len();
     let is_below = |value: &Value, count: usize| match value {
         Value::Number(number) => number.as_u64().is_some_and(|number| number < count as u64),
-        Value::Array(numbers) => numbers
-            .iter()
-            .all(|number| number.as_u64().is_some_and(|number| number < count as u64)),
+        Value::Array(numbers) => {
+            numbers.iter().all(|number| number.as_u64().is_some_and(|number| number < count as u64))
+        }
         _ => true,
     };
     let Ok(Value::Object(fields)) = serde_json::to_value(event) else { return false };

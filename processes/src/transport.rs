@@ -12,6 +12,7 @@ use pleach::automaton::network::scenario::Scenario;
 use pleach::automaton::node::NodeId;
 use pleach::cli::status::Failure;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, mpsc};
@@ -38,6 +39,8 @@ const LONGEST_MESSAGE: u32 = 1 << 20;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hello {
+    /// What people call the node.
+    pub name: String,
     /// The name of the scenario.
     pub scenario: String,
     /// Its digest.
@@ -196,7 +199,8 @@ impl Transport {
 
     /// Counts what came in greater number than could be kept.
     pub fn count_overflow(&self, refusals: &mut Refusals) {
-        (0..self.overflow.swap(0, Ordering::Relaxed)).for_each(|_| refusals.count(Refusal::TooMany));
+        (0..self.overflow.swap(0, Ordering::Relaxed))
+            .for_each(|_| refusals.count(Refusal::TooMany));
     }
 }
 
@@ -245,11 +249,7 @@ impl Listener {
         subscriber.callback(move |sample| pass_on(arrival(&sample, kind))).wait().map_err(internal)
     }
 
-    fn to_tokens(
-        &self,
-        session: &zenoh::Session,
-        key: String,
-    ) -> Result<Subscriber<()>, Failure> {
+    fn to_tokens(&self, session: &zenoh::Session, key: String) -> Result<Subscriber<()>, Failure> {
         let pass_on = self.pass_on();
         let subscriber = session.liveliness().declare_subscriber(key).history(true);
         let change = move |sample: Sample| {
@@ -333,6 +333,11 @@ fn configuration(
         set(&format!("{queue}/size/{priority}"), QUEUED_BATCHES.into())?;
     }
     set(&format!("{queue}/congestion_control/drop/wait_before_drop"), BEFORE_DROP.into())?;
+    // Processes are started in any order.
+    set(
+        "connect/retry",
+        json!({"period_init_ms": 100, "period_max_ms": 500, "period_increase_factor": 2}),
+    )?;
     set("transport/link/rx/max_message_size", LONGEST_MESSAGE.into())?;
     Ok(config)
 }

@@ -161,7 +161,9 @@ impl<'a> Observatory<'a> {
                 if self.step == 0 {
                     let session = "are the processes started, with the same scenario and --session, \
                                    and does --connect name an endpoint at which one listens?";
-                    return Err(Failure::Usage(format!("nobody reports for {seconds} s: {session}")));
+                    return Err(Failure::Usage(format!(
+                        "nobody reports for {seconds} s: {session}"
+                    )));
                 }
                 break self.broken_off(format!("nobody has reported for {seconds} s"));
             }
@@ -226,8 +228,7 @@ impl<'a> Observatory<'a> {
 
     /// A process that goes while the mission goes on is told.
     fn note_life(&mut self, node: NodeId, is_there: bool) {
-        let has_changed =
-            if is_there { self.alive.insert(node) } else { self.alive.remove(&node) };
+        let has_changed = if is_there { self.alive.insert(node) } else { self.alive.remove(&node) };
         if has_changed && self.step > 0 && !self.has_ended {
             let (step, name) = (self.step, name_of(self.scenario, node));
             let what = if is_there { "is there again" } else { "is gone" };
@@ -269,10 +270,7 @@ impl<'a> Observatory<'a> {
 
     /// Takes in the reports of a control period: the events in their order, and the end that the user
     /// knows.
-    fn digest(
-        &mut self,
-        reports: BTreeMap<NodeId, Report>,
-    ) -> (Vec<MissionEvent>, Option<End>) {
+    fn digest(&mut self, reports: BTreeMap<NodeId, Report>) -> (Vec<MissionEvent>, Option<End>) {
         self.present = reports.keys().copied().collect();
         let (mut events, mut announced) = (Vec::new(), None);
         for (node, report) in reports {

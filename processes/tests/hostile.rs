@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // a test that panics has failed
 
+use pleach::automaton::Executor;
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Message, Network, Radio};
 use pleach::automaton::node::{Delivery, Destination, Envelope, Medium, NodeId};
-use pleach::automaton::Executor;
 use pleach::continuous::Point;
 use pleach_processes::crew::Crew;
 use pleach_processes::packet::{LONGEST_PACKET, Letter, Packet, Refusal, Stamp};
@@ -119,7 +119,6 @@ fn packets_are_bounded() {
     refused(Packet { next: Some(u32::MAX), ..sound.clone() });
     refused(packet(vec![Letter { to: Some(nodes() as u32), message: Vec::new() }]));
     refused(packet(vec![Letter { to: None, message: Vec::new() }; 1_025]));
-    refused(Packet { letters: Vec::new(), ..sound });
 }
 
 /// Changes of bytes.

@@ -97,10 +97,9 @@ fn study_one_is_serviced() {
 #[test]
 fn a_mission_that_ends_unserviced_says_why() {
     let _alone = alone();
-    let (status, said, trace) = launch("too-few", &["--loss", "0.1", "--seed", "7"]);
+    let (status, said, trace) = launch("too-few", &[]);
     assert_eq!(status, Some(3), "{said}");
     assert!(said.contains("insufficient robots"), "{said}");
-    assert!(!said.contains("; 0 messages lost"), "{said}");
     assert_eq!(judge(&trace).0, Some(0), "{:?}", judge(&trace));
 }
 
@@ -168,11 +167,12 @@ fn robots_of(name: &str) -> usize {
 fn rubbish_is_refused_and_counted() {
     let _alone = alone();
     let mut session = Session::new("rubbish", "redundant-node");
+    let access_points = session.command("access-point");
+    session.start(access_points);
     let mut watch = session.command("watch");
     let trace = folder("rubbish").join("trace.jsonl");
     let watch = watch.args(["--no-figures", "--quiet", "--trace"]).arg(&trace).spawn().unwrap();
-    let access_points = session.command("access-point");
-    session.start(access_points);
+    thread::sleep(Duration::from_secs(2));
     let rogue = peer(&session.meeting_point);
     session.start_robots(0..robots_of("redundant-node"));
     let digest = pleach_processes::transport::digest(
@@ -185,14 +185,15 @@ fn rubbish_is_refused_and_counted() {
     while !finish.is_finished() {
         noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         let node = noise >> 40;
-        let length = if node % 97 == 0 { 1 << 20 } else { (noise >> 33) as usize % 300 };
+        let length = if node % 31 == 0 { 1 << 19 } else { (noise >> 33) as usize % 300 };
         let bytes = vec![(noise >> 56) as u8; length];
         for key in ["packet", "report"] {
-            let key = format!("{root}/{digest}/{key}/{}", if node % 2 == 0 { 99 } else { node % 9 });
+            let key =
+                format!("{root}/{digest}/{key}/{}", if node % 2 == 0 { 99 } else { node % 9 });
             rogue.put(key, bytes.clone()).wait().unwrap();
         }
         rogue.put(format!("{root}/hello/{}", node % 9), bytes).wait().unwrap();
-        thread::sleep(Duration::from_millis(2));
+        thread::sleep(Duration::from_millis(20));
     }
     let output = finish.join().unwrap();
     let said = text(&output);
@@ -258,7 +259,10 @@ fn another_scenario_is_told_by_name() {
     session.scenario = scenario("study-1");
     let mut robot = session.command("robot");
     robot.args(["--id", "0", "--wait", "4"]);
-    assert_says(&refused(robot), &["access point 0", "\"too-few\"", "study-1", "same file"]);
+    assert_says(
+        &refused(robot),
+        &["access point 0", "\"too-few\"", "study-1", "same file", "with another one"],
+    );
 }
 
 #[test]
