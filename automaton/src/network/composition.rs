@@ -220,9 +220,9 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
         }
         let limit = self.site.settings.max_steps;
         let is_at_rest = || !self.robots().into_iter().any(RobotView::is_active);
-        self.announced_end().filter(|_| is_at_rest()).or_else(|| {
-            (self.step >= limit).then(|| End::at_step_limit(limit))
-        })
+        self.announced_end()
+            .filter(|_| is_at_rest())
+            .or_else(|| (self.step >= limit).then(|| End::at_step_limit(limit)))
     }
 
     fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), NetworkError> {

@@ -196,7 +196,8 @@ impl Overview<'_> {
     }
 
     fn primary_team(&self) -> Vec<NodeId> {
-        let member = |robot: &RobotReport| robot.duty.post().filter(|post| post.is_primary()).copied();
+        let member =
+            |robot: &RobotReport| robot.duty.post().filter(|post| post.is_primary()).copied();
         let Some(leader) = self.robots.iter().position(|robot| robot.duty.leads()) else {
             return Vec::new();
         };
@@ -243,8 +244,12 @@ impl Overview<'_> {
 
     fn routes(&self) -> Vec<Route> {
         let of = |(from, robot): (NodeId, &RobotReport)| -> Vec<Route> {
-            let route =
-                |&(to, share, reliability): &(NodeId, f64, f64)| Route { from, to, share, reliability };
+            let route = |&(to, share, reliability): &(NodeId, f64, f64)| Route {
+                from,
+                to,
+                share,
+                reliability,
+            };
             robot.routes.iter().map(route).collect()
         };
         self.robots.iter().enumerate().flat_map(of).collect()
