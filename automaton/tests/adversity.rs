@@ -180,6 +180,11 @@ fn poles_between_slopes_of_one_sign_are_met() {
             let before = 1.1 - 1e3f64.powf(1.0 / exponent);
             assert_event(&go(line(0.0, 1.0), pole().at_most(-1e3), horizon), before, 1e-13);
         }
+        // An angle that falls, and jumps up where its point crosses the axis on the left; and the opposite.
+        let rises = (x() - 1.1).atan2(-1.0).at_least(3.0);
+        assert_event(&go(line(0.0, 1.0), rises, horizon), 1.1, 1e-14);
+        let falls = (1.1 - x()).atan2(-1.0).at_most(-3.0);
+        assert_event(&go(line(0.0, 1.0), falls, horizon), 1.1, 1e-14);
     }
 }
 

@@ -170,13 +170,9 @@ impl Enclosure {
         }
     }
 
-    /// One of the two, from instant to instant.
-    pub(crate) fn or(&self, other: &Enclosure) -> Self {
-        Enclosure {
-            middle: self.middle.hull(other.middle),
-            range: self.range.hull(other.range),
-            rate: Interval::WHOLE,
-        }
+    /// One of the two, from instant to instant, with this value in the middle.
+    pub(crate) fn or(&self, other: &Enclosure, middle: Interval) -> Self {
+        Enclosure { middle, range: self.range.hull(other.range), rate: Interval::WHOLE }
     }
 
     /// The value of the table at this place, given the table of its slopes.

@@ -76,6 +76,7 @@
 //! coefficients of affine expressions, [`derivative`] differentiates, [`substitution`] renames
 //! variables and applies resets, and [`normal_form`] resolves negations and lists alternatives.
 //! [`program`] compiles all of it for hot loops, and [`tape`] lists of expressions together;
+//! [`sides`] makes smooth expressions of those with kinks;
 //! [`course`] follows predicates over time, with [`enclosure`]s of moving quantities.
 
 pub mod course;
@@ -99,6 +100,7 @@ pub mod program;
 pub mod range;
 #[cfg(feature = "serde")]
 pub mod serialization;
+pub mod sides;
 pub mod substitution;
 pub mod table;
 pub mod tape;
@@ -117,6 +119,7 @@ pub use parse::ParseError;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not, proposition};
 pub use program::{CompiledPredicate, Program};
 pub use range::{Ranges, Truth};
+pub use sides::Sides;
 pub use substitution::Substitution;
 pub use table::{Interpolation, InvalidTable, Table};
 pub use tape::Tape;

@@ -11,3 +11,4 @@ mod printing;
 mod programs;
 mod reading;
 mod serialization;
+mod sides;

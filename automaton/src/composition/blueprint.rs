@@ -6,8 +6,8 @@ use std::sync::Arc;
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::expression::{BinaryOperator, UnaryOperator};
 use pleach_guards::{
-    CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program, Tape, Tracker,
-    Verdict,
+    CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program, Sides, Tape,
+    Tracker, Verdict,
 };
 
 use super::kinks::Kinks;
@@ -36,6 +36,8 @@ pub(crate) struct Mode {
     pub(crate) motion: ModeMotion,
     /// The rates that are formulas, all together and in their order.
     pub(crate) rates: Tape,
+    /// The same as smooth formulas, if some have kinks.
+    pub(crate) sides: Option<Sides>,
     /// Whether they are those of all coordinates, in the order of these.
     pub(crate) is_whole: bool,
     pub(crate) invariant: Option<Condition>,
@@ -128,7 +130,8 @@ impl Blueprint {
             };
             modes.push(Mode {
                 name: location.name(),
-                rates: tape(mode.flow.as_ref(), names)?,
+                rates: Tape::compile(formulas(mode.flow.as_ref()), names)?,
+                sides: Sides::compile(formulas(mode.flow.as_ref()), names)?,
                 is_whole: motion.is_whole(names.len()),
                 motion,
                 invariant: mode
@@ -224,9 +227,9 @@ fn state_of<S: Coordinates>(shape: Option<&S>, values: &[f64]) -> S {
     shape.map_or_else(|| S::from_values(values), |shape| shape.like(values))
 }
 
-fn tape<S>(flow: Option<&Flow<S>>, names: &[&'static str]) -> Result<Tape, EvaluationError> {
+fn formulas<S>(flow: Option<&Flow<S>>) -> impl Iterator<Item = &Expression> {
     let rates = flow.and_then(Flow::rates).unwrap_or_default();
-    Tape::compile(rates.iter().map(crate::flow::Rate::rate), names)
+    rates.iter().map(crate::flow::Rate::rate)
 }
 
 fn motion<S: Coordinates>(

@@ -9,6 +9,7 @@ use pleach_guards::Interval;
 
 use super::blueprint::{Mode, ModeMotion, RateProgram, Solution};
 use super::group::Group;
+use super::hold::Hold;
 use super::linear::LinearPart;
 use super::{Component, Composition};
 
@@ -42,6 +43,8 @@ pub(super) struct Field<'a> {
     places: RefCell<Vec<Vec<f64>>>,
     /// Room for the ranges of coordinates, what is computed from them, and those of rates.
     ranges: RefCell<[Vec<Interval>; 3]>,
+    /// Where rates have kinks that are not known beforehand.
+    hold: Option<Box<Hold<'a>>>,
 }
 
 /// A coefficient of a linear rate: its row, its column and its value.
@@ -77,11 +80,13 @@ impl<'a> Field<'a> {
                 }
             }
         }
+        let hold = Hold::of(&moving, &rows);
         Field {
             moving,
             solved,
             rows,
             start,
+            hold,
             places: RefCell::default(),
             scratch: RefCell::default(),
             ranges: RefCell::default(),
@@ -158,8 +163,10 @@ impl<'a> Field<'a> {
     fn add_rates(&self, state: &[f64], rates: &mut [f64]) {
         let mut tapes = self.places.borrow_mut();
         tapes.resize(self.moving.len(), Vec::new());
-        for ((component, mode), places) in self.moving.iter().zip(&mut *tapes) {
+        for (number, (component, mode)) in self.moving.iter().enumerate() {
+            let places = &mut tapes[number];
             match &mode.motion {
+                ModeMotion::Rates(_) if self.hold_of(number, state, rates) => {}
                 ModeMotion::Rates(formulas) => {
                     if places.is_empty() {
                         *places = mode.rates.places();
@@ -187,6 +194,17 @@ impl<'a> Field<'a> {
                 ModeMotion::Exact(_) => {}
             }
         }
+    }
+
+    /// Writes the rates of a component on the sides of their kinks that are held, if any are.
+    #[inline]
+    fn hold_of(&self, number: usize, state: &[f64], rates: &mut [f64]) -> bool {
+        self.hold.as_ref().is_some_and(|hold| hold.add_rates(number, state, rates))
+    }
+
+    /// The sides of kinks that have to be held, where these are not known beforehand.
+    pub(super) fn hold(&self) -> Option<&Hold<'a>> {
+        self.hold.as_deref()
     }
 
     /// Puts what is solved by itself where it is at `time`.
@@ -221,6 +239,9 @@ impl<'a> Field<'a> {
 
     /// The first time after `after` at which a rate is known to have a kink or a jump.
     pub(super) fn next_kink(&self, after: f64) -> Option<f64> {
+        if self.hold.is_some() {
+            return None;
+        }
         let kinks = self.moving.iter().flat_map(|(component, mode)| {
             let line = |coordinate: usize| match self.rows[component.places[coordinate]] {
                 Row::Line(rate) => Some((self.start[component.places[coordinate]], rate)),

@@ -1,7 +1,8 @@
-//! Where rates have kinks or jumps that are known beforehand: at the points of tables, and where cases of a
-//! formula change, if what decides moves along a line. Integration steps end there, for within a step a
-//! rate has to be smooth.
+//! Where rates have kinks or jumps that are known beforehand: at the points of tables, where cases of a
+//! formula change, and at the kinks of its functions, if what decides moves along a line. Integration
+//! steps end there, for within a step a rate has to be smooth.
 
+use pleach_guards::expression::{BinaryOperator, UnaryOperator};
 use pleach_guards::{EvaluationError, Expression, Interpolation};
 
 /// The places of kinks or jumps on a line through the states: a sum of coordinates with coefficients.
@@ -29,10 +30,21 @@ impl Kinks {
         let (mut found, mut parts) = (Vec::new(), vec![formula]);
         while let Some(part) = parts.pop() {
             match part {
-                Expression::Unary(_, operand) | Expression::Power(operand, _) => {
+                Expression::Unary(operator, operand) => {
                     parts.push(operand);
+                    let are_jumps = *operator == UnaryOperator::Sign;
+                    if are_jumps || *operator == UnaryOperator::AbsoluteValue {
+                        found.extend(Kinks::along(operand, [0.0].into(), are_jumps, names)?);
+                    }
                 }
-                Expression::Binary(_, left, right) => parts.extend([&**left, &**right]),
+                Expression::Power(operand, _) => parts.push(operand),
+                Expression::Binary(operator, left, right) => {
+                    parts.extend([&**left, &**right]);
+                    if matches!(operator, BinaryOperator::Minimum | BinaryOperator::Maximum) {
+                        let apart = &**left - &**right;
+                        found.extend(Kinks::along(&apart, [0.0].into(), false, names)?);
+                    }
+                }
                 Expression::Choice(choice) => {
                     let (left, right) = (&choice.condition.left, &choice.condition.right);
                     parts.extend([left, right, &choice.then, &choice.otherwise]);
@@ -65,6 +77,11 @@ impl Kinks {
         });
         let coefficients = coefficients.collect::<Result<_, EvaluationError>>()?;
         Ok(Some(Kinks { places, are_jumps, constant: *form.constant(), coefficients }))
+    }
+
+    /// Whether they are known, where `is_line` says which coordinates move along a line.
+    pub(super) fn are_known(&self, is_line: impl Fn(usize) -> bool) -> bool {
+        self.coefficients.iter().all(|&(coordinate, _)| is_line(coordinate))
     }
 
     /// The first time after `after` at which a step should end, if coordinates begin and move as `motion`

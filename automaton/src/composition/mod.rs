@@ -72,6 +72,7 @@ mod exploration;
 mod field;
 mod flight;
 mod group;
+mod hold;
 mod jumps;
 mod kinks;
 mod linear;

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use pleach_continuous::flow::{
-    Curve, IntegrationFailure, Integrator, InvalidFlow, LinearFlow, Piece,
+    Curve, IntegrationFailure, Integrator, InvalidFlow, LinearFlow, Onset, Piece,
 };
-use pleach_guards::Enclosure;
+use pleach_guards::{Enclosure, Expression};
 
 use super::field::{Field, Row};
+use super::hold::{Hold, Unclear};
 use super::linear::LinearPart;
 use super::settings::Settings;
 use crate::moment::Moment;
@@ -17,6 +18,8 @@ use crate::trajectory::Why;
 const CRAWLING: f64 = 1024.0 * f64::EPSILON;
 /// A flow that crawls for this many steps in a row has met a singularity.
 const MOST_CRAWLING: u32 = 100;
+/// A part of a step beside its ends, where its inside is as exact as they are.
+const BESIDE: f64 = 0.01;
 /// The largest error, relative to its size, with which the polynomial of a function stands for it.
 const FITTING: f64 = 1e-12;
 /// How often the time of a function is halved for such a polynomial.
@@ -32,6 +35,8 @@ pub(super) struct Solver<'a> {
     /// How far it is solved.
     reached: f64,
     crawled: u32,
+    /// The formula with the kink at which the last piece ends, if it ends at one.
+    kink: Option<&'a Expression>,
     enclosures: Vec<Enclosure>,
 }
 
@@ -59,12 +64,14 @@ impl<'a> Solver<'a> {
                 Method::Linear(LinearFlow::of(&linear, &start, limit)?, variables)
             }
             None => {
+                field.hold().map(|hold| hold.choose(&field.start));
                 let integrator = Integrator::new(field, 0.0, &field.start, settings.tolerances());
                 Method::Steps(Box::new(integrator.with_method(settings.method)))
             }
         };
         let (pieces, enclosures) = (Vec::new(), Vec::new());
-        Ok(Solver { field, method, pieces, size: 0, reached: 0.0, crawled: 0, enclosures })
+        let (size, reached, crawled, kink) = (0, 0.0, 0, None);
+        Ok(Solver { field, method, pieces, size, reached, crawled, kink, enclosures })
     }
 
     /// Whether all variables move along lines, so that nothing needs to be solved.
@@ -147,20 +154,10 @@ impl<'a> Solver<'a> {
     /// Adds the next piece.
     fn extend(&mut self, limit: f64) -> Result<(), String> {
         let start = self.reached;
-        let curved = match &mut self.method {
-            Method::Lines => Piece::new(start, limit, 0.0, 1.0),
-            Method::Linear(flow, _) => {
-                flow.piece(start).ok_or("the flow has no solution")?.within(start, limit)
-            }
-            Method::Steps(integrator) => {
-                let kink = self.field.next_kink(start).unwrap_or(limit);
-                let step =
-                    integrator.step(limit.min(kink)).map_err(|fault| without_time(&fault))?;
-                step.piece(start).ok_or("the flow has no solution")?
-            }
+        let piece = match self.field.hold() {
+            Some(hold) if matches!(self.method, Method::Steps(_)) => self.held(hold, limit)?,
+            _ => self.next_piece(limit)?,
         };
-        let piece = self.complete(curved);
-        let piece = if self.field.has_solutions() { self.fitted(&piece) } else { piece };
         if self.overflows(&piece) {
             return Err("the state grows beyond the largest number".to_owned());
         }
@@ -174,6 +171,100 @@ impl<'a> Solver<'a> {
         }
         bounded.map_err(|(_, reason)| reason)?;
         progress
+    }
+
+    /// The solution from where it is solved to on, of one step at most.
+    fn next_piece(&mut self, limit: f64) -> Result<Piece, String> {
+        let start = self.reached;
+        let curved = match &mut self.method {
+            Method::Lines => Piece::new(start, limit, 0.0, 1.0),
+            Method::Linear(flow, _) => {
+                flow.piece(start).ok_or("the flow has no solution")?.within(start, limit)
+            }
+            Method::Steps(integrator) => {
+                let kink = self.field.next_kink(start).unwrap_or(limit);
+                let step =
+                    integrator.step(limit.min(kink)).map_err(|fault| without_time(&fault))?;
+                step.piece(start).ok_or("the flow has no solution")?
+            }
+        };
+        let piece = self.complete(curved);
+        Ok(if self.field.has_solutions() { self.fitted(&piece) } else { piece })
+    }
+
+    /// The same with rates that have kinks: on one side of each, and up to where the state passes one.
+    fn held(&mut self, hold: &Hold<'a>, limit: f64) -> Result<Piece, String> {
+        self.kink = None;
+        if hold.is_active() {
+            if let Some(piece) = self.up_to_kink(hold, limit) {
+                return Ok(piece);
+            }
+            self.release(hold);
+        }
+        let piece = self.next_piece(limit)?;
+        // Beyond the kink, sides can be held again.
+        if self.begin_sides(hold, &piece, piece.end()).is_none() {
+            hold.release();
+        }
+        Ok(piece)
+    }
+
+    /// A piece on the sides that are held, up to the first kink; none if the rates on these sides have
+    /// no value beyond a kink.
+    fn up_to_kink(&mut self, hold: &Hold<'a>, limit: f64) -> Option<Piece> {
+        let mut piece = self.next_piece(limit).ok()?;
+        let mut passed = hold.passed(&piece);
+        if let Ok(Some(onset)) = passed {
+            let share = (onset.time - piece.start()) / (piece.end() - piece.start());
+            if (BESIDE..1.0 - BESIDE).contains(&share) {
+                // A step that ends at the kink is more exact than one beyond it is inside.
+                self.integrator()?.undo();
+                piece = self.next_piece(onset.time).ok()?;
+                passed = hold.passed(&piece);
+            }
+        }
+        match passed {
+            Ok(None) => {}
+            Ok(Some(Onset { time, .. })) => {
+                let kink = self.begin_sides(hold, &piece, time);
+                if kink.is_none() {
+                    self.integrator()?.undo();
+                    return None;
+                }
+                self.kink = kink;
+                piece = piece.within(0.0, time);
+            }
+            Err(Unclear) => {
+                self.integrator()?.undo();
+                return None;
+            }
+        }
+        Some(piece)
+    }
+
+    /// Goes on from a time of a piece with the sides that hold there: the first kink that was passed.
+    fn begin_sides(&mut self, hold: &Hold<'a>, piece: &Piece, time: f64) -> Option<&'a Expression> {
+        let mut state = self.field.start.clone();
+        piece.state_at(time, &mut state);
+        let kink = hold.choose(&state)?;
+        self.integrator()?.restart(time, &state);
+        Some(kink)
+    }
+
+    /// Goes on with the rates as they are.
+    fn release(&mut self, hold: &Hold<'a>) {
+        hold.release();
+        if let Some(integrator) = self.integrator() {
+            let (time, state) = (integrator.time(), integrator.state().to_vec());
+            integrator.restart(time, &state);
+        }
+    }
+
+    fn integrator(&mut self) -> Option<&mut Integrator<'a, Field<'a>>> {
+        match &mut self.method {
+            Method::Steps(integrator) => Some(integrator),
+            _ => None,
+        }
     }
 
     /// Whether a variable that began with a finite value, or its rate, may have none in the piece.
@@ -281,6 +372,12 @@ impl<'a> Solver<'a> {
         self.crawled = if crawls { self.crawled + 1 } else { 0 };
         if self.crawled <= MOST_CRAWLING {
             return Ok(());
+        }
+        if let Some(kink) = self.kink {
+            return Err(format!(
+                "no solution leaves the kink of `{kink}`, to which the flow leads from both sides (it \
+                 slides: make each side a location, and see `Automaton::with_sliding`),"
+            ));
         }
         Err("the flow is singular: steps are too short to go on".to_owned())
     }

@@ -185,6 +185,24 @@ impl<'f, F: VectorField + ?Sized> Integrator<'f, F> {
         }
     }
 
+    /// Goes back to where the last step began, which is taken again or in part.
+    pub fn undo(&mut self) {
+        if self.present.time > self.past.time {
+            mem::swap(&mut self.past, &mut self.present);
+        }
+    }
+
+    /// Goes on from another time and state, of the dimension of the present one, or with a field that
+    /// has changed.
+    pub fn restart(&mut self, time: f64, state: &[f64]) {
+        self.present.time = time;
+        self.present.state.copy_from_slice(state);
+        self.is_begun = false;
+        if let Some(implicit) = &mut self.implicit {
+            implicit.forget();
+        }
+    }
+
     /// Evaluates the field at the start, unless that has been done.
     fn begin(&mut self) -> Result<(), IntegrationFailure> {
         if !self.is_begun {

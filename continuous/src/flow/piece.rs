@@ -99,6 +99,13 @@ impl Piece {
         self
     }
 
+    /// The same polynomials, taken for exact.
+    #[must_use]
+    pub fn without_errors(mut self) -> Self {
+        self.errors.clear();
+        self
+    }
+
     /// The highest power with a coefficient.
     pub fn degree(&self) -> usize {
         let components = 0..self.ends.len();

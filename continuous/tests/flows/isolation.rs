@@ -372,3 +372,62 @@ fn neighbouring_doubts_are_joined() {
     let found = search(&still, &function, &["x"]).expect("it has a value");
     assert_eq!(found.doubts, [Doubt { from: 0.0, to: 1.0, why: Uncertainty::Function }]);
 }
+
+/// A margin that is positive for a moment, of which enclosures say nothing.
+struct Peak {
+    at: f64,
+}
+
+impl Watch for Peak {
+    type Error = EvaluationError;
+
+    fn verdict(&mut self, state: &[f64]) -> Result<Verdict, EvaluationError> {
+        let margin = 1e-8 - (state[0] - self.at).powi(2);
+        Ok(Verdict { margin, holds: margin >= 0.0 })
+    }
+
+    fn course(&mut self, _states: &[Enclosure], _half_width: f64) -> Course {
+        Course::Blurred
+    }
+}
+
+/// Where halving tells nothing the margin is climbed, and what is not met is in doubt.
+#[test]
+fn peaks_that_enclosures_do_not_show_are_climbed() {
+    let mut piece = Piece::new(0.0, 1.0, 0.0, 1.0);
+    piece.push([0.0, 1.0], 0.0);
+    for at in [0.1, 0.377, 0.62, 0.9] {
+        let mut budget = BUDGET;
+        let search = EventSearch::default();
+        let found = isolate(&piece, 0.0, 1.0, &search, &mut Peak { at }, &mut budget);
+        let onset = found.expect("it has a verdict").onset.expect("it is climbed");
+        assert!((onset.time - (at - 1e-4)).abs() < 2e-4, "{onset:?}");
+    }
+    let mut away = Peak { at: 3.0 };
+    let found = isolate(&piece, 0.0, 1.0, &EventSearch::default(), &mut away, &mut { BUDGET });
+    let Finding { onset, doubts } = found.expect("it has a verdict");
+    assert_eq!((onset, doubts.len()), (None, 1));
+    assert_eq!(doubts[0], Doubt { from: 0.0, to: 1.0, why: Uncertainty::Touch });
+}
+
+#[test]
+fn enclosures_hold_the_error_of_a_piece() {
+    let mut piece = Piece::new(0.0, 1.0, 0.0, 1.0);
+    for coefficients in [&[2.0][..], &[1.0, 2.0], &[1.0, 2.0, 3.0]] {
+        piece.push(coefficients.iter().copied(), 0.25);
+    }
+    let mut states = Vec::new();
+    piece.enclose(0.25, 0.75, &mut states);
+    for (component, enclosure) in states.iter().enumerate() {
+        for time in [0.25, 0.5, 0.75] {
+            let value = piece.value(component, time);
+            assert!(
+                enclosure.range.lower() <= value - 0.25 && value + 0.25 <= enclosure.range.upper()
+            );
+        }
+        let value = piece.value(component, 0.5);
+        assert!(
+            enclosure.middle.lower() <= value - 0.25 && value + 0.25 <= enclosure.middle.upper()
+        );
+    }
+}

@@ -141,7 +141,14 @@ impl Operation {
                 let chosen = match truth {
                     Truth::Always => one,
                     Truth::Never => other,
-                    Truth::Undecided => (one.0.or(&other.0), one.1.and(other.1)),
+                    Truth::Undecided => {
+                        let middle = match relation.truth(sides[0].middle, sides[1].middle) {
+                            Truth::Always => one.0.middle,
+                            Truth::Never => other.0.middle,
+                            Truth::Undecided => one.0.middle.hull(other.0.middle),
+                        };
+                        (one.0.or(&other.0, middle), one.1.and(other.1))
+                    }
                 };
                 (chosen, defined(&[*left, *right]))
             }

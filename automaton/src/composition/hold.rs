@@ -1,0 +1,159 @@
+//! Rates with kinks on curves: a solver follows smooth rates, each on the side of every kink that is held,
+//! up to where the state passes a kink.
+
+use std::cell::{Cell, RefCell};
+
+use pleach_continuous::flow::{Curve, EventSearch, Onset, Piece, Watch, isolate};
+use pleach_guards::{Course, Enclosure, EvaluationError, Expression, Sides, Verdict};
+
+use super::Component;
+use super::blueprint::{Mode, ModeMotion};
+use super::field::Row;
+
+/// The sides of kinks in the field of a group.
+pub(super) struct Hold<'a> {
+    /// By moving component: what is held of it.
+    parts: Vec<Option<Part<'a>>>,
+    /// A state of the group, and the sides of all parts behind it.
+    values: RefCell<Vec<f64>>,
+    is_active: Cell<bool>,
+}
+
+/// What is held of a component.
+struct Part<'a> {
+    sides: &'a Sides,
+    /// Where its coordinates are among the values, and where its sides are.
+    slots: Vec<usize>,
+    /// Where its rates go.
+    targets: Vec<usize>,
+    /// Room for its coordinates and sides, the places of its tape and its rates.
+    room: RefCell<[Vec<f64>; 3]>,
+}
+
+/// It cannot be said where a kink is passed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unclear;
+
+/// How many spans of a step are looked at for kinks.
+const MOST_SPANS: u64 = 100_000;
+
+impl<'a> Hold<'a> {
+    /// What has to be held of these components, if rates of one of them have kinks that are not known
+    /// beforehand.
+    pub(super) fn of(moving: &[(&'a Component, &'a Mode)], rows: &[Row]) -> Option<Box<Self>> {
+        let mut count = rows.len();
+        let mut part = |(component, mode): &(&'a Component, &'a Mode)| {
+            let (Some(sides), ModeMotion::Rates(rates)) = (&mode.sides, &mode.motion) else {
+                return None;
+            };
+            let is_line = |place: usize| matches!(rows[component.places[place]], Row::Line(_));
+            let known = rates.iter().flat_map(|rate| &rate.kinks);
+            let known = known.filter(|kinks| kinks.are_known(is_line));
+            if known.count() == sides.kinks() {
+                return None;
+            }
+            let own = count..count + sides.count();
+            count = own.end;
+            let mut places = sides.smooth().places();
+            places.shrink_to_fit();
+            Some(Part {
+                sides,
+                slots: component.places.iter().copied().chain(own).collect(),
+                targets: rates.iter().map(|rate| component.places[rate.coordinate]).collect(),
+                room: RefCell::new([Vec::new(), places, vec![0.0; rates.len()]]),
+            })
+        };
+        let has_any = moving.iter().any(|(_, mode)| mode.sides.is_some());
+        let parts: Vec<_> =
+            if has_any { moving.iter().map(&mut part).collect() } else { Vec::new() };
+        if parts.iter().all(Option::is_none) {
+            return None;
+        }
+        let (values, is_active) = (RefCell::new(vec![f64::NAN; count]), Cell::new(false));
+        Some(Box::new(Hold { parts, values, is_active }))
+    }
+
+    /// Whether rates are those of the sides that are held, and not as they are.
+    pub(super) fn is_active(&self) -> bool {
+        self.is_active.get()
+    }
+
+    /// Holds the sides that hold in a state: the first formula with a kink that is on another side than
+    /// before, if there is one.
+    pub(super) fn choose(&self, state: &[f64]) -> Option<&'a Expression> {
+        self.is_active.set(true);
+        let values = &mut *self.values.borrow_mut();
+        values[..state.len()].copy_from_slice(state);
+        let mut changed = None;
+        for part in self.parts.iter().flatten() {
+            let [own, ..] = &mut *part.room.borrow_mut();
+            own.clear();
+            own.extend(part.slots.iter().map(|&slot| values[slot]));
+            changed = changed.or(part.sides.choose(own));
+            part.slots.iter().zip(own).for_each(|(&slot, value)| values[slot] = *value);
+        }
+        changed
+    }
+
+    /// Lets rates be as they are.
+    pub(super) fn release(&self) {
+        self.is_active.set(false);
+    }
+
+    /// Writes the rates of a moving component on the sides that are held, if any are.
+    pub(super) fn add_rates(&self, number: usize, state: &[f64], rates: &mut [f64]) -> bool {
+        let Some(part) = self.parts[number].as_ref().filter(|_| self.is_active.get()) else {
+            return false;
+        };
+        let (values, dimension) = (self.values.borrow(), state.len());
+        let [own, places, change] = &mut *part.room.borrow_mut();
+        own.clear();
+        let value = |&slot: &usize| if slot < dimension { state[slot] } else { values[slot] };
+        own.extend(part.slots.iter().map(value));
+        part.sides.smooth().evaluate(own, places, change);
+        part.targets.iter().zip(change).for_each(|(&target, change)| rates[target] = *change);
+        true
+    }
+
+    /// Where on a piece of the solution the state first is beyond a kink.
+    ///
+    /// # Errors
+    ///
+    /// [`Unclear`] if this cannot be said: a formula has no value, or there are too many kinks.
+    pub(super) fn passed(&self, piece: &Piece) -> Result<Option<Onset>, Unclear> {
+        let piece = piece.clone().without_errors();
+        let mut passage = Passage { hold: self, states: Vec::new() };
+        let (search, mut spans) = (EventSearch::default(), MOST_SPANS);
+        let found = isolate(&piece, piece.start(), piece.end(), &search, &mut passage, &mut spans);
+        found.map(|found| found.onset).map_err(|_| Unclear)
+    }
+}
+
+/// Whether a kink is passed, followed over time.
+struct Passage<'h, 'a> {
+    hold: &'h Hold<'a>,
+    states: Vec<Enclosure>,
+}
+
+impl Watch for Passage<'_, '_> {
+    type Error = EvaluationError;
+
+    fn verdict(&mut self, state: &[f64]) -> Result<Verdict, EvaluationError> {
+        let values = &mut *self.hold.values.borrow_mut();
+        values[..state.len()].copy_from_slice(state);
+        self.hold.parts.iter().flatten().try_fold(Verdict::NEVER, |verdict, part| {
+            Ok(verdict.or(part.sides.passed().evaluate_at(values, &part.slots)?))
+        })
+    }
+
+    fn course(&mut self, states: &[Enclosure], half_width: f64) -> Course {
+        let values = self.hold.values.borrow();
+        self.states.clear();
+        self.states.extend_from_slice(states);
+        self.states.extend(values[states.len()..].iter().map(|side| Enclosure::constant(*side)));
+        self.hold.parts.iter().flatten().fold(Course::Never, |course, part| {
+            let tracker = part.sides.tracker();
+            course.or(tracker.course(&self.states, &part.slots, half_width, 0.0, &|_| None))
+        })
+    }
+}

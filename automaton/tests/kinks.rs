@@ -1,0 +1,203 @@
+//! Rates with kinks and jumps on curves: integration steps end where the state passes one, so that the
+//! errors are those of smooth flows.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use pleach_automaton::{
+    Automaton, Coordinate, Failure, Reason, Settings, Trajectory, coordinates, from,
+};
+use pleach_continuous::flow::Method;
+use pleach_discrete::vocabulary;
+use pleach_guards::{Expression, Table, maximum, piecewise};
+use proptest::prelude::*;
+
+vocabulary! {
+    enum Place: Location { Here = "here", There = "there" }
+    enum Cue: Event { Go = "go" }
+}
+coordinates! {
+    struct Body { place = "p", speed = "s", time = "t" }
+}
+use Cue::Go;
+use Place::{Here, There};
+
+fn coordinates() -> [Coordinate<Body>; 3] {
+    let Body { place, speed, time } = Body::coordinates();
+    [place, speed, time]
+}
+
+type Machine = Automaton<Place, Cue, Body>;
+
+fn machine(start: [f64; 2], rates: [Expression; 2]) -> Machine {
+    let [place, speed, time] = coordinates();
+    let [moves, speeds] = rates;
+    Automaton::starting_in(Here)
+        .initially(Body { place: start[0], speed: start[1], time: 0.0 })
+        .flow(Here, [place.rate(moves), speed.rate(speeds), time.rate(1.0)])
+        .build()
+        .expect("the model is sound")
+}
+
+/// Few steps are enough.
+fn run(machine: &Machine, horizon: f64) -> Trajectory {
+    let settings = Settings { step_limit: 100_000, ..Settings::default() };
+    machine.run_with(settings, horizon).expect("it can be run")
+}
+
+/// Place and speed at the end.
+fn end(start: [f64; 2], rates: [Expression; 2], horizon: f64) -> [f64; 2] {
+    let trajectory = run(&machine(start, rates), horizon);
+    assert_eq!(trajectory.ending().reason, Reason::Horizon);
+    let values = trajectory.values_at(horizon).expect("the run lasts");
+    [values[0], values[1]]
+}
+
+fn assert_near(found: f64, exact: f64, tolerance: f64) {
+    assert!((found - exact).abs() < tolerance, "{found} is not {exact}");
+}
+
+/// ẍ = −sgn x goes to and fro on parabolas, 4 √2 s for each turn.
+#[test]
+fn a_force_that_changes_sign_keeps_its_period() {
+    let [p, s, _] = coordinates();
+    let found = end([1.0, 0.0], [Expression::from(&s), -p.sign()], 40.0 * 2f64.sqrt());
+    assert_near(found[0], 1.0, 1e-10);
+    assert_near(found[1], 0.0, 1e-10);
+}
+
+/// Springs of strength 1 on the right and 4 on the left: a turn takes π + π ÷ 2.
+#[test]
+fn a_spring_that_is_stiffer_on_one_side_keeps_its_period() {
+    let [p, s, _] = coordinates();
+    let forms = [
+        -p.max(0.0) - 4.0 * p.min(0.0),
+        -2.5 * &p + 1.5 * p.abs(),
+        piecewise([(p.at_least(0.0), -&p)], -4.0 * &p).expect("a comparison"),
+        -Table::linear([(-9.0, -36.0), (0.0, 0.0), (9.0, 9.0)]).expect("in order").at(&p),
+        maximum([-&p, -4.0 * &p, &p - 100.0]),
+    ];
+    for force in forms {
+        let found = end([1.0, 0.0], [Expression::from(&s), force], 15.0 * PI);
+        assert_near(found[0], 1.0, 1e-8);
+        assert_near(found[1], 0.0, 2e-8);
+    }
+}
+
+/// Dry friction takes 2 μ off the amplitude at every half turn.
+#[test]
+fn dry_friction_takes_its_share_at_every_half_turn() {
+    let [p, s, _] = coordinates();
+    let rates = [Expression::from(&s), -&p - 0.05 * s.sign()];
+    let found = end([1.05, 0.0], rates, 9.0 * PI);
+    assert_near(found[0], -0.15, 1e-9);
+    assert_near(found[1], 0.0, 1e-9);
+}
+
+/// Where it sticks no solution follows either side of the jump: the run ends, soon, with the reason.
+#[test]
+fn a_flow_that_leads_to_a_jump_from_both_sides_ends() {
+    let [p, s, time] = coordinates();
+    let stuck = |rates: [Expression; 2], start: [f64; 2], exact: f64| {
+        let trajectory = run(&machine(start, rates), 100.0);
+        let Reason::Finished(Failure::Flow { reason, .. }) = &trajectory.ending().reason else {
+            panic!("{:?}", trajectory.ending())
+        };
+        assert!(reason.contains("sign(") && reason.contains("slides"), "{reason}");
+        assert_near(trajectory.ending().at.t, exact, 1e-9);
+    };
+    stuck([Expression::from(&s), -&p - 0.15 * s.sign()], [1.0, 0.0], 3.0 * PI);
+    stuck([-p.sign(), 0.0.into()], [1.0, 0.0], 1.0);
+    stuck([0.5 * time.cos() - p.sign(), 0.0.into()], [1.0, 0.0], 1.498_701_133_517_849);
+}
+
+/// ẋ = 1 + ⌊x⌋ takes 1 ÷ k from k − 1 to k.
+#[test]
+fn stairs_are_climbed_in_a_harmonic_sum() {
+    let [p, ..] = coordinates();
+    let sum: f64 = (1..=200).map(|step| 1.0 / f64::from(step)).sum();
+    assert_near(end([0.0; 2], [1.0 + p.floor(), 0.0.into()], sum)[0], 200.0, 1e-9);
+}
+
+/// √h has no value below 0, where max(h, 0) is on another side: the tank is empty after 8 s, and stays so.
+#[test]
+fn a_side_without_a_value_beyond_its_kink_is_left() {
+    let [p, s, _] = coordinates();
+    let full = || p.max(0.0).square_root();
+    let found = end([4.0, 0.0], [-0.5 * full() + 0.0 * &s, full()], 12.0);
+    assert_near(found[0], 0.0, 1e-9);
+    // The integral of 2 − t ÷ 4.
+    assert_near(found[1], 8.0, 1e-6);
+    let case = piecewise([(p.more_than(0.0), p.square_root())], 0.0).expect("a comparison");
+    assert_near(end([4.0, 0.0], [-0.5 * case, 0.0.into()], 12.0)[0], 0.0, 1e-9);
+}
+
+/// A capacitor behind a diode, with an oscillator's voltage: a stiff flow, by the integrator's choice, and
+/// by either method alone. Solved by hand between the kinks.
+#[test]
+fn kinks_of_stiff_flows_end_steps() {
+    let [p, s, time] = coordinates();
+    let fast = 1000.0;
+    let voltage = || time.cos() + 0.0 * s.power(2.0);
+    let follow = -fast * (&p - voltage().max(0.0));
+    let follows = |t: f64| fast * (fast * t.cos() + t.sin()) / (fast * fast + 1.0);
+    for method in [Method::Automatic, Method::Implicit, Method::Explicit] {
+        let settings = Settings { method, ..Settings::default() };
+        let machine = machine([follows(0.0), 0.0], [follow.clone(), -&p]);
+        let trajectory = machine.run_with(settings, 7.0).expect("it can be run");
+        let at = |t: f64| trajectory.value("p", t).expect("the run lasts");
+        assert_near(at(1.0), follows(1.0), 1e-8);
+        let later = 1e-3;
+        assert_near(at(FRAC_PI_2 + later), follows(FRAC_PI_2) * (-fast * later).exp(), 1e-8);
+        assert_near(at(4.0), 0.0, 1e-8);
+        let begin = 3.0 * FRAC_PI_2;
+        let exact = follows(begin + later) - follows(begin) * (-fast * later).exp();
+        assert_near(at(begin + later), exact, 1e-8);
+        assert_near(at(7.0), follows(7.0), 1e-8);
+    }
+}
+
+/// A kink beside the way, and one that is touched, end no step and change nothing.
+#[test]
+fn kinks_that_are_not_passed_change_nothing() {
+    let [p, s, _] = coordinates();
+    let beside = [Expression::from(&s), -&p + (&p + 1.5).min(0.0) + 0.0 * s.power(2.0)];
+    assert_near(end([1.0, 0.0], beside, 20.0 * PI)[0], 1.0, 1e-8);
+    let touched = [Expression::from(&s), -&p + (&p + 1.0).abs() - (&p + 1.0)];
+    assert_near(end([1.0, 0.0], touched, 20.0 * PI)[0], 1.0, 1e-7);
+}
+
+proptest! {
+    #![proptest_config(cases::usually(64))]
+
+    /// ẋ = a + b |x − c| from below c to above it: the instant is a sum of two logarithms. With kinks of
+    /// which some are further in, and some do not count.
+    #[test]
+    fn a_level_beyond_a_kink_is_met_at_its_instant(
+        a in 0.05..2.0_f64,
+        b in 0.1..30.0_f64,
+        c in 0.1..3.0_f64,
+        form in 0..4,
+    ) {
+        let [p, ..] = coordinates();
+        let distance = match form {
+            0 => (&p - c).abs(),
+            1 => (&p - c).max(c - &p),
+            2 => (&p - c) * (&p - c).sign(),
+            _ => ((&p - c).abs() - 100.0).abs().min(1000.0) * -1.0 + 100.0,
+        };
+        let level = 2.0 * c;
+        let [place, speed, time] = coordinates();
+        let rates = [place.rate(a + b * distance), speed.rate(0.0), time.rate(1.0)];
+        let machine = Automaton::starting_in(Here)
+            .initially(Body { place: 0.0, speed: 0.0, time: 0.0 })
+            .flow(Here, rates)
+            .transition(from(Here).on(Go).to(There).must(p.at_least(level)))
+            .build()
+            .expect("the model is sound");
+        let exact = 2.0 * (1.0 + b * c / a).ln() / b;
+        let trajectory = run(&machine, 2.0 * exact);
+        let found = trajectory.jumps().first().map(|jump| jump.at.t);
+        let is_near = found.is_some_and(|found| (found - exact).abs() < 1e-8 * exact);
+        prop_assert!(is_near, "{found:?} {exact}, {:?}", trajectory.ending());
+    }
+}
