@@ -13,8 +13,10 @@ use pleach_continuous::geometry::{Disc, HalfPlane};
 use pleach_discrete::network::NodeId;
 
 use super::super::roll::{Roll, Wreck};
+use super::super::scenario::Settings;
 use super::Robot;
 use super::hearing::Neighbour;
+use super::motion::MARGIN;
 
 /// A robot that is gone is at most this many steps from where it was heard last.
 const ASTRAY: f64 = 2.0;
@@ -79,10 +81,11 @@ impl Robot {
         self.obstacles().map(move |center| Disc { center, radius })
     }
 
-    /// The sides of wrecks on which this robot stays, at this distance and as far as they may be astray.
-    pub(super) fn sides_of_wrecks(&self, distance: f64) -> impl Iterator<Item = HalfPlane> {
-        let step = self.site.settings.step_radius;
-        let radius = distance + ASTRAY * step;
+    /// The sides of wrecks on which this robot stays, wherever they may be astray.
+    pub(super) fn sides_of_wrecks(&self) -> impl Iterator<Item = HalfPlane> {
+        let Settings { clearance, step_radius: step, errors, .. } = self.site.settings;
+        let kept = errors.planning_clearance(clearance * (1.0 + MARGIN));
+        let radius = 2.0 * kept + ASTRAY * step;
         self.obstacles().filter_map(move |place| {
             let ahead = place - self.position;
             let away = ahead.norm();

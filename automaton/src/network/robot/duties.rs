@@ -302,7 +302,7 @@ fn stand_by(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Standby 
 /// A new post where the robot stands: the one before is left to the robot that holds it.
 fn leave_post<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Standby {
     effects.push(DutyEffect::Restart);
-    let station = Station { post: robot.new_post(), reference: robot.position };
+    let station = Station { post: robot.new_post(), reference: robot.free_place() };
     Standby(Held { station, left: robot.duty.post().map(|post| post.id) })
 }
 
@@ -340,8 +340,8 @@ fn take_post_ahead<B: From<Held>>(
         effects.push(DutyEffect::Report(MissionEvent::SubgroupArrived { subgroup, robots }));
     }
     let place = robot.next_hop()?.place.reference;
-    let queues = (robot.position - place).norm() > robot.site.settings.service_radius;
-    let reference = if queues || robot.turns_back() { robot.position } else { place };
+    let queues = (robot.position - place).norm() > robot.site.settings.arrival_radius();
+    let reference = if queues || robot.turns_back() { robot.free_place() } else { place };
     Some(B::from(Held { station: Station { post, reference }, left: None }))
 }
 
@@ -352,7 +352,7 @@ fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
     let parent = if joins_at_once { before.parent } else { Some(Anchor::Post(before.id)) };
     let id = PostId((robot.site.robots as u32) + robot.bulletin.number());
     let post = Post { id, kind: PostKind::Primary { follows }, parent, task: None };
-    let station = Station { post, reference: robot.position };
+    let station = Station { post, reference: robot.free_place() };
     Held { station, left: (!joins_at_once).then_some(before.id) }
 }
 
@@ -375,7 +375,7 @@ fn settle<A: Holder>(duty: &A, robot: &Robot, _: &mut Effects) -> Relay {
 
 fn fixed_here(held: &Held, robot: &Robot) -> Held {
     let mut held = with_kind(*held, PostKind::Fixed);
-    held.station.reference = robot.position;
+    held.station.reference = robot.free_place();
     held
 }
 
