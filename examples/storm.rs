@@ -12,7 +12,9 @@ mod floor_plans;
 use floor_plans::{Family, scenario as plan};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::verify::network::storm::{Kind, Storm, Verdict, draw, ride, ride_watched, shrink};
+use pleach::verify::network::storm::{
+    Kind, Storm, Verdict, allowing_for, draw, ride, ride_watched, shrink,
+};
 use pleach::{scenario_file, story};
 use std::error::Error;
 use std::path::Path;
@@ -60,6 +62,14 @@ fn table(seeds: u64, only: Option<&String>) -> Result<(), Box<dyn Error>> {
         let (mut runs, mut serviced, mut longer) = (0, 0, 0.0_f64);
         let mut broken: Vec<(String, usize)> = Vec::new();
         for (scenario, calm) in &missions {
+            let scenario = match allowing_for(kind, scenario) {
+                Ok(scenario) => scenario,
+                Err(no_room) => {
+                    println!("{}: {no_room}", scenario.name);
+                    continue;
+                }
+            };
+            let scenario = &scenario;
             for seed in 0..seeds {
                 let storm = draw(kind, seed, scenario, *calm as f64);
                 let periods = MOST_PERIODS.min(3 * calm);
@@ -120,6 +130,7 @@ fn one(name: &str, kind: &str, seed: u64) -> Result<(), Box<dyn Error>> {
     let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
     let named = |known: &&Kind| known.name() == kind;
     let kind = Kind::ALL.iter().find(named).ok_or("no such kind")?;
+    let scenario = allowing_for(*kind, &scenario)?;
     let storm = draw(*kind, seed, &scenario, calm.periods as f64);
     println!("{storm:#?}");
     let verdict = ride(&scenario, &storm, MOST_PERIODS.min(3 * calm.periods))?;
@@ -172,6 +183,10 @@ fn mission(seed: u64) -> Result<(ValidScenario, Storm), Box<dyn Error>> {
     let scenario = match turn % (SHIPPED.len() + families.len()) {
         number if number < SHIPPED.len() => shipped(SHIPPED[number])?,
         number => plan(families[number - SHIPPED.len()], seed),
+    };
+    // Where there is no room for errors, robots do not allow for them, and there are none.
+    let Ok(scenario) = allowing_for(kind, &scenario) else {
+        return Ok((scenario, Storm::default()));
     };
     let storm = draw(kind, seed, &scenario, 300.0);
     Ok((scenario, storm))

@@ -157,6 +157,15 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
 
+// The command line speaks of this library by its name, as other programs do.
+#[cfg(feature = "cli")]
+extern crate self as pleach;
+
+/// The command line, for this program and for that of the package for real processes, which adds
+/// commands to it. It is no library to build on.
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 pub mod figures;
 #[cfg(feature = "cli")]
 pub mod import;

@@ -97,32 +97,17 @@ pub fn run_network<M: Medium<Message, Point>>(
     network: &mut Network<M>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    let mut gallery = Gallery {
-        judge: Judge::new(scenario, may_follow),
-        watchers,
-        failure: None,
-        saturated: Vec::new(),
-    };
+    let mut gallery = Gallery::new(scenario, watchers);
     let settings = network.site().settings;
     let horizon = settings.period * (settings.max_steps as f64 + 1.0);
     let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
-    if let Some(error) = gallery.failure {
-        return Err(error.into());
-    }
     let end = match ending.reason {
-        Reason::Finished(end) | Reason::Interrupted(end) => gallery.explain(end),
+        Reason::Finished(end) | Reason::Interrupted(end) => end,
         other => {
             return Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") });
         }
     };
-    let end = gallery
-        .judge
-        .conclude(&end)
-        .map_or_else(|violation| stopped(&violation, &end), |()| end.clone());
-    for watcher in gallery.watchers.iter_mut() {
-        watcher.end(&end)?;
-    }
-    Ok(Completed { end, extremes: gallery.judge.extremes().clone(), times: network.times() })
+    Ok(Completed { times: network.times(), ..gallery.conclude(end)? })
 }
 
 /// Far more rounds of jumps than the messages of a control period ever take: only a cycle of
@@ -144,8 +129,9 @@ fn stopped(violation: &Violation, end: &End) -> End {
 /// The load from which on a robot counts as saturated: it sends all the time.
 const SATURATED: f64 = 0.999;
 
-/// The judge and the watchers, looking on while the executor runs.
-struct Gallery<'a, 'w> {
+/// The judge and the watchers of a mission: they look on while the executor runs it, or while it goes
+/// on elsewhere and its snapshots come from there.
+pub struct Gallery<'a, 'w> {
     judge: Judge<'a>,
     watchers: &'a mut [&'w mut dyn Watcher],
     failure: Option<io::Error>,
@@ -164,7 +150,44 @@ fn saturated(snapshot: &Snapshot) -> Vec<(usize, f64)> {
     loads.into_iter().enumerate().filter(|&(_, load)| load >= SATURATED).collect()
 }
 
-impl Gallery<'_, '_> {
+impl<'a, 'w> Gallery<'a, 'w> {
+    /// Those who watch a mission of `scenario` from its beginning.
+    pub fn new(scenario: &ValidScenario, watchers: &'a mut [&'w mut dyn Watcher]) -> Self {
+        let judge = Judge::new(scenario, may_follow);
+        Gallery { judge, watchers, failure: None, saturated: Vec::new() }
+    }
+
+    /// Shows a control period, and says how the mission ends if it has to: a property is violated, a
+    /// watcher asks for it, or one of them fails.
+    pub fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Option<End> {
+        if let Err(error) = self.show(snapshot, events) {
+            let reason = error.to_string();
+            self.failure = Some(error);
+            return Some(End { outcome: Outcome::Blocked, reason, task: None });
+        }
+        self.saturated = saturated(snapshot);
+        let end = self.check(snapshot, events).err();
+        end.or_else(|| self.interruption(snapshot.task))
+    }
+
+    /// The mission has ended so: tells the watchers. Times are those of nothing.
+    ///
+    /// # Errors
+    /// When a watcher has failed.
+    pub fn conclude(self, end: End) -> Result<Completed, MissionError> {
+        if let Some(error) = self.failure {
+            return Err(error.into());
+        }
+        let end = self.explain(end);
+        let judged = self.judge.conclude(&end);
+        let end = judged.map_or_else(|violation| stopped(&violation, &end), |()| end.clone());
+        for watcher in self.watchers.iter_mut() {
+            watcher.end(&end)?;
+        }
+        let extremes = self.judge.extremes().clone();
+        Ok(Completed { end, extremes, times: KernelTimes::default() })
+    }
+
     fn show(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
         for watcher in self.watchers.iter_mut() {
             watcher.observe(snapshot, events)?;
@@ -212,15 +235,7 @@ impl<M: Medium<Message, Point>> Observer<Network<M>> for Gallery<'_, '_> {
     const SEES_JUMPS: bool = false;
 
     fn flows(&mut self, network: &Network<M>, _: HybridTime, _: f64) -> ControlFlow<End> {
-        let (snapshot, events) = (network.snapshot(), network.events());
-        if let Err(error) = self.show(&snapshot, &events) {
-            let reason = error.to_string();
-            self.failure = Some(error);
-            return ControlFlow::Break(End { outcome: Outcome::Blocked, reason, task: None });
-        }
-        self.saturated = saturated(&snapshot);
-        let end = self.check(&snapshot, &events).err();
-        match end.or_else(|| self.interruption(snapshot.task)) {
+        match self.observe(&network.snapshot(), &network.events()) {
             None => ControlFlow::Continue(()),
             Some(end) => ControlFlow::Break(end),
         }

@@ -52,7 +52,7 @@ pub fn draw(scenario: &ValidScenario, seed: u64) -> Result<ValidScenario, NoStar
 /// fit. Rates are not looked at.
 pub(crate) fn places(site: &Site, robots: usize, dice: &mut Dice) -> Option<Vec<[f64; 2]>> {
     let reach = REACH * site.build_length;
-    let apart = APART * site.settings.clearance;
+    let apart = APART * site.settings.planning_clearance();
     let mut nodes = site.access_points.clone();
     let fixed = nodes.len();
     for _ in 0..robots {

@@ -23,7 +23,7 @@ use pleach::summary::Summary;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 20] = [
+const WRITTEN: [&str; 21] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
@@ -44,6 +44,7 @@ const WRITTEN: [&str; 20] = [
     "docs/how-to/trace.md",
     "docs/how-to/mcap.md",
     "docs/how-to/python.md",
+    "docs/how-to/processes.md",
 ];
 
 fn keep_up_to_date(path: &str, document: &str) {

@@ -144,6 +144,21 @@ fn users_do_not_build_what_tests_the_product() {
     }
 }
 
+/// Processes need a transport with hundreds of packages. They are a workspace of their own, and their
+/// nodes are those of the product: nothing of them is written again.
+#[test]
+fn processes_are_built_by_themselves_and_run_the_same_nodes() {
+    let lock = fs::read_to_string(root().join("Cargo.lock")).unwrap();
+    assert!(!lock.contains("\"zenoh"), "the transport of processes is built with the others");
+    assert!(manifest(&root().join("processes")).contains_key("workspace"));
+    let files = files_below(Path::new("processes/src"));
+    let sources: Vec<Source> = files.iter().map(|path| Source::read(path)).collect();
+    assert!(sources.len() > 8, "the sources are not where they are looked for");
+    let of_nodes = ["impl Node for", "impl Medium<", "pleach_automaton::", "unsafe ", "HashMap"];
+    let offences = sources.iter().flat_map(|source| source.lines_with(&of_nodes)).collect();
+    assert_none(offences, "a process does input and output only");
+}
+
 #[test]
 fn every_picture_is_drawn_with_one_layer() {
     for package in PACKAGES.into_iter().filter(|package| *package != "drawing") {

@@ -1,5 +1,8 @@
 //! The arguments that the program understands.
 
+// What stands here is read in a terminal.
+#![allow(rustdoc::broken_intra_doc_links, rustdoc::invalid_html_tags)]
+
 use super::sweep::Sweep;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;

@@ -65,7 +65,7 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
             format!(
                 "{}; passages from {} on are open",
                 quantity(resolved.clearance),
-                quantity(2.0 * resolved.clearance)
+                quantity(2.0 * resolved.planning_clearance())
             ),
         ),
     ];

@@ -9,7 +9,7 @@ use super::status::Failure;
 #[cfg(feature = "pdf")]
 use pleach::figures::ANIMATION;
 use pleach::figures::Album;
-use pleach::mission::{self, Watcher};
+use pleach::mission::{self, Completed, Watcher};
 #[cfg(feature = "pdf")]
 use pleach::pdf::Printer;
 use pleach::summary::Summary;
@@ -48,6 +48,19 @@ pub fn run(
     progress: &mut Progress,
     interrupt: &Interrupt,
 ) -> Result<Finished, Failure> {
+    watch(planned, outputs, progress, interrupt, |watchers| {
+        Ok(mission::run(&planned.scenario, watchers)?)
+    })
+}
+
+/// Watches a mission that `carry_out` carries out, here or elsewhere.
+pub fn watch(
+    planned: &Planned,
+    outputs: &Outputs,
+    progress: &mut Progress,
+    interrupt: &Interrupt,
+    carry_out: impl FnOnce(&mut [&mut dyn Watcher]) -> Result<Completed, Failure>,
+) -> Result<Finished, Failure> {
     let scenario = &planned.scenario;
     let mut interrupt = interrupt.clone();
     let mut summary = Summary::new(scenario);
@@ -67,7 +80,7 @@ pub fn run(
     watchers.extend(trace.as_mut().map(|trace| trace as &mut dyn Watcher));
     watchers.extend(album.as_mut().map(|album| album as &mut dyn Watcher));
     let clock = Instant::now();
-    let completed = mission::run(scenario, &mut watchers)?;
+    let completed = carry_out(&mut watchers)?;
     let elapsed = clock.elapsed();
 
     let record = Record::of(planned, &summary, &completed);

@@ -1,37 +1,39 @@
 //! The command line: what it understands, and what it does.
 
-mod arguments;
+#![warn(clippy::print_stdout, clippy::print_stderr)] // they panic when the stream is closed: see `output`
+
+pub mod arguments;
 mod batch;
 mod check;
 mod diagram;
 #[cfg(feature = "mcap")]
 mod export;
 mod import;
-mod interrupt;
-mod job;
+pub mod interrupt;
+pub mod job;
 mod judge;
 mod manual;
-mod output;
+pub mod output;
 mod page;
-mod plan;
-mod progress;
+pub mod plan;
+pub mod progress;
 mod reach;
-mod record;
-mod run;
-mod source;
-mod status;
+pub mod record;
+pub mod run;
+pub mod source;
+pub mod status;
 mod sweep;
 mod table;
-mod terminal;
+pub mod terminal;
 
-pub use arguments::Arguments;
+pub use arguments::{Arguments, Command};
 
-use arguments::Command;
+use status::{Failure, Status};
 use std::process::ExitCode;
 
-/// Does what the arguments ask for. What went wrong stands on the error output.
-pub fn carry_out(arguments: Arguments) -> ExitCode {
-    let result = match arguments.command {
+/// Carries out a command. What went wrong stands on the error output.
+pub fn carry_out(command: Command) -> ExitCode {
+    let result = match command {
         Command::Run(run) => run::run(&run),
         Command::Check(check) => check::check(&check),
         Command::Import(import) => import::import(&import),
@@ -44,6 +46,11 @@ pub fn carry_out(arguments: Arguments) -> ExitCode {
         Command::Page(page) => page::write(&page),
         Command::Reach(reach) => reach::reach(&reach),
     };
+    exit(result)
+}
+
+/// The exit status of a command; what went wrong is told.
+pub fn exit(result: Result<Status, Failure>) -> ExitCode {
     let status = result.unwrap_or_else(|failure| {
         output::tell(format_args!("error: {failure}"));
         failure.status()

@@ -46,16 +46,21 @@ fn run_one(
     let mut progress = Progress::new(&run.scenario, arguments.quiet);
     let finished = job::run(run, &outputs, &mut progress, interrupt)?;
     write_tables(arguments, std::slice::from_ref(&finished.record))?;
-    let mut said = finished.summary.to_string();
-    if let Some(path) = &arguments.trace {
-        said += &format!("  trace               {}\n", path.display());
+    say(arguments, &told(&finished, arguments.trace.as_deref()))?;
+    Ok(status_of(&finished.record))
+}
+
+/// What a person reads of a mission that has ended: its summary, and where the files are.
+pub fn told(finished: &Finished, trace: Option<&Path>) -> String {
+    let mut told = finished.summary.to_string();
+    if let Some(path) = trace {
+        told += &format!("  trace               {}\n", path.display());
     }
     if let Some(page) = finished.figures.last() {
         let count = finished.figures.len();
-        said += &format!("  figures             {count}: open {}\n", page.display());
+        told += &format!("  figures             {count}: open {}\n", page.display());
     }
-    say(arguments, &said)?;
-    Ok(status_of(&finished.record))
+    told
 }
 
 fn run_many(
@@ -101,12 +106,13 @@ fn run_many(
         .unwrap_or(Status::Done))
 }
 
-fn status_of(record: &Record) -> Status {
+/// The exit status of a run.
+pub fn status_of(record: &Record) -> Status {
     Status::of_number(record.status)
 }
 
 /// A task that no robot can service is told before the mission, which will end with it.
-fn warn_of_tasks(run: &Planned) {
+pub fn warn_of_tasks(run: &Planned) {
     use pleach::automaton::network::scenario::Remark;
     let remarks = run.scenario.remarks();
     for remark in remarks.iter().filter(|remark| matches!(remark, Remark::Task { .. })) {

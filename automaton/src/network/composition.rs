@@ -15,12 +15,11 @@ use pleach_continuous::Point;
 use pleach_discrete::network::Stage;
 
 use super::access_point::AccessPoint;
-use super::beacon::Notice;
 use super::frail::Frail;
 use super::medium::Radio;
 use super::member::{Member, Sense};
 use super::message::Message;
-use super::record::{End, MissionEvent, Outcome};
+use super::record::{End, MissionEvent};
 use super::robot::{Robot, RobotError, RobotView};
 use super::scenario::{Scenario, ValidScenario};
 use super::site::Site;
@@ -184,13 +183,7 @@ impl<M, N: RobotNode> Network<M, N> {
 
     /// How the mission has ended, as the user knows it.
     fn announced_end(&self) -> Option<End> {
-        let user = self.members().find_map(|member| member.view().user())?;
-        match user.notice() {
-            Notice::Ended { outcome, reason, task } => {
-                Some(End { outcome: *outcome, reason: reason.to_string(), task: *task })
-            }
-            _ => None,
-        }
+        self.members().find_map(|member| member.view().user())?.announced_end()
     }
 }
 
@@ -227,13 +220,9 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
         }
         let limit = self.site.settings.max_steps;
         let is_at_rest = || !self.robots().into_iter().any(RobotView::is_active);
-        self.announced_end().filter(|_| is_at_rest()).or_else(|| {
-            (self.step >= limit).then(|| End {
-                outcome: Outcome::StepLimit,
-                reason: format!("the mission has taken the {limit} control periods allowed"),
-                task: None,
-            })
-        })
+        self.announced_end()
+            .filter(|_| is_at_rest())
+            .or_else(|| (self.step >= limit).then(|| End::at_step_limit(limit)))
     }
 
     fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), NetworkError> {

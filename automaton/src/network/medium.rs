@@ -26,7 +26,7 @@ impl Radio {
     /// The radio of a site.
     pub fn new(site: &Site) -> Self {
         Radio {
-            range: site.link.range(),
+            range: site.radio.range(),
             robots: site.robots,
             access_points: site.access_points.len(),
             audiences: Vec::new(),

@@ -86,3 +86,10 @@ pub enum Message {
     /// The newest notice on the mission, from the first access point to the user.
     News(Bulletin),
 }
+
+impl Message {
+    /// Whether its receiver may send something at once, and not only at its next tick.
+    pub const fn may_be_answered_at_once(&self) -> bool {
+        matches!(self, Message::Demand(_) | Message::Shortage | Message::News(_))
+    }
+}

@@ -1,81 +1,180 @@
-//! What observers see: snapshots of the whole network, put together from the robots' states.
+//! What observers see: snapshots of the whole network, put together from what each robot reports.
 //!
 //! No robot reads any of this.
 
-use pleach_discrete::network::{NodeId, Phase, PostKind};
+use pleach_continuous::Point;
+use pleach_discrete::network::{ExchangeStage, NodeId, NoticeId, Phase, PostKind, Subgroup};
+use serde::{Deserialize, Serialize};
 
 use super::beacon::Notice;
 use super::composition::{Network, RobotNode};
+use super::duty::Duty;
 use super::record::{MissionEvent, PostView, RobotSnapshot, Route, Snapshot};
 use super::robot::RobotView;
+use super::wire;
 use crate::located::Place as _;
-use crate::node::{Node, Traffic};
+use crate::node::Traffic;
 
-impl<M, N: RobotNode> Network<M, N> {
-    /// The observers' view of this instant, just before the robots move.
-    pub fn snapshot(&self) -> Snapshot {
-        let overview = self.overview();
-        let robots = || overview.robots.iter().copied();
+/// What observers need to know of one robot just before it moves. In a process of its own, a robot
+/// reports it in each control period.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotReport {
+    /// x_i.
+    #[serde(with = "wire")]
+    pub position: Point,
+    /// What it does for the network.
+    pub duty: Duty,
+    /// Where it stands in an exchange of duties.
+    pub exchange: ExchangeStage,
+    /// Where the mission stands as far as it knows.
+    pub phase: Phase,
+    /// The identity of the newest notice on the mission that it knows.
+    pub notice: NoticeId,
+    /// The task of which that notice speaks.
+    pub task: Option<usize>,
+    /// How many subgroups of the path Σ have arrived, as far as it knows.
+    pub subgroups_done: usize,
+    /// The subgroup that is the active team, while one is: its first place on Σ, and its end.
+    pub active_subgroup: Option<(usize, usize)>,
+    /// Whether it may move in this control period.
+    pub is_active: bool,
+    /// c_i.
+    #[serde(with = "wire")]
+    pub residual: f64,
+    /// λ_i.
+    #[serde(with = "wire")]
+    pub multiplier: f64,
+    /// The links that it sends over, each with receiver, T_ij > 0 and R_ij.
+    pub routes: Vec<(NodeId, f64, f64)>,
+    /// Its parent in the tree.
+    pub tree_parent: Option<NodeId>,
+    /// Where it goes; none if it stands still.
+    #[serde(with = "wire")]
+    pub target: Option<Point>,
+    /// The messages that it has sent in this control period.
+    pub sent: u64,
+    /// The messages that it has heard in this control period.
+    pub heard: u64,
+}
+
+impl RobotReport {
+    /// The report of a robot that has sent and heard as many messages, and whose body is here.
+    pub fn of(robot: RobotView<'_>, body: Point, traffic: Traffic) -> Self {
+        let task = match robot.notice() {
+            Notice::Quiet | Notice::Serviced { .. } => None,
+            Notice::Task { task, .. } => Some(*task),
+            Notice::Ended { task, .. } => *task,
+            _ => robot.current_task(),
+        };
+        let routes = robot.routes().map(|link| (link.to, link.share, link.reliability));
+        let active = robot.active_subgroup();
+        RobotReport {
+            position: body,
+            duty: *robot.duty(),
+            exchange: robot.exchange(),
+            phase: robot.phase(),
+            notice: robot.notice_id(),
+            task,
+            subgroups_done: robot.subgroups_done(),
+            active_subgroup: active.map(|Subgroup { first, end }| (first, end)),
+            is_active: robot.is_active(),
+            residual: robot.residual(),
+            multiplier: robot.multiplier(),
+            routes: routes.collect(),
+            tree_parent: robot.tree_parent(),
+            target: robot.goal(),
+            sent: traffic.sent,
+            heard: traffic.heard,
+        }
+    }
+}
+
+impl Snapshot {
+    /// The snapshot of control period `step`, whose periods take `period` seconds, from the reports
+    /// of all robots by number.
+    pub fn of_reports(step: usize, period: f64, reports: &[RobotReport]) -> Self {
+        let overview = Overview { robots: reports };
         Snapshot {
-            step: self.step,
-            time: self.step as f64 * self.site.settings.period,
-            positions: self.nodes.nodes()[..robots().count()].iter().map(Node::body).collect(),
-            roles: robots().map(RobotView::role).collect(),
+            step,
+            time: step as f64 * period,
+            positions: reports.iter().map(|robot| robot.position).collect(),
+            roles: reports.iter().map(|robot| robot.duty.role()).collect(),
             phase: overview.phase(),
             active: overview.active(),
             active_team: overview.active_team(),
             primary_team: overview.primary_team(),
             path: overview.path(),
-            residuals: robots().map(RobotView::residual).collect(),
-            multipliers: robots().map(RobotView::multiplier).collect(),
+            residuals: reports.iter().map(|robot| robot.residual).collect(),
+            multipliers: reports.iter().map(|robot| robot.multiplier).collect(),
             routes: overview.routes(),
             tree: overview.tree(),
-            task: overview.task(),
+            task: overview.newest().and_then(|robot| robot.task),
             serviced: overview.serviced(),
             posts: overview.posts(),
-            robots: robots().map(|robot| self.robot_snapshot(robot)).collect(),
+            robots: reports.iter().map(RobotSnapshot::from).collect(),
         }
     }
+}
 
-    fn robot_snapshot(&self, robot: RobotView<'_>) -> RobotSnapshot {
-        let Traffic { sent, heard } = self.nodes.traffic(robot.id());
+impl From<&RobotReport> for RobotSnapshot {
+    fn from(robot: &RobotReport) -> Self {
         RobotSnapshot {
-            activity: robot.duty().location(),
-            exchange: robot.exchange(),
-            phase: robot.phase(),
-            target: robot.goal(),
-            sent,
-            heard,
+            activity: robot.duty.location(),
+            exchange: robot.exchange,
+            phase: robot.phase,
+            target: robot.target,
+            sent: robot.sent,
+            heard: robot.heard,
         }
     }
+}
 
-    /// What has happened in this control period, in order. A robot reports what it knows; the
-    /// members of its team are the observers' knowledge.
+/// Completes the events of a control period: a robot reports what it knows, and the members of its
+/// team are the observers' knowledge.
+pub fn complete_events(events: &mut [MissionEvent], primary_team: &[NodeId]) {
+    for event in events {
+        if let MissionEvent::Stationary { team, .. } | MissionEvent::JoinedPrimary { team, .. } =
+            event
+        {
+            *team = primary_team.to_vec();
+        }
+    }
+}
+
+impl<M, N: RobotNode> Network<M, N> {
+    /// The observers' view of this instant, just before the robots move.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot::of_reports(self.step, self.site.settings.period, &self.reports())
+    }
+
+    /// What observers need to know of each robot, by number.
+    fn reports(&self) -> Vec<RobotReport> {
+        let of = |robot: RobotView<'_>| {
+            let body = self.nodes.nodes()[robot.id()].body();
+            RobotReport::of(robot, body, self.nodes.traffic(robot.id()))
+        };
+        self.robots().into_iter().map(of).collect()
+    }
+
+    /// What has happened in this control period, in order.
     pub fn events(&self) -> Vec<MissionEvent> {
         let mut events = self.events.clone();
-        for event in &mut events {
-            if let MissionEvent::Stationary { team, .. }
-            | MissionEvent::JoinedPrimary { team, .. } = event
-            {
-                *team = self.primary_team();
-            }
+        if !events.is_empty() {
+            complete_events(&mut events, &self.primary_team());
         }
         events
     }
 
     /// The primary team 𝒫 from p₁ to the leader, or the leader alone before it is released.
     pub fn primary_team(&self) -> Vec<NodeId> {
-        self.overview().primary_team()
-    }
-
-    fn overview(&self) -> Overview<'_> {
-        Overview { robots: self.robots() }
+        Overview { robots: &self.reports() }.primary_team()
     }
 }
 
 /// All robots side by side, as only observers see them.
 struct Overview<'a> {
-    robots: Vec<RobotView<'a>>,
+    robots: &'a [RobotReport],
 }
 
 impl Overview<'_> {
@@ -83,45 +182,35 @@ impl Overview<'_> {
     fn active(&self) -> Vec<NodeId> {
         let team = self.active_team();
         (0..self.robots.len())
-            .filter(|id| team.contains(id) || self.robots[*id].is_active())
+            .filter(|id| team.contains(id) || self.robots[*id].is_active)
             .collect()
     }
 
     /// Where the mission stands for the robot that knows the newest notice.
     fn phase(&self) -> Phase {
-        self.newest().map_or(Phase::Idle, RobotView::phase)
+        self.newest().map_or(Phase::Idle, |robot| robot.phase)
     }
 
-    fn newest(&self) -> Option<RobotView<'_>> {
-        self.robots.iter().copied().max_by_key(|robot| (robot.notice_id(), robot.subgroups_done()))
-    }
-
-    fn task(&self) -> Option<usize> {
-        let robot = self.newest()?;
-        match robot.notice() {
-            Notice::Quiet | Notice::Serviced { .. } => None,
-            Notice::Task { task, .. } => Some(*task),
-            Notice::Ended { task, .. } => *task,
-            _ => robot.current_task(),
-        }
+    fn newest(&self) -> Option<&RobotReport> {
+        self.robots.iter().max_by_key(|robot| (robot.notice, robot.subgroups_done))
     }
 
     fn primary_team(&self) -> Vec<NodeId> {
         let member =
-            |robot: RobotView<'_>| robot.duty().post().filter(|post| post.is_primary()).copied();
-        let Some(leader) = self.robots.iter().position(|robot| robot.leads()) else {
+            |robot: &RobotReport| robot.duty.post().filter(|post| post.is_primary()).copied();
+        let Some(leader) = self.robots.iter().position(|robot| robot.duty.leads()) else {
             return Vec::new();
         };
         let mut team = vec![leader];
-        let mut ahead = member(self.robots[leader]);
+        let mut ahead = member(&self.robots[leader]);
         while let Some(post) = ahead {
             let follows = PostKind::Primary { follows: Some(post.id) };
             let next = (0..self.robots.len()).find(|&id| {
                 !team.contains(&id)
-                    && member(self.robots[id]).is_some_and(|other| other.kind == follows)
+                    && member(&self.robots[id]).is_some_and(|other| other.kind == follows)
             });
             team.extend(next);
-            ahead = next.and_then(|id| member(self.robots[id]));
+            ahead = next.and_then(|id| member(&self.robots[id]));
         }
         team.reverse();
         team
@@ -131,14 +220,10 @@ impl Overview<'_> {
         match self.phase() {
             Phase::Advance => self.primary_team(),
             Phase::Shift => {
-                let active = self.newest().and_then(RobotView::active_subgroup);
-                let places = active.map_or(0..0, |subgroup| subgroup.places());
-                let mut members: Vec<(usize, NodeId)> = (0..self.robots.len())
-                    .filter_map(|id| Some((self.robots[id].duty().place()?, id)))
-                    .filter(|(place, _)| places.contains(place))
-                    .collect();
-                members.sort_unstable();
-                members.into_iter().map(|(_, id)| id).collect()
+                let active = self.newest().and_then(|robot| robot.active_subgroup);
+                let places = active.map_or(0..0, |(first, end)| first..end);
+                let members = self.places().into_iter().filter(|(place, _)| places.contains(place));
+                members.map(|(_, id)| id).collect()
             }
             _ => Vec::new(),
         }
@@ -146,41 +231,38 @@ impl Overview<'_> {
 
     /// The robots that wait on Σ or are on their way along it, by place.
     fn path(&self) -> Vec<NodeId> {
-        let mut places: Vec<(usize, NodeId)> = (0..self.robots.len())
-            .filter_map(|id| Some((self.robots[id].duty().place()?, id)))
-            .collect();
+        self.places().into_iter().map(|(_, id)| id).collect()
+    }
+
+    /// The places on Σ with their robots, ascending.
+    fn places(&self) -> Vec<(usize, NodeId)> {
+        let place = |(id, robot): (NodeId, &RobotReport)| Some((robot.duty.place()?, id));
+        let mut places: Vec<_> = self.robots.iter().enumerate().filter_map(place).collect();
         places.sort_unstable();
-        places.into_iter().map(|(_, id)| id).collect()
+        places
     }
 
     fn routes(&self) -> Vec<Route> {
-        let of = |(from, robot): (NodeId, RobotView<'_>)| -> Vec<Route> {
-            robot
-                .routes()
-                .map(|link| Route {
-                    from,
-                    to: link.to,
-                    share: link.share,
-                    reliability: link.reliability,
-                })
-                .collect()
+        let of = |(from, robot): (NodeId, &RobotReport)| -> Vec<Route> {
+            let route = |&(to, share, reliability): &(NodeId, f64, f64)| Route {
+                from,
+                to,
+                share,
+                reliability,
+            };
+            robot.routes.iter().map(route).collect()
         };
-        self.robots.iter().copied().enumerate().flat_map(of).collect()
+        self.robots.iter().enumerate().flat_map(of).collect()
     }
 
     fn tree(&self) -> Vec<(NodeId, NodeId)> {
-        let edge = |(id, robot): (NodeId, RobotView<'_>)| Some((id, robot.tree_parent()?));
-        self.robots.iter().copied().enumerate().filter_map(edge).collect()
+        let edge = |(id, robot): (NodeId, &RobotReport)| Some((id, robot.tree_parent?));
+        self.robots.iter().enumerate().filter_map(edge).collect()
     }
 
     fn serviced(&self) -> Vec<(usize, NodeId)> {
-        let mut serviced: Vec<(usize, NodeId)> = self
-            .robots
-            .iter()
-            .copied()
-            .enumerate()
-            .filter_map(|(id, robot)| Some((robot.duty().post()?.task?, id)))
-            .collect();
+        let task = |(id, robot): (NodeId, &RobotReport)| Some((robot.duty.post()?.task?, id));
+        let mut serviced: Vec<_> = self.robots.iter().enumerate().filter_map(task).collect();
         serviced.sort_unstable();
         serviced.dedup_by_key(|(task, _)| *task);
         serviced
@@ -191,9 +273,9 @@ impl Overview<'_> {
             .iter()
             .enumerate()
             .filter_map(|(holder, robot)| {
-                let station = robot.duty().station().filter(|station| station.post.is_fixed())?;
-                let children = self.robots.iter().copied().filter(|child| {
-                    child.duty().post().is_some_and(|held| {
+                let station = robot.duty.station().filter(|station| station.post.is_fixed())?;
+                let children = self.robots.iter().filter(|child| {
+                    child.duty.post().is_some_and(|held| {
                         held.is_child_of(station.post.id) && !held.is_redundant()
                     })
                 });

@@ -139,6 +139,17 @@ pub struct End {
     pub task: Option<usize>,
 }
 
+impl End {
+    /// The end of a mission that has taken as many control periods as it may.
+    pub fn at_step_limit(limit: usize) -> Self {
+        End {
+            outcome: Outcome::StepLimit,
+            reason: format!("the mission has taken the {limit} control periods allowed"),
+            task: None,
+        }
+    }
+}
+
 /// The kinds of end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -3,8 +3,8 @@
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
-use pleach_continuous::network::LinkReliability;
 use pleach_continuous::network::reliability::ReliabilityError;
+use pleach_continuous::network::{LinkReliability, WithMargin};
 
 use super::Link;
 use super::automata::Automata;
@@ -20,12 +20,16 @@ const WATCHED_STEPS: f64 = 8.0;
 pub struct Site {
     /// 𝒲.
     pub workspace: Workspace,
-    /// 𝒲_f, the free space of the robots' centres.
+    /// 𝒲_f, the free space of the robots' centres by what these know: it keeps ρ + e + m from walls, with
+    /// the errors e of positions and m of moves.
     pub free_space: FreeSpace,
     /// Where the access points stand.
     pub access_points: Vec<Point>,
-    /// How reliable a link is over a distance, eq. (27).
+    /// How reliable a link is at least whose ends measure this distance: R(d + 2e), where R is
+    /// [`radio`](Self::radio).
     pub link: Link,
+    /// How reliable a link is over its true length, eq. (27).
+    pub radio: Link,
     /// The control settings, every default filled in.
     pub settings: Settings,
     /// Number of robots.
@@ -78,8 +82,9 @@ impl Site {
     pub fn new(scenario: &Scenario) -> Result<Self, SiteError> {
         let settings = Settings::resolve(scenario);
         let workspace = scenario.workspace()?;
-        let free_space = FreeSpace::new(&workspace, settings.clearance)?;
-        let link = scenario.link.link()?;
+        let free_space = Self::free_space(&workspace, &settings)?;
+        let radio = scenario.link.link()?;
+        let link = Self::as_measured(&radio, &settings)?;
         Ok(Site {
             workspace,
             free_space,
@@ -91,20 +96,53 @@ impl Site {
             settings,
             has_own_link: false,
             link,
+            radio,
             automata: Automata::new()?,
             #[cfg(feature = "abstraction")]
             measure: None,
         })
     }
 
+    /// 𝒲_f. A robot that measures itself outside, because it has strayed, counts as about to re-enter.
+    fn free_space(workspace: &Workspace, settings: &Settings) -> Result<FreeSpace, FreeSpaceError> {
+        let free_space = FreeSpace::new(workspace, settings.planning_clearance())?;
+        match settings.errors.are_none() {
+            true => Ok(free_space),
+            false => free_space.with_reach(REACH * settings.planning_clearance()),
+        }
+    }
+
+    /// A link may be longer by 2e than its ends measure it.
+    fn as_measured(radio: &Link, settings: &Settings) -> Result<Link, ReliabilityError> {
+        match settings.link_margin() {
+            0.0 => Ok(radio.clone()),
+            margin => Ok(Link::new(WithMargin::new(radio.clone(), margin)?)),
+        }
+    }
+
     /// The same site where links behave as `model` says. The lengths of links follow.
-    #[must_use]
-    pub fn with_link(self, model: impl LinkReliability + 'static) -> Self {
-        let link = Link::new(model);
-        let hard_length = link.distance_at(self.settings.tree_reliability);
+    ///
+    /// # Errors
+    /// When links reach no farther than positions may be off.
+    pub fn with_link(
+        self,
+        model: impl LinkReliability + 'static,
+    ) -> Result<Self, ReliabilityError> {
+        let radio = Link::new(model);
+        let link = Self::as_measured(&radio, &self.settings)?;
+        let longest = radio.distance_at(self.settings.tree_reliability);
+        let hard_length = longest - self.settings.length_margin();
         let build_length = hard_length - self.settings.service_radius;
         let watch_radius = Self::watch_radius(&self.settings, &link);
-        Site { link, hard_length, build_length, watch_radius, has_own_link: true, ..self }
+        Ok(Site {
+            link,
+            radio,
+            hard_length,
+            build_length,
+            watch_radius,
+            has_own_link: true,
+            ..self
+        })
     }
 
     /// Whether links behave as the model given to [`with_link`](Self::with_link) says.
@@ -120,12 +158,13 @@ impl Site {
     }
 
     /// Some steps more than the 2ρ + 2σ from which two robots could come into contact in one control
-    /// period, and so far inside the range of the radio that no step leads out of it.
+    /// period, and so far inside the range of the radio that no step leads out of it. With errors, robots
+    /// that measure 2 (ρ + e + m) + 2σ are truly 2ρ + 2 (σ + m) apart, and a step is σ + m long.
     fn watch_radius(settings: &Settings, link: &Link) -> f64 {
-        let Settings { clearance, step_radius, .. } = *settings;
-        let meeting = 2.0 * (clearance + step_radius);
-        let well_in_range = link.range() - 2.0 * step_radius;
-        (meeting + WATCHED_STEPS * step_radius).min(well_in_range).max(meeting)
+        let step = settings.step_radius + settings.errors.motion;
+        let meeting = 2.0 * (settings.planning_clearance() + settings.step_radius);
+        let well_in_range = link.range() - 2.0 * step;
+        (meeting + WATCHED_STEPS * step).min(well_in_range).max(meeting)
     }
 
     /// Whether robots at this distance move only if they have heard each other in the same control
@@ -162,6 +201,10 @@ impl Site {
         self.distance(from, to)
     }
 }
+
+/// A robot this many clearances outside of 𝒲_f or less walks back into it. It strays by less, and from
+/// a full clearance the way back could lead through a wall.
+const REACH: f64 = 0.99;
 
 /// Links longer than this many times d_hard are never measured along geodesics: they cannot be
 /// links of the tree, nor become such within a period.

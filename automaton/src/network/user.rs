@@ -12,7 +12,7 @@ use super::act::{Act, acting};
 use super::beacon::{Bulletin, Notice};
 use super::member::Sense;
 use super::message::Message;
-use super::record::MissionEvent;
+use super::record::{End, MissionEvent};
 use super::robot::{RobotError, RobotFault};
 use super::service::{Asked, Asking, Informed, Preparing, Waiting};
 use super::shared::Shared;
@@ -155,6 +155,16 @@ impl User {
     /// The newest notice on the mission that it knows.
     pub fn notice(&self) -> &Notice {
         self.news.notice()
+    }
+
+    /// How the mission has ended, once it has heard so.
+    pub fn announced_end(&self) -> Option<End> {
+        match self.notice() {
+            Notice::Ended { outcome, reason, task } => {
+                Some(End { outcome: *outcome, reason: reason.to_string(), task: *task })
+            }
+            _ => None,
+        }
     }
 
     /// Takes a row, if one is enabled.

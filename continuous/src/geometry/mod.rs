@@ -10,6 +10,7 @@
 //! | [`reentry`] | robots slightly outside W_f, and how they come back |
 //! | [`detour`] | shortest paths that also keep out of discs |
 //! | [`cell`] | convex collision-free cells (Definition 4.2, (17) and (18)) |
+//! | [`errors`] | cells of robots whose places and moves have errors |
 //! | [`neighbours`] | which points are within a distance of a place |
 //! | [`shape`] | discs, capsules and half-planes |
 //!
@@ -43,6 +44,7 @@ pub mod cell;
 pub mod detour;
 mod edge_tree;
 mod erosion;
+pub mod errors;
 pub mod free_space;
 pub mod geodesic;
 pub mod neighbours;
@@ -57,6 +59,7 @@ mod visibility;
 pub mod workspace;
 
 pub use cell::{convex_region, voronoi_half_planes};
+pub use errors::Errors;
 pub use free_space::{FreeSpace, FreeSpaceError};
 pub use geodesic::{Destination, Geodesic};
 pub use neighbours::Neighbours;

@@ -245,6 +245,16 @@ impl Workspace {
         self.tree.is_near(path, distance)
     }
 
+    /// Visits the edges of ∂W with a point within `radius` of `center`.
+    pub(super) fn for_each_wall_near(
+        &self,
+        center: Point,
+        radius: f64,
+        visit: impl FnMut(&Segment),
+    ) {
+        self.tree.for_each_near(center, radius, visit);
+    }
+
     /// The larger side of the box around W.
     pub fn extent(&self) -> f64 {
         self.extent

@@ -2,6 +2,7 @@
 
 mod cells;
 mod environments;
+mod errors;
 mod free_space;
 mod geodesics;
 mod limits;

@@ -7,6 +7,8 @@ use crate::{Row, TransitionTable, Urgency, vocabulary};
 
 vocabulary! {
     /// The state of a robot in the exchange of duties.
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+    #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
     pub enum ExchangeStage: Location {
         /// It exchanges nothing.
         Free = "free",

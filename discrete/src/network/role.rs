@@ -44,6 +44,8 @@ impl Role {
 
 vocabulary! {
     /// The phase of the mission, as one robot knows it (Algorithms 1 to 5).
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+    #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
     pub enum Phase: Location {
         /// No task is announced.
         Idle = "idle",

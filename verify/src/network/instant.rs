@@ -124,7 +124,7 @@ pub fn reliability(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violation
     let places = places(snapshot, limits);
     for route in &snapshot.routes {
         let distance = places.distance(route.from, route.to);
-        let stated = limits.reliability(distance);
+        let stated = limits.reckoned_reliability(distance);
         if (route.reliability - stated).abs() > SLACK {
             return Err(Instant::of(snapshot).violation(
                 Property::Reliability,

@@ -79,13 +79,19 @@ impl Limits {
             (LinkModel::Cubic, false) => {
                 link::reliability(distance, ranges.full_range, ranges.max_range)
             }
-            _ => self.site.link.reliability(distance),
+            _ => self.site.radio.reliability(distance),
         }
+    }
+
+    /// R as robots reckon with it whose places are this far apart, as far as they know: that of a link
+    /// which is longer by what the two may be off.
+    pub fn reckoned_reliability(&self, distance: f64) -> f64 {
+        self.reliability(distance + self.settings().link_margin())
     }
 
     /// u: reliability 0 from here on.
     pub fn max_range(&self) -> f64 {
-        self.site.link.range()
+        self.site.radio.range()
     }
 
     /// r_i of every robot.

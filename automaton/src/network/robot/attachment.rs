@@ -111,7 +111,8 @@ impl Robot {
             let lineage = holder.beacon.lineage.as_ref()?;
             let usable = Self::accepts_redundant(holder)
                 && !lineage.contains(post.id)
-                && self.walk_to(holder) <= self.site.hard_length * (1.0 + ROUNDING);
+                && self.walk_to(holder)
+                    <= (self.site.hard_length + 2.0 * self.stray()) * (1.0 + ROUNDING);
             usable.then_some((lineage.hops(), anchor))
         });
         let best = self.best_parent(post.id, None);

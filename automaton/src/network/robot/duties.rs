@@ -289,8 +289,8 @@ fn take_post_ahead<B: From<Held>>(
         effects.push(DutyEffect::Report(MissionEvent::SubgroupArrived { subgroup, robots }));
     }
     let place = hop.place.reference;
-    let queues = (robot.position - place).norm() > robot.site.settings.service_radius;
-    let reference = if queues { robot.position } else { place };
+    let queues = (robot.position - place).norm() > robot.site.settings.arrival_radius();
+    let reference = if queues { robot.free_place() } else { place };
     Some(B::from(Held { station: Station { post: hop.post, reference }, left: None }))
 }
 
@@ -301,7 +301,7 @@ fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
     let parent = if joins_at_once { before.parent } else { Some(Anchor::Post(before.id)) };
     let id = PostId((robot.site.robots as u32) + robot.bulletin.number());
     let post = Post { id, kind: PostKind::Primary { follows }, parent, task: None };
-    let station = Station { post, reference: robot.position };
+    let station = Station { post, reference: robot.free_place() };
     Held { station, left: (!joins_at_once).then_some(before.id) }
 }
 
@@ -324,7 +324,7 @@ fn settle<A: Holder>(duty: &A, robot: &Robot, _: &mut Effects) -> Relay {
 
 fn fixed_here(held: &Held, robot: &Robot) -> Held {
     let mut held = with_kind(*held, PostKind::Fixed);
-    held.station.reference = robot.position;
+    held.station.reference = robot.free_place();
     held
 }
 

@@ -255,7 +255,7 @@ impl Robot {
             window: f64::from(STATIONARY_WINDOW),
             patience: self.patience(),
             reach: self.reach(),
-            radius: self.site.settings.service_radius,
+            radius: self.site.settings.arrival_radius(),
             distance: f64::INFINITY,
             ..Facts::default()
         };

@@ -57,7 +57,7 @@ impl Robot {
         let gap = (task.target - task.position).norm();
         let distance = self.site.distance(self.position, task.target);
         let unit = BID_RESOLUTION * self.site.build_length;
-        let within_reach = gap <= self.site.settings.service_radius && distance.is_finite();
+        let within_reach = gap <= self.site.settings.leash_radius() && distance.is_finite();
         within_reach.then(|| Bid {
             rank: if self.could_be_relieved() { 1 } else { 0 },
             merit: -(distance / unit).round() as i64,
@@ -71,7 +71,7 @@ impl Robot {
         let task = self.duty.post().and_then(|post| post.task);
         task.and_then(|task| self.task_position(task)).is_none_or(|place| {
             let away = (self.position - place).norm();
-            away.hypot(BESIDE * self.clearance()) <= self.site.settings.service_radius
+            away.hypot(BESIDE * self.clearance()) <= self.site.settings.arrival_radius()
         })
     }
 

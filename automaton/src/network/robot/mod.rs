@@ -429,7 +429,13 @@ impl Robot {
         self.log.push(event);
     }
 
+    /// ρ + e + m: the clearance that the robot keeps by what it knows.
     fn clearance(&self) -> f64 {
-        self.site.settings.clearance
+        self.site.settings.planning_clearance()
+    }
+
+    /// 2e + m: how far from the end of a move the robot may measure itself.
+    fn stray(&self) -> f64 {
+        self.site.settings.errors.stray()
     }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic, HalfPlane, cell};
 use pleach_continuous::network::acceptance::Segment;
-use pleach_continuous::network::motion::MotionProblem;
+use pleach_continuous::network::motion::{Motion, MotionProblem};
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{NodeId, Phase};
 
@@ -37,6 +37,8 @@ const NEARBY: f64 = 0.1;
 const OBSTINACY: u32 = 3;
 /// A robot that stays within this share of ρ or σ, the smaller one, stands still.
 const STILL: f64 = 0.3;
+/// Control periods without progress after which a robot measures its position anew.
+const PERSISTENCE: u32 = 4;
 /// A robot that returns to one of this many previous places counts as standing still.
 const RESTING_PLACES: usize = 8;
 /// A proposed move shorter than this share of σ is not made.
@@ -72,8 +74,9 @@ impl Robot {
         self.children().any(|child| child.post().is_some_and(|post| post.is_redundant()))
     }
 
+    /// Whether the robot has not settled at `reference`: a move there may end as far off as it strays.
     pub(super) fn is_off(&self, reference: Point) -> bool {
-        (reference - self.position).norm() > SETTLED * self.clearance()
+        (reference - self.position).norm() > SETTLED * self.clearance() + self.stray()
     }
 
     /// Whether the robot may move in this period.
@@ -85,7 +88,7 @@ impl Robot {
     /// on the whole way that is left.
     pub(super) fn has_arrived(&self) -> bool {
         let Some(hop) = self.next_hop() else { return false };
-        let radius = self.site.settings.service_radius;
+        let radius = self.site.settings.arrival_radius();
         let near = |from: Point, place: Point| (from - place).norm() <= radius;
         if !near(self.position, hop.place.reference) {
             return self.queues_behind_arrived();
@@ -139,17 +142,39 @@ impl Robot {
         let Some(waypoint) = self.first_waypoint(goal) else { return };
         self.waypoint = Some(waypoint);
         let problem = self.motion_problem(waypoint);
-        let motion = match self.site.settings.motion_solver {
-            MotionSolver::Exact => problem.solve_exact(),
-            MotionSolver::Conic => problem.solve_conic(),
-        };
-        let segment = Segment { from: self.position, to: motion.target };
+        let segment = Segment { from: self.position, to: self.solve(&problem).target };
         if segment.length() > LEAST_MOVE * self.site.settings.step_radius
-            && self.site.free_space.sees(segment.from, segment.to)
+            && (self.has_strayed() || self.site.free_space.sees(segment.from, segment.to))
         {
             self.proposal = Some(segment);
-            self.problem = Some(problem);
+            self.problem = Some(problem).filter(|problem| problem.admits(&self.position));
         }
+    }
+
+    /// Where the robot goes next. If it finds itself outside of its constraints, because its last move or
+    /// its measurement is off, it goes where they hold if the way to its goal is shorter from there, and
+    /// stays otherwise.
+    fn solve(&self, problem: &MotionProblem) -> Motion {
+        if !self.site.settings.errors.are_none() && !problem.admits(&self.position) {
+            let motion = problem.solve_from_outside();
+            let way = |from: Point| {
+                let goal = self.destination.as_ref();
+                goal.map_or(0.0, |goal| self.site.free_space.distance_to(from, goal))
+            };
+            return match way(motion.target) < way(self.position) {
+                true => motion,
+                false => Motion { target: self.position, ..motion },
+            };
+        }
+        match self.site.settings.motion_solver {
+            MotionSolver::Exact => problem.solve_exact(),
+            MotionSolver::Conic => problem.solve_conic(),
+        }
+    }
+
+    /// Whether the robot measures itself outside of 𝒲_f, as errors of position and motion may have it.
+    fn has_strayed(&self) -> bool {
+        !self.site.settings.errors.are_none() && !self.site.free_space.contains(self.position)
     }
 
     /// By how much the robot is outside of the region that the motion problem has given it at the
@@ -157,6 +182,14 @@ impl Robot {
     pub(super) fn outside(&self) -> f64 {
         let margin = self.problem.as_ref().map_or(0.0, |it| it.smallest_margin(&self.position));
         (-margin).max(0.0)
+    }
+
+    /// Where the robot stands or, if it has strayed, the free place nearest to it.
+    pub(super) fn free_place(&self) -> Point {
+        match self.has_strayed() {
+            true => self.site.free_space.nearest(self.position),
+            false => self.position,
+        }
     }
 
     /// a₁ of the geodesic to the goal, round parked robots where that is a short way round.
@@ -199,34 +232,43 @@ impl Robot {
             && self.site.free_space.sees(self.position, waypoint)
     }
 
-    /// The first waypoint that the robot has not reached.
+    /// The first waypoint that the robot has not reached. One that has strayed goes where the path leads
+    /// once it has re-entered: what keeps it off walls lets it do both at once.
     fn next_corner(&self, path: &Geodesic) -> Option<Point> {
         let reached = ROUNDING * self.site.workspace.extent();
-        path.waypoints.iter().copied().find(|w| (w - self.position).norm() > reached)
+        let is_entry = self.has_strayed() && path.waypoints.len() > 1;
+        let ahead = path.waypoints.iter().copied().skip(usize::from(is_entry));
+        ahead.into_iter().find(|w| (w - self.position).norm() > reached)
     }
 
     /// Problem (21): cell (18), linearised residual (22), trust region, links of the tree.
     fn motion_problem(&self, waypoint: Point) -> MotionProblem {
         let step = self.site.settings.step_radius;
-        let clearance = self.clearance() * (1.0 + MARGIN);
-        let close: Vec<Point> = self
-            .neighbours
-            .iter()
-            .filter(|n| !n.is_access_point() && n.distance < 2.0 * (step + clearance))
-            .map(Neighbour::position)
-            .collect();
-        let mut half_planes = cell::voronoi_half_planes(self.position, &close, clearance);
-        half_planes.extend(cell::convex_region(
-            &self.site.free_space,
-            self.position,
-            waypoint,
-            step,
-        ));
+        let mut half_planes = self.cell(waypoint, step);
         half_planes.extend(self.linearised_residual());
         let mut discs = vec![Disc { center: self.position, radius: step }];
         discs.extend(self.post_discs());
         discs.extend(self.tree_links().iter().filter_map(|link| self.link_disc(link)));
         MotionProblem { position: self.position, waypoint, half_planes, discs }
+    }
+
+    /// The cell (18), with what errors of position and motion add to it.
+    fn cell(&self, waypoint: Point, step: f64) -> Vec<HalfPlane> {
+        let (site, errors) = (&self.site, self.site.settings.errors);
+        let (clearance, kept) = (site.settings.clearance, site.settings.clearance * (1.0 + MARGIN));
+        let near = 2.0 * (step + errors.planning_clearance(kept));
+        let close: Vec<Point> = self
+            .neighbours
+            .iter()
+            .filter(|n| !n.is_access_point() && n.distance < near)
+            .map(Neighbour::position)
+            .collect();
+        let mut half_planes = errors.voronoi_half_planes(self.position, &close, clearance, kept);
+        half_planes.extend(match self.has_strayed() {
+            true => errors.wall_half_planes(&site.workspace, self.position, step, clearance),
+            false => cell::convex_region(&site.free_space, self.position, waypoint, step),
+        });
+        half_planes
     }
 
     /// c̃_i ≥ −c_min, eq. (22), as a half-plane; none where c_i does not depend on x_i.
@@ -262,28 +304,41 @@ impl Robot {
     fn post_discs(&self) -> impl Iterator<Item = Disc> {
         let station = self.duty.station().filter(|station| station.post.is_fixed());
         let task = station.and_then(|s| s.post.task).and_then(|task| self.task_position(task));
-        let radius = self.site.settings.service_radius;
-        station
-            .map(|station| station.reference)
-            .into_iter()
-            .chain(task)
-            .map(move |center| Disc { center, radius: radius.max((center - self.position).norm()) })
+        let (radius, motion) =
+            (self.site.settings.leash_radius(), self.site.settings.errors.motion);
+        station.map(|station| station.reference).into_iter().chain(task).map(move |center| Disc {
+            center,
+            radius: radius.max((center - self.position).norm() - motion),
+        })
     }
 
     /// The disc in which the robot keeps a link of the tree within its limit, with the other end
-    /// where it is now.
+    /// where it is now. A link that errors have made longer becomes shorter with each move, by as much as
+    /// the move may be off, so that it truly gets no longer.
     fn link_disc(&self, link: &TreeLink) -> Option<Disc> {
         let neighbour = self.neighbour(link.to)?;
         let path = self.site.free_space.geodesic(self.position, neighbour.position())?;
-        let spare = (link.limit - path.length).max(0.0);
+        let spare = match path.length > link.limit {
+            true => -self.site.settings.errors.motion,
+            false => link.limit - path.length,
+        };
         let corner = self.next_corner(&path)?;
-        Some(Disc { center: corner, radius: (corner - self.position).norm() + spare })
+        let radius = ((corner - self.position).norm() + spare).max(0.0);
+        Some(Disc { center: corner, radius })
     }
 
-    /// The robot measures at a sample that it is not quite where its move was to end.
+    /// The robot measures its position at a sample. One that has not moved stays where it has measured
+    /// itself before: that is as near to its true place, and what it has told of itself remains true. One
+    /// that wants to go on and cannot measures itself anew from time to time: with other errors it may.
     pub(super) fn correct_position(&mut self, position: Point) {
-        (self.position, self.arrival) = (position, position);
-        self.note_change();
+        let tries_again =
+            self.waypoint.is_some() && (self.still_periods + 1).is_multiple_of(PERSISTENCE);
+        let has_moved = self.velocity != Vector::zeros() || tries_again;
+        let off = (position - self.position).norm();
+        if has_moved || off > 2.0 * self.site.settings.errors.position * (1.0 + ROUNDING) {
+            (self.position, self.arrival) = (position, position);
+            self.note_change();
+        }
     }
 
     /// The move is certified: eq. (23) until the next sample.
@@ -291,7 +346,7 @@ impl Robot {
         let segment = self.own_move();
         let step = self.site.settings.step_radius;
         // Moving back and forth between a few places counts as standing still, too.
-        let leash = STILL * self.clearance().min(step);
+        let leash = (STILL * self.clearance().min(step)).max(self.stray());
         if self.resting_places.iter().all(|place| (segment.to - place).norm() > leash) {
             self.resting_places.truncate(RESTING_PLACES - 1);
             self.resting_places.push_front(segment.to);

@@ -12,8 +12,7 @@
 //! be, and a robot that does not know where those are on which it relies consents to nothing and
 //! stays.
 
-use pleach_continuous::Point;
-use pleach_continuous::network::acceptance::Segment;
+use pleach_continuous::network::acceptance::{Capsule, Segment};
 use pleach_discrete::network::{NodeId, Stage};
 
 use super::super::message::Message;
@@ -168,10 +167,34 @@ impl Robot {
         self.proposal.is_none() && (self.heard_moves.is_empty() || is_answered)
     }
 
+    /// Where a robot that makes this move may measure itself then: one that moves may stray, one that stays
+    /// although it wants to go on may measure itself anew, and the others stay where they are known to be.
+    fn reach_of(&self, axis: Segment, is_parked: bool) -> Capsule {
+        let radius = match (axis.length() > 0.0, is_parked) {
+            (true, _) => self.stray(),
+            (false, false) => 2.0 * self.site.settings.errors.position,
+            (false, true) => 0.0,
+        };
+        Capsule { axis, radius }
+    }
+
     fn is_overloaded(&self) -> bool {
         let load: f64 = self.routes().map(|link| link.share).sum();
-        let worst = self.worst_load(self.own_move(), |node| self.move_of(node));
+        let own = self.reach_of(self.own_move(), self.is_parked());
+        let worst = self.worst_load(own, |node| {
+            let rests = |known: &Neighbour| known.is_access_point() || known.beacon.parked;
+            let is_parked = self.neighbour(node).is_none_or(rests);
+            self.reach_of(self.move_of(node), is_parked)
+        });
         worst > FULL_LOAD.max(load + ROUNDING)
+    }
+
+    /// By how much at least each end that moves has to shorten a link of this length. What measurements
+    /// and the moves of its ends add to its limit does no harm, as the limit allows for it, but from there
+    /// on a link must truly get no longer.
+    fn shortening(&self, limit: f64, length: f64) -> f64 {
+        let is_far_too_long = length > (limit + 2.0 * self.stray()) * (1.0 + ROUNDING);
+        if is_far_too_long { self.site.settings.errors.motion } else { 0.0 }
     }
 
     /// The parent, if the link to it could become longer than its limit and than it is now.
@@ -182,12 +205,16 @@ impl Robot {
             return None;
         }
         let neighbour = self.neighbour(link.to)?;
-        let limit = link.limit.max(self.walk_to(neighbour)) * (1.0 + ROUNDING);
-        let length = |a: Point, b: Point| self.site.free_space.distance(a, b);
-        let longest = [(own.to, other.from), (own.from, other.to), (own.to, other.to)]
-            .into_iter()
-            .map(|(a, b)| length(a, b))
-            .fold(0.0, f64::max);
+        let walk = self.walk_to(neighbour);
+        let limit = link.limit.max(walk) * (1.0 + ROUNDING);
+        let moved = |segment: Segment| if segment.length() > 0.0 { 1.0 } else { 0.0 };
+        let (one, two) = (moved(own), moved(other));
+        let shorter = self.shortening(link.limit, walk);
+        let longest =
+            [(own.to, other.from, one), (own.from, other.to, two), (own.to, other.to, one + two)]
+                .into_iter()
+                .map(|(a, b, moves)| self.site.free_space.distance(a, b) + shorter * moves)
+                .fold(0.0, f64::max);
         (longest > limit).then_some(link.to)
     }
 

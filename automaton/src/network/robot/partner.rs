@@ -71,11 +71,11 @@ impl Robot {
         let near = |place| (self.position - place) as pleach_continuous::Vector;
         let within_reach = match station.post.kind {
             PostKind::Primary { .. } | PostKind::Redundant => true,
-            PostKind::Fixed => near(station.reference).norm() <= settings.service_radius,
+            PostKind::Fixed => near(station.reference).norm() <= settings.arrival_radius(),
         };
         let services = station.post.task.is_none_or(|task| {
             self.task_position(task)
-                .is_some_and(|place| near(place).norm() <= settings.service_radius)
+                .is_some_and(|place| near(place).norm() <= settings.arrival_radius())
         });
         let link_holds = station
             .post

@@ -5,7 +5,7 @@
 //! what is missing for c_i ≥ η over its tree link, so that the routes are feasible at every t_k
 //! whatever the dual iterate is.
 
-use pleach_continuous::network::acceptance::Segment;
+use pleach_continuous::network::acceptance::{Capsule, worst_load_within};
 use pleach_continuous::network::reliability::LinkReliability;
 use pleach_continuous::network::routing::adal::{
     AdalLink, AdalRobot, AdalSettings, NeighbourReport, Workspace,
@@ -497,10 +497,11 @@ impl Robot {
         }
     }
 
-    /// The worst load h_i whichever of the proposed moves are carried out.
-    pub(super) fn worst_load(&self, own: Segment, move_of: impl Fn(NodeId) -> Segment) -> f64 {
+    /// The worst load h_i whichever of the proposed moves are carried out, and wherever robots measure
+    /// themselves then.
+    pub(super) fn worst_load(&self, own: Capsule, move_of: impl Fn(NodeId) -> Capsule) -> f64 {
         let receivers: Vec<_> = self.routes().map(|link| (link.flow(), move_of(link.to))).collect();
-        pleach_continuous::network::acceptance::worst_load(own, &receivers, &self.site.link)
+        worst_load_within(own, &receivers, &self.site.link)
     }
 
     /// dR/dd of the link to a neighbour at this distance.

@@ -107,8 +107,9 @@ impl Robot {
     pub(super) fn reach(&self) -> f64 {
         let settings = &self.site.settings;
         let gap = self.tasks.last().map_or(0.0, |task| (task.target - task.position).norm());
-        let stand_off = settings.service_radius - STAND_OFF * settings.clearance;
-        stand_off.max(gap + TOUCH * settings.clearance).min(settings.service_radius)
+        let stand_off = settings.leash_radius() - STAND_OFF * self.clearance();
+        let touch = TOUCH * self.clearance() + self.stray();
+        stand_off.max(gap + touch).min(settings.arrival_radius())
     }
 
     /// What the team knows of itself, from the leader back to this robot.

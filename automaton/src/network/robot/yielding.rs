@@ -47,7 +47,7 @@ impl Robot {
         let station = self.duty.station()?;
         let asking = self.way_to_clear()?;
         let leash =
-            self.site.settings.service_radius.max((self.position - station.reference).norm());
+            self.site.settings.leash_radius().max((self.position - station.reference).norm());
         let room = |place: Point| asking.distance(place).min(PASSING * self.clearance());
         let mut best = (room(self.position) + WORTH_A_STEP * self.clearance(), None);
         for pace in 1..=PACES {

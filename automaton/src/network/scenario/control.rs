@@ -39,6 +39,13 @@ pub struct Control {
     pub service_radius: Option<f64>,
     /// σ: radius of the trust region, eq. (21). Default (u − l)/10.
     pub step_radius: Option<f64>,
+    /// e: a robot is within this distance of where it believes to be; at most ρ/2. Default 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub position_error: Option<f64>,
+    /// m: a move ends within this distance of its end, and strays in the midst of it by at most the same
+    /// share of that; at most ρ/2. Default 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion_error: Option<f64>,
     /// c_min: residuals stay ≥ −c_min. Default 0.
     pub residual_tolerance: Option<f64>,
     /// Control periods after which the mission is given up. Default 20000.
@@ -76,6 +83,8 @@ pub struct ControlKey {
 pub enum Values {
     /// A length, at least `SHORTEST` and at most 1 time the range of the links.
     Length(fn(&Control) -> Option<f64>),
+    /// A length from 0 to 1 time the range of the links.
+    Error(fn(&Control) -> Option<f64>),
     /// A time in seconds, from the first number to the second.
     Time(f64, f64, fn(&Control) -> Option<f64>),
     /// A number from 0 to this one.
@@ -103,6 +112,8 @@ pub const CONTROL: &[ControlKey] = &[
     key("clearance", Values::Length(|control| control.clearance)),
     key("service_radius", Values::Length(|control| control.service_radius)),
     key("step_radius", Values::Length(|control| control.step_radius)),
+    key("position_error", Values::Error(|control| control.position_error)),
+    key("motion_error", Values::Error(|control| control.motion_error)),
     key("residual_tolerance", Values::UpTo(1.0, |control| control.residual_tolerance)),
     key("max_steps", Values::Count(1_000_000_000, |control| control.max_steps)),
     key("period", Values::Time(1e-6, 1e6, |control| control.period)),
@@ -124,6 +135,7 @@ impl Values {
     pub fn number(&self, control: &Control) -> Option<f64> {
         match self {
             Values::Length(stated)
+            | Values::Error(stated)
             | Values::Time(_, _, stated)
             | Values::UpTo(_, stated)
             | Values::Share(stated)

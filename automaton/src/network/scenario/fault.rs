@@ -99,13 +99,19 @@ pub enum Problem {
          at least {least} to fall from 1 to 0"
     )]
     RangesTooClose { full_range: f64, max_range: f64, least: f64 },
-    /// δ too small against ρ (Remark 5.5).
+    /// e or m too large against ρ.
     #[error(
-        "{service_radius} is too small for clearance = {clearance}: two robots that hand \
-         over a task stay 2 clearances apart and must both be able to service it, so at \
-         least {least}"
+        "{error} is too large for clearance = {clearance}: at most half of it, {most}; raise the \
+         clearance"
     )]
-    ServiceRadiusTooSmall { service_radius: f64, clearance: f64, least: f64 },
+    ErrorTooLarge { error: f64, clearance: f64, most: f64 },
+    /// δ too small against ρ + e + m (Remark 5.5).
+    #[error(
+        "{service_radius} is too small for clearance = {clearance}{}: two robots that hand \
+         over a task stay 2 clearances apart and must both be able to service it, so at \
+         least {least}", told_margin(*margin)
+    )]
+    ServiceRadiusTooSmall { service_radius: f64, clearance: f64, margin: f64, least: f64 },
     /// σ > (u − 2ρ)/2 (footnote 6).
     #[error(
         "{step_radius} is too long a step: robots that cannot hear each other could meet \
@@ -141,15 +147,15 @@ pub enum Problem {
     /// A robot that touches a wall.
     #[error(
         "({x}, {y}) is only {distance:.6} away from a wall: robots keep a clearance of \
-         {clearance}"
+         {clearance}{}", told_margin(*margin)
     )]
-    TooCloseToWall { x: f64, y: f64, distance: f64, clearance: f64 },
+    TooCloseToWall { x: f64, y: f64, distance: f64, clearance: f64, margin: f64 },
     /// Robots that touch each other.
     #[error(
         "it is only {distance:.6} away from robot[{other}]: robots keep 2 clearances = \
-         {least} from each other"
+         {least} from each other{}", told_margin(2.0 * margin)
     )]
-    RobotsTooClose { other: usize, distance: f64, least: f64 },
+    RobotsTooClose { other: usize, distance: f64, least: f64, margin: f64 },
     /// A robot that no chain of links connects to an access point.
     #[error(
         "it is cut off: no chain of robots leads from it to an access point with links of \
@@ -171,6 +177,14 @@ pub enum Problem {
          the robots closer together"
     )]
     RatesTooHigh { missing: f64 },
+}
+
+/// What a length allows for `position_error` and `motion_error`.
+fn told_margin(margin: f64) -> String {
+    match margin {
+        0.0 => String::new(),
+        margin => format!(", {margin} of it for position_error and motion_error"),
+    }
 }
 
 impl Problem {

@@ -76,24 +76,26 @@ impl Ground<'_> {
             .collect()
     }
 
-    /// Robots closer than ρ to a wall.
+    /// Robots closer to a wall than the clearance that they keep.
     fn too_close_to_walls(&self) -> Vec<Fault> {
-        let clearance = self.site.settings.clearance;
+        let clearance = self.site.settings.planning_clearance();
+        let margin = clearance - self.site.settings.clearance;
         let workspace = &self.site.workspace;
         (self.robots.iter().enumerate())
             .filter(|&(_, &place)| workspace.contains(place))
             .map(|(index, &place)| (index, place, workspace.clearance(place)))
             .filter(|&(.., distance)| distance < clearance * (1.0 - ROUNDING))
             .map(|(index, Point { coords }, distance)| {
-                Problem::TooCloseToWall { x: coords.x, y: coords.y, distance, clearance }
+                Problem::TooCloseToWall { x: coords.x, y: coords.y, distance, clearance, margin }
                     .at(robot_key(index).key("position"))
             })
             .collect()
     }
 
-    /// Robots closer than 2ρ to one before them that keeps its distance itself.
+    /// Robots closer than two clearances to one before them that keeps its distance itself.
     fn robots_too_close(&self) -> Vec<Fault> {
-        let least = 2.0 * self.site.settings.clearance;
+        let least = 2.0 * self.site.settings.planning_clearance();
+        let margin = least / 2.0 - self.site.settings.clearance;
         let mut apart = Buckets::new(least);
         let mut faults = Vec::new();
         for (index, &place) in self.robots.iter().enumerate() {
@@ -102,7 +104,7 @@ impl Ground<'_> {
                 .min_by(|left, right| left.1.total_cmp(&right.1).then(left.0.cmp(&right.0)));
             match nearest {
                 Some((other, distance)) if distance < least * (1.0 - ROUNDING) => faults.push(
-                    Problem::RobotsTooClose { other, distance, least }
+                    Problem::RobotsTooClose { other, distance, least, margin }
                         .at(robot_key(index).key("position")),
                 ),
                 _ => apart.insert(index, place),

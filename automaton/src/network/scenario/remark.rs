@@ -75,7 +75,8 @@ impl fmt::Display for Remark {
             Remark::Task { remark: TaskRemark::Elsewhere, .. } => write!(
                 formatter,
                 "no robot can service it: no way leads to it from where the robots start; \
-                 passages narrower than 2 clearances are closed to them"
+                 passages narrower than 2 clearances are closed to them, where position_error and \
+                 motion_error add to the clearance"
             ),
             Remark::ThroughWalls { crossing, links } => write!(
                 formatter,
@@ -104,7 +105,7 @@ impl ValidScenario {
         let service_radius = site.settings.service_radius;
         let target = site.free_space.nearest(task);
         let gap = (target - task).norm();
-        if gap > service_radius {
+        if gap > site.settings.leash_radius() {
             let is_inside = site.workspace.contains(task);
             return Some(TaskRemark::TooDeep { is_inside, gap, service_radius });
         }
@@ -121,11 +122,11 @@ impl ValidScenario {
         let site = self.site();
         let robots: Vec<Point> = self.robot.iter().map(|robot| robot.position.into()).collect();
         let nodes: Vec<Point> = robots.iter().chain(&site.access_points).copied().collect();
-        let buckets = Buckets::of(&nodes, site.link.range());
+        let buckets = Buckets::of(&nodes, site.radio.range());
         let (mut links, mut crossing) = (0, 0);
         for (robot, &place) in robots.iter().enumerate() {
             let later = buckets.near(place).filter(|&(other, _)| other > robot);
-            for (_, other) in later.filter(|(_, o)| (o - place).norm() < site.link.range()) {
+            for (_, other) in later.filter(|(_, o)| (o - place).norm() < site.radio.range()) {
                 links += 1;
                 crossing += usize::from(site.workspace.segment_clearance(place, other) <= 0.0);
             }

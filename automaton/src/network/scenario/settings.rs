@@ -1,5 +1,7 @@
 //! The control settings with every default filled in.
 
+use pleach_continuous::geometry::Errors;
+
 use super::{Control, LinkRanges, MotionSolver, RoutingMethod, Scenario};
 
 /// The settings of the control scheme, none of them left open.
@@ -16,6 +18,8 @@ pub struct Settings {
     pub service_radius: f64,
     /// σ: radius of the trust region, eq. (21).
     pub step_radius: f64,
+    /// How far places and moves may be off: `position_error` and `motion_error`.
+    pub errors: Errors,
     /// c_min: residuals stay ≥ −c_min.
     pub residual_tolerance: f64,
     /// Control periods after which the mission is given up.
@@ -59,15 +63,20 @@ impl Settings {
         let &Scenario { link, control, .. } = scenario;
         let clearance =
             control.clearance.unwrap_or(link.full_range / Self::CLEARANCES_PER_FULL_RANGE);
+        let errors = Errors {
+            position: control.position_error.unwrap_or(0.0),
+            motion: control.motion_error.unwrap_or(0.0),
+        };
         Self {
             link,
             clearance,
             service_radius: control
                 .service_radius
-                .unwrap_or(Self::SERVICE_RADIUS_IN_CLEARANCES * clearance),
+                .unwrap_or_else(|| Self::usual_service_radius(clearance, &errors)),
             step_radius: control
                 .step_radius
                 .unwrap_or((link.max_range - link.full_range) / Self::STEPS_PER_SLOPE),
+            errors,
             residual_tolerance: control.residual_tolerance.unwrap_or(Self::RESIDUAL_TOLERANCE),
             max_steps: control.max_steps.unwrap_or(Self::MAX_STEPS),
             period: control.period.unwrap_or(Self::PERIOD),
@@ -81,10 +90,45 @@ impl Settings {
         }
     }
 
-    /// The length that no link of the tree exceeds, measured along geodesics:
-    /// R⁻¹(tree reliability).
+    /// 3 (ρ + e + m) + e + m: a replacer services as well, wherever the errors lead.
+    fn usual_service_radius(clearance: f64, errors: &Errors) -> f64 {
+        let kept = Self::SERVICE_RADIUS_IN_CLEARANCES * errors.planning_clearance(clearance);
+        kept + errors.position + errors.motion
+    }
+
+    /// ρ + e + m: the clearance that robots keep by what they know, so that they truly keep ρ from walls
+    /// and 2ρ from each other; see [`errors`](pleach_continuous::geometry::errors).
+    pub fn planning_clearance(&self) -> f64 {
+        self.errors.planning_clearance(self.clearance)
+    }
+
+    /// δ − e: a robot that measures itself within this distance of a place is truly within δ of it.
+    pub fn arrival_radius(&self) -> f64 {
+        self.service_radius - self.errors.position
+    }
+
+    /// δ − e − m: a move that is to end within this distance of a place ends truly within δ of it.
+    pub fn leash_radius(&self) -> f64 {
+        self.arrival_radius() - self.errors.motion
+    }
+
+    /// 2e: by how much a link may be longer than its ends measure it.
+    pub fn link_margin(&self) -> f64 {
+        2.0 * self.errors.position
+    }
+
+    /// 6e + 4m: by how much a link of the tree may be longer than the length up to which its ends go by
+    /// what they know. With both ends of it on the move, it may be measured longer by twice the
+    /// [stray](Errors::stray), 4e + 2m; as long as it is not measured longer than that, they may move
+    /// without making it longer by what they know, and it may truly be longer by 2e + 2m then.
+    pub fn length_margin(&self) -> f64 {
+        2.0 * self.errors.stray() + 2.0 * (self.errors.position + self.errors.motion)
+    }
+
+    /// The length that links of the tree do not exceed as their ends measure it, along geodesics:
+    /// R⁻¹(tree reliability), less [what errors add](Self::length_margin).
     pub fn longest_tree_link(&self) -> f64 {
-        self.link.distance_of(self.tree_reliability)
+        self.link.distance_of(self.tree_reliability) - self.length_margin()
     }
 
     /// The length up to which a link may be added to the tree. Both robots of it may still
@@ -100,6 +144,8 @@ impl From<Settings> for Control {
             clearance: Some(settings.clearance),
             service_radius: Some(settings.service_radius),
             step_radius: Some(settings.step_radius),
+            position_error: stated_if_any(settings.errors.position),
+            motion_error: stated_if_any(settings.errors.motion),
             residual_tolerance: Some(settings.residual_tolerance),
             max_steps: Some(settings.max_steps),
             period: Some(settings.period),
@@ -112,6 +158,11 @@ impl From<Settings> for Control {
             motion_solver: Some(settings.motion_solver),
         }
     }
+}
+
+/// An error that is 0 is left out.
+fn stated_if_any(error: f64) -> Option<f64> {
+    (error != 0.0).then_some(error)
 }
 
 impl Scenario {

@@ -52,7 +52,10 @@ impl ValidScenario {
             vec![Problem::LinkModel(broken.to_string()).at(KeyPath::root().key("link"))]
         })?;
         let site = placement::site(&scenario).map_err(|fault| vec![fault])?;
-        Self::on(scenario, site.with_link(model))
+        let site = site.with_link(model).map_err(|error| {
+            vec![Problem::LinkModel(error.to_string()).at(KeyPath::root().key("link"))]
+        })?;
+        Self::on(scenario, site)
     }
 
     fn on(scenario: Scenario, site: Site) -> Result<Self, InvalidScenario> {

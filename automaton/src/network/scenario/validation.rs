@@ -8,6 +8,9 @@ use super::{Fault, KeyPath, LinkModel, LinkRanges, Problem, Scenario, Settings};
 /// 2ρ without ever reaching it, so δ is at least this many clearances (2 in Remark 5.5).
 const LEAST_SERVICE_RADIUS_IN_CLEARANCES: f64 = 2.3;
 
+/// The largest error of a position or a move, in clearances.
+const MOST_ERROR_IN_CLEARANCES: f64 = 0.5;
+
 /// Relative slack of comparisons between decimal numbers as people write them: 0.023 passes for
 /// 2.3 · 0.01.
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -121,12 +124,9 @@ fn control_problem(values: Values, scenario: &Scenario, range: f64) -> Option<Pr
     let control = &scenario.control;
     match values {
         Values::Length(stated) => length_problem(stated(control)?, SHORTEST * range, range),
+        Values::Error(stated) => zero_or_more_problem(stated(control)?, range),
         Values::Time(least, most, stated) => length_problem(stated(control)?, least, most),
-        Values::UpTo(most, stated) => match stated(control)? {
-            value if value < 0.0 => Some(Problem::Negative { value }),
-            value if value > most => Some(Problem::OutOfRange { value, least: 0.0, most }),
-            _ => None,
-        },
+        Values::UpTo(most, stated) => zero_or_more_problem(stated(control)?, most),
         Values::Share(stated) => share_problem(stated(control)?),
         Values::Reliability(stated) => {
             let value = stated(control)?;
@@ -149,6 +149,15 @@ fn length_problem(value: f64, least: f64, most: f64) -> Option<Problem> {
         Some(Problem::OutOfRange { value, least, most })
     } else {
         None
+    }
+}
+
+/// What is wrong with a number that must be 0 or more and not above `most`.
+fn zero_or_more_problem(value: f64, most: f64) -> Option<Problem> {
+    match value {
+        value if value < 0.0 => Some(Problem::Negative { value }),
+        value if value > most => Some(Problem::OutOfRange { value, least: 0.0, most }),
+        _ => None,
     }
 }
 
@@ -212,13 +221,20 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
         let problem = Problem::RangesTooClose { full_range, max_range, least };
         return vec![problem.at(link_key("full_range"))];
     }
-    let Settings { clearance, service_radius, step_radius, tree_reliability, .. } = settings;
-    let least = LEAST_SERVICE_RADIUS_IN_CLEARANCES * clearance;
+    let errors = errors_are_small(&settings);
+    if !errors.is_empty() {
+        return errors;
+    }
+    let Settings { service_radius, step_radius, tree_reliability, errors, .. } = settings;
+    let clearance = settings.planning_clearance();
+    let margin = clearance - settings.clearance;
+    let least =
+        LEAST_SERVICE_RADIUS_IN_CLEARANCES * clearance + errors.stray() + 2.0 * errors.motion;
     let service = (service_radius < least * (1.0 - ROUNDING)).then(|| {
-        Problem::ServiceRadiusTooSmall { service_radius, clearance, least }
+        Problem::ServiceRadiusTooSmall { service_radius, clearance, margin, least }
             .at(control_key("service_radius"))
     });
-    let most = (max_range - 2.0 * clearance) / 2.0;
+    let most = (max_range - 2.0 * clearance - settings.link_margin()) / 2.0;
     let step = (step_radius > most * (1.0 + ROUNDING))
         .then(|| Problem::StepTooLong { step_radius, most }.at(control_key("step_radius")));
     let longest = settings.longest_tree_link();
@@ -227,6 +243,18 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
             .at(control_key("tree_reliability"))
     });
     [service, step, links].into_iter().flatten().collect()
+}
+
+/// Errors larger than a share of ρ: a robot would not know on which side of it another one is.
+fn errors_are_small(settings: &Settings) -> Vec<Fault> {
+    let clearance = settings.clearance;
+    let most = MOST_ERROR_IN_CLEARANCES * clearance;
+    let stated =
+        [("position_error", settings.errors.position), ("motion_error", settings.errors.motion)];
+    let is_large = |&(_, error): &(&str, f64)| error > most * (1.0 + ROUNDING);
+    (stated.into_iter().filter(is_large))
+        .map(|(key, error)| Problem::ErrorTooLarge { error, clearance, most }.at(control_key(key)))
+        .collect()
 }
 
 /// What keeps `name` from being the name of a file wherever the program runs.

@@ -27,28 +27,53 @@ impl MotionProblem {
         let target = self.shrink_to_feasible(self.position + step);
         Motion { target, outcome: MotionOutcome::Optimal }
     }
+
+    /// Solves (21) for a robot that may be outside of its constraints, because it has measured itself
+    /// elsewhere than it was to be: its next place meets all of them, or it stays.
+    ///
+    /// On the way there it is still outside. That this does no harm is a matter of the constraints, see
+    /// [`errors`](crate::geometry::errors).
+    pub fn solve_from_outside(&self) -> Motion {
+        if self.admits(&self.position) {
+            return self.solve_exact();
+        }
+        let goal = self.waypoint - self.position;
+        let constraints = relevant_constraints(self);
+        match nearest_feasible(goal, &constraints, f64::INFINITY).map(|step| self.position + step) {
+            Some(target) if self.admits(&target) => {
+                Motion { target, outcome: MotionOutcome::Optimal }
+            }
+            _ => Motion::stay(self, MotionOutcome::Infeasible),
+        }
+    }
 }
 
 /// The point nearest to `goal` that meets all constraints; the origin meets them.
 pub(super) fn project(goal: Vector, constraints: &[Constraint]) -> Vector {
+    nearest_feasible(goal, constraints, goal.norm_squared()).unwrap_or_else(Vector::zeros)
+}
+
+/// The point nearest to `goal` that meets all constraints, if one does. Corners count whose squared
+/// distance to the goal is less than `limit`.
+fn nearest_feasible(goal: Vector, constraints: &[Constraint], limit: f64) -> Option<Vector> {
     let admitted = |step: &Vector| {
         constraints.iter().all(|constraint| constraint.margin(step) >= -USABLE_TOLERANCE)
     };
     if admitted(&goal) {
-        return goal;
+        return Some(goal);
     }
     let violated = || constraints.iter().enumerate().filter(|(_, c)| c.margin(&goal) < 0.0);
     // Nearest to the goal on one constraint and feasible for all: nothing feasible is nearer.
     for (_, constraint) in violated() {
         let step = constraint.project(goal);
         if admitted(&step) {
-            return step;
+            return Some(step);
         }
     }
     // Two active constraints. The goal violates at least one of them: if it met both, it would be
     // its own projection onto their intersection.
-    let mut best = Vector::zeros();
-    let mut least = goal.norm_squared();
+    let mut best = None;
+    let mut least = limit;
     for (index, constraint) in violated() {
         for (other_index, other) in constraints.iter().enumerate() {
             if other_index == index {
@@ -57,7 +82,7 @@ pub(super) fn project(goal: Vector, constraints: &[Constraint]) -> Vector {
             for step in constraint.crossings(other).into_iter().flatten() {
                 let distance = (step - goal).norm_squared();
                 if distance < least && admitted(&step) {
-                    (best, least) = (step, distance);
+                    (best, least) = (Some(step), distance);
                 }
             }
         }

@@ -106,7 +106,9 @@ fn is_serviced(task: usize, robot: usize, scene: &Scene) -> Result<(), Dispute> 
 /// No member has moved to speak of in the period that ends here.
 fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
     let Some(previous) = scene.previous else { return Ok(()) };
-    let bound = STILL * scene.limits.clearance().min(scene.limits.step_radius());
+    let settings = scene.limits.settings();
+    let bound = (STILL * settings.planning_clearance().min(settings.step_radius))
+        .max(settings.errors.stray());
     for &robot in team {
         let moved = (scene.snapshot.positions[robot] - previous.positions[robot]).norm();
         at_most(moved, bound, &[robot], || {
@@ -180,7 +182,8 @@ fn break_points_by_tree(path: &[usize], ledger: &Ledger, snapshot: &Snapshot) ->
 
 /// Eq. (26): each member is within δ of the place of the robot ahead, or stands right behind that.
 pub(super) fn has_come(walk: &Walk, subgroup: usize, scene: &Scene) -> Result<(), Dispute> {
-    let (radius, contact) = (scene.limits.service_radius(), CONTACT * scene.limits.clearance());
+    let contact = CONTACT * scene.limits.settings().planning_clearance();
+    let radius = scene.limits.service_radius();
     for place in walk.subgroup(subgroup).unwrap_or_default() {
         let (robot, ahead) = (walk.path[place], walk.path[place + 1]);
         let position = scene.snapshot.positions[robot];
@@ -207,7 +210,7 @@ fn touch(mover: usize, parked: usize, scene: &Scene) -> Result<(), Dispute> {
     // From the offer to the end the mover may go on, if that takes more than one period.
     let periods = EXCHANGE_ROUNDS.div_ceil(settings.rounds_per_period.max(1));
     let way = periods.saturating_sub(1) as f64 * settings.step_radius;
-    let bound = CONTACT * scene.limits.clearance() + way;
+    let bound = CONTACT * settings.planning_clearance() + way;
     at_most(distance, bound, &[mover, parked], || {
         format!(
             "robots {mover} and {parked} exchange duties at a distance of {distance:.6}, more than \

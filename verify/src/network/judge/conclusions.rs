@@ -343,10 +343,13 @@ impl Conclusions {
             let Some(place) = places.of(robot).filter(|_| !teams().any(|it| *it == robot)) else {
                 continue;
             };
-            let settled = (position - place).norm() <= SETTLED * limits.clearance() * (1.0 - 1e-6);
+            let settings = limits.settings();
+            let clearance = settings.planning_clearance();
+            let near_enough = SETTLED * clearance * (1.0 - 1e-6) + settings.errors.stray();
+            let settled = (position - place).norm() <= near_enough;
             let is_near = |mover: &usize| {
                 let distance = (snapshot.positions[*mover] - position).norm();
-                distance <= MAKING_WAY * limits.clearance()
+                distance <= MAKING_WAY * clearance
             };
             let sets_out_early = ledger.walk.is_none()
                 && ledger.stage() == Stage::Calling

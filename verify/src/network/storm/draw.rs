@@ -1,8 +1,9 @@
 //! Storms by seed, kind by kind.
 
-use pleach_automaton::network::scenario::ValidScenario;
+use pleach_automaton::network::scenario::{InvalidScenario, Settings, ValidScenario};
 use pleach_automaton::network::{Crash, Trouble};
 use pleach_automaton::node::{Partition, Weather};
+use pleach_continuous::geometry::Errors;
 
 use super::Storm;
 use crate::draws::Draws;
@@ -36,6 +37,8 @@ pub enum Kind {
     Motion(f64),
     /// Positions are measured with an error, this share of the radio's range.
     Position(f64),
+    /// Positions and moves each have an error, this share of the clearance ρ.
+    Errors(f64),
     /// All that can happen to messages, at once.
     Radio,
     /// Everything at once.
@@ -65,6 +68,7 @@ impl Kind {
         Kind::Motion(0.3),
         Kind::Position(0.001),
         Kind::Position(0.003),
+        Kind::Errors(0.25),
         Kind::Everything,
     ];
 
@@ -75,9 +79,45 @@ impl Kind {
             Kind::Loss { rate, later: true } => format!("loss {}% later", rate * 100.0),
             Kind::Motion(share) => format!("motion {}% of a step", share * 100.0),
             Kind::Position(share) => format!("position {}% of u", share * 100.0),
+            Kind::Errors(share) => format!("position and motion {}% of ρ", share * 100.0),
             other => format!("{other:?}").to_lowercase(),
         }
     }
+
+    /// How far positions and moves are off in a storm of this kind.
+    pub fn errors(self, scenario: &ValidScenario) -> Errors {
+        let Settings { clearance, step_radius, link, .. } = *scenario.settings();
+        match self {
+            Kind::Motion(share) => Errors { position: 0.0, motion: share * step_radius },
+            Kind::Position(share) => Errors { position: share * link.max_range, motion: 0.0 },
+            Kind::Errors(share) => {
+                Errors { position: share * clearance, motion: share * clearance }
+            }
+            _ => Errors::default(),
+        }
+    }
+}
+
+/// The same scenario where robots allow for the errors of this kind of storm; δ grows where it would be
+/// too small for that.
+///
+/// # Errors
+/// When the robots have no room for these errors where they start.
+pub fn allowing_for(
+    kind: Kind,
+    scenario: &ValidScenario,
+) -> Result<ValidScenario, InvalidScenario> {
+    let errors = kind.errors(scenario);
+    if errors.are_none() {
+        return Ok(scenario.clone());
+    }
+    let mut stated = scenario.scenario().clone();
+    stated.control.position_error = Some(errors.position);
+    stated.control.motion_error = Some(errors.motion);
+    let service_radius = stated.control.service_radius.take();
+    let usual = Settings::resolve(&stated).service_radius;
+    stated.control.service_radius = service_radius.map(|stated| stated.max(usual));
+    ValidScenario::new(stated)
 }
 
 /// Seconds after which faults that come later begin.
@@ -87,7 +127,6 @@ const LATER: f64 = 20.0;
 pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> Storm {
     let mut draws = Draws(seed.wrapping_mul(0xD1B5_4A32_D192_ED03) ^ duration.to_bits());
     let robots = scenario.robot.len();
-    let (step, range) = (scenario.settings().step_radius, scenario.settings().link.max_range);
     let mut storm = Storm { seed, ..Storm::default() };
     let weather = &mut storm.weather;
     match kind {
@@ -107,12 +146,10 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
             let joins = Some(draws.between(5.0, duration / 2.0));
             storm.troubles = vec![(draws.below(robots), Trouble { joins, ..Trouble::default() })];
         }
-        Kind::Motion(share) => {
-            let trouble = Trouble { motion_error: share * step, ..Trouble::default() };
-            storm.troubles = (0..robots).map(|robot| (robot, trouble.clone())).collect();
-        }
-        Kind::Position(share) => {
-            let trouble = Trouble { position_error: share * range, ..Trouble::default() };
+        Kind::Motion(_) | Kind::Position(_) | Kind::Errors(_) => {
+            let Errors { position, motion } = kind.errors(scenario);
+            let trouble =
+                Trouble { position_error: position, motion_error: motion, ..Trouble::default() };
             storm.troubles = (0..robots).map(|robot| (robot, trouble.clone())).collect();
         }
         Kind::Everything => {

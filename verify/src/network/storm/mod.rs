@@ -22,7 +22,7 @@ use pleach_automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use pleach_continuous::Point;
 
 use super::Violation;
-pub use draw::{Kind, draw};
+pub use draw::{Kind, allowing_for, draw};
 pub use judge::Judge;
 pub use shrink::shrink;
 

@@ -1,0 +1,183 @@
+//! `pleach launch`: a mission with every node as a process on this machine.
+
+use crate::arguments::{Kill, LaunchArguments, NetworkArguments, NodeArguments, Seconds, Session};
+use crate::process::digest_of;
+use crate::transport::{Endpoints, Interest, Transport};
+use crate::watch::{Viewing, planned, show};
+use pleach::cli::output::tell;
+use pleach::cli::status::{Failure, Status};
+use std::fs;
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+/// How long a launched process, and who watches it, waits for the others.
+const WAIT: Duration = Duration::from_secs(60);
+
+/// Launches a mission.
+///
+/// # Errors
+/// What keeps it from being launched.
+pub fn run(arguments: &LaunchArguments) -> Result<Status, Failure> {
+    let planned = planned(&arguments.scenario)?;
+    let robots = planned.scenario.robot.len();
+    if let Some(kill) = arguments.kill.iter().find(|kill| kill.robot >= robots) {
+        let last = robots.saturating_sub(1);
+        let wrong = format!("--kill names robot {}: robots go from 0 to {last}", kill.robot);
+        return Err(Failure::Usage(wrong));
+    }
+    let digest = digest_of(&planned.scenario)?;
+    let session = format!("launch-{}", std::process::id());
+    // Whoever watches is where the others meet; packets do not go through it.
+    let meeting_point = format!("tcp/127.0.0.1:{}", free_port()?);
+    let network = NetworkArguments {
+        session: Session(session.clone()),
+        listen: vec![meeting_point.clone()],
+        connect: Vec::new(),
+        multicast: false,
+        zenoh: None,
+        wait: Seconds(WAIT),
+    };
+    let defaults = Endpoints { listen: &meeting_point, connect: None };
+    let transport = Transport::open(&network, defaults, &digest, Interest::Reports)?;
+    let folder = Folder::new(&session)?;
+    let mut fleet = Fleet {
+        program: std::env::current_exe()?,
+        scenario: arguments.scenario.clone(),
+        session,
+        meeting_point,
+        options: arguments.node.clone(),
+        folder,
+        access_points: None,
+        robots: Vec::new(),
+    };
+    fleet.start(robots)?;
+    let mut kills = arguments.kill.clone();
+    let mut returns = Vec::new();
+    let has_faults = arguments.node.loss.0 > 0.0 || !arguments.kill.is_empty();
+    let viewing = Viewing { outputs: &arguments.outputs, wait: WAIT, has_faults };
+    show(&planned, viewing, &transport, &mut |step| {
+        fleet.check()?;
+        let due = |kill: &mut Kill| kill.from <= step;
+        for kill in kills.extract_if(.., due) {
+            fleet.kill(kill.robot)?;
+            returns.extend(kill.to.map(|to| (to, kill.robot)));
+        }
+        for (_, robot) in returns.extract_if(.., |(to, _)| *to <= step) {
+            fleet.start_robot(robot)?;
+        }
+        Ok(())
+    })
+}
+
+/// A port that is free now.
+fn free_port() -> Result<u16, Failure> {
+    let listener = TcpListener::bind("127.0.0.1:0");
+    let port = listener.and_then(|listener| listener.local_addr()).map(|address| address.port());
+    port.map_err(|error| Failure::Internal(format!("no port of 127.0.0.1 is free: {error}")))
+}
+
+/// A folder that is removed with its value: robots write down their positions in it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Result<Self, Failure> {
+        let path = std::env::temp_dir().join(format!("pleach-{name}"));
+        match fs::create_dir_all(&path) {
+            Ok(()) => Ok(Folder(path)),
+            Err(source) => Err(Failure::Creation { path, source }),
+        }
+    }
+
+    fn state_of(&self, robot: usize) -> PathBuf {
+        self.0.join(format!("robot-{robot}.json"))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The processes of a mission. They end with this value.
+struct Fleet {
+    program: PathBuf,
+    scenario: PathBuf,
+    session: String,
+    meeting_point: String,
+    options: NodeArguments,
+    folder: Folder,
+    access_points: Option<Child>,
+    robots: Vec<Option<Child>>,
+}
+
+impl Fleet {
+    fn start(&mut self, robots: usize) -> Result<(), Failure> {
+        self.access_points = Some(self.process("access-point", &[])?);
+        self.robots.resize_with(robots, || None);
+        (0..robots).try_for_each(|robot| self.start_robot(robot))
+    }
+
+    fn start_robot(&mut self, robot: usize) -> Result<(), Failure> {
+        let (id, state) = (robot.to_string(), self.folder.state_of(robot));
+        let process = self.process("robot", &[("--id", Path::new(&id)), ("--state", &state)])?;
+        self.robots[robot] = Some(process);
+        Ok(())
+    }
+
+    fn process(&self, command: &str, more: &[(&str, &Path)]) -> Result<Child, Failure> {
+        let NodeArguments { limit, loss, seed, real_time } = &self.options;
+        let mut process = Command::new(&self.program);
+        process.arg(command).arg(&self.scenario);
+        for (name, value) in more {
+            process.arg(name).arg(value);
+        }
+        process.args(["--session", &self.session, "--listen", "tcp/127.0.0.1:0"]);
+        process.args(["--connect", &self.meeting_point]);
+        process.args(["--wait", &WAIT.as_secs_f64().to_string()]);
+        process.args(["--limit", &limit.0.as_secs_f64().to_string()]);
+        process.args(["--loss", &loss.0.to_string(), "--seed", &seed.to_string()]);
+        process.args(real_time.then_some("--real-time"));
+        process.stdin(Stdio::null()).stdout(Stdio::null());
+        let failed = |error| {
+            let program = self.program.display();
+            Failure::Internal(format!("{program} {command} cannot be started: {error}"))
+        };
+        process.spawn().map_err(failed)
+    }
+
+    /// A process that has failed ends the mission.
+    fn check(&mut self) -> Result<(), Failure> {
+        let processes = self.robots.iter_mut().chain([&mut self.access_points]);
+        for process in processes.flatten() {
+            if let Some(status) = process.try_wait()?
+                && status.code().is_none_or(|code| !matches!(code, 0 | 3))
+            {
+                let id = process.id();
+                return Err(Failure::Internal(format!("process {id} has ended with {status}")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Kills the process of a robot, without a warning.
+    fn kill(&mut self, robot: usize) -> Result<(), Failure> {
+        if let Some(mut process) = self.robots[robot].take() {
+            process.kill()?;
+            process.wait()?;
+            tell(format_args!("the process of robot {robot} is killed"));
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Fleet {
+    fn drop(&mut self) {
+        let mut processes: Vec<&mut Child> =
+            self.robots.iter_mut().chain([&mut self.access_points]).flatten().collect();
+        processes.iter_mut().for_each(|process| drop(process.kill()));
+        processes.iter_mut().for_each(|process| drop(process.wait()));
+    }
+}

@@ -1,0 +1,468 @@
+//! A process with its nodes: it waits for the others, takes part in one control period after another,
+//! and ends with the mission.
+
+use crate::arguments::{AccessPointArguments, MEETING_POINT, NodeArguments, RobotArguments};
+use crate::crew::Crew;
+use crate::lockstep::{Lockstep, after};
+use crate::memory::Memory;
+use crate::packet::{LONGEST_PACKET, Packet, Refusals, Stamp};
+use crate::receiver::Receiver;
+use crate::report::{Report, Tally};
+use crate::transport::{Arrival, Endpoints, Hello, Interest, Sender, Transport, digest};
+use pleach::automaton::network::record::MissionEvent;
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::node::NodeId;
+use pleach::cli::interrupt::Interrupt;
+use pleach::cli::output::tell;
+use pleach::cli::status::{Failure, Status};
+use pleach::continuous::Point;
+use pleach::scenario_file;
+use std::collections::BTreeSet;
+use std::fmt::Display;
+use std::path::Path;
+use std::thread;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+/// How often a process says hello until it runs, and afterwards.
+const HELLO_WHILE_WAITING: Duration = Duration::from_millis(100);
+const HELLO_WHILE_RUNNING: Duration = Duration::from_secs(1);
+/// How soon a process sees that it is to end.
+const GLANCE: Duration = Duration::from_millis(100);
+/// More exchanges in one control period are taken for endless.
+const MOST_EXCHANGES: usize = 100_000;
+
+/// Runs a robot.
+///
+/// # Errors
+/// What keeps it from taking part.
+pub fn run_robot(arguments: &RobotArguments) -> Result<Status, Failure> {
+    let scenario = scenario_file::read(&arguments.scenario)?;
+    let id = arguments.id;
+    let count = scenario.robot.len();
+    if id >= count {
+        return Err(Failure::Usage(no_such("robot", id, count, &arguments.scenario)));
+    }
+    let digest = digest_of(&scenario)?;
+    let start = scenario.robot[id].position;
+    let memory = arguments.state.as_deref();
+    let memory = memory.map(|path| Memory::open(path, &digest, id, start)).transpose()?;
+    let place = memory.as_ref().map_or(start, Memory::position);
+    let crew = Crew::robot(&scenario, id, place.into());
+    let defaults = Endpoints { listen: "tcp/127.0.0.1:0", connect: Some(MEETING_POINT) };
+    let transport = Transport::open(&arguments.network, defaults, &digest, Interest::Packets)?;
+    let parts = Parts { crew, memory, transport, digest, wait: arguments.network.wait.0 };
+    Process::new(&scenario, parts, &arguments.node)?.run()
+}
+
+/// Runs the access points of a scenario, or one of them.
+///
+/// # Errors
+/// What keeps them from taking part.
+pub fn run_access_point(arguments: &AccessPointArguments) -> Result<Status, Failure> {
+    let scenario = scenario_file::read(&arguments.scenario)?;
+    let count = scenario.access_point.len();
+    let numbers = match arguments.id {
+        None => 0..count,
+        Some(id) if id < count => id..id + 1,
+        Some(id) => {
+            return Err(Failure::Usage(no_such("access point", id, count, &arguments.scenario)));
+        }
+    };
+    let digest = digest_of(&scenario)?;
+    let crew = Crew::access_points(&scenario, numbers).map_err(internal)?;
+    let defaults = match arguments.id {
+        None | Some(0) => Endpoints { listen: MEETING_POINT, connect: None },
+        _ => Endpoints { listen: "tcp/127.0.0.1:0", connect: Some(MEETING_POINT) },
+    };
+    let transport = Transport::open(&arguments.network, defaults, &digest, Interest::Packets)?;
+    let parts = Parts { crew, memory: None, transport, digest, wait: arguments.network.wait.0 };
+    Process::new(&scenario, parts, &arguments.node)?.run()
+}
+
+fn no_such(kind: &str, id: usize, count: usize, scenario: &Path) -> String {
+    let last = count.saturating_sub(1);
+    format!("{}: there is no {kind} {id}: --id goes from 0 to {last}", scenario.display())
+}
+
+/// The digest of a scenario.
+///
+/// # Errors
+/// Never with a scenario that is valid.
+pub fn digest_of(scenario: &ValidScenario) -> Result<String, Failure> {
+    digest(scenario).map_err(internal)
+}
+
+fn internal(error: impl Display) -> Failure {
+    Failure::Internal(error.to_string())
+}
+
+/// A node as messages for people call it.
+pub fn name_of(scenario: &ValidScenario, node: NodeId) -> String {
+    let (robots, access_points) = (scenario.robot.len(), scenario.access_point.len());
+    match node.checked_sub(robots) {
+        None => format!("robot {node}"),
+        Some(number) if number < access_points => format!("access point {number}"),
+        Some(_) => "the user".into(),
+    }
+}
+
+/// What a process is made of.
+struct Parts {
+    crew: Crew,
+    memory: Option<Memory>,
+    transport: Transport,
+    digest: String,
+    wait: Duration,
+}
+
+struct Process<'a> {
+    scenario: &'a ValidScenario,
+    parts: Parts,
+    options: &'a NodeArguments,
+    ids: Vec<NodeId>,
+    senders: Vec<Sender>,
+    lockstep: Lockstep,
+    receiver: Receiver,
+    refusals: Refusals,
+    given_up: u64,
+    started: u64,
+    hears_all: bool,
+    is_running: bool,
+    last_hello: Option<Instant>,
+    /// Nodes with other scenarios that have been told of.
+    strangers: BTreeSet<NodeId>,
+    events: Vec<Vec<(u32, u32, MissionEvent)>>,
+    interrupt: Interrupt,
+}
+
+/// How a control period ends for a process.
+enum Period {
+    /// The next one follows.
+    Over,
+    /// All nodes know that the mission is over.
+    Last,
+    /// A signal has come.
+    Interrupted,
+}
+
+impl<'a> Process<'a> {
+    fn new(
+        scenario: &'a ValidScenario,
+        mut parts: Parts,
+        options: &'a NodeArguments,
+    ) -> Result<Self, Failure> {
+        let ids = parts.crew.ids();
+        let senders = ids.iter().map(|&id| parts.transport.sender(id));
+        let senders = senders.collect::<Result<Vec<_>, _>>()?;
+        let site = scenario.site();
+        let starts = scenario.robot.iter().map(|robot| Point::from(robot.position));
+        let user = site.access_points.first().copied();
+        let bodies = starts.chain(site.access_points.iter().copied()).chain(user).collect();
+        let seed = options.seed.rotate_left(32) ^ ids.first().map_or(0, |id| *id as u64 + 1);
+        let since = SystemTime::now().duration_since(UNIX_EPOCH);
+        Ok(Process {
+            scenario,
+            options,
+            senders,
+            lockstep: Lockstep::new(ids.iter().copied()),
+            receiver: Receiver::new(site, bodies, options.loss.0, seed),
+            refusals: Refusals::default(),
+            given_up: 0,
+            started: since.map_or(0, |since| since.as_nanos() as u64),
+            hears_all: false,
+            is_running: false,
+            last_hello: None,
+            strangers: BTreeSet::new(),
+            events: vec![Vec::new(); ids.len()],
+            interrupt: Interrupt::listen()?,
+            ids,
+            parts,
+        })
+    }
+
+    fn run(mut self) -> Result<Status, Failure> {
+        let Some(mut period) = self.wait_for_others()? else { return Ok(Status::Unserviced) };
+        self.is_running = true;
+        let status = loop {
+            let begin = Instant::now();
+            match self.take_part_in(period)? {
+                Period::Over => {}
+                Period::Last => break Status::Done,
+                Period::Interrupted => break Status::Unserviced,
+            }
+            self.move_on(begin)?;
+            period += 1;
+            if period as usize >= self.scenario.site().settings.max_steps {
+                break Status::Done;
+            }
+        };
+        self.parts.transport.count_overflow(&mut self.refusals);
+        if self.refusals.total() > 0 {
+            tell(format_args!("{}: {}", self.own_name(), self.refusals));
+        }
+        Ok(status)
+    }
+
+    fn own_name(&self) -> String {
+        let first = self.ids.first().copied().unwrap_or_default();
+        name_of(self.scenario, first)
+    }
+
+    // ---- Before it runs ----------------------------------------------------------------------
+
+    /// Waits until all nodes of the scenario are there, or the mission is seen to go on. Says which
+    /// control period is the first; none after a signal.
+    fn wait_for_others(&mut self) -> Result<Option<u32>, Failure> {
+        let deadline = Instant::now() + self.parts.wait;
+        let count = self.scenario.robot.len() + self.scenario.access_point.len() + 1;
+        let own = || self.ids.iter().copied();
+        // The nodes that are heard, and those that say that they hear all others.
+        let (mut heard, mut ready): (BTreeSet<NodeId>, BTreeSet<NodeId>) =
+            (own().collect(), own().collect());
+        loop {
+            if self.interrupt.signal().is_some() {
+                return Ok(None);
+            }
+            self.say_hello();
+            if let Some(arrival) = self.parts.transport.next_within(HELLO_WHILE_WAITING / 4) {
+                if let Arrival::Hello(from, hello) = &arrival
+                    && !hello.is_running
+                    && hello.digest == self.parts.digest
+                    && *from < count
+                {
+                    heard.insert(*from);
+                    ready.extend(hello.hears_all.then_some(*from));
+                    self.lockstep.expect(*from);
+                }
+                self.take(arrival)?;
+            }
+            if let Some(period) = self.first_period() {
+                return Ok(Some(period));
+            }
+            let is_late = Instant::now() >= deadline;
+            let goes_on = self.lockstep.earliest().is_some();
+            self.hears_all = heard.len() == count;
+            if !goes_on && (ready.len() == count || is_late && heard.len() > self.ids.len()) {
+                self.last_hello = None;
+                self.say_hello();
+                return Ok(Some(0));
+            }
+            if is_late {
+                return Err(Failure::Usage(self.nobody_is_heard()));
+            }
+        }
+    }
+
+    /// The control period in which a process can begin that has heard packets: the next one, if the
+    /// mission goes on already.
+    fn first_period(&self) -> Option<u32> {
+        let earliest = self.lockstep.earliest()?;
+        let first = Stamp { period: 0, round: 1, answer: 0 };
+        if earliest == first { Some(0) } else { self.lockstep.later_period(earliest.period) }
+    }
+
+    fn nobody_is_heard(&self) -> String {
+        let (own, seconds) = (self.own_name(), self.parts.wait.as_secs_f64());
+        let Some(name) = self.strangers.first().map(|_| &self.scenario.name) else {
+            return format!(
+                "{own} has heard no other node within {seconds} s: are they started, with the same \
+                 --session, and does --connect name an endpoint at which one listens?"
+            );
+        };
+        let others = self.strangers.len();
+        format!(
+            "{own} has heard no other node with the scenario {name:?} within {seconds} s, and {others} \
+             with another one"
+        )
+    }
+
+    fn say_hello(&mut self) {
+        let pause = if self.is_running { HELLO_WHILE_RUNNING } else { HELLO_WHILE_WAITING };
+        if self.last_hello.is_some_and(|last| last.elapsed() < pause) {
+            return;
+        }
+        self.last_hello = Some(Instant::now());
+        for (id, sender) in self.ids.iter().zip(&self.senders) {
+            sender.say_hello(&Hello {
+                name: name_of(self.scenario, *id),
+                scenario: self.scenario.name.clone(),
+                digest: self.parts.digest.clone(),
+                started: self.started,
+                hears_all: self.hears_all,
+                is_running: self.is_running,
+            });
+        }
+    }
+
+    // ---- What arrives ------------------------------------------------------------------------
+
+    fn take(&mut self, arrival: Arrival) -> Result<(), Failure> {
+        let count = self.scenario.robot.len() + self.scenario.access_point.len() + 1;
+        let taken = match arrival {
+            Arrival::Packet(from, _) | Arrival::Hello(from, _) if from >= count => {
+                Err(crate::packet::Refusal::NoSuchNode)
+            }
+            Arrival::Packet(from, bytes) => match Packet::decode(&bytes, count) {
+                Ok(_) if self.ids.contains(&from) && !self.is_running => {
+                    return Err(self.runs_already(from));
+                }
+                packet => packet.and_then(|packet| self.lockstep.receive(from, packet)),
+            },
+            Arrival::Hello(from, hello) => return self.take_hello(from, hello),
+            Arrival::Refused(refusal) => Err(refusal),
+            Arrival::Report(..) | Arrival::Alive(..) => Ok(()),
+        };
+        if let Err(refusal) = taken {
+            self.refusals.count(refusal);
+        }
+        Ok(())
+    }
+
+    fn take_hello(&mut self, from: NodeId, hello: Hello) -> Result<(), Failure> {
+        if hello.digest != self.parts.digest {
+            if self.strangers.insert(from) {
+                let Hello { name, scenario, digest, .. } = hello;
+                let other = format!("{name:?} of this session has the scenario {scenario:?}");
+                let own = format!("{:?} ({})", self.scenario.name, self.parts.digest);
+                let rule = "all processes start with the same file";
+                tell(format_args!("warning: {other} ({digest}) and not {own}; {rule}"));
+            }
+        } else if self.ids.contains(&from) && hello.started != self.started {
+            // Of two processes that wait, the one that was started later gives way.
+            if !self.is_running && (hello.is_running || hello.started < self.started) {
+                return Err(self.runs_already(from));
+            }
+        }
+        Ok(())
+    }
+
+    fn runs_already(&self, node: NodeId) -> Failure {
+        let name = name_of(self.scenario, node);
+        let remedy = "end that process, or choose another --session or --id";
+        Failure::Usage(format!("{name} of this session has a process already: {remedy}"))
+    }
+
+    // ---- A control period --------------------------------------------------------------------
+
+    fn take_part_in(&mut self, period: u32) -> Result<Period, Failure> {
+        self.say_hello();
+        self.parts.crew.begin_period();
+        self.events.iter_mut().for_each(Vec::clear);
+        let mut stamp = Stamp { period, round: 1, answer: 0 };
+        let mut heard = Vec::new();
+        for _ in 0..MOST_EXCHANGES {
+            self.lockstep.go_on_to(stamp);
+            self.parts.crew.hear(&heard).map_err(internal)?;
+            if stamp.answer == 0 {
+                self.parts.crew.tick(stamp.round).map_err(internal)?;
+            }
+            let mut packets = self.send(stamp)?;
+            if !self.wait_for_packets(stamp)? {
+                return Ok(Period::Interrupted);
+            }
+            packets.extend(self.lockstep.take());
+            packets.sort_by_key(|(from, _)| *from);
+            let Some(next) = after(stamp, &packets) else {
+                self.report(period)?;
+                let is_last = packets.iter().all(|(_, packet)| packet.is_over);
+                return Ok(if is_last { Period::Last } else { Period::Over });
+            };
+            heard = self.receiver.messages(&self.ids, &packets, &mut self.refusals);
+            stamp = next;
+        }
+        Err(internal(format!(
+            "control period {period} has not ended in {MOST_EXCHANGES} exchanges"
+        )))
+    }
+
+    /// Sends the packets of a round, which are returned.
+    fn send(&mut self, stamp: Stamp) -> Result<Vec<(NodeId, Packet)>, Failure> {
+        let mut packets = Vec::new();
+        let seats = self.parts.crew.seats_mut().iter_mut();
+        for ((seat, sender), events) in seats.zip(&self.senders).zip(&mut self.events) {
+            let told = seat.events().into_iter();
+            events.extend(told.map(|event| (stamp.round, stamp.answer, event)));
+            let (letters, asks) = seat.letters().map_err(internal)?;
+            let packet = Packet {
+                stamp,
+                next: seat.next_after(stamp.round),
+                asks,
+                is_over: seat.is_over(),
+                position: seat.body().into(),
+                letters,
+            };
+            let bytes = packet.encode().map_err(internal)?;
+            if bytes.len() > LONGEST_PACKET {
+                let length = bytes.len();
+                return Err(internal(format!(
+                    "a packet has {length} bytes, more than {LONGEST_PACKET}"
+                )));
+            }
+            sender.send(bytes);
+            packets.push((seat.id, packet));
+        }
+        Ok(packets)
+    }
+
+    /// Waits until the packets of all others have come, or the time limit has passed. Says whether the
+    /// process goes on.
+    fn wait_for_packets(&mut self, stamp: Stamp) -> Result<bool, Failure> {
+        let deadline = Instant::now() + self.options.limit.0;
+        while self.lockstep.missing().next().is_some() && !self.lockstep.is_overtaken() {
+            if self.interrupt.signal().is_some() {
+                return Ok(false);
+            }
+            let rest = deadline.saturating_duration_since(Instant::now());
+            match self.parts.transport.next_within(rest.min(GLANCE)) {
+                Some(arrival) => self.take(arrival)?,
+                None if rest.is_zero() => {
+                    for node in self.lockstep.give_up() {
+                        self.given_up += 1;
+                        let (own, other) = (self.own_name(), name_of(self.scenario, node));
+                        let period = stamp.period;
+                        tell(format_args!("k = {period:<6} {own} goes on without {other}"));
+                    }
+                }
+                None => {}
+            }
+        }
+        Ok(self.interrupt.signal().is_none())
+    }
+
+    fn report(&mut self, period: u32) -> Result<(), Failure> {
+        self.parts.transport.count_overflow(&mut self.refusals);
+        let tally = Tally {
+            refused: self.refusals.total(),
+            late: self.lockstep.late(),
+            lost: self.receiver.lost(),
+            given_up: self.given_up,
+        };
+        let seats = self.parts.crew.seats_mut().iter().zip(&self.senders).zip(&mut self.events);
+        for ((seat, sender), events) in seats {
+            let report = Report {
+                step: period as usize,
+                robot: seat.robot_report(),
+                events: std::mem::take(events),
+                end: seat.announced_end().map(Into::into),
+                tally,
+            };
+            sender.report(serde_json::to_vec(&report).map_err(internal)?);
+        }
+        Ok(())
+    }
+
+    /// The robots move until the next control period begins.
+    fn move_on(&mut self, begin: Instant) -> Result<(), Failure> {
+        let duration = self.parts.crew.flow().map_err(internal)?;
+        if let (Some(memory), Some(seat)) =
+            (&mut self.parts.memory, self.parts.crew.seats_mut().first())
+        {
+            memory.write(seat.body().into())?;
+        }
+        if self.options.real_time {
+            let rest = Duration::from_secs_f64(duration).saturating_sub(begin.elapsed());
+            thread::sleep(rest);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,117 @@
+//! Which messages reach the nodes of a process.
+//!
+//! Packets reach every process; a radio does not. Here the [`Radio`] of the simulation decides from
+//! where the nodes are which of them hear a sender, and [`Unreliable`] loses as many of the messages
+//! as it is told to. What does not reach a node is not even read.
+
+use crate::packet::{Letter, Packet, Refusals};
+use pleach::automaton::network::{Message, Radio, Site};
+use pleach::automaton::node::{
+    Delivery, Destination, Envelope, FullMesh, Medium, NodeId, Unreliable, Weather,
+};
+use pleach::continuous::Point;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The radio of a process, at the receiving end.
+#[derive(Debug)]
+pub struct Receiver {
+    radio: Radio,
+    bodies: Vec<Point>,
+    air: Unreliable<Message, FullMesh<Message>>,
+    /// The beacon heard last of each sender, as it was written and as it was read.
+    beacons: BTreeMap<NodeId, (Vec<u8>, Message)>,
+}
+
+impl Receiver {
+    /// The receiver of a process at a site, where nodes stand at `bodies` as far as is known; robots
+    /// are out of reach until they are heard. Messages over the radio are lost with probability
+    /// `loss`, drawn from `seed`.
+    pub fn new(site: &Site, bodies: Vec<Point>, loss: f64, seed: u64) -> Self {
+        let weather = Weather { loss, wired_from: Some(site.robots), ..Weather::default() };
+        let mut radio = Radio::new(site);
+        radio.update(&bodies);
+        let air = Unreliable::new(FullMesh::new(), weather, seed);
+        Receiver { radio, bodies, air, beacons: BTreeMap::new() }
+    }
+
+    /// How many messages were lost on purpose.
+    pub const fn lost(&self) -> u64 {
+        self.air.lost()
+    }
+
+    /// The messages of a round that reach the nodes `own`: each with its sender and its receiver, in
+    /// the order in which they were sent.
+    pub fn messages(
+        &mut self,
+        own: &[NodeId],
+        packets: &[(NodeId, Packet)],
+        refusals: &mut Refusals,
+    ) -> Vec<(NodeId, NodeId, Message)> {
+        self.look_at_bodies(packets);
+        for (from, packet) in packets {
+            for letter in &packet.letters {
+                self.receive(*from, letter, own, refusals);
+            }
+        }
+        let mut heard = Vec::new();
+        let medium: &mut dyn FnMut(Delivery<'_, Message>) -> Result<(), std::convert::Infallible> =
+            &mut |Delivery { from, to, message }| {
+                heard.push((from, to, message.clone()));
+                Ok(())
+            };
+        let Ok(()) = Medium::<Message, Point>::deliver(&mut self.air, medium);
+        heard
+    }
+
+    fn receive(&mut self, from: NodeId, letter: &Letter, own: &[NodeId], refusals: &mut Refusals) {
+        let audience = self.radio.audience(from);
+        let hears = |to: &&NodeId| letter.is_for(**to) && audience.binary_search(to).is_ok();
+        let hearers: Vec<NodeId> = own.iter().filter(hears).copied().collect();
+        if hearers.is_empty() {
+            return;
+        }
+        match self.read(from, letter) {
+            Ok(message) => hearers.into_iter().for_each(|to| {
+                let envelope =
+                    Envelope { from, to: Destination::One(to), message: message.clone() };
+                Medium::<Message, Point>::send(&mut self.air, envelope);
+            }),
+            Err(refusal) => refusals.count(refusal),
+        }
+    }
+
+    /// The message of a letter. Beacons are mostly those of the round before: what was read of them
+    /// is shared.
+    fn read(&mut self, from: NodeId, letter: &Letter) -> Result<Message, crate::packet::Refusal> {
+        let known = self.beacons.get(&from);
+        if let Some((_, message)) = known.filter(|(bytes, _)| *bytes == letter.message) {
+            return Ok(message.clone());
+        }
+        let mut message = letter.open(from)?;
+        if let Message::Beacon { beacon, .. } = &mut message {
+            if let Some((_, Message::Beacon { beacon: last, .. })) = known
+                && **last == **beacon
+            {
+                *beacon = Arc::clone(last);
+            }
+            self.beacons.insert(from, (letter.message.clone(), message.clone()));
+        }
+        Ok(message)
+    }
+
+    fn look_at_bodies(&mut self, packets: &[(NodeId, Packet)]) {
+        let mut has_moved = false;
+        for (from, packet) in packets {
+            if let Some(body) = self.bodies.get_mut(*from)
+                && *body != packet.place()
+            {
+                *body = packet.place();
+                has_moved = true;
+            }
+        }
+        if has_moved {
+            self.radio.update(&self.bodies);
+        }
+    }
+}

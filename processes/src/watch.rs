@@ -1,0 +1,360 @@
+//! `pleach watch`: the mission as it can be seen from what its nodes report.
+//!
+//! The reports of a control period make a snapshot, the same as in a simulation, and it goes to the
+//! same watchers and the same judge. A robot that is not heard any more stands where it was.
+
+use crate::arguments::{MEETING_POINT, OutputArguments, WatchArguments};
+use crate::packet::{Refusal, Refusals};
+use crate::process::{digest_of, name_of};
+use crate::report::{Report, Tally};
+use crate::safety::Safety;
+use crate::transport::{Arrival, Endpoints, Interest, Transport};
+use pleach::automaton::network::Robot;
+use pleach::automaton::network::observer::{RobotReport, complete_events};
+use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::node::{Node, NodeId, Observed, Traffic};
+use pleach::cli::interrupt::Interrupt;
+use pleach::cli::job::{self, Outputs};
+use pleach::cli::output::{self, tell};
+use pleach::cli::plan::Planned;
+use pleach::cli::progress::Progress;
+use pleach::cli::run::{status_of, told, warn_of_tasks};
+use pleach::cli::status::{Failure, Status};
+use pleach::mission::{Completed, Gallery};
+use pleach::scenario_file;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How often an observer looks whether it is to end.
+const GLANCE: Duration = Duration::from_millis(50);
+/// The reports of a later period that close one: processes are at most one period apart unless one of
+/// them is gone.
+const PERIODS_APART: usize = 2;
+/// Control periods ahead of the one that is shown for which reports are kept.
+const MOST_AHEAD: usize = 1 << 10;
+
+/// Watches a mission.
+///
+/// # Errors
+/// What keeps it from being watched.
+pub fn run(arguments: &WatchArguments) -> Result<Status, Failure> {
+    let planned = planned(&arguments.scenario)?;
+    let digest = digest_of(&planned.scenario)?;
+    let defaults = Endpoints { listen: "tcp/127.0.0.1:0", connect: Some(MEETING_POINT) };
+    let transport = Transport::open(&arguments.network, defaults, &digest, Interest::Reports)?;
+    let (outputs, wait) = (&arguments.outputs, arguments.network.wait.0);
+    let viewing = Viewing { outputs, wait, has_faults: arguments.faults };
+    show(&planned, viewing, &transport, &mut |_| Ok(()))
+}
+
+/// How a mission is watched.
+#[derive(Clone, Copy, Debug)]
+pub struct Viewing<'a> {
+    /// What is written.
+    pub outputs: &'a OutputArguments,
+    /// How long nobody may report.
+    pub wait: Duration,
+    /// Whether only what must hold whatever fails is checked.
+    pub has_faults: bool,
+}
+
+/// The mission of a scenario file.
+///
+/// # Errors
+/// No mission can start from it.
+pub fn planned(path: &Path) -> Result<Planned, Failure> {
+    let scenario = scenario_file::read(path)?;
+    let source = path.display().to_string();
+    Ok(Planned { number: 1, source, scenario, settings: Vec::new(), seed: None })
+}
+
+/// Shows a mission to its end, and says how it has ended. `meanwhile` is called again and again with
+/// the control period that comes next.
+///
+/// # Errors
+/// Something cannot be written, or nobody reports for so long.
+pub fn show(
+    planned: &Planned,
+    viewing: Viewing<'_>,
+    transport: &Transport,
+    meanwhile: &mut dyn FnMut(usize) -> Result<(), Failure>,
+) -> Result<Status, Failure> {
+    let Viewing { outputs: arguments, wait, has_faults } = viewing;
+    let default_folder = || Path::new("figures").join(&planned.scenario.name);
+    let outputs = Outputs {
+        trace: arguments.trace.clone(),
+        figures: (!arguments.no_figures)
+            .then(|| arguments.figures.clone().unwrap_or_else(default_folder)),
+        ..Outputs::default()
+    };
+    if !arguments.quiet {
+        warn_of_tasks(planned);
+    }
+    let interrupt = Interrupt::listen()?;
+    let mut progress = Progress::new(&planned.scenario, arguments.quiet);
+    let mut observatory = Observatory::new(&planned.scenario, transport, wait);
+    let finished = job::watch(planned, &outputs, &mut progress, &interrupt, |watchers| {
+        let scenario = &planned.scenario;
+        let audience = match has_faults {
+            false => Audience::Monitored(Gallery::new(scenario, watchers)),
+            true => Audience::Safe(Safety::new(scenario, watchers)),
+        };
+        observatory.watch(audience, &interrupt, meanwhile)
+    })?;
+    let text = told(&finished, arguments.trace.as_deref());
+    output::say(&(text + &observatory.counts()))?;
+    Ok(status_of(&finished.record))
+}
+
+/// Who watches, and what is checked.
+enum Audience<'a, 'w> {
+    /// Everything, as in a simulation.
+    Monitored(Gallery<'a, 'w>),
+    /// What must hold whatever fails.
+    Safe(Safety<'a, 'w>),
+}
+
+impl Audience<'_, '_> {
+    fn observe(
+        &mut self,
+        snapshot: &Snapshot,
+        events: &[MissionEvent],
+        present: &BTreeSet<NodeId>,
+    ) -> Option<End> {
+        match self {
+            Audience::Monitored(gallery) => gallery.observe(snapshot, events),
+            Audience::Safe(safety) => safety.observe(snapshot, events, present),
+        }
+    }
+
+    fn conclude(self, end: End) -> Result<Completed, Failure> {
+        match self {
+            Audience::Monitored(gallery) => Ok(gallery.conclude(end)?),
+            Audience::Safe(safety) => safety.conclude(end),
+        }
+    }
+}
+
+/// What is known from reports.
+struct Observatory<'a> {
+    scenario: &'a ValidScenario,
+    transport: &'a Transport,
+    wait: Duration,
+    /// The control period that is shown next.
+    step: usize,
+    /// The last report of each robot.
+    robots: Vec<RobotReport>,
+    /// The reports of control periods that have not been shown.
+    reports: BTreeMap<usize, BTreeMap<NodeId, Report>>,
+    /// The nodes that report.
+    present: BTreeSet<NodeId>,
+    /// The processes that Zenoh sees.
+    alive: BTreeSet<NodeId>,
+    tallies: BTreeMap<NodeId, Tally>,
+    refusals: Refusals,
+    missed: u64,
+    /// Whether the user has reported that the mission is over: then processes end.
+    has_ended: bool,
+}
+
+impl<'a> Observatory<'a> {
+    fn new(scenario: &'a ValidScenario, transport: &'a Transport, wait: Duration) -> Self {
+        let site = scenario.site();
+        let fresh = |(id, start): (usize, &pleach::automaton::network::scenario::RobotStart)| {
+            let robot = Robot::new(id, start.position.into(), start.rate, Arc::clone(site));
+            RobotReport::of(robot.view(), robot.body(), Traffic::default())
+        };
+        Observatory {
+            scenario,
+            transport,
+            wait,
+            step: 0,
+            robots: scenario.robot.iter().enumerate().map(fresh).collect(),
+            reports: BTreeMap::new(),
+            present: (0..scenario.robot.len() + scenario.access_point.len() + 1).collect(),
+            alive: BTreeSet::new(),
+            tallies: BTreeMap::new(),
+            refusals: Refusals::default(),
+            missed: 0,
+            has_ended: false,
+        }
+    }
+
+    fn watch(
+        &mut self,
+        mut audience: Audience<'_, '_>,
+        interrupt: &Interrupt,
+        meanwhile: &mut dyn FnMut(usize) -> Result<(), Failure>,
+    ) -> Result<Completed, Failure> {
+        let mut last_news = Instant::now();
+        let end = loop {
+            if let Some(arrival) = self.transport.next_within(GLANCE) {
+                last_news = Instant::now();
+                self.take(arrival)?;
+            }
+            meanwhile(self.step)?;
+            if let Some(end) = self.show_what_is_complete(&mut audience) {
+                break end;
+            }
+            if let Some(signal) = interrupt.signal() {
+                break self.broken_off(format!("watching was ended by {signal}"));
+            }
+            if last_news.elapsed() > self.wait {
+                let seconds = self.wait.as_secs_f64();
+                if self.step == 0 {
+                    let session = "are the processes started, with the same scenario and --session, \
+                                   and does --connect name an endpoint at which one listens?";
+                    return Err(Failure::Usage(format!(
+                        "nobody reports for {seconds} s: {session}"
+                    )));
+                }
+                break self.broken_off(format!("nobody has reported for {seconds} s"));
+            }
+        };
+        self.transport.count_overflow(&mut self.refusals);
+        audience.conclude(end)
+    }
+
+    fn broken_off(&self, what: String) -> End {
+        let reason = format!("{what} at k = {}", self.step.saturating_sub(1));
+        End { outcome: Outcome::Interrupted, reason, task: None }
+    }
+
+    // ---- What arrives ------------------------------------------------------------------------
+
+    fn take(&mut self, arrival: Arrival) -> Result<(), Failure> {
+        let count = self.scenario.robot.len() + self.scenario.access_point.len() + 1;
+        let taken = match arrival {
+            Arrival::Report(from, _) | Arrival::Alive(from, _) if from >= count => {
+                Err(Refusal::NoSuchNode)
+            }
+            Arrival::Report(from, bytes) => {
+                Report::decode(&bytes, self.scenario).and_then(|report| self.enter(from, report))
+            }
+            Arrival::Alive(node, is_there) => {
+                self.note_life(node, is_there);
+                Ok(())
+            }
+            Arrival::Refused(refusal) => Err(refusal),
+            Arrival::Hello(..) | Arrival::Packet(..) => Ok(()),
+        };
+        if let Err(refusal) = taken {
+            self.refusals.count(refusal);
+        }
+        if self.step == 0 && self.is_late() {
+            return Err(Failure::Usage(
+                "the mission goes on already: start `pleach watch` before its last process".into(),
+            ));
+        }
+        Ok(())
+    }
+
+    fn enter(&mut self, from: NodeId, report: Report) -> Result<(), Refusal> {
+        if (from < self.robots.len()) != report.robot.is_some() {
+            return Err(Refusal::Malformed);
+        }
+        self.tallies.insert(from, report.tally);
+        self.has_ended |= report.end.is_some();
+        if report.step < self.step {
+            self.missed += 1;
+            return Ok(());
+        }
+        if report.step > self.step + MOST_AHEAD {
+            return Err(Refusal::TooFarAhead);
+        }
+        let of_step = self.reports.entry(report.step).or_default();
+        match of_step.insert(from, report) {
+            None => Ok(()),
+            Some(_) => Err(Refusal::Repeated),
+        }
+    }
+
+    /// A process that goes while the mission goes on is told.
+    fn note_life(&mut self, node: NodeId, is_there: bool) {
+        let has_changed = if is_there { self.alive.insert(node) } else { self.alive.remove(&node) };
+        if has_changed && self.step > 0 && !self.has_ended {
+            let (step, name) = (self.step, name_of(self.scenario, node));
+            let what = if is_there { "is there again" } else { "is gone" };
+            tell(format_args!("k = {step:<6} the process of {name} {what}"));
+        }
+    }
+
+    // ---- What is shown -----------------------------------------------------------------------
+
+    /// Whether this observer has missed the beginning.
+    fn is_late(&self) -> bool {
+        let is_first = |step: usize| self.reports.contains_key(&step);
+        !is_first(0) && (PERIODS_APART..=MOST_AHEAD).any(is_first)
+    }
+
+    /// Whether all reports of a control period have come that will.
+    fn is_complete(&self, reports: &BTreeMap<NodeId, Report>) -> bool {
+        let later = self.step + PERIODS_APART;
+        self.present.iter().all(|node| reports.contains_key(node))
+            || self.reports.range(later..).next().is_some()
+    }
+
+    /// Shows what is complete, and says how the mission ends if it does.
+    fn show_what_is_complete(&mut self, audience: &mut Audience<'_, '_>) -> Option<End> {
+        while self.reports.get(&self.step).is_some_and(|reports| self.is_complete(reports)) {
+            let reports = self.reports.remove(&self.step).unwrap_or_default();
+            let (mut events, announced) = self.digest(reports);
+            let period = self.scenario.site().settings.period;
+            let snapshot = Snapshot::of_reports(self.step, period, &self.robots);
+            complete_events(&mut events, &snapshot.primary_team);
+            self.step += 1;
+            let end = audience.observe(&snapshot, &events, &self.present);
+            let end = end.or_else(|| self.end(announced));
+            if end.is_some() {
+                return end;
+            }
+        }
+        None
+    }
+
+    /// Takes in the reports of a control period: the events in their order, and the end that the user
+    /// knows.
+    fn digest(&mut self, reports: BTreeMap<NodeId, Report>) -> (Vec<MissionEvent>, Option<End>) {
+        self.present = reports.keys().copied().collect();
+        let (mut events, mut announced) = (Vec::new(), None);
+        for (node, report) in reports {
+            events.extend(report.events);
+            announced = announced.or(report.end.map(End::from));
+            if let Some((known, robot)) = self.robots.get_mut(node).zip(report.robot) {
+                *known = robot;
+            }
+        }
+        // Stable: nodes are in their order in each exchange.
+        events.sort_by_key(|(round, answer, _)| (*round, *answer));
+        (events.into_iter().map(|(.., event)| event).collect(), announced)
+    }
+
+    /// How the mission ends after this control period, if it does.
+    fn end(&self, announced: Option<End>) -> Option<End> {
+        let is_present = |id: &usize| self.present.contains(id);
+        let mut robots = (0..self.robots.len()).filter(is_present);
+        let is_at_rest = !robots.any(|id| self.robots[id].is_active);
+        let limit = self.scenario.site().settings.max_steps;
+        let at_limit = (self.step >= limit).then(|| End::at_step_limit(limit));
+        announced.filter(|_| is_at_rest).or(at_limit)
+    }
+
+    /// What the processes have counted, as lines of the summary.
+    fn counts(&self) -> String {
+        let sum = |count: fn(&Tally) -> u64| self.tallies.values().map(count).sum::<u64>();
+        let (refused, late) = (sum(|it| it.refused), sum(|it| it.late));
+        let (lost, given_up) = (sum(|it| it.lost), sum(|it| it.given_up));
+        let observer = if self.refusals.total() > 0 || self.missed > 0 {
+            format!("; observer: {}, {} reports late", self.refusals, self.missed)
+        } else {
+            String::new()
+        };
+        format!(
+            "  packets             {refused} refused, {late} late; {lost} messages lost on purpose; \
+             nodes given up {given_up} times{observer}\n"
+        )
+    }
+}
