@@ -328,12 +328,10 @@ proptest! {
                 let t = jump.at.t;
                 let is_late = seen.is_some_and(|(seen, _)| seen + tolerance < t && !is_in_doubt(seen));
                 prop_assert!(!is_late, "{} at {t}", told());
-                // It holds there, or would if the state were within the tolerances.
-                let near = [-tolerance, 0.0, tolerance].map(|off| value.evaluate(&[place(t + off)]));
-                let lowest = near.iter().fold(f64::INFINITY, |least, one| least.min(*one));
-                let spread = near.iter().fold(0.0, |most: f64, one| most.max(one.abs())) + 1.0;
-                let holds = near.iter().any(|one| *one >= bound - 1e-6 * spread);
-                prop_assert!(holds || lowest.is_nan(), "{} at {t}: {near:?}", told());
+                let found = trajectory.value("p", t).expect("the run lasts");
+                prop_assert!((found - place(t)).abs() <= tolerance, "{} at {t}", told());
+                let holds = guard.evaluate(&[("p", found)]).is_ok_and(|verdict| verdict.holds);
+                prop_assert!(holds, "{} at {t}: {found}", told());
             }
             (None, Reason::Horizon) => {
                 let is_missed = seen.is_some_and(|(seen, value)| !value.is_nan() && !is_in_doubt(seen));

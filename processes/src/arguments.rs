@@ -136,6 +136,9 @@ pub struct OutputArguments {
 pub struct WatchArguments {
     /// The scenario: a TOML file, the same for all processes
     pub scenario: PathBuf,
+    /// Messages are lost or processes killed: check only what must hold whatever fails
+    #[arg(long)]
+    pub faults: bool,
     /// What it writes.
     #[command(flatten)]
     pub outputs: OutputArguments,

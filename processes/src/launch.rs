@@ -3,7 +3,7 @@
 use crate::arguments::{Kill, LaunchArguments, NetworkArguments, NodeArguments, Seconds, Session};
 use crate::process::digest_of;
 use crate::transport::{Endpoints, Interest, Transport};
-use crate::watch::{planned, show};
+use crate::watch::{Viewing, planned, show};
 use pleach::cli::output::tell;
 use pleach::cli::status::{Failure, Status};
 use std::fs;
@@ -55,7 +55,9 @@ pub fn run(arguments: &LaunchArguments) -> Result<Status, Failure> {
     fleet.start(robots)?;
     let mut kills = arguments.kill.clone();
     let mut returns = Vec::new();
-    show(&planned, &arguments.outputs, &transport, WAIT, &mut |step| {
+    let has_faults = arguments.node.loss.0 > 0.0 || !arguments.kill.is_empty();
+    let viewing = Viewing { outputs: &arguments.outputs, wait: WAIT, has_faults };
+    show(&planned, viewing, &transport, &mut |step| {
         fleet.check()?;
         let due = |kill: &mut Kill| kill.from <= step;
         for kill in kills.extract_if(.., due) {

@@ -19,6 +19,7 @@ pub mod packet;
 pub mod process;
 pub mod receiver;
 pub mod report;
+pub mod safety;
 pub mod transport;
 pub mod watch;
 

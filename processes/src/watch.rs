@@ -7,6 +7,7 @@ use crate::arguments::{MEETING_POINT, OutputArguments, WatchArguments};
 use crate::packet::{Refusal, Refusals};
 use crate::process::{digest_of, name_of};
 use crate::report::{Report, Tally};
+use crate::safety::Safety;
 use crate::transport::{Arrival, Endpoints, Interest, Transport};
 use pleach::automaton::network::Robot;
 use pleach::automaton::network::observer::{RobotReport, complete_events};
@@ -20,7 +21,7 @@ use pleach::cli::plan::Planned;
 use pleach::cli::progress::Progress;
 use pleach::cli::run::{status_of, told, warn_of_tasks};
 use pleach::cli::status::{Failure, Status};
-use pleach::mission::{Completed, Gallery, Watcher};
+use pleach::mission::{Completed, Gallery};
 use pleach::scenario_file;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -44,8 +45,20 @@ pub fn run(arguments: &WatchArguments) -> Result<Status, Failure> {
     let digest = digest_of(&planned.scenario)?;
     let defaults = Endpoints { listen: "tcp/127.0.0.1:0", connect: Some(MEETING_POINT) };
     let transport = Transport::open(&arguments.network, defaults, &digest, Interest::Reports)?;
-    let wait = arguments.network.wait.0;
-    show(&planned, &arguments.outputs, &transport, wait, &mut |_| Ok(()))
+    let (outputs, wait) = (&arguments.outputs, arguments.network.wait.0);
+    let viewing = Viewing { outputs, wait, has_faults: arguments.faults };
+    show(&planned, viewing, &transport, &mut |_| Ok(()))
+}
+
+/// How a mission is watched.
+#[derive(Clone, Copy, Debug)]
+pub struct Viewing<'a> {
+    /// What is written.
+    pub outputs: &'a OutputArguments,
+    /// How long nobody may report.
+    pub wait: Duration,
+    /// Whether only what must hold whatever fails is checked.
+    pub has_faults: bool,
 }
 
 /// The mission of a scenario file.
@@ -65,11 +78,11 @@ pub fn planned(path: &Path) -> Result<Planned, Failure> {
 /// Something cannot be written, or nobody reports for so long.
 pub fn show(
     planned: &Planned,
-    arguments: &OutputArguments,
+    viewing: Viewing<'_>,
     transport: &Transport,
-    wait: Duration,
     meanwhile: &mut dyn FnMut(usize) -> Result<(), Failure>,
 ) -> Result<Status, Failure> {
+    let Viewing { outputs: arguments, wait, has_faults } = viewing;
     let default_folder = || Path::new("figures").join(&planned.scenario.name);
     let outputs = Outputs {
         trace: arguments.trace.clone(),
@@ -84,11 +97,45 @@ pub fn show(
     let mut progress = Progress::new(&planned.scenario, arguments.quiet);
     let mut observatory = Observatory::new(&planned.scenario, transport, wait);
     let finished = job::watch(planned, &outputs, &mut progress, &interrupt, |watchers| {
-        observatory.watch(watchers, &interrupt, meanwhile)
+        let scenario = &planned.scenario;
+        let audience = match has_faults {
+            false => Audience::Monitored(Gallery::new(scenario, watchers)),
+            true => Audience::Safe(Safety::new(scenario, watchers)),
+        };
+        observatory.watch(audience, &interrupt, meanwhile)
     })?;
     let text = told(&finished, arguments.trace.as_deref());
     output::say(&(text + &observatory.counts()))?;
     Ok(status_of(&finished.record))
+}
+
+/// Who watches, and what is checked.
+enum Audience<'a, 'w> {
+    /// Everything, as in a simulation.
+    Monitored(Gallery<'a, 'w>),
+    /// What must hold whatever fails.
+    Safe(Safety<'a, 'w>),
+}
+
+impl Audience<'_, '_> {
+    fn observe(
+        &mut self,
+        snapshot: &Snapshot,
+        events: &[MissionEvent],
+        present: &BTreeSet<NodeId>,
+    ) -> Option<End> {
+        match self {
+            Audience::Monitored(gallery) => gallery.observe(snapshot, events),
+            Audience::Safe(safety) => safety.observe(snapshot, events, present),
+        }
+    }
+
+    fn conclude(self, end: End) -> Result<Completed, Failure> {
+        match self {
+            Audience::Monitored(gallery) => Ok(gallery.conclude(end)?),
+            Audience::Safe(safety) => safety.conclude(end),
+        }
+    }
 }
 
 /// What is known from reports.
@@ -138,11 +185,10 @@ impl<'a> Observatory<'a> {
 
     fn watch(
         &mut self,
-        watchers: &mut [&mut dyn Watcher],
+        mut audience: Audience<'_, '_>,
         interrupt: &Interrupt,
         meanwhile: &mut dyn FnMut(usize) -> Result<(), Failure>,
     ) -> Result<Completed, Failure> {
-        let mut gallery = Gallery::new(self.scenario, watchers);
         let mut last_news = Instant::now();
         let end = loop {
             if let Some(arrival) = self.transport.next_within(GLANCE) {
@@ -150,7 +196,7 @@ impl<'a> Observatory<'a> {
                 self.take(arrival)?;
             }
             meanwhile(self.step)?;
-            if let Some(end) = self.show_what_is_complete(&mut gallery) {
+            if let Some(end) = self.show_what_is_complete(&mut audience) {
                 break end;
             }
             if let Some(signal) = interrupt.signal() {
@@ -169,7 +215,7 @@ impl<'a> Observatory<'a> {
             }
         };
         self.transport.count_overflow(&mut self.refusals);
-        Ok(gallery.conclude(end)?)
+        audience.conclude(end)
     }
 
     fn broken_off(&self, what: String) -> End {
@@ -252,7 +298,7 @@ impl<'a> Observatory<'a> {
     }
 
     /// Shows what is complete, and says how the mission ends if it does.
-    fn show_what_is_complete(&mut self, gallery: &mut Gallery<'_, '_>) -> Option<End> {
+    fn show_what_is_complete(&mut self, audience: &mut Audience<'_, '_>) -> Option<End> {
         while self.reports.get(&self.step).is_some_and(|reports| self.is_complete(reports)) {
             let reports = self.reports.remove(&self.step).unwrap_or_default();
             let (mut events, announced) = self.digest(reports);
@@ -260,7 +306,8 @@ impl<'a> Observatory<'a> {
             let snapshot = Snapshot::of_reports(self.step, period, &self.robots);
             complete_events(&mut events, &snapshot.primary_team);
             self.step += 1;
-            let end = gallery.observe(&snapshot, &events).or_else(|| self.end(announced));
+            let end = audience.observe(&snapshot, &events, &self.present);
+            let end = end.or_else(|| self.end(announced));
             if end.is_some() {
                 return end;
             }

@@ -103,6 +103,18 @@ fn a_mission_that_ends_unserviced_says_why() {
     assert_eq!(judge(&trace).0, Some(0), "{:?}", judge(&trace));
 }
 
+/// What no fault may break is checked while the mission goes on; its end would have exit status 4.
+#[test]
+fn a_robot_is_killed_and_started_again_while_messages_are_lost() {
+    let _alone = alone();
+    let (status, said, trace) = launch("redundant-node", &["--loss", "0.1", "--kill", "0@20..40"]);
+    assert_eq!(status, Some(0), "{said}");
+    assert!(said.contains("the process of robot 0 is killed"), "{said}");
+    assert!(said.contains("the process of robot 0 is there again"), "{said}");
+    assert!(!said.contains("; 0 messages lost"), "{said}");
+    assert!(fs::read_to_string(trace).unwrap().contains(r#""outcome":"serviced""#));
+}
+
 // ---- Processes by hand -------------------------------------------------------------------------
 
 /// A session of this test, with the port where its access points listen.
