@@ -116,7 +116,10 @@ pub struct Beacon {
     /// The robots that are attached to it, itself included.
     #[serde(with = "wire")]
     pub below: Arc<IdSet>,
-    /// The tasks that these robots service.
+    /// Robots that these hear and that know no way to an access point.
+    #[serde(with = "wire")]
+    pub strays: Arc<IdSet>,
+    /// The tasks that all of them service.
     #[serde(with = "wire")]
     pub serves: Arc<IdSet>,
     /// What it does; none for an access point.

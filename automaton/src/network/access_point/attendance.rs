@@ -77,7 +77,7 @@ crate::observed! {
     }
     propositions {
         /// The robot has been heard of.
-        known: attendee.silence.is_some(),
+        known: attendee.is_known(),
     }
 }
 
@@ -113,6 +113,11 @@ impl Attendee {
         self.silence = Some(0);
     }
 
+    /// Whether it has ever been heard of.
+    pub(super) fn is_known(&self) -> bool {
+        self.silence.is_some()
+    }
+
     /// Whether it has been heard of in this control period.
     pub(super) fn is_heard_of(&self) -> bool {
         self.silence == Some(0)
@@ -120,7 +125,7 @@ impl Attendee {
 
     /// Whether it has been heard of lately, and takes part.
     pub(super) fn takes_part(&self) -> bool {
-        self.silence.is_some() && self.standing.location() == Attendance::Present
+        self.is_known() && self.standing.location() == Attendance::Present
     }
 
     /// Whether it is gone.
@@ -187,7 +192,7 @@ impl AccessPoint {
 
     /// Whether robots that it has heard of do not take part.
     pub(super) fn misses_robots(&self) -> bool {
-        let is_absent = |it: &Attendee| it.silence.is_some() && !it.takes_part();
+        let is_absent = |it: &Attendee| it.is_known() && !it.takes_part();
         self.attendees.iter().any(is_absent)
     }
 

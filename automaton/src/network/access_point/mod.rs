@@ -17,7 +17,7 @@ mod rounds;
 mod service;
 
 use super::beacon::{Beacon, Bulletin, LastBeacon, Notice};
-use super::duty::Hop;
+use super::duty::{Duty, Hop};
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
@@ -61,7 +61,7 @@ pub struct AccessPoint {
     agreement: Option<Agreement>,
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     crossing: Vec<usize>,
-    /// The robots that are attached here.
+    /// The robots that are attached here, to be told to other access points if there are any.
     attached: Arc<IdSet>,
     /// The robots that take part, attached here or to other access points.
     roster: Arc<IdSet>,
@@ -152,6 +152,7 @@ impl AccessPoint {
             lineage: Some(Arc::new(Lineage::of_access_point(self.number))),
             parent: None,
             below: Arc::clone(&self.attached),
+            strays: Arc::default(),
             serves: Arc::clone(&self.serves),
             duty: None,
             parked: false,
@@ -298,43 +299,53 @@ impl AccessPoint {
         self.site.distance(self.position, other) <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
     }
 
-    /// Which robots are attached to the access points. A robot that knows no way to one, on its way
-    /// along Σ or with a parent that has failed, takes part if it is heard.
+    /// Which robots are attached to the access points, and which it hears of. One that knows no way to an
+    /// access point, on its way along Σ or with a parent that has failed, is not missed as long as it is
+    /// heard.
     fn update_roster(&mut self) {
-        let (mut attached, mut elsewhere) = (IdSet::new(), IdSet::new());
-        let (mut serves, mut served_elsewhere) = (IdSet::new(), IdSet::new());
+        let own = Anchor::Access(self.number);
+        let [mut attached, mut strays, mut serves] = [IdSet::new(), IdSet::new(), IdSet::new()];
+        let [mut elsewhere, mut serves_elsewhere] = [IdSet::new(), IdSet::new()];
         for beacon in &self.heard {
+            let post = beacon.duty.as_ref().and_then(Duty::post);
             if beacon.duty.is_none() {
                 elsewhere.merge(&beacon.below);
-                served_elsewhere.merge(&beacon.serves);
-            } else if beacon.parent == Some(self.id()) {
+                strays.merge(&beacon.strays);
+                serves_elsewhere.merge(&beacon.serves);
+            } else if post.is_some_and(|post| post.parent == Some(own)) {
                 attached.merge(&beacon.below);
+                strays.merge(&beacon.strays);
                 serves.merge(&beacon.serves);
             } else if beacon.lineage.is_none() {
-                attached.insert(beacon.sender);
+                strays.insert(beacon.sender);
                 serves.extend(beacon.task());
             }
         }
-        for robot in attached.iter().chain(elsewhere.iter()) {
+        let mut heard_of = attached.clone();
+        heard_of.merge(&elsewhere);
+        for robot in heard_of.iter() {
             if let Some(attendee) = self.attendees.get_mut(robot) {
                 attendee.attend();
             }
         }
-        for task in serves.iter().chain(served_elsewhere.iter()) {
+        for robot in strays.iter() {
+            if let Some(attendee) = self.attendees.get_mut(robot).filter(|it| it.is_known()) {
+                attendee.attend();
+            }
+        }
+        for task in serves.iter().chain(serves_elsewhere.iter()) {
             if let Some(silence) = self.tasks_serviced.get_mut(task) {
                 *silence = 0;
             }
         }
-        if *self.serves != serves {
-            self.serves = Arc::new(serves);
-        }
-        if *self.attached != attached {
-            self.attached = Arc::new(attached);
+        if self.site.access_points.len() > 1 {
+            (self.attached, self.serves) = (Arc::new(attached), Arc::new(serves));
         }
         let roster = self.attending();
-        let settled = *self.roster == roster;
+        let is_complete = roster.iter().all(|robot| heard_of.contains(robot));
+        let settled = is_complete && *self.roster == roster;
         self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
-        if !settled {
+        if *self.roster != roster {
             self.roster = Arc::new(roster);
         }
     }

@@ -222,27 +222,27 @@ impl Robot {
         }
     }
 
-    /// The robots of which an access point hears through this one, and the tasks that they service: those attached to it, at whatever
-    /// distance, and those that it hears and that know no way, on their way along Σ or with a parent
-    /// that has failed.
+    /// The robots and tasks of which an access point hears through this one: those of its branch of the
+    /// tree, and robots that know no way, on their way along Σ or with a parent that has failed.
     fn collect_below(&mut self) {
         let mut below = IdSet::singleton(self.id);
+        let mut strays = IdSet::new();
         let mut serves: IdSet = self.duty.post().and_then(|post| post.task).into_iter().collect();
+        let own = self.duty.post().map(|post| post.id);
         for neighbour in self.neighbours.iter().filter(|it| it.heard_in + 1 >= self.period) {
-            if neighbour.beacon.parent == Some(self.id) {
-                below.merge(&neighbour.beacon.below);
-                serves.merge(&neighbour.beacon.serves);
-            } else if neighbour.beacon.lineage.is_none() && self.lineage().is_some() {
-                below.insert(neighbour.id());
-                serves.extend(neighbour.beacon.task());
+            let beacon = &neighbour.beacon;
+            if neighbour.post().is_some_and(|post| own.is_some_and(|own| post.is_child_of(own))) {
+                below.merge(&beacon.below);
+                strays.merge(&beacon.strays);
+                serves.merge(&beacon.serves);
+            } else if beacon.lineage.is_none() && self.lineage().is_some() {
+                strays.insert(beacon.sender);
+                serves.extend(beacon.task());
             }
         }
-        if *self.below != below {
-            self.below = Arc::new(below);
-        }
-        if *self.serves != serves {
-            self.serves = Arc::new(serves);
-        }
+        renew(&mut self.below, below);
+        renew(&mut self.strays, strays);
+        renew(&mut self.serves, serves);
     }
 
     /// Remark 5.6: p₁ attaches to a fixed or redundant robot or an access point that is
@@ -285,5 +285,12 @@ impl Robot {
         let (anchor, parent) = better?;
         self.reattaches_to = Some(parent);
         Some(Some(anchor))
+    }
+}
+
+/// What is the same is not told anew.
+fn renew(known: &mut Arc<IdSet>, now: IdSet) {
+    if **known != now {
+        *known = Arc::new(now);
     }
 }

@@ -158,6 +158,7 @@ pub struct Robot {
     /// It has been given the post of another robot in this jump.
     is_displaced: bool,
     below: Arc<IdSet>,
+    strays: Arc<IdSet>,
     serves: Arc<IdSet>,
     /// The parent in the tree that it has found to be best, none if it has looked for none.
     desired_parent: Option<Option<Anchor>>,
@@ -276,6 +277,7 @@ impl Robot {
             heard_way: HeardWay::NoParent,
             is_displaced: false,
             below: Arc::new(IdSet::singleton(id)),
+            strays: Arc::default(),
             serves: Arc::default(),
             desired_parent: None,
             reattaches_to: None,
@@ -386,6 +388,7 @@ impl Robot {
             lineage: self.lineage().cloned(),
             parent: self.parent,
             below: Arc::clone(&self.below),
+            strays: Arc::clone(&self.strays),
             serves: Arc::clone(&self.serves),
             duty: Some(*self.duty),
             parked: self.is_parked(),
