@@ -69,6 +69,7 @@ impl AccessPoint {
             last_beacon: _,
             log: _,
             // The explorer stands for time; without it no robot is missed, and no task.
+            strays: _,
             serves: _,
             tasks_serviced: _,
             attendees: _,

@@ -63,6 +63,8 @@ pub struct AccessPoint {
     crossing: Vec<usize>,
     /// The robots that are attached here, to be told to other access points if there are any.
     attached: Arc<IdSet>,
+    /// Robots that are heard here and know no way to an access point, for the others likewise.
+    strays: Arc<IdSet>,
     /// The robots that take part, attached here or to other access points.
     roster: Arc<IdSet>,
     /// What it knows of each robot, and the newest roll.
@@ -108,6 +110,7 @@ impl AccessPoint {
             route: None,
             crossing: Vec::new(),
             attached: Arc::default(),
+            strays: Arc::default(),
             roster: Arc::default(),
             settled_rounds: 0,
             tasks_serviced: Vec::new(),
@@ -152,7 +155,7 @@ impl AccessPoint {
             lineage: Some(Arc::new(Lineage::of_access_point(self.number))),
             parent: None,
             below: Arc::clone(&self.attached),
-            strays: Arc::default(),
+            strays: Arc::clone(&self.strays),
             serves: Arc::clone(&self.serves),
             duty: None,
             parked: false,
@@ -305,15 +308,20 @@ impl AccessPoint {
     fn update_roster(&mut self) {
         let own = Anchor::Access(self.number);
         let [mut attached, mut strays, mut serves] = [IdSet::new(), IdSet::new(), IdSet::new()];
-        let [mut elsewhere, mut serves_elsewhere] = [IdSet::new(), IdSet::new()];
+        let [mut elsewhere, mut strays_elsewhere, mut serves_elsewhere] =
+            [IdSet::new(), IdSet::new(), IdSet::new()];
         for beacon in &self.heard {
             let post = beacon.duty.as_ref().and_then(Duty::post);
             if beacon.duty.is_none() {
                 elsewhere.merge(&beacon.below);
-                strays.merge(&beacon.strays);
+                strays_elsewhere.merge(&beacon.strays);
                 serves_elsewhere.merge(&beacon.serves);
             } else if post.is_some_and(|post| post.parent == Some(own)) {
                 attached.merge(&beacon.below);
+                strays.merge(&beacon.strays);
+                serves.merge(&beacon.serves);
+            } else if beacon.parent == Some(self.id()) {
+                strays.merge(&beacon.below);
                 strays.merge(&beacon.strays);
                 serves.merge(&beacon.serves);
             } else if beacon.lineage.is_none() {
@@ -328,7 +336,7 @@ impl AccessPoint {
                 attendee.attend();
             }
         }
-        for robot in strays.iter() {
+        for robot in strays.iter().chain(strays_elsewhere.iter()) {
             if let Some(attendee) = self.attendees.get_mut(robot).filter(|it| it.is_known()) {
                 attendee.attend();
             }
@@ -339,7 +347,8 @@ impl AccessPoint {
             }
         }
         if self.site.access_points.len() > 1 {
-            (self.attached, self.serves) = (Arc::new(attached), Arc::new(serves));
+            (self.attached, self.strays) = (Arc::new(attached), Arc::new(strays));
+            self.serves = Arc::new(serves);
         }
         let roster = self.attending();
         let is_complete = roster.iter().all(|robot| heard_of.contains(robot));

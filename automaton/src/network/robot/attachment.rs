@@ -235,6 +235,11 @@ impl Robot {
                 below.merge(&beacon.below);
                 strays.merge(&beacon.strays);
                 serves.merge(&beacon.serves);
+            } else if beacon.parent == Some(self.id) {
+                // Its post is attached to one that has no holder at present.
+                strays.merge(&beacon.below);
+                strays.merge(&beacon.strays);
+                serves.merge(&beacon.serves);
             } else if beacon.lineage.is_none() && self.lineage().is_some() {
                 strays.insert(beacon.sender);
                 serves.extend(beacon.task());
