@@ -38,6 +38,7 @@ const HOLDS: &[Property] = &[
     Property::Shares,
     Property::Load,
     Property::TreeRange,
+    Property::RootedTree,
 ];
 
 #[test]
@@ -50,6 +51,7 @@ fn no_loss_of_messages_brings_robots_into_contact_or_breaks_routes() {
         (Kind::Copies, 2),
         (Kind::Silence, 2),
         (Kind::Radio, 2),
+        (Kind::Late, 4),
     ];
     for name in ["corridor", "study-2"] {
         for (kind, seeds) in kinds {
@@ -60,6 +62,21 @@ fn no_loss_of_messages_brings_robots_into_contact_or_breaks_routes() {
                 }
             }
         }
+    }
+}
+
+/// Robots that are cut off attach to none of those that are attached to them; without confirmations
+/// some do in each of these storms.
+#[test]
+fn no_path_up_the_tree_becomes_a_cycle_whoever_is_cut_off() {
+    for (name, kind, seed, duration) in
+        [("corridor", Kind::Partition, 3, 496.0), ("discs", Kind::Radio, 2, 815.0)]
+    {
+        let scenario = ValidScenario::new(shipped(name)).expect("it is valid");
+        let storm = draw(kind, seed, &scenario, duration);
+        let verdict = ride(&scenario, &storm, 650).expect("nodes go on whatever they receive");
+        let cycle = verdict.violations.iter().find(|it| it.property == Property::RootedTree);
+        assert_eq!(cycle, None, "{name}, {}", kind.name());
     }
 }
 

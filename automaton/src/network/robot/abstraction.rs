@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Bid, NodeId, NoticeId, Phase, Subgroup};
+use pleach_discrete::network::{Bid, Confirmation, NodeId, NoticeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::Path;
@@ -71,9 +71,11 @@ impl Robot {
         self.jump()
     }
 
-    /// The next round counts as the first one of a control period, in which all robots send.
+    /// The next round counts as the first one of a control period, in which all robots send, and
+    /// every way to an access point as confirmed anew.
     pub fn count_rounds_anew(&mut self) {
         self.round_count.restart();
+        self.confirmation = Confirmation::default();
     }
 
     /// In place of the last stages of a control period and the beginning of the next: the robot
@@ -147,6 +149,9 @@ impl Robot {
             heard_up_to: _,
             desired_parent: _,
             reattaches_to: _,
+            // The explorer confirms every way.
+            confirmation: _,
+            awaits_confirmation: _,
             partner: _,
             taking_over: _,
             log: _,
