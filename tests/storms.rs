@@ -115,6 +115,21 @@ fn robots_that_join_late_or_restart_go_on() {
     }
 }
 
+/// A robot that restarts during an election does not know of it: the election is held again. One that
+/// restarts in the only way does not know the task, and the mission ends with a reason.
+#[test]
+fn missions_with_a_robot_that_restarts_come_to_an_end() {
+    let scenario = ValidScenario::new(shipped("corridor")).expect("it is valid");
+    let end = |seed| {
+        let storm = draw(Kind::Restart, seed, &scenario, 497.0);
+        let verdict = ride(&scenario, &storm, 1_500).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{seed}");
+        verdict.end.unwrap_or_else(|| panic!("{seed}: it does not end"))
+    };
+    assert_eq!(end(1).outcome, Outcome::Serviced);
+    assert_eq!(end(2).outcome, Outcome::Blocked);
+}
+
 /// A robot that stops is given up, and nothing breaks. The others go round it and service all tasks, but
 /// where it stands in the only way.
 #[test]

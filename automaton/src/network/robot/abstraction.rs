@@ -125,6 +125,7 @@ impl Robot {
             route,
             agreement,
             team,
+            followed_post,
             neighbours: _, // by their beacons and their silence
             // Constant.
             rate: _,
@@ -205,7 +206,7 @@ impl Robot {
                 (id, position, still_periods, &**duty, &**mission, unused_periods,),
                 (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
                 ((bulletin, epoch), tasks, roster, eligible, election, bid, waited, route),
-                (agreement, team, silences),
+                (agreement, team, followed_post, silences),
             )
         )
     }

@@ -190,6 +190,8 @@ pub struct Robot {
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     agreement: Option<Agreement>,
     team: Option<TeamReport>,
+    /// Its own post, if another robot of the primary team follows it.
+    followed_post: Option<PostId>,
 
     // Communication variables.
     routing: routing::RoutingState,
@@ -304,6 +306,7 @@ impl Robot {
             route: None,
             agreement: None,
             team: None,
+            followed_post: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
             upstream: None,
@@ -458,6 +461,7 @@ impl Robot {
         (self.has_unsent_news, self.is_unmeasured) = (true, true);
         self.advance_exchange()?;
         self.locate_wrecks();
+        self.note_follower();
         self.keep_place()?;
         self.hear_notices();
         self.remember_parent();
