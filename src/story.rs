@@ -174,6 +174,10 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             ),
             None,
         ),
+        MissionEvent::TaskReannounced { task, gone } => (
+            format!("robots {gone:?} do not answer any more: task {task} is announced again"),
+            None,
+        ),
         other => (format!("{other:?}"), None),
     }
 }

@@ -40,6 +40,17 @@ const REASONS: &[([&str; 4], &str)] = &[
         ["exchange", "offering and refusing", "", ""],
         "a mover that is itself in the way of another has refused its offer",
     ),
+    (["attendance", "", "", ""], "robots do not answer any more, or come back; taken in storms"),
+    (["service", "", "announces again", ""], "robots do not answer any more; taken in storms"),
+    (
+        ["duty", "", "attached", ""],
+        "no robot holds the post of its parent any more; taken in storms",
+    ),
+    (["duty", "standby", "joined", ""], "a robot joins a mission under way; taken in storms"),
+    (
+        ["duty", "awaiting release", "standby kept", ""],
+        "robots do not answer any more while the leader is relieved",
+    ),
     (["mission", "advance", "blocked", ""], "the team stands still although no link holds it back"),
     (
         ["mission", "recruit election", "resumed", ""],

@@ -19,6 +19,7 @@ const DUAL: &str = "continuous/src/network/routing/dual.rs";
 const ELECTION: &str = "discrete/src/network/election.rs";
 const OFFERS: &str = "discrete/src/network/offers.rs";
 const ID_SET: &str = "discrete/src/network/id_set.rs";
+const ERRORS: &str = "continuous/src/geometry/errors.rs";
 const LOCAL: &str = "continuous/src/network/routing/local.rs";
 const MOTION: &str = "continuous/src/network/motion/mod.rs";
 const PATH: &str = "discrete/src/network/path.rs";
@@ -27,6 +28,7 @@ const ZONOTOPE: &str = "verify/src/reach/zonotope.rs";
 const ROBOT_EXCHANGE: &str = "automaton/src/network/robot/exchange.rs";
 const ROBOT_PARTNER: &str = "automaton/src/network/robot/partner.rs";
 const ROBOT_FACTS: &str = "automaton/src/network/robot/facts.rs";
+const ROBOT_MOTION: &str = "automaton/src/network/robot/motion.rs";
 const ROBOT_LEADER: &str = "automaton/src/network/robot/leader.rs";
 const ROBOT_MISSION: &str = "automaton/src/network/robot/mission.rs";
 const ROBOT_PATH: &str = "automaton/src/network/robot/path.rs";
@@ -81,6 +83,8 @@ const CALLS: &[Call] = &[
     ("last_break_point", PATH, ROBOT_FACTS, "shift.path.last_break_point()"),
     ("subgroups", PATH, ROBOT_PATH, "subgroups(&points)"),
     ("places", PATH, ROBOT_FACTS, "active.places()"),
+    ("planning_clearance", ERRORS, ROBOT_MOTION, "errors.planning_clearance(kept)"),
+    ("wall_half_planes", ERRORS, ROBOT_MOTION, "errors.wall_half_planes(&site.workspace"),
     ("own_side", CELL, CELL, "Some(own_side(bisector, position, clearance))"),
     (
         "worst_corner",

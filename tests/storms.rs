@@ -17,12 +17,16 @@ const DURATION: f64 = 300.0;
 /// A mission in a storm without partitions: robots that approach each other while no message gets
 /// through between them cannot know of each other.
 fn storm(name: &str, kind: Kind, seed: u64) -> Verdict {
+    storm_for(PERIODS, name, kind, seed)
+}
+
+fn storm_for(periods: usize, name: &str, kind: Kind, seed: u64) -> Verdict {
     let scenario = ValidScenario::new(shipped(name)).expect("it is valid");
     let scenario = allowing_for(kind, &scenario).expect("there is room for errors");
     let mut storm = draw(kind, seed, &scenario, DURATION);
     storm.weather.partitions.clear();
     let is_exact = kind.errors(&scenario).are_none();
-    let periods = if is_exact { PERIODS } else { PERIODS_WITH_ERRORS };
+    let periods = if is_exact { periods } else { PERIODS_WITH_ERRORS };
     ride(&scenario, &storm, periods).expect("nodes go on whatever they receive")
 }
 
@@ -92,4 +96,22 @@ fn robots_that_join_late_or_restart_go_on() {
             assert!(verdict.periods > 0, "{} {seed}", kind.name());
         }
     }
+}
+
+/// A robot that stops is given up, and nothing breaks. The others go round it and service all tasks, but
+/// where it stands in the only way.
+#[test]
+fn the_mission_goes_on_without_a_robot_that_stops() {
+    let mut blocked = Vec::new();
+    for (name, seeds) in [("corridor", 0..4), ("study-2", 0..2)] {
+        for seed in seeds {
+            let verdict = storm_for(1_500, name, Kind::Crash, seed);
+            assert!(verdict.violations.is_empty(), "{name} {seed}: {}", verdict.violations[0]);
+            let end = verdict.end.expect("it ends in time");
+            if end.outcome != Outcome::Serviced {
+                blocked.push((name, seed, end.reason));
+            }
+        }
+    }
+    assert!(blocked.len() < 2, "{blocked:?}");
 }

@@ -30,6 +30,7 @@ fn automata_of_robots_have_no_faults() {
 fn automata_of_access_points_and_the_user_have_no_faults() {
     let automata = Automata::new().expect("the automata are well formed");
     has_no_unexplained_finding(&automata.service);
+    has_no_unexplained_finding(&automata.attendance);
     has_no_unexplained_finding(&automata.rounds);
     has_no_unexplained_finding(&automata.request);
 }

@@ -275,6 +275,8 @@ pub enum Automaton {
     Control,
     /// What an access point does for the user: announcements, elections, the end of the mission
     Service,
+    /// Whether a robot takes part, as an access point knows it
+    Attendance,
     /// The control period of an access point
     Rounds,
     /// What the user does

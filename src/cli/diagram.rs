@@ -19,6 +19,7 @@ pub fn print(arguments: &DiagramArguments) -> Result<Status, Failure> {
         Which::Place => draw(&automata.attachment, format),
         Which::Control => draw(&automata.control, format),
         Which::Service => draw(&automata.service, format),
+        Which::Attendance => draw(&automata.attendance, format),
         Which::Rounds => draw(&automata.rounds, format),
         Which::Request => draw(&automata.request, format),
     };

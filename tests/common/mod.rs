@@ -115,6 +115,7 @@ pub fn every_event() -> Vec<MissionEvent> {
         MissionEvent::DutiesExchanged { mover: 1, parked: 2 },
         MissionEvent::Reattached { robot: 3, parent: 7 },
         MissionEvent::ElectionRepeated { task: 0 },
+        MissionEvent::TaskReannounced { task: 0, gone: vec![2, 3] },
     ];
     events.extend(
         (Role::ALL.into_iter().zip(Role::ALL.into_iter().skip(1)))

@@ -37,7 +37,9 @@ fn rename(record: &mut Record, site: usize, kind: Kind) {
     let Some(event) = record.events(site).iter_mut().find(|event| kind(event)) else { return };
     let next = |robot: &mut usize| *robot = (*robot + 1) % robots;
     match event {
-        Event::TaskAnnounced { task } | Event::ElectionRepeated { task } => {
+        Event::TaskAnnounced { task }
+        | Event::ElectionRepeated { task }
+        | Event::TaskReannounced { task, .. } => {
             *task = usize::from(*task == 0);
         }
         Event::LeaderElected { robot, .. }
@@ -266,6 +268,11 @@ pub const FALSE: &[Change] = changes! {
     "false: the election is repeated" => |record, site| {
         if let Some(task) = record.at(site).task {
             tell(record, site, Event::ElectionRepeated { task });
+        }
+    };
+    "false: a task is announced again to those that are left" => |record, site| {
+        if let Some(task) = record.at(site).task {
+            tell(record, site, Event::TaskReannounced { task, gone: vec![0] });
         }
     };
 };

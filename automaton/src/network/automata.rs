@@ -7,7 +7,10 @@ use pleach_discrete::{Event, Location, Row};
 
 use crate::BuildError;
 
-use super::access_point::{RoundAutomaton, ServiceAutomaton, round_automaton, service_automaton};
+use super::access_point::{
+    AttendanceAutomaton, RoundAutomaton, ServiceAutomaton, attendance_automaton, round_automaton,
+    service_automaton,
+};
 use super::robot::{
     AttachmentAutomaton, ControlAutomaton, DutyAutomaton, ExchangeAutomaton, MissionAutomaton,
     Targets, attachment_automaton, control_automaton, duty_automaton, exchange_automaton,
@@ -32,6 +35,8 @@ pub struct Automata {
     pub control: ControlAutomaton,
     /// The service of the tasks, for an access point.
     pub service: ServiceAutomaton,
+    /// Whether a robot takes part, for an access point.
+    pub attendance: AttendanceAutomaton,
     /// The stage of an access point in its control period.
     pub rounds: RoundAutomaton,
     /// What the user does.
@@ -52,6 +57,7 @@ impl Automata {
             attachment: attachment_automaton()?,
             control: control_automaton()?,
             service: service_automaton()?,
+            attendance: attendance_automaton()?,
             rounds: round_automaton()?,
             request: request_automaton()?,
         })
@@ -68,6 +74,7 @@ impl Automata {
             attachment: self.attachment.counted(),
             control: self.control.counted(),
             service: self.service.counted(),
+            attendance: self.attendance.counted(),
             rounds: self.rounds.counted(),
             request: self.request.counted(),
         }
@@ -91,6 +98,7 @@ impl Automata {
             .chain(named("place in the tree", self.attachment.taken()))
             .chain(named("control period", self.control.taken()))
             .chain(named("service of the tasks", self.service.taken()))
+            .chain(named("attendance", self.attendance.taken()))
             .chain(named("control period of an access point", self.rounds.taken()))
             .chain(named("user", self.request.taken()))
             .collect()

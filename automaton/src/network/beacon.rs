@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::duty::{Duty, Hop, Path};
 use super::record::Outcome;
+use super::roll::Wreck;
 use super::shared::Shared;
 use super::wire;
 
@@ -115,6 +116,12 @@ pub struct Beacon {
     /// The robots that are attached to it, itself included.
     #[serde(with = "wire")]
     pub below: Arc<IdSet>,
+    /// Robots that these hear and that know no way to an access point.
+    #[serde(with = "wire")]
+    pub strays: Arc<IdSet>,
+    /// The tasks that all of them service.
+    #[serde(with = "wire")]
+    pub serves: Arc<IdSet>,
     /// What it does; none for an access point.
     pub duty: Option<Duty>,
     /// Whether it stands still unless it is asked for.
@@ -132,9 +139,17 @@ pub struct Beacon {
     pub reply: Option<Reply<Duty>>,
     /// What the primary team knows of itself, for the next member towards p₁.
     pub team: Option<TeamReport>,
+    /// Where robots that are gone were heard last.
+    #[serde(with = "wire")]
+    pub wrecks: Arc<Vec<Wreck>>,
 }
 
 impl Beacon {
+    /// The task that is serviced from the post of the sender.
+    pub fn task(&self) -> Option<usize> {
+        self.duty.as_ref()?.post()?.task
+    }
+
     /// Whether the same sender surely sent this before `other`: it had received, or offered, less.
     /// A medium may deliver copies late.
     pub fn is_older_than(&self, other: &Beacon) -> bool {

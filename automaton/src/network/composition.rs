@@ -115,6 +115,11 @@ pub trait RobotNode:
 {
     /// The member.
     fn member(&self) -> &Member;
+
+    /// Whether it runs.
+    fn is_running(&self) -> bool {
+        true
+    }
 }
 
 impl RobotNode for Member {
@@ -126,6 +131,10 @@ impl RobotNode for Member {
 impl RobotNode for Frail {
     fn member(&self) -> &Member {
         Frail::member(self)
+    }
+
+    fn is_running(&self) -> bool {
+        Frail::is_running(self)
     }
 }
 
@@ -219,7 +228,10 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
             return None;
         }
         let limit = self.site.settings.max_steps;
-        let is_at_rest = || !self.robots().into_iter().any(RobotView::is_active);
+        let running = || self.nodes.nodes().iter().filter(|node| node.is_running());
+        let is_active = |robot: RobotView<'_>| robot.is_active();
+        let is_at_rest =
+            || !running().any(|node| node.member().view().robot().is_some_and(is_active));
         self.announced_end()
             .filter(|_| is_at_rest())
             .or_else(|| (self.step >= limit).then(|| End::at_step_limit(limit)))

@@ -28,6 +28,7 @@ use serde::{Deserialize, Serialize};
 
 use super::beacon::{Beacon, Bulletin};
 use super::robot::{FlowGrant, FlowRequest};
+use super::roll::Roll;
 use super::wire;
 
 /// A message of the network. All of them go through the same medium.
@@ -40,6 +41,8 @@ pub enum Message {
         /// The control period in which it is sent. All nodes count their periods alike; one that
         /// begins later takes the number from the first beacon that it receives.
         period: u32,
+        /// The newest roll that the sender knows.
+        roll: Roll,
         /// The public state.
         #[serde(with = "wire")]
         beacon: Arc<Beacon>,

@@ -16,6 +16,7 @@ pub mod mission;
 pub mod observer;
 pub mod record;
 pub mod robot;
+pub mod roll;
 pub mod scenario;
 pub mod service;
 pub mod shared;
@@ -23,7 +24,7 @@ pub mod site;
 pub mod user;
 mod wire;
 
-pub use access_point::{AccessPoint, round_automaton, service_automaton};
+pub use access_point::{AccessPoint, attendance_automaton, round_automaton, service_automaton};
 pub use automata::{Automata, NamedRow};
 pub use composition::{KernelTimes, Network, NetworkError, RobotNode};
 pub use frail::{Crash, Frail, Trouble};

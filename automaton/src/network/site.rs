@@ -8,12 +8,16 @@ use pleach_continuous::network::{LinkReliability, WithMargin};
 
 use super::Link;
 use super::automata::Automata;
+use super::robot::ROUNDS_TO_BE_HEARD;
 use super::scenario::{Scenario, Settings};
 use crate::builder::BuildError;
 
 /// Steps of two robots towards each other from where they begin to watch each other to where they
 /// could come into contact.
 const WATCHED_STEPS: f64 = 8.0;
+
+/// Control periods for which a roll is valid at the least.
+const ROLL_MARGIN: u32 = 6;
 
 /// Common knowledge of the robots; it does not change during a mission.
 #[derive(Debug)]
@@ -175,6 +179,13 @@ impl Site {
             return false;
         }
         distance <= self.watch_radius
+    }
+
+    /// Control periods for which a roll is valid: as long as it may take to reach every robot, some
+    /// messages being lost. Beacons that stay the same carry it over three links in a period.
+    pub fn roll_validity(&self) -> u32 {
+        let nodes = self.robots + self.access_points.len();
+        ROLL_MARGIN + 2 * nodes.div_ceil(ROUNDS_TO_BE_HEARD) as u32
     }
 
     /// Rounds of messages in which news surely crosses the network and comes back: no message is

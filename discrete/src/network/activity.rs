@@ -84,6 +84,8 @@ vocabulary! {
         Retired = "retired",
         /// It attaches to another parent in the tree.
         Attached = "attached",
+        /// It joins a mission under way, and its post is a new one.
+        Joined = "joined",
         /// It exchanges duties with a robot that stands by.
         TakesStandby = "takes standby",
         /// It exchanges duties with a relay.
@@ -242,6 +244,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
     use Activity::*;
     use DutyEvent as On;
     TransitionTable::new(rows![
+        row(Standby, On::Joined, Standby),
         row(Standby, On::Elected, Leading),
         row(Standby, On::Bound, Bound),
         row(Relay, On::Bound, Bound),
@@ -260,6 +263,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         row(AwaitingRelease, On::BoundKept, Bound),
         row(AwaitingRelease, On::RelayResumed, Relay),
         row(AwaitingRelease, On::LeafResumed, Leaf),
+        row(AwaitingRelease, On::StandbyKept, Standby),
         row(Waiting, On::TeamJoined, Following),
         row(AwaitingRelease, On::Released, Leading),
         row(Shifting, On::StandbyReached, Standby),
@@ -271,6 +275,9 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         row(Following, On::Settled, Relay),
         later(Waiting, On::SetOut, Shifting),
         later(Standby, On::Attached, Standby),
+        last(Relay, On::Attached, Relay),
+        last(Junction, On::Attached, Junction),
+        later(Leaf, On::Attached, Leaf),
         later(Following, On::Attached, Following),
         later(Leading, On::Attached, Leading),
         last(Standby, On::Promoted, Relay),

@@ -12,6 +12,9 @@ use super::NodeId;
 #[cfg(any(kani, test))]
 mod proofs;
 
+/// Far more notices than are issued for one task.
+const EPOCH: u32 = 1 << 12;
+
 /// The identity of a notice. Identities are ordered by number and then by issuer, and a node issues
 /// at most one notice of each number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -33,6 +36,11 @@ impl NoticeId {
     /// The identity of the notice that `issuer` issues after this one.
     pub const fn next(self, issuer: NodeId) -> Self {
         NoticeId { number: self.number + 1, issuer }
+    }
+
+    /// How often a task had been announced again before it was issued.
+    pub const fn epoch(self) -> u32 {
+        self.number / EPOCH
     }
 
     /// Whether this notice is newer than `other`.
@@ -78,6 +86,13 @@ impl<N: Clone> Bulletin<N> {
         Bulletin { id: self.id.next(issuer), notice }
     }
 
+    /// The bulletin of `issuer` that supersedes this one and all that follow from it: its number is
+    /// higher than those that others issue meanwhile.
+    pub fn superseding(&self, issuer: NodeId, notice: N) -> Self {
+        let epoch = self.id.epoch() + 1;
+        Bulletin { id: NoticeId::new(epoch.saturating_mul(EPOCH), issuer), notice }
+    }
+
     /// Takes over `heard` if it is newer; returns whether it was.
     pub fn merge(&mut self, heard: &Self) -> bool {
         let newer = heard.id.is_newer_than(self.id);
@@ -99,6 +114,17 @@ mod tests {
         assert_eq!((first.number(), *first.notice()), (0, "announced"));
         assert_eq!((third.id(), *third.notice()), (NoticeId::new(2, 2), "resumed"));
         assert_eq!(third.number(), 2);
+    }
+
+    /// What follows from the bulletin before does not get the better of the one that supersedes it.
+    #[test]
+    fn what_is_superseded_stays_so() {
+        let first = Bulletin::first("announced");
+        let mut newest = first.superseding(7, "announced again");
+        let late = (0..99).fold(first, |late, issuer| late.next(issuer, "called"));
+        assert!(!newest.merge(&late));
+        assert_eq!((late.id().epoch(), newest.id().epoch()), (0, 1));
+        assert!(newest.clone().superseding(7, "and again").id().is_newer_than(newest.id()));
     }
 
     #[test]

@@ -109,10 +109,16 @@ impl IdSet {
 impl FromIterator<usize> for IdSet {
     fn from_iter<I: IntoIterator<Item = usize>>(ids: I) -> Self {
         let mut set = IdSet::new();
-        for id in ids {
-            set.insert(id);
-        }
+        set.extend(ids);
         set
+    }
+}
+
+impl Extend<usize> for IdSet {
+    fn extend<I: IntoIterator<Item = usize>>(&mut self, ids: I) {
+        for id in ids {
+            self.insert(id);
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 pub mod activity;
 pub mod agreement;
 pub mod attachment;
+pub mod attendance;
 pub mod bulletin;
 pub mod control;
 pub mod election;
@@ -22,6 +23,7 @@ pub mod tables;
 pub use activity::{Activity, DUTIES, DutyEvent};
 pub use agreement::Agreement;
 pub use attachment::{ATTACHMENT, Attachment, AttachmentEvent};
+pub use attendance::{ATTENDANCE, Attendance, AttendanceEvent};
 pub use bulletin::{Bulletin, NoticeId};
 pub use control::{CONTROL, ROUNDS, Round, RoundEvent, Stage, StageEvent};
 pub use election::{Bid, Election};

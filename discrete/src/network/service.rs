@@ -30,6 +30,8 @@ vocabulary! {
         EndHeard = "end heard",
         /// It announces the next task.
         Announces = "announces",
+        /// A robot that takes part in its elections is gone: it announces the task again.
+        AnnouncesAgain = "announces again",
         /// There is no robot to announce the next task to.
         NoRobot = "no robot",
         /// There is no task left.
@@ -92,12 +94,14 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(0, Electing, On::ProgressHeard, UnderWay),
         row(0, Electing, On::ServiceHeard, Serviced),
         row(0, Electing, On::EndHeard, Over),
+        row(1, Electing, On::AnnouncesAgain, Electing),
         row(1, Electing, On::NoBid, Over),
         row(1, Electing, On::NoAnswer, Over),
         row(0, UnderWay, On::ElectionHeard, Electing),
         row(0, UnderWay, On::ProgressHeard, UnderWay),
         row(0, UnderWay, On::ServiceHeard, Serviced),
         row(0, UnderWay, On::EndHeard, Over),
+        row(1, UnderWay, On::AnnouncesAgain, Electing),
         row(0, Serviced, On::ElectionHeard, Electing),
         row(0, Serviced, On::ProgressHeard, UnderWay),
         row(0, Serviced, On::ServiceHeard, Serviced),

@@ -44,6 +44,8 @@ vocabulary! {
         Reached = "reached",
         /// The task is serviced.
         Serviced = "serviced",
+        /// It learns that its task has been announced again, and goes on without it.
+        Overtaken = "overtaken",
     }
 }
 
@@ -67,11 +69,13 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::Idle, MissionStep::Resumed, Phase::Advance),
     step(0, Phase::LeaderElection, MissionStep::Ended, Phase::Ended),
     step(0, Phase::LeaderElection, MissionStep::Announced, Phase::LeaderElection),
+    step(0, Phase::LeaderElection, MissionStep::Overtaken, Phase::Idle),
     step(0, Phase::LeaderElection, MissionStep::Called, Phase::RecruitElection),
     step(0, Phase::LeaderElection, MissionStep::Resumed, Phase::Advance),
     step(1, Phase::LeaderElection, MissionStep::Elected, Phase::Advance),
     step(0, Phase::Advance, MissionStep::Ended, Phase::Ended),
     step(0, Phase::Advance, MissionStep::Announced, Phase::LeaderElection),
+    step(0, Phase::Advance, MissionStep::Overtaken, Phase::Idle),
     step(0, Phase::Advance, MissionStep::Serviced, Phase::Idle),
     step(0, Phase::Advance, MissionStep::Called, Phase::RecruitElection),
     step(1, Phase::Advance, MissionStep::Bound, Phase::RecruitElection),
@@ -80,16 +84,19 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(3, Phase::Advance, MissionStep::Blocked, Phase::Ended),
     step(0, Phase::RecruitElection, MissionStep::Ended, Phase::Ended),
     step(0, Phase::RecruitElection, MissionStep::Announced, Phase::LeaderElection),
+    step(0, Phase::RecruitElection, MissionStep::Overtaken, Phase::Idle),
     step(0, Phase::RecruitElection, MissionStep::PathHeard, Phase::PathAgreement),
     step(0, Phase::RecruitElection, MissionStep::Resumed, Phase::Advance),
     step(1, Phase::RecruitElection, MissionStep::Recruited, Phase::PathAgreement),
     step(1, Phase::RecruitElection, MissionStep::Unaided, Phase::RecruitElection),
     step(0, Phase::PathAgreement, MissionStep::Ended, Phase::Ended),
     step(0, Phase::PathAgreement, MissionStep::Announced, Phase::LeaderElection),
+    step(0, Phase::PathAgreement, MissionStep::Overtaken, Phase::Idle),
     step(0, Phase::PathAgreement, MissionStep::Resumed, Phase::Advance),
     step(1, Phase::PathAgreement, MissionStep::PointsAgreed, Phase::Shift),
     step(0, Phase::Shift, MissionStep::Ended, Phase::Ended),
     step(0, Phase::Shift, MissionStep::Announced, Phase::LeaderElection),
+    step(0, Phase::Shift, MissionStep::Overtaken, Phase::Idle),
     step(0, Phase::Shift, MissionStep::Resumed, Phase::Advance),
     step(1, Phase::Shift, MissionStep::SubgroupArrived, Phase::Shift),
     step(1, Phase::Shift, MissionStep::Relieved, Phase::Advance),

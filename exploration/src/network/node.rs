@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use pleach_automaton::network::beacon::{Beacon, Notice};
 use pleach_automaton::network::robot::RobotError;
+use pleach_automaton::network::roll::Roll;
 use pleach_automaton::network::{AccessPoint, Message, Robot, RobotView, Sense};
 use pleach_automaton::node::{Input, Node as _, Observed, Outputs};
 use pleach_continuous::Point;
@@ -199,7 +200,11 @@ impl Nodes {
     fn hear(&self, node: &mut Node, beacons: &[BeaconId]) -> Result<(), RobotError> {
         beacons.iter().try_for_each(|&id| {
             let beacon = &self.beacons[id as usize];
-            let message = Message::Beacon { period: PERIOD, beacon: Arc::clone(beacon) };
+            let message = Message::Beacon {
+                period: PERIOD,
+                roll: Roll::default(),
+                beacon: Arc::clone(beacon),
+            };
             node.step(Input::Heard { from: beacon.sender, message: &message })
         })
     }

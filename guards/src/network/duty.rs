@@ -15,6 +15,11 @@ fn disengaged(name: &str, predicate: Predicate) -> Guard {
     Guard::new(name, predicate.and(!proposition("engaged")))
 }
 
+/// It joins a mission under way.
+pub fn joined() -> Guard {
+    named("joined", proposition("joins_late"))
+}
+
 /// It has won the leader election, and nothing depends on it.
 pub fn elected() -> Guard {
     named("elected", proposition("wins").and(!proposition("has_past_duties")))
@@ -32,31 +37,44 @@ pub fn path_joined() -> Guard {
 
 /// Another task is announced, and its post services none.
 pub fn relay_resumed() -> Guard {
-    named("relay resumed", proposition("superseded").and(!proposition("serves")))
+    let plain = !proposition("serves") & !proposition("superfluous");
+    named("relay resumed", proposition("superseded") & plain)
 }
 
 /// Another task is announced, and its post services one.
 pub fn leaf_resumed() -> Guard {
-    named("leaf resumed", proposition("superseded").and(proposition("serves")))
+    let serving = proposition("serves") & !proposition("superfluous");
+    named("leaf resumed", proposition("superseded") & serving)
 }
 
 fn called_off(name: &str, predicate: Predicate) -> Guard {
     named(name, proposition("called_off").and(predicate))
 }
 
-/// Σ is given up or done, and its post is that of a redundant robot.
+/// Σ is given up or done, and its post is that of a redundant robot, or held by the robot behind.
 pub fn standby_kept() -> Guard {
-    called_off("standby kept", proposition("free"))
+    called_off("standby kept", proposition("free") | proposition("superfluous"))
 }
 
 /// Σ is given up or done, and its post is a fixed one.
 pub fn relay_kept() -> Guard {
-    called_off("relay kept", !proposition("free") & !proposition("serves"))
+    called_off("relay kept", kept() & !proposition("serves"))
 }
 
 /// Σ is given up or done, and a task is serviced from its post.
 pub fn leaf_kept() -> Guard {
-    called_off("leaf kept", !proposition("free") & proposition("serves"))
+    called_off("leaf kept", kept() & proposition("serves"))
+}
+
+/// Its post is a fixed one, and no other robot holds it.
+fn kept() -> Predicate {
+    !proposition("free") & !proposition("superfluous")
+}
+
+/// Another task is announced, and the post of the leader that awaits its release is held by the robot
+/// behind.
+pub fn release_missed() -> Guard {
+    named("release missed", proposition("superseded") & proposition("superfluous"))
 }
 
 /// Σ is given up although the leader has not been released.

@@ -5,6 +5,7 @@
 //! activity or phase exclude one another or are ordered by its table.
 
 pub mod attachment;
+pub mod attendance;
 pub mod control;
 pub mod duty;
 pub mod exchange;
@@ -32,6 +33,11 @@ pub mod mission {
     /// A task is announced.
     pub fn announced() -> Guard {
         disengaged("announced", proposition("announced"))
+    }
+
+    /// Its task has been announced again, and the mission has gone on without it.
+    pub fn overtaken() -> Guard {
+        disengaged("overtaken", proposition("overtaken"))
     }
 
     /// Every token is known: line 1 of Algorithm 1.

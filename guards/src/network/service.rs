@@ -79,15 +79,25 @@ pub fn all_serviced() -> Guard {
 
 /// The leader election is over, and no robot has bid.
 pub fn no_bid() -> Guard {
-    let over = proposition("asked") & proposition("election_over");
+    let over = proposition("asked") & proposition("election_over") & !proposition("misses_elector");
     named("no bid", over & proposition("leader_wanted") & !proposition("has_bid"))
 }
 
-/// The election lasts longer than news can take.
+/// The election lasts longer than news can take, and all who take part have been heard of.
 pub fn no_answer() -> Guard {
-    let waits = proposition("asked") & proposition("knows_electors");
     let overdue = variable("waited").more_than(variable("longest_wait"));
-    named("no answer", waits & !proposition("election_over") & overdue)
+    let all_heard = !proposition("expects_elector") & !proposition("misses_elector");
+    named("no answer", pursues() & !proposition("election_over") & overdue & all_heard)
+}
+
+/// A robot that takes part in the elections for the task is gone.
+pub fn announces_again() -> Guard {
+    named("announces again", pursues() & proposition("misses_elector"))
+}
+
+/// A task is pursued, and those are known who take part in its elections.
+fn pursues() -> Predicate {
+    proposition("asked") & proposition("knows_electors")
 }
 
 /// The first control period begins.

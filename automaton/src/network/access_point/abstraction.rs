@@ -1,13 +1,15 @@
 //! The access point, driven by an explorer.
 
+use std::sync::Arc;
+
 use super::super::beacon::{Beacon, Notice};
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
 use crate::automaton::TransitionError;
 
 impl AccessPoint {
-    /// The beacon that the access point would send now.
+    /// The beacon that the access point would send now, without what matters only when time passes.
     pub fn beacon(&self) -> Beacon {
-        self.public_state()
+        Beacon { strays: Arc::default(), serves: Arc::default(), ..self.public_state() }
     }
 
     /// In place of a round of messages: processes what it has received, without counting a round.
@@ -49,6 +51,7 @@ impl AccessPoint {
             agreement,
             route,
             crossing,
+            attached,
             roster,
             settled_rounds,
             service,
@@ -65,7 +68,12 @@ impl AccessPoint {
             is_new: _,
             last_beacon: _,
             log: _,
-            // The explorer stands for time.
+            // The explorer stands for time; without it no robot is missed, and no task.
+            strays: _,
+            serves: _,
+            tasks_serviced: _,
+            attendees: _,
+            roll: _,
             clock: _,
             period: _,
         } = self;
@@ -79,7 +87,7 @@ impl AccessPoint {
             "{:?}",
             (
                 (number, bulletin, &**service, election, rounds),
-                (agreement, route, crossing, roster, settled),
+                (agreement, route, crossing, (attached, roster), settled),
             )
         )
     }

@@ -12,15 +12,17 @@ use std::sync::Arc;
 use pleach_continuous::Point;
 use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId, NoticeId};
 
+mod attendance;
 mod rounds;
 mod service;
 
 use super::beacon::{Beacon, Bulletin, LastBeacon, Notice};
-use super::duty::Hop;
+use super::duty::{Duty, Hop};
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
 use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
+use super::roll::Roll;
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election};
 use super::site::Site;
@@ -28,6 +30,8 @@ use crate::automaton::TransitionError;
 use crate::located::{Current, Place as _};
 use crate::node::{Input, Node, Outputs};
 
+use attendance::Attendee;
+pub use attendance::{ATTENDANCE_GLOSSARY, AttendanceAutomaton, attendance_automaton};
 pub use rounds::{RoundAct, RoundActs, RoundAutomaton, round_automaton};
 pub use service::{ACCESS_POINT_GLOSSARY, ServiceAutomaton, ServiceEffect, service_automaton};
 
@@ -57,8 +61,20 @@ pub struct AccessPoint {
     agreement: Option<Agreement>,
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     crossing: Vec<usize>,
+    /// The robots that are attached here, to be told to other access points if there are any.
+    attached: Arc<IdSet>,
+    /// Robots that are heard here and know no way to an access point, for the others likewise.
+    strays: Arc<IdSet>,
+    /// The robots that take part, attached here or to other access points.
     roster: Arc<IdSet>,
+    /// What it knows of each robot, and the newest roll.
+    attendees: Vec<Attendee>,
+    roll: Roll,
     settled_rounds: usize,
+    /// For how many control periods each task that has been serviced has not been.
+    tasks_serviced: Vec<u32>,
+    /// The tasks that are serviced by robots attached here.
+    serves: Arc<IdSet>,
     /// What the user has asked for.
     requested: Option<Arc<[Point]>>,
     /// Its state in the service of the tasks, and its stage in the control period.
@@ -81,6 +97,8 @@ impl AccessPoint {
         AccessPoint {
             number,
             position: site.access_points[number],
+            attendees: vec![Attendee::new(site.roll_validity()); site.robots],
+            roll: Roll::default(),
             site,
             heard: Vec::new(),
             silent: BTreeSet::new(),
@@ -91,8 +109,12 @@ impl AccessPoint {
             agreement: None,
             route: None,
             crossing: Vec::new(),
+            attached: Arc::default(),
+            strays: Arc::default(),
             roster: Arc::default(),
             settled_rounds: 0,
+            tasks_serviced: Vec::new(),
+            serves: Arc::default(),
             requested: None,
             service: Current::new(Serving::Gathering(Gathering)),
             rounds: Current::new(Rounds::Resting(Resting)),
@@ -132,7 +154,9 @@ impl AccessPoint {
             crossing: self.crossing.clone(),
             lineage: Some(Arc::new(Lineage::of_access_point(self.number))),
             parent: None,
-            below: Arc::clone(&self.roster),
+            below: Arc::clone(&self.attached),
+            strays: Arc::clone(&self.strays),
+            serves: Arc::clone(&self.serves),
             duty: None,
             parked: false,
             way: None,
@@ -141,6 +165,7 @@ impl AccessPoint {
             offers_made: 0,
             reply: None,
             team: None,
+            wrecks: Arc::default(),
         }
     }
 
@@ -157,7 +182,8 @@ impl AccessPoint {
 
     /// Takes in a beacon. One that arrives after a newer one of its sender is ignored, and so is one
     /// that has been late since an earlier control period.
-    fn hear(&mut self, period: u32, beacon: &Arc<Beacon>) {
+    fn hear(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
+        self.roll.merge(roll);
         if period < self.period {
             return;
         }
@@ -237,6 +263,10 @@ impl AccessPoint {
                 self.crossing.clear();
             }
             Notice::Path(_) => self.agreement = Some(Agreement::new(id)),
+            Notice::Serviced { task } if task >= self.tasks_serviced.len() => {
+                self.tasks_serviced.resize(task + 1, 0);
+            }
+            Notice::Serviced { task } => self.tasks_serviced[task] = 0,
             _ => {}
         }
         self.bulletin = bulletin;
@@ -272,24 +302,59 @@ impl AccessPoint {
         self.site.distance(self.position, other) <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
     }
 
-    /// Which robots are attached to the access points.
+    /// Which robots are attached to the access points, and which it hears of. One that knows no way to an
+    /// access point, on its way along Σ or with a parent that has failed, is not missed as long as it is
+    /// heard.
     fn update_roster(&mut self) {
         let own = Anchor::Access(self.number);
-        let mut roster = IdSet::new();
+        let [mut attached, mut strays, mut serves] = [IdSet::new(), IdSet::new(), IdSet::new()];
+        let [mut elsewhere, mut strays_elsewhere, mut serves_elsewhere] =
+            [IdSet::new(), IdSet::new(), IdSet::new()];
         for beacon in &self.heard {
-            let counts = match &beacon.duty {
-                None => true,
-                Some(duty) => duty.post().is_some_and(|post| post.parent == Some(own)),
-            };
-            if counts {
-                roster.merge(&beacon.below);
+            let post = beacon.duty.as_ref().and_then(Duty::post);
+            if beacon.duty.is_none() {
+                elsewhere.merge(&beacon.below);
+                strays_elsewhere.merge(&beacon.strays);
+                serves_elsewhere.merge(&beacon.serves);
+            } else if post.is_some_and(|post| post.parent == Some(own)) {
+                attached.merge(&beacon.below);
+                strays.merge(&beacon.strays);
+                serves.merge(&beacon.serves);
+            } else if beacon.parent == Some(self.id()) {
+                strays.merge(&beacon.below);
+                strays.merge(&beacon.strays);
+                serves.merge(&beacon.serves);
+            } else if beacon.lineage.is_none() {
+                strays.insert(beacon.sender);
+                serves.extend(beacon.task());
             }
         }
-        let settled = self.roster.includes(&roster) && roster.includes(&self.roster);
+        let mut heard_of = attached.clone();
+        heard_of.merge(&elsewhere);
+        for robot in heard_of.iter() {
+            if let Some(attendee) = self.attendees.get_mut(robot) {
+                attendee.attend();
+            }
+        }
+        for robot in strays.iter().chain(strays_elsewhere.iter()) {
+            if let Some(attendee) = self.attendees.get_mut(robot).filter(|it| it.is_known()) {
+                attendee.attend();
+            }
+        }
+        for task in serves.iter().chain(serves_elsewhere.iter()) {
+            if let Some(silence) = self.tasks_serviced.get_mut(task) {
+                *silence = 0;
+            }
+        }
+        if self.site.access_points.len() > 1 {
+            (self.attached, self.strays) = (Arc::new(attached), Arc::new(strays));
+            self.serves = Arc::new(serves);
+        }
+        let roster = self.attending();
+        let is_complete = roster.iter().all(|robot| heard_of.contains(robot));
+        let settled = is_complete && *self.roster == roster;
         self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
-        if !settled {
-            // What another access point sent may be older than what this one has received itself.
-            roster.merge(&self.roster);
+        if *self.roster != roster {
             self.roster = Arc::new(roster);
         }
     }
@@ -337,8 +402,8 @@ impl Node for AccessPoint {
         outputs: &mut Outputs<Message, MissionEvent>,
     ) -> Result<(), RobotError> {
         match input {
-            Input::Heard { message: Message::Beacon { period, beacon }, .. } => {
-                self.hear(*period, beacon);
+            Input::Heard { message: Message::Beacon { period, roll, beacon }, .. } => {
+                self.hear(*period, roll, beacon);
             }
             Input::Heard { message: Message::Request(tasks), .. } => {
                 self.requested = Some(Arc::clone(tasks));

@@ -25,6 +25,8 @@ pub type RoundAutomaton = Automaton<Round, RoundEvent, AccessPoint>;
 pub enum RoundAct {
     /// τ := 0.
     RestartClock,
+    /// It notices who is missing, and the first access point calls the roll.
+    CallRoll,
     /// It processes the messages received, and serves the user.
     Deliberate,
     /// The first access point sends the user the newest notice.
@@ -42,6 +44,7 @@ impl Act for RoundAct {
     fn name(self) -> &'static str {
         match self {
             RoundAct::RestartClock => "τ := 0",
+            RoundAct::CallRoll => "call the roll",
             RoundAct::Deliberate => "deliberate, serve",
             RoundAct::TellUser => "tell the user",
             RoundAct::TellBeacon => "tell beacon",
@@ -89,6 +92,7 @@ impl AccessPoint {
                     self.period = self.period.saturating_add(1);
                     self.expect_all();
                 }
+                RoundAct::CallRoll => self.call_roll()?,
                 RoundAct::Forget => self.forget_silent(),
                 RoundAct::Deliberate => {
                     let known = self.bulletin.id();
@@ -99,8 +103,10 @@ impl AccessPoint {
                     }
                 }
                 RoundAct::TellUser => self.tell_user(outputs),
-                RoundAct::TellBeacon => outputs
-                    .broadcast(Message::Beacon { period: self.period, beacon: self.next_beacon() }),
+                RoundAct::TellBeacon => {
+                    let (period, roll) = (self.period, self.roll.clone());
+                    outputs.broadcast(Message::Beacon { period, roll, beacon: self.next_beacon() });
+                }
             }
         }
         self.is_new &= self.round() > 0;
@@ -122,7 +128,7 @@ fn row<A: DataOf<Rounds>, B: DataOf<Rounds>>(
 /// # Errors
 /// Never with the table and guards of this crate; they are checked all the same.
 pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
-    use RoundAct::{Deliberate, Forget, RestartClock, TellBeacon, TellUser};
+    use RoundAct::{CallRoll, Deliberate, Forget, RestartClock, TellBeacon, TellUser};
     let wait = |point: &mut AccessPoint, duration: f64| point.clock += duration;
     Automaton::builder(ROUNDS, Round::Resting)
         .observing()
@@ -131,7 +137,7 @@ pub fn round_automaton() -> Result<RoundAutomaton, BuildError> {
         .carried_out(row(
             RoundEvent::SampleDue,
             guards::sample_due(),
-            &[RestartClock, TellUser, TellBeacon],
+            &[RestartClock, CallRoll, TellUser, TellBeacon],
             |_: &Resting| Listening { round: 1 },
         ))
         .carried_out(row(

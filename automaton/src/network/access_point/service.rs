@@ -12,6 +12,7 @@ use super::super::beacon::{Bulletin, Notice};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::service::{Announced, Electing, Gathering, Over, Serviced, Serving, UnderWay};
 use super::super::shared::Shared;
+use super::attendance::Attendee;
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
 
 /// The automaton of the service.
@@ -42,6 +43,10 @@ crate::observed! {
         longest_wait: (PATIENCE_WITH_ELECTIONS * point.longest_wait()) as f64,
     }
     propositions {
+        /// A robot that takes part in the elections for its task is gone.
+        misses_elector: point.electors().any(Attendee::is_gone),
+        /// A robot that takes part in the elections for its task has not been heard of.
+        expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
         /// The newest notice received announces a task, or calls for a recruit.
         hears_election: matches!(point.heard_notice(), Some(Notice::Task { .. } | Notice::Call { .. })),
         /// The newest notice received announces a path Σ, or that the team advances.
@@ -73,6 +78,8 @@ pub enum ServiceEffect {
     TakeUp(Bulletin),
     /// It issues the next notice.
     Issue(Notice),
+    /// It issues a notice that supersedes those that others issue meanwhile.
+    Supersede(Notice),
     /// It reports to observers.
     Report(MissionEvent),
 }
@@ -97,6 +104,9 @@ impl Holds<Serving> for AccessPoint {
                 ServiceEffect::Issue(notice) => {
                     self.take_up(self.bulletin.next(self.id(), Shared::new(notice)));
                 }
+                ServiceEffect::Supersede(notice) => {
+                    self.take_up(self.bulletin.superseding(self.id(), Shared::new(notice)));
+                }
                 ServiceEffect::Report(event) => self.log.push(event),
             }
         }
@@ -118,12 +128,16 @@ impl AccessPoint {
         self.newest.as_ref().map(|bulletin| &**bulletin.notice())
     }
 
-    /// The number of the task after the one serviced last, if the user has asked for one.
+    /// The robots that take part in the elections for its task.
+    fn electors(&self) -> impl Iterator<Item = &Attendee> {
+        let roster = self.announced().into_iter().flat_map(|announced| announced.roster.iter());
+        roster.filter_map(|robot| self.attendees.get(robot))
+    }
+
+    /// The task to announce next: the first that has been serviced and is not any more, or the one after
+    /// all that have been.
     fn next_task(&self) -> Option<usize> {
-        let next = match *self.service {
-            Serving::Serviced(Serviced { task }) => task + 1,
-            _ => 0,
-        };
+        let next = self.abandoned_task().unwrap_or(self.tasks_serviced.len());
         self.requested.as_ref().is_some_and(|tasks| next < tasks.len()).then_some(next)
     }
 
@@ -204,8 +218,33 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
     let roster = Arc::clone(&point.roster);
     let announced = Some(Announced { task, roster: Arc::clone(&roster) });
     let eligible = Arc::new((0..point.site.access_points.len()).collect());
-    effects.push(ServiceEffect::Report(MissionEvent::TaskAnnounced { task }));
-    effects.push(ServiceEffect::Issue(Notice::Task { task, position, roster, eligible }));
+    effects.push(ServiceEffect::Report(match point.abandoned_task() {
+        Some(task) => MissionEvent::TaskReannounced { task, gone: point.gone() },
+        None => MissionEvent::TaskAnnounced { task },
+    }));
+    let notice = Notice::Task { task, position, roster, eligible };
+    effects.push(match point.misses_robots() {
+        // They may still go by an earlier announcement when they come back.
+        true => ServiceEffect::Supersede(notice),
+        false => ServiceEffect::Issue(notice),
+    });
+    Some(Electing { announced })
+}
+
+/// The task is announced again, to the robots that are left.
+fn announce_again<A: Knows>(
+    place: &A,
+    point: &AccessPoint,
+    effects: &mut Effects,
+) -> Option<Electing> {
+    let task = place.announced()?.task;
+    let position = *point.requested.as_ref()?.get(task)?;
+    let roster = Arc::clone(&point.roster);
+    let announced = Some(Announced { task, roster: Arc::clone(&roster) });
+    let eligible = Arc::new((0..point.site.access_points.len()).collect());
+    let gone = point.gone();
+    effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone }));
+    effects.push(ServiceEffect::Supersede(Notice::Task { task, position, roster, eligible }));
     Some(Electing { announced })
 }
 
@@ -271,6 +310,11 @@ fn announces<A: DataOf<Serving>>(guard: Guard) -> Row {
     Transfer::where_known(ServiceEvent::Announces, guard, "announce the next task", announce::<A>)
 }
 
+fn announces_again<A: DataOf<Serving> + Knows>() -> Row {
+    let (guard, name) = (guards::announces_again(), "announce the task again");
+    Transfer::where_known(ServiceEvent::AnnouncesAgain, guard, name, announce_again::<A>)
+}
+
 fn no_robot<A: DataOf<Serving>>(guard: Guard) -> Row {
     let name = "end the mission: insufficient robots";
     Transfer::new(ServiceEvent::NoRobot, guard, name, end_without_robots::<A>)
@@ -308,6 +352,8 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(end_heard::<Serviced>())
         .carried_out(announces::<Gathering>(guards::announces_first()))
         .carried_out(announces::<Serviced>(guards::announces_next()))
+        .carried_out(announces_again::<Electing>())
+        .carried_out(announces_again::<UnderWay>())
         .carried_out(no_robot::<Gathering>(guards::no_robot_first()))
         .carried_out(no_robot::<Serviced>(guards::no_robot_next()))
         .carried_out(all_serviced::<Gathering>(guards::nothing_to_service()))

@@ -16,6 +16,7 @@ use super::super::duty::{
 };
 use super::super::record::Outcome;
 use super::super::robot::RequestNumber;
+use super::super::roll::{Absent, Wreck};
 use super::super::shared::Shared;
 use super::*;
 use crate::located::Place as _;
@@ -92,6 +93,8 @@ fn silent() -> Beacon {
         lineage: None,
         parent: None,
         below: Arc::default(),
+        strays: Arc::default(),
+        serves: Arc::default(),
         duty: None,
         parked: false,
         way: None,
@@ -100,6 +103,7 @@ fn silent() -> Beacon {
         offers_made: 0,
         reply: None,
         team: None,
+        wrecks: Arc::default(),
     }
 }
 
@@ -119,6 +123,8 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
         lineage: Lineage::of_access_point(0).extended_by(PostId(4)).map(Arc::new),
         parent: Some(13),
         below: Arc::new(IdSet::singleton(9)),
+        strays: Arc::new(IdSet::singleton(4)),
+        serves: Arc::new(IdSet::singleton(1)),
         duty: Some(duty),
         parked: true,
         way: Some(Point::new(-0.5, 0.25)),
@@ -127,13 +133,17 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
         offers_made: 5,
         reply: Some(Reply { to: 2, number: 4, accepted: Some(duty) }),
         team: Some(TeamReport { still: 3, slack: Some(1), remaining: f64::INFINITY }),
+        wrecks: Arc::new(vec![Wreck { robot: 3, place: Point::new(0.5, 0.5), heard_in: 6 }]),
         ..silent()
     }
 }
 
 /// A message of every kind: beacons with every duty and every notice.
 fn messages() -> Vec<Message> {
-    let beacon = |beacon| Message::Beacon { period: 7, beacon: Arc::new(beacon) };
+    let absent = Absent { suspended: IdSet::singleton(2), gone: IdSet::singleton(3) };
+    let roll = Roll { called: 6, absent: Arc::new(absent) };
+    let beacon =
+        |beacon| Message::Beacon { period: 7, roll: roll.clone(), beacon: Arc::new(beacon) };
     let of_duty = |duty| beacon(talkative(duty, Notice::Quiet));
     let of_notice = |notice| beacon(talkative(duties()[0], notice));
     let news = |notice| Message::News(Bulletin::first(Shared::new(notice)));

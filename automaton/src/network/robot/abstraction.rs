@@ -5,6 +5,8 @@
 //! stands, and for how long it has made no progress. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
+use std::sync::Arc;
+
 use pleach_discrete::network::{Bid, NodeId, NoticeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
@@ -14,9 +16,9 @@ use super::{Robot, RobotError, RobotView};
 
 /// What an explorer reads from a robot in addition to what observers see.
 impl<'a> RobotView<'a> {
-    /// The beacon that the robot would send now.
+    /// The beacon that the robot would send now, without what matters only when time passes.
     pub fn beacon(self) -> Beacon {
-        self.robot().public_state()
+        Beacon { strays: Arc::default(), serves: Arc::default(), ..self.robot().public_state() }
     }
 
     /// The path Σ that was announced last.
@@ -82,6 +84,7 @@ impl Robot {
     pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
         self.stand_at(self.position, still_periods);
         self.begin_period()?;
+        self.orphaned_periods = 0;
         self.deliberate()?;
         self.jump()
     }
@@ -110,6 +113,7 @@ impl Robot {
             can_detach,
             unused_periods,
             bulletin,
+            epoch,
             tasks,
             roster,
             eligible,
@@ -130,6 +134,7 @@ impl Robot {
             is_new: _,
             heard_way: _,
             is_displaced: _,
+            is_late: _,
             label: _,
             facts: _,
             is_quiet: _,
@@ -145,6 +150,13 @@ impl Robot {
             partner: _,
             taking_over: _,
             log: _,
+            // No robot is missed, and no task, where no time passes.
+            strays: _,
+            serves: _,
+            orphaned_periods: _,
+            roll: _,
+            out_of_sight: _,
+            wrecks: _,
             // Routes and motion.
             velocity: _,
             clock: _,
@@ -185,9 +197,9 @@ impl Robot {
         format!(
             "{:?}",
             (
-                (id, position, still_periods, &**duty, &**mission, unused_periods),
+                (id, position, still_periods, &**duty, &**mission, unused_periods,),
                 (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
-                (bulletin, tasks, roster, eligible, election, bid, waited, route),
+                ((bulletin, epoch), tasks, roster, eligible, election, bid, waited, route),
                 (agreement, team, silences),
             )
         )

@@ -20,6 +20,10 @@ use super::motion::ROUNDING;
 /// p₁ changes its parent only if that brings it nearer to its target by this share of d_build.
 const REATTACHMENT_GAIN: f64 = 0.05;
 
+/// A robot looks for another parent when no robot has held the post of its own for this many control
+/// periods.
+const PATIENCE_WITH_ORPHANED_POSTS: u32 = 12;
+
 /// A node without a branch becomes redundant after this many control periods.
 pub(super) const PATIENCE_WITH_UNUSED_POSTS: u32 = 2;
 
@@ -37,7 +41,10 @@ impl Robot {
             Activity::Standby if !self.tree_is_frozen() || self.anchor().is_none() => {
                 self.choose_parent()
             }
-            Activity::Following | Activity::Leading => self.reattach(),
+            Activity::Following | Activity::Leading => {
+                self.replace_parent().or_else(|| self.reattach())
+            }
+            Activity::Relay | Activity::Junction | Activity::Leaf => self.replace_parent(),
             _ => None,
         };
         self.look_after_place()
@@ -102,6 +109,37 @@ impl Robot {
     /// Whether a link of this length may be made.
     pub(super) fn may_build(&self, length: f64) -> bool {
         length <= self.site.build_length * (1.0 + ROUNDING)
+    }
+
+    /// Once a period: for how long no robot has held the post that its own is attached to.
+    pub(super) fn count_orphaned_periods(&mut self) {
+        let is_orphan =
+            matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none();
+        let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
+        self.orphaned_periods = if is_orphan { longer } else { 0 };
+    }
+
+    /// Another parent, where no robot has held the post for long that its own is attached to: the node
+    /// with the fewest links to an access point that is near enough.
+    fn replace_parent(&self) -> Option<Option<Anchor>> {
+        let (post, lost) = (self.duty.post()?.id, self.anchor()?);
+        if self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
+            return None;
+        }
+        let limit = self.site.hard_length * (1.0 + ROUNDING);
+        let leads_elsewhere = |lineage: &Lineage| {
+            !lineage.contains(post)
+                && !matches!(lost, Anchor::Post(lost) if lineage.contains(lost))
+                && self.confirms(lineage)
+        };
+        let ways = self.neighbours.iter().filter_map(|neighbour| {
+            let lineage = neighbour.beacon.lineage.as_ref()?;
+            let usable = Self::accepts_redundant(neighbour)
+                && leads_elsewhere(lineage)
+                && self.walk_to(neighbour) <= limit;
+            usable.then(|| (lineage.hops(), self.anchor_of(neighbour)))
+        });
+        ways.min_by_key(|&(hops, _)| hops).map(|(_, anchor)| Some(anchor))
     }
 
     fn choose_parent(&self) -> Option<Option<Anchor>> {
@@ -184,14 +222,32 @@ impl Robot {
         }
     }
 
+    /// The robots and tasks of which an access point hears through this one: those of its branch of the
+    /// tree, and robots that know no way, on their way along Σ or with a parent that has failed.
     fn collect_below(&mut self) {
         let mut below = IdSet::singleton(self.id);
-        for child in self.children() {
-            below.merge(&child.beacon.below);
+        let mut strays = IdSet::new();
+        let mut serves: IdSet = self.duty.post().and_then(|post| post.task).into_iter().collect();
+        let own = self.duty.post().map(|post| post.id);
+        for neighbour in self.neighbours.iter().filter(|it| it.heard_in + 1 >= self.period) {
+            let beacon = &neighbour.beacon;
+            if neighbour.post().is_some_and(|post| own.is_some_and(|own| post.is_child_of(own))) {
+                below.merge(&beacon.below);
+                strays.merge(&beacon.strays);
+                serves.merge(&beacon.serves);
+            } else if beacon.parent == Some(self.id) {
+                // Its post is attached to one that has no holder at present.
+                strays.merge(&beacon.below);
+                strays.merge(&beacon.strays);
+                serves.merge(&beacon.serves);
+            } else if beacon.lineage.is_none() && self.lineage().is_some() {
+                strays.insert(beacon.sender);
+                serves.extend(beacon.task());
+            }
         }
-        if *self.below != below {
-            self.below = Arc::new(below);
-        }
+        renew(&mut self.below, below);
+        renew(&mut self.strays, strays);
+        renew(&mut self.serves, serves);
     }
 
     /// Remark 5.6: p₁ attaches to a fixed or redundant robot or an access point that is
@@ -234,5 +290,12 @@ impl Robot {
         let (anchor, parent) = better?;
         self.reattaches_to = Some(parent);
         Some(Some(anchor))
+    }
+}
+
+/// What is the same is not told anew.
+fn renew(known: &mut Arc<IdSet>, now: IdSet) {
+    if **known != now {
+        *known = Arc::new(now);
     }
 }

@@ -67,7 +67,7 @@ impl Holds<Duty> for Robot {
 
     fn carry_out(&mut self, effects: Effects) {
         (self.desired_parent, self.reattaches_to) = (None, None);
-        self.unused_periods = 0;
+        (self.unused_periods, self.is_late) = (0, false);
         for effect in effects {
             match effect {
                 DutyEffect::Report(event) => self.report(event),
@@ -170,19 +170,21 @@ impl Robot {
 
     /// Whether Σ is no longer of use.
     pub(super) fn is_called_off(&self) -> bool {
-        use MissionStep::{Announced, Ended, Resumed, Serviced};
-        [Announced, Ended, Resumed, Serviced].into_iter().any(|step| self.takes_step(step))
+        use MissionStep::{Announced, Ended, Overtaken, Resumed, Serviced};
+        [Announced, Ended, Overtaken, Resumed, Serviced]
+            .into_iter()
+            .any(|step| self.takes_step(step))
     }
 
-    /// Whether another task is announced.
+    /// Whether another task is announced, or its own again.
     pub(super) fn is_superseded(&self) -> bool {
-        self.takes_step(MissionStep::Announced)
+        self.takes_step(MissionStep::Announced) || self.takes_step(MissionStep::Overtaken)
     }
 
     /// Whether the primary team is dissolved.
     pub(super) fn is_dissolved(&self) -> bool {
-        use MissionStep::{Announced, Ended, Serviced};
-        [Announced, Ended, Serviced].into_iter().any(|step| self.takes_step(step))
+        use MissionStep::{Announced, Ended, Overtaken, Serviced};
+        [Announced, Ended, Overtaken, Serviced].into_iter().any(|step| self.takes_step(step))
     }
 
     /// Whether it takes the post ahead now: its subgroup has arrived, or the mission goes on.
@@ -196,11 +198,34 @@ impl Robot {
         self.next_hop().is_some()
             && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
                 || self.takes_step(MissionStep::Resumed)
-                || self.takes_step(MissionStep::Announced))
+                || self.is_superseded())
     }
 
-    pub(super) fn post_ahead(&self) -> Option<Post> {
-        self.next_hop().map(|hop| hop.post)
+    /// The post that a robot on its way along Σ takes next: the one ahead or, where its task is announced
+    /// again before its subgroup has arrived, the one that it left.
+    pub(super) fn coming_post(&self) -> Option<Post> {
+        let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
+        if !self.turns_back() {
+            return self.next_hop().map(|hop| hop.post);
+        }
+        let hop = self.mission.path()?.hops.get(place)?;
+        // The robot behind holds the post of the first of a subgroup; others may have gone on.
+        let is_first = || self.active_subgroup().is_none_or(|it| it.first == place);
+        let is_held = left.is_some() && is_first() || self.takes_step(MissionStep::Overtaken);
+        Some(if is_held { self.new_post() } else { hop.post })
+    }
+
+    /// Whether it stops on its way along Σ: the task that it moves for is announced again, to the robots
+    /// that are left, and its subgroup has not arrived.
+    fn turns_back(&self) -> bool {
+        let is_same = matches!(*self.notice(),
+            Notice::Task { task, .. } if Some(task) == self.current_task());
+        let have_arrived = || {
+            let agreement = self.agreement.as_ref().zip(self.active_subgroup());
+            agreement.is_some_and(|(known, active)| known.have_arrived(active.places()))
+        };
+        self.takes_step(MissionStep::Overtaken)
+            || self.takes_step(MissionStep::Announced) && is_same && !have_arrived()
     }
 
     /// Whether its turn on Σ has come: its subgroup is the active team, and its post is held by
@@ -211,6 +236,17 @@ impl Robot {
             active.places().contains(&place)
                 && (place == 0 || place > active.first || self.is_relieved_of(held.station.post.id))
         })
+    }
+
+    /// Whether it joins a mission under way: its first post may be that of another robot by now.
+    pub(super) fn joins_late(&self) -> bool {
+        self.label == Label::Alone && self.is_late
+    }
+
+    /// Whether it waits on Σ, and the robot behind holds its post.
+    pub(super) fn is_superfluous(&self) -> bool {
+        let held = self.duty.held().filter(|_| self.duty.place().is_some());
+        held.is_some_and(|held| self.holder(held.station.post.id).is_some())
     }
 
     /// Whether another parent has been found to be better.
@@ -256,6 +292,20 @@ fn leave_path<B: From<Held>>(waiting: &Waiting, _: &Robot, effects: &mut Effects
     B::from(waiting.held)
 }
 
+fn stand_by(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Standby {
+    match robot.is_superfluous() {
+        true => leave_post(waiting, robot, effects),
+        false => leave_path(waiting, robot, effects),
+    }
+}
+
+/// A new post where the robot stands: the one before is left to the robot that holds it.
+fn leave_post<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Standby {
+    effects.push(DutyEffect::Restart);
+    let station = Station { post: robot.new_post(), reference: robot.free_place() };
+    Standby(Held { station, left: robot.duty.post().map(|post| post.id) })
+}
+
 fn stop_awaiting<B: From<Held>>(waiting: &AwaitingRelease, _: &Robot, effects: &mut Effects) -> B {
     effects.push(DutyEffect::Restart);
     B::from(waiting.held)
@@ -272,14 +322,15 @@ fn set_out(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Shifting 
     Shifting { place, left: (place > 0).then_some(waiting.held.station.post.id) }
 }
 
-/// Eq. (26): the robot holds the post that it has come to. A plain node that queues behind the next
+/// Eq. (26): the robot holds the post that it has come to, or takes a post where it stands if it turns
+/// back. A plain node that queues behind the next
 /// member makes its place where it stands.
 fn take_post_ahead<B: From<Held>>(
     shifting: &Shifting,
     robot: &Robot,
     effects: &mut Effects,
 ) -> Option<B> {
-    let hop = robot.next_hop()?;
+    let post = robot.coming_post()?;
     if !robot.takes_step(MissionStep::SubgroupArrived) {
         effects.push(DutyEffect::Restart);
     } else if let Some(active) =
@@ -288,10 +339,10 @@ fn take_post_ahead<B: From<Held>>(
         let (subgroup, robots) = (robot.subgroups_done(), robot.robots_at(active));
         effects.push(DutyEffect::Report(MissionEvent::SubgroupArrived { subgroup, robots }));
     }
-    let place = hop.place.reference;
+    let place = robot.next_hop()?.place.reference;
     let queues = (robot.position - place).norm() > robot.site.settings.arrival_radius();
-    let reference = if queues { robot.free_place() } else { place };
-    Some(B::from(Held { station: Station { post: hop.post, reference }, left: None }))
+    let reference = if queues || robot.turns_back() { robot.free_place() } else { place };
+    Some(B::from(Held { station: Station { post, reference }, left: None }))
 }
 
 /// The post that the last robot of Σ gets in the primary team.
@@ -342,7 +393,7 @@ fn retire(relay: &Relay, _: &Robot, _: &mut Effects) -> Standby {
     Standby(with_kind(relay.0, PostKind::Redundant))
 }
 
-/// Another parent in the tree, for a redundant robot or p₁ (Remark 5.6).
+/// Another parent in the tree: for a redundant robot or p₁ (Remark 5.6), or where the parent is gone.
 fn attach<A: Holder + From<Held>>(duty: &A, robot: &Robot, effects: &mut Effects) -> A {
     let mut held = *duty.held();
     if let Some(desired) = robot.desired_parent {
@@ -420,9 +471,10 @@ fn attached<A: DataOf<Duty> + Holder + From<Held>>() -> Row {
 /// What a jump takes place together with, a step of the mission or an exchange of duties, is one
 /// thing at a time: the propositions about it exclude each other, and `step`, which says
 /// something of several steps.
-fn labels(step: &'static str) -> [&'static str; 15] {
+fn labels(step: &'static str) -> [&'static str; 16] {
     [
         step,
+        "joins_late",
         "wins",
         "on_coming_path",
         "is_relieved",
@@ -453,6 +505,12 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
         .at_most_one(&labels("superseded"))
         .at_most_one(&labels("dissolved"))
         .at_most_one(&labels("takes_post_ahead"))
+        .carried_out(Transfer::new(
+            On::Joined,
+            guards::joined(),
+            "take a new post",
+            leave_post::<Standby>,
+        ))
         .carried_out(Transfer::new(On::Elected, guards::elected(), "lead", lead))
         .carried_out(bound::<Standby>())
         .carried_out(bound::<Relay>())
@@ -480,9 +538,20 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             "wait on Σ",
             await_release,
         ))
-        .carried_out(kept::<Standby>(On::StandbyKept, guards::standby_kept()))
+        .carried_out(Transfer::new(
+            On::StandbyKept,
+            guards::standby_kept(),
+            "keep the post, or take a new one",
+            stand_by,
+        ))
         .carried_out(kept::<Relay>(On::RelayKept, guards::relay_kept()))
         .carried_out(kept::<Leaf>(On::LeafKept, guards::leaf_kept()))
+        .carried_out(Transfer::new(
+            On::StandbyKept,
+            guards::release_missed(),
+            "take a new post",
+            leave_post::<AwaitingRelease>,
+        ))
         .carried_out(Transfer::new(
             On::BoundKept,
             guards::bound_kept(),
@@ -522,6 +591,9 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
         .carried_out(settled::<Following>())
         .carried_out(Transfer::new(On::SetOut, guards::set_out(), "leave the post", set_out))
         .carried_out(attached::<Standby>())
+        .carried_out(attached::<Relay>())
+        .carried_out(attached::<Junction>())
+        .carried_out(attached::<Leaf>())
         .carried_out(attached::<Following>())
         .carried_out(attached::<Leading>())
         .carried_out(Transfer::new(

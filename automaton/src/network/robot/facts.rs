@@ -90,6 +90,8 @@ facts! {
         service_announced,
         /// The newest notice says that the mission has ended.
         end_announced,
+        /// The newest notice follows from an announcement that it has not received.
+        overtaken,
         /// This robot is p₁.
         first,
         /// A member of the team has room to move.
@@ -103,8 +105,8 @@ facts! {
     }
     of the robot robot {
         quantities {
-            /// The number of branches attached to the post ahead on Σ.
-            branches_ahead: robot.post_ahead().map_or(0, |post| robot.branches_of(post.id)) as f64,
+            /// The number of branches attached to the post that it takes on Σ.
+            branches_ahead: robot.coming_post().map_or(0, |post| robot.branches_of(post.id)) as f64,
             /// Control periods for which no branch has depended on its post.
             unused: f64::from(robot.unused_periods),
             /// Control periods after which a post without a branch is given up.
@@ -145,6 +147,10 @@ facts! {
             free: robot.duty.is_redundant(),
             /// A task is serviced from its post.
             serves: robot.duty.post().is_some_and(|post| post.task.is_some()),
+            /// It joins a mission under way, and has no post of its own yet.
+            joins_late: robot.joins_late(),
+            /// The robot behind on Σ holds its post.
+            superfluous: robot.is_superfluous(),
             /// It holds a fixed post, or robots attached to it find no other parent.
             has_past_duties: robot.has_past_duties(),
             /// The leader election is over now, and it has won it.
@@ -161,10 +167,10 @@ facts! {
             is_relieved: robot.takes_step(MissionStep::Relieved),
             /// It takes the post ahead now.
             takes_post_ahead: robot.takes_post_ahead(),
-            /// The post ahead is that of a redundant robot.
-            ahead_is_free: robot.post_ahead().as_ref().is_some_and(Post::is_redundant),
-            /// A task is serviced from the post ahead.
-            ahead_serves: robot.post_ahead().is_some_and(|post| post.task.is_some()),
+            /// The post that it takes on Σ is that of a redundant robot.
+            ahead_is_free: robot.coming_post().as_ref().is_some_and(Post::is_redundant),
+            /// A task is serviced from the post that it takes on Σ.
+            ahead_serves: robot.coming_post().is_some_and(|post| post.task.is_some()),
             /// A robot in its way is a partner for an exchange of duties.
             finds_partner: robot.partner.is_some(),
             /// The partner has answered its offer.
@@ -286,13 +292,15 @@ impl Robot {
         let id = self.bulletin.id();
         let election = self.election.as_ref().map(|election| election.id());
         let path = self.agreement.as_ref().map(|agreement| agreement.id());
+        let is_overtaken = id.epoch() > self.epoch;
         match self.notice() {
+            Notice::Ended { .. } => facts.end_announced = true,
             Notice::Task { .. } if election != Some(id) => facts.announced = true,
+            _ if is_overtaken => facts.overtaken = true,
             Notice::Call { .. } if election != Some(id) => facts.called = true,
             Notice::Path(_) if path != Some(id) => facts.path_announced = true,
             Notice::Advance { .. } => facts.resumed = true,
             Notice::Serviced { .. } => facts.service_announced = true,
-            Notice::Ended { .. } => facts.end_announced = true,
             _ => {}
         }
     }

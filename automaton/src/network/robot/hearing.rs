@@ -103,8 +103,8 @@ impl Robot {
 
     #[inline(never)]
     fn hear_news(&mut self, period: u32, beacon: &Arc<Beacon>) {
-        if self.is_new {
-            self.period = period;
+        if self.is_new && period > self.period {
+            self.join_in(period);
         }
         let known = self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id);
         match known {
@@ -152,7 +152,7 @@ impl Robot {
     /// A neighbour that the robot knows is not heard; returns the index of the next one. One that was
     /// near when it was heard last is not out of range: it stays where it is taken to be, and this
     /// robot does not leave its place meanwhile. Nor is one to which packets flow, as long as it has
-    /// granted them.
+    /// granted them. A robot that is gone is not waited for.
     fn miss(&mut self, at: usize) -> usize {
         let known = &mut self.neighbours[at];
         let silent_rounds = known.silent_rounds.saturating_add(1).min(ROUNDS_TO_BE_HEARD as u8);
@@ -163,16 +163,18 @@ impl Robot {
         let is_lost = usize::from(silent_rounds) == ROUNDS_TO_BE_HEARD
             && (known.is_access_point() || !self.site.is_near(known.distance));
         let (id, reliability) = (known.id(), known.reliability);
-        if is_lost && !self.sends_to(id) || reliability <= 0.0 {
-            self.neighbours.remove(at);
+        let is_gone = usize::from(silent_rounds) == ROUNDS_TO_BE_HEARD && self.is_gone(id);
+        if is_lost && !self.sends_to(id) || is_gone || reliability <= 0.0 {
+            let lost = self.neighbours.remove(at);
+            self.lose_sight_of(&lost);
             self.receive_news();
             return at;
         }
         at + 1
     }
 
-    /// Whether the robot may leave its place in this control period: it has heard in this period where
-    /// each robot is that was near when it was heard last.
+    /// Whether the robot may leave its place in this control period: it takes part, and has heard in
+    /// this period where each robot is that was near when it was heard last, but those that are gone.
     ///
     /// If one of two robots that could meet moves, it so knows where the other is. If both move, each
     /// keeps to its own side of the line between them (17); if one stays, its place lies on its own
@@ -182,8 +184,9 @@ impl Robot {
             known.heard_in == self.period
                 || known.is_access_point()
                 || !self.site.is_near(known.distance)
+                || self.is_gone(known.id())
         };
-        self.neighbours.iter().all(is_sure)
+        self.is_called() && self.neighbours.iter().all(is_sure)
     }
 
     /// The nodes that the robot hears, and for how many rounds each has been silent.

@@ -23,7 +23,8 @@ pub(super) fn place_bid<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Optio
     };
     let target = robot.site.free_space.nearest(*position);
     let task = TaskNotice { number: *task, position: *position, target };
-    let competes = robot.lineage().is_some_and(|lineage| eligible.contains(lineage.root()));
+    let competes = roster.contains(robot.id)
+        && robot.lineage().is_some_and(|lineage| eligible.contains(lineage.root()));
     let bid = competes.then(|| robot.leader_bid(&task)).flatten();
     let mut election = Election::new(robot.notice_id());
     election.place(robot.id, bid);

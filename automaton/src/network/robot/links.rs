@@ -63,7 +63,7 @@ impl Robot {
         }
     }
 
-    fn named_parent(&self) -> Option<NodeId> {
+    pub(super) fn named_parent(&self) -> Option<NodeId> {
         if let Duty::Shifting(Shifting { place, .. }) = *self.duty {
             return self.parent_under_way(place);
         }

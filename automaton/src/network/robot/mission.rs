@@ -47,6 +47,8 @@ pub enum MissionEffect {
     ForgetRoute,
     /// It takes part in this agreement about Σ.
     Agree(Option<Agreement>),
+    /// It goes by the announcement that the newest notice follows from.
+    KeepUp,
     /// Its stillness is counted from 0.
     Restart,
 }
@@ -71,6 +73,7 @@ impl Holds<Mission> for Robot {
                 MissionEffect::Issue(notice) => self.issue(notice),
                 MissionEffect::Learn(task, roster, eligible) => {
                     (self.roster, self.eligible) = (roster, eligible);
+                    self.epoch = self.notice_id().epoch();
                     if self.tasks.last().is_none_or(|known| known.number != task.number) {
                         self.tasks.push(task);
                     }
@@ -84,6 +87,7 @@ impl Holds<Mission> for Robot {
                 }
                 MissionEffect::ForgetRoute => self.route = None,
                 MissionEffect::Agree(agreement) => self.agreement = agreement,
+                MissionEffect::KeepUp => self.epoch = self.notice_id().epoch(),
                 MissionEffect::Restart => self.still_periods = 0,
             }
         }
@@ -152,6 +156,15 @@ fn announced<A: DataOf<Mission>>() -> Row {
     Transfer::where_known(MissionStep::Announced, guards::announced(), name, leader::place_bid::<A>)
 }
 
+fn overtaken<A: DataOf<Mission>>() -> Row {
+    Transfer::new(MissionStep::Overtaken, guards::overtaken(), "wait", keep_up::<A>)
+}
+
+fn keep_up<A>(_: &A, _: &Robot, effects: &mut Effects) -> Idle {
+    effects.push(MissionEffect::KeepUp);
+    Idle
+}
+
 fn called<A: DataOf<Mission>>() -> Row {
     Transfer::new(MissionStep::Called, guards::called(), "answer the call", recruit::answer::<A>)
 }
@@ -167,8 +180,15 @@ fn resumed<A: DataOf<Mission>>() -> Row {
 pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
     use MissionStep as Step;
     // A notice has one content; an election has a winner or not; at most one subgroup is moving.
-    let notices =
-        ["announced", "called", "path_announced", "resumed", "service_announced", "end_announced"];
+    let notices = [
+        "announced",
+        "called",
+        "path_announced",
+        "resumed",
+        "service_announced",
+        "end_announced",
+        "overtaken",
+    ];
     Automaton::builder(MISSION, Phase::Idle)
         .observing()
         .at_most_one(&notices)
@@ -186,6 +206,11 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         .carried_out(announced::<RecruitElection>())
         .carried_out(announced::<PathAgreement>())
         .carried_out(announced::<Shift>())
+        .carried_out(overtaken::<LeaderElection>())
+        .carried_out(overtaken::<Advance>())
+        .carried_out(overtaken::<RecruitElection>())
+        .carried_out(overtaken::<PathAgreement>())
+        .carried_out(overtaken::<Shift>())
         .carried_out(called::<Idle>())
         .carried_out(called::<LeaderElection>())
         .carried_out(called::<Advance>())

@@ -3,12 +3,14 @@
 //! Everything here is local. A robot knows its own position and duty, what every robot knows
 //! from the beginning ([`Site`]), and the messages of the neighbours that it hears. It is a
 //! [`Node`](crate::node::Node): `step` says what it does with each input, stage by stage of a
-//! control period. The chapters follow that period: it receives beacons (`hearing`), keeps its place
+//! control period. The chapters follow that period: it receives beacons (`hearing`) and learns who
+//! does not take part (`absence`), keeps its place
 //! in the tree (`attachment`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
 //! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`motion`, `negotiation`);
 //! what its guards see of all this are `facts`.
 
+mod absence;
 #[cfg(feature = "abstraction")]
 mod abstraction;
 mod attachment;
@@ -69,6 +71,7 @@ use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::message::Message;
 use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
+use super::roll::{Roll, Wreck};
 use super::shared::Shared;
 use super::site::Site;
 use duties::Label;
@@ -77,6 +80,9 @@ pub(super) use hearing::ROUNDS_TO_BE_HEARD;
 use lineage::HeardWay;
 use reservation::Reservation;
 use rounds::Rounds;
+
+/// Posts that are made during a mission have numbers from here on: higher than those of notices.
+const FIRST_NEW_POST: u32 = 1 << 31;
 
 /// A robot of the network.
 #[derive(Clone, Debug)]
@@ -90,6 +96,8 @@ pub struct Robot {
     neighbours: Vec<Neighbour>,
     /// How many control periods have begun.
     period: u32,
+    /// The newest roll that it knows.
+    roll: Roll,
     /// Where in the table of neighbours the next beacon is expected.
     heard_up_to: usize,
     /// The link whose other end is expected to tell its multiplier next.
@@ -109,6 +117,10 @@ pub struct Robot {
     round_count: Rounds,
     acts: Acts,
     is_new: bool,
+
+    // Where robots were that it does not hear any more, and those that are gone.
+    out_of_sight: Vec<Wreck>,
+    wrecks: Arc<Vec<Wreck>>,
 
     // The rest of its continuous state: u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
     velocity: Vector,
@@ -146,15 +158,22 @@ pub struct Robot {
     /// It has been given the post of another robot in this jump.
     is_displaced: bool,
     below: Arc<IdSet>,
+    strays: Arc<IdSet>,
+    serves: Arc<IdSet>,
     /// The parent in the tree that it has found to be best, none if it has looked for none.
     desired_parent: Option<Option<Anchor>>,
     /// The node that p₁ finds to be a better parent.
     reattaches_to: Option<NodeId>,
     can_detach: bool,
     unused_periods: u32,
+    /// It has joined a mission under way, and not taken a new post yet.
+    is_late: bool,
+    orphaned_periods: u32,
 
     // What it knows of the mission.
     bulletin: Bulletin,
+    /// That of the announcement that it goes by.
+    epoch: u32,
     tasks: Vec<TaskNotice>,
     roster: Arc<IdSet>,
     eligible: Arc<IdSet>,
@@ -249,17 +268,25 @@ impl Robot {
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
             period: 0,
+            roll: Roll::default(),
+            out_of_sight: Vec::new(),
+            wrecks: Arc::default(),
             heard_up_to: 0,
             parent: None,
             place: Current::new(PlaceInTree::Detached(lineage::Detached)),
             heard_way: HeardWay::NoParent,
             is_displaced: false,
             below: Arc::new(IdSet::singleton(id)),
+            strays: Arc::default(),
+            serves: Arc::default(),
             desired_parent: None,
             reattaches_to: None,
             can_detach: false,
             unused_periods: 0,
+            is_late: false,
+            orphaned_periods: 0,
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
+            epoch: 0,
             tasks: Vec::new(),
             roster: Arc::default(),
             eligible: Arc::default(),
@@ -303,13 +330,29 @@ impl Robot {
         }
     }
 
+    /// Control periods begin together: a robot that begins later learns from the others which one this is.
+    fn join_in(&mut self, period: u32) {
+        self.period = period;
+        if period > 1 {
+            self.is_late = true;
+            self.note_change();
+        }
+    }
+
+    /// The post of a redundant robot that no robot has ever had.
+    pub(super) fn new_post(&self) -> Post {
+        let number = self.period.wrapping_mul(self.site.robots as u32).wrapping_add(self.id as u32);
+        Post::redundant(PostId(FIRST_NEW_POST | number))
+    }
+
     /// Tells its public state. One that stays the same is told in as many rounds of a period as it
     /// takes to be heard if some are lost, and then no more.
     fn tell_beacon(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
         let beacon = self.next_beacon();
         if !self.has_told_beacon() {
             self.beacon_told += 1;
-            outputs.broadcast(Message::Beacon { period: self.period, beacon });
+            let (period, roll) = (self.period, self.roll.clone());
+            outputs.broadcast(Message::Beacon { period, roll, beacon });
         }
     }
 
@@ -345,6 +388,8 @@ impl Robot {
             lineage: self.lineage().cloned(),
             parent: self.parent,
             below: Arc::clone(&self.below),
+            strays: Arc::clone(&self.strays),
+            serves: Arc::clone(&self.serves),
             duty: Some(*self.duty),
             parked: self.is_parked(),
             way: self.way_asked_for(),
@@ -353,6 +398,7 @@ impl Robot {
             offers_made: self.offers().offers_made(),
             reply: self.offers().reply().cloned(),
             team: self.team,
+            wrecks: Arc::clone(&self.wrecks),
         }
     }
 
@@ -381,6 +427,7 @@ impl Robot {
         self.beacon_told = 0;
         self.note_change();
         self.count_unused_periods();
+        self.count_orphaned_periods();
         self.consider_exchange();
         self.advance_exchange()
     }
@@ -401,6 +448,7 @@ impl Robot {
     fn process_messages(&mut self) -> Result<(), TransitionError> {
         (self.has_unsent_news, self.is_unmeasured) = (true, true);
         self.advance_exchange()?;
+        self.locate_wrecks();
         self.keep_place()?;
         self.hear_notices();
         self.remember_parent();

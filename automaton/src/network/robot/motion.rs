@@ -21,7 +21,7 @@ use crate::automaton::TransitionError;
 /// A robot this share of ρ from the reference of its post has settled.
 const SETTLED: f64 = 0.02;
 /// Distances kept are larger than required by this share, so that rounding has no effect.
-const MARGIN: f64 = 1e-4;
+pub(super) const MARGIN: f64 = 1e-4;
 /// Parked robots are kept at this many ρ when there is a way round.
 const KEEP_OUT: f64 = 2.1;
 /// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
@@ -205,6 +205,7 @@ impl Robot {
             .iter()
             .filter(|neighbour| !neighbour.is_access_point() && neighbour.beacon.parked)
             .map(|n| Disc { center: n.position(), radius: KEEP_OUT * self.clearance() })
+            .chain(self.keep_out_discs(KEEP_OUT * self.clearance()))
             .collect();
         let allowance = DETOUR_ALLOWANCE * self.clearance();
         let around = |from: Point, direct: Geodesic| match free_space.detour(from, goal, &parked) {
@@ -245,6 +246,7 @@ impl Robot {
     fn motion_problem(&self, waypoint: Point) -> MotionProblem {
         let step = self.site.settings.step_radius;
         let mut half_planes = self.cell(waypoint, step);
+        half_planes.extend(self.sides_of_wrecks());
         half_planes.extend(self.linearised_residual());
         let mut discs = vec![Disc { center: self.position, radius: step }];
         discs.extend(self.post_discs());

@@ -133,6 +133,7 @@ impl Robot {
             self.route = self.find_route(id).map(|route| (id, Shared::new(route)));
         }
         let bid = match &self.route {
+            _ if !self.roster.contains(self.id) => None,
             _ if !self.duty.is_redundant() || self.children().next().is_some() => None,
             Some((_, route)) => Some(self.recruit_bid(route.len())),
             None if self.waited_rounds < 2 * self.longest_wait() => return,

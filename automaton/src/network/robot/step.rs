@@ -181,7 +181,10 @@ impl Robot {
     #[inline]
     fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
         match message {
-            Message::Beacon { period, beacon } => self.hear_beacon(*period, beacon),
+            Message::Beacon { period, roll, beacon } => {
+                self.hear_roll(roll);
+                self.hear_beacon(*period, beacon);
+            }
             _ if self.is_planning_routes() => self.hear_of_routes(from, message, outputs),
             _ => self.hear_of_flows_or_moves(from, message),
         }

@@ -87,6 +87,11 @@ impl<'a> RobotView<'a> {
         self.0.notice_id()
     }
 
+    /// The task that it goes by and how often a task had been announced again before.
+    pub fn announcement(self) -> (u32, Option<usize>) {
+        (self.0.epoch, self.0.current_task())
+    }
+
     /// The task announced last, as far as it knows.
     pub fn current_task(self) -> Option<usize> {
         self.0.current_task()

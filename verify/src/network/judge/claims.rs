@@ -30,6 +30,10 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
         MissionEvent::TaskAnnounced { task: it } | MissionEvent::ElectionRepeated { task: it } => {
             task = Some(*it);
         }
+        MissionEvent::TaskReannounced { task: it, gone } => {
+            task = Some(*it);
+            robots.extend(gone);
+        }
         MissionEvent::LeaderElected { task: it, robot, .. }
         | MissionEvent::TaskServiced { task: it, robot } => {
             task = Some(*it);

@@ -68,9 +68,9 @@ impl Ledger {
         }
     }
 
-    /// The task that is pursued: the last one announced, unless it is serviced.
+    /// The task that is pursued: the one announced that is not serviced.
     pub fn task(&self) -> Option<usize> {
-        self.announced.checked_sub(1).filter(|task| !self.serviced.contains_key(task))
+        (0..self.announced).find(|task| !self.serviced.contains_key(task))
     }
 
     /// What the mission is at.
@@ -105,6 +105,7 @@ impl Ledger {
                 self.elect(*task, *robot, *conflict)
             }
             MissionEvent::ElectionRepeated { task } => self.repeat_election(*task),
+            MissionEvent::TaskReannounced { task, gone } => self.reannounce(*task, gone),
             MissionEvent::Stationary { robot, .. } => self.call(*robot),
             MissionEvent::RecruitElected { robot, path, break_points } => {
                 self.recruit(*robot, path, break_points)
@@ -149,6 +150,25 @@ impl Ledger {
         }
         (self.leader, self.awaits_release) = (Some(robot), conflict);
         self.primary_team = vec![robot];
+        Ok(())
+    }
+
+    /// Robots are gone: the task that is pursued begins anew, or one that was serviced is pursued again.
+    fn reannounce(&mut self, task: usize, gone: &[usize]) -> Result<(), Dispute> {
+        let is_pursued = self.task().is_none_or(|pursued| pursued == task);
+        if task >= self.announced || !is_pursued || gone.is_empty() {
+            let sentence = format!(
+                "task {task} is announced again without robots {gone:?}, while task {:?} is pursued \
+                 and {} tasks have been announced",
+                self.task(),
+                self.announced
+            );
+            return dispute(gone, sentence);
+        }
+        self.serviced.remove(&task);
+        let (roles, announced) = (std::mem::take(&mut self.roles), self.announced);
+        let serviced = std::mem::take(&mut self.serviced);
+        *self = Ledger { roles, announced, serviced, ..Ledger::new(0) };
         Ok(())
     }
 

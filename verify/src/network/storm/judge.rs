@@ -142,13 +142,13 @@ fn rooted(seen: &Snapshot) -> Result<(), Violation> {
     }
 }
 
-/// [`Property::SingleLeader`]: no two robots lead to the same task.
+/// [`Property::SingleLeader`]: no two robots lead by the same announcement.
 fn led(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
     let mut announcements = Vec::new();
     for (robot, node) in nodes.iter().enumerate().take(seen.roles.len()) {
         if let Some(known) = node.member().view().robot().filter(|_| node.is_running()) {
             let leads = seen.roles[robot] == Role::Leader;
-            announcements.extend(leads.then_some((known.current_task(), robot)));
+            announcements.extend(leads.then_some((known.announcement(), robot)));
         }
     }
     announcements.sort_unstable();
@@ -161,13 +161,15 @@ fn led(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
 }
 
 /// [`Property::Duties`]: no two robots count as holders of one fixed post. Of two that exchange
-/// their duties the one that has given its own does not.
+/// their duties the one that has given its own does not; nor does a robot on Σ whose post has been
+/// taken by the robot behind: it stays in its place until it knows.
 fn held_once(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
     let mut held = Vec::new();
     for (number, node) in nodes.iter().enumerate().filter(|(_, node)| node.is_running()) {
         let Some(robot) = node.member().view().robot() else { continue };
         let Some(post) = robot.duty().post().filter(|post| post.is_fixed()) else { continue };
-        if robot.taking().is_none() {
+        let is_relieved = robot.duty().place().is_some();
+        if robot.taking().is_none() && !is_relieved {
             held.push((post.id, number));
         }
     }

@@ -1,0 +1,300 @@
+//! The automaton of a robot's attendance, and the roll that follows from it.
+//!
+//! Robots that are attached to an access point, at whatever distance, are heard of. One that has not
+//! been for some control periods is suspended, and gone when no roll is valid any more that lets it
+//! move. A robot that comes back is readmitted when no roll is valid any more that calls it gone.
+
+use std::sync::Arc;
+
+use pleach_discrete::network::{ATTENDANCE, Attendance, AttendanceEvent, IdSet, NodeId};
+use pleach_guards::network::attendance as guards;
+
+use crate::automaton::TransitionError;
+use crate::located::{Current, DataOf, Holds, Place as _};
+use crate::{Automaton, BuildError, Transfer};
+
+use super::super::roll::{Absent, Roll};
+use super::AccessPoint;
+
+/// Control periods after which a robot that is not heard of is missed.
+const PATIENCE: u32 = 8;
+
+/// The automaton of a robot's attendance.
+pub type AttendanceAutomaton = Automaton<Attendance, AttendanceEvent, Attendee>;
+
+crate::places_of! {
+    /// Whether a robot takes part: an [`Attendance`]; none of its locations has data.
+    #[derive(Copy)]
+    pub enum Standing: Attendance {
+        /// It takes part.
+        Present(Present),
+        /// It may not move any more.
+        Suspended(Suspended),
+        /// It does not move.
+        Gone(Gone),
+        /// It may not move yet.
+        Returning(Returning),
+    }
+}
+
+macro_rules! without_data {
+    ($($name:ident),+) => {
+        $(
+            #[doc = concat!("The data of [`Attendance::", stringify!($name), "`]: none.")]
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            pub struct $name;
+        )+
+    };
+}
+
+without_data!(Present, Suspended, Gone, Returning);
+
+/// A robot as an access point knows it.
+#[derive(Clone, Debug)]
+pub struct Attendee {
+    standing: Current<Standing>,
+    /// Control periods since it was heard of; none if it never was.
+    silence: Option<u32>,
+    /// Control periods since its standing changed.
+    age: u32,
+    /// Control periods for which a roll is valid.
+    validity: u32,
+}
+
+crate::observed! {
+    impl Observed for Attendee as attendee;
+    /// What the guards of attendance read.
+    pub const ATTENDANCE_GLOSSARY;
+    quantities {
+        /// Control periods since the robot was heard of.
+        silence: f64::from(attendee.silence.unwrap_or_default()),
+        /// Control periods after which it is missed.
+        patience: f64::from(PATIENCE),
+        /// Control periods since its standing changed.
+        age: f64::from(attendee.age),
+        /// Control periods for which a roll is valid.
+        validity: f64::from(attendee.validity),
+    }
+    propositions {
+        /// The robot has been heard of.
+        known: attendee.is_known(),
+    }
+}
+
+impl Holds<Standing> for Attendee {
+    type Effects = ();
+
+    fn current(&self) -> &Current<Standing> {
+        &self.standing
+    }
+
+    fn current_mut(&mut self) -> &mut Current<Standing> {
+        &mut self.standing
+    }
+
+    fn carry_out(&mut self, (): ()) {
+        self.age = 0;
+    }
+}
+
+impl Attendee {
+    /// A robot that has never been heard of.
+    pub(super) fn new(validity: u32) -> Self {
+        Attendee {
+            standing: Current::new(Standing::Present(Present)),
+            silence: None,
+            age: 0,
+            validity,
+        }
+    }
+
+    /// The robot is heard of.
+    pub(super) fn attend(&mut self) {
+        self.silence = Some(0);
+    }
+
+    /// Whether it has ever been heard of.
+    pub(super) fn is_known(&self) -> bool {
+        self.silence.is_some()
+    }
+
+    /// Whether it has been heard of in this control period.
+    pub(super) fn is_heard_of(&self) -> bool {
+        self.silence == Some(0)
+    }
+
+    /// Whether it has been heard of lately, and takes part.
+    pub(super) fn takes_part(&self) -> bool {
+        self.is_known() && self.standing.location() == Attendance::Present
+    }
+
+    /// Whether it is gone.
+    pub(super) fn is_gone(&self) -> bool {
+        self.standing.location() == Attendance::Gone
+    }
+
+    /// Another control period begins.
+    fn review(&mut self, automaton: &AttendanceAutomaton) -> Result<(), TransitionError> {
+        self.age = self.age.saturating_add(1);
+        self.silence = self.silence.map(|silence| silence.saturating_add(1));
+        automaton.step_in_place::<Standing>(self)?;
+        Ok(())
+    }
+}
+
+impl AccessPoint {
+    /// Once a control period: who is missed, and, at the first access point, the next roll.
+    pub(super) fn call_roll(&mut self) -> Result<(), TransitionError> {
+        let site = Arc::clone(&self.site);
+        for attendee in &mut self.attendees {
+            attendee.review(&site.automata.attendance)?;
+        }
+        for silence in &mut self.tasks_serviced {
+            *silence = silence.saturating_add(1);
+        }
+        if self.number == 0 {
+            let absent = self.absent();
+            let is_same = *self.roll.absent == absent;
+            let absent = if is_same { Arc::clone(&self.roll.absent) } else { Arc::new(absent) };
+            self.roll = Roll { called: self.period, absent };
+        }
+        Ok(())
+    }
+
+    /// The first task that has been serviced, and has not been for as long as it takes to give a robot
+    /// up.
+    pub(super) fn abandoned_task(&self) -> Option<usize> {
+        let patience = PATIENCE + self.site.roll_validity();
+        self.tasks_serviced.iter().position(|&silence| silence > patience)
+    }
+
+    fn absent(&self) -> Absent {
+        let mut absent = Absent::default();
+        for (robot, attendee) in self.attendees.iter().enumerate() {
+            match attendee.standing.location() {
+                Attendance::Present => {}
+                Attendance::Suspended | Attendance::Returning => {
+                    absent.suspended.insert(robot);
+                }
+                Attendance::Gone => {
+                    absent.gone.insert(robot);
+                }
+            }
+        }
+        absent
+    }
+
+    /// The robots that are gone.
+    pub(super) fn gone(&self) -> Vec<NodeId> {
+        let attendees = self.attendees.iter().enumerate();
+        attendees.filter(|(_, attendee)| attendee.is_gone()).map(|(robot, _)| robot).collect()
+    }
+
+    /// Whether robots that it has heard of do not take part.
+    pub(super) fn misses_robots(&self) -> bool {
+        let is_absent = |it: &Attendee| it.is_known() && !it.takes_part();
+        self.attendees.iter().any(is_absent)
+    }
+
+    /// The robots that take part, as far as it knows.
+    pub(super) fn attending(&self) -> IdSet {
+        let attendees = self.attendees.iter().enumerate();
+        attendees.filter(|(_, attendee)| attendee.takes_part()).map(|(robot, _)| robot).collect()
+    }
+}
+
+type Row = Transfer<Attendance, AttendanceEvent, Attendee>;
+
+fn row<A: DataOf<Standing>, B: DataOf<Standing> + Copy>(
+    event: AttendanceEvent,
+    guard: pleach_guards::Guard,
+    name: &'static str,
+    next: fn(&A, &Attendee, &mut ()) -> B,
+) -> Row {
+    Transfer::new(event, guard, name, next)
+}
+
+/// The automaton of a robot's attendance.
+///
+/// # Errors
+/// Never with the table and guards of this crate; they are checked all the same.
+pub fn attendance_automaton() -> Result<AttendanceAutomaton, BuildError> {
+    use AttendanceEvent as On;
+    let expect = "others expect to hear it";
+    Automaton::builder(ATTENDANCE, Attendance::Present)
+        .observing()
+        .carried_out(row(On::Missed, guards::missed(), "it may not move", |_: &Present, _, _| {
+            Suspended
+        }))
+        .carried_out(row(
+            On::HeardAgain,
+            guards::heard_again(),
+            "it may move",
+            |_: &Suspended, _, _| Present,
+        ))
+        .carried_out(row(
+            On::RollsExpired,
+            guards::rolls_expired(),
+            "others go round it",
+            |_: &Suspended, _, _| Gone,
+        ))
+        .carried_out(row(On::HeardAgain, guards::heard_again(), expect, |_: &Gone, _, _| Returning))
+        .carried_out(row(
+            On::Missed,
+            guards::missed(),
+            "others go round it",
+            |_: &Returning, _, _| Gone,
+        ))
+        .carried_out(row(
+            On::Readmitted,
+            guards::readmitted(),
+            "it may move",
+            |_: &Returning, _, _| Present,
+        ))
+        .build()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const VALIDITY: u32 = 5;
+
+    /// The standing of a robot in each control period, by whether it is heard of.
+    fn standings(periods: u32, is_heard_of: impl Fn(u32) -> bool) -> Vec<Attendance> {
+        let automaton = attendance_automaton().expect("it is well formed");
+        let mut attendee = Attendee::new(VALIDITY);
+        let standing = |period| {
+            attendee.review(&automaton).expect("its guards have values");
+            if is_heard_of(period) {
+                attendee.attend();
+            }
+            attendee.standing.location()
+        };
+        (0..periods).map(standing).collect()
+    }
+
+    /// Whenever a robot may move by a roll that is valid, no valid roll calls it gone.
+    #[test]
+    fn a_robot_is_suspended_for_longer_than_a_roll_is_valid() {
+        let is_silent = |period| (20..60).contains(&period) || (90..100).contains(&period);
+        let standings = standings(160, |period| !is_silent(period));
+        assert!(standings.contains(&Attendance::Gone));
+        assert!(standings.contains(&Attendance::Returning));
+        assert_eq!(standings[159], Attendance::Present);
+        for (period, &standing) in standings.iter().enumerate() {
+            let valid = &standings[period.saturating_sub(VALIDITY as usize)..=period];
+            match standing {
+                Attendance::Gone => assert!(!valid.contains(&Attendance::Present), "{period}"),
+                Attendance::Present => assert!(!valid.contains(&Attendance::Gone), "{period}"),
+                _ => {}
+            }
+        }
+    }
+
+    #[test]
+    fn a_robot_that_was_never_heard_of_is_not_missed() {
+        assert!(standings(90, |_| false).iter().all(|&known| known == Attendance::Present));
+        assert!(!Attendee::new(VALIDITY).takes_part());
+    }
+}

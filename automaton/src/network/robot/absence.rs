@@ -1,0 +1,100 @@
+//! Robots that do not take part: the roll that lets this robot move, and the bodies of those that are
+//! gone.
+//!
+//! A robot that is gone is not expected to be heard. Others go round the place where any of them heard
+//! it last. From there it has moved at most the two steps that it had the right to before it fell
+//! silent: one in the control period in which it was heard, and one in the next.
+
+use std::cmp::Reverse;
+use std::sync::Arc;
+
+use pleach_continuous::Point;
+use pleach_continuous::geometry::{Disc, HalfPlane};
+use pleach_discrete::network::NodeId;
+
+use super::super::roll::{Roll, Wreck};
+use super::super::scenario::Settings;
+use super::Robot;
+use super::hearing::Neighbour;
+use super::motion::MARGIN;
+
+/// A robot that is gone is at most this many steps from where it was heard last.
+const ASTRAY: f64 = 2.0;
+
+impl Robot {
+    /// A roll is received.
+    #[inline]
+    pub(super) fn hear_roll(&mut self, roll: &Roll) {
+        if roll.called > self.roll.called && self.roll.merge(roll) {
+            self.note_change();
+        }
+    }
+
+    /// Whether it takes part by a roll that is valid.
+    pub(super) fn is_called(&self) -> bool {
+        self.roll.lets_move(self.id, self.period, self.site.roll_validity())
+    }
+
+    /// Whether another robot is called gone.
+    pub(super) fn is_gone(&self, robot: NodeId) -> bool {
+        self.roll.calls_gone(robot)
+    }
+
+    /// A robot is out of sight: where it was heard last.
+    pub(super) fn lose_sight_of(&mut self, lost: &Neighbour) {
+        if lost.is_access_point() {
+            return;
+        }
+        let seen = Wreck { robot: lost.id(), place: lost.position(), heard_in: lost.heard_in };
+        match self.out_of_sight.binary_search_by_key(&seen.robot, |known| known.robot) {
+            Ok(at) => self.out_of_sight[at] = seen,
+            Err(at) => self.out_of_sight.insert(at, seen),
+        }
+    }
+
+    /// Where robots that are gone were heard last, by this robot or by those that it hears.
+    pub(super) fn locate_wrecks(&mut self) {
+        let gone = &self.roll.absent.gone;
+        if gone.is_empty() && self.wrecks.is_empty() {
+            return;
+        }
+        let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter());
+        let seen = self.out_of_sight.iter().chain(self.wrecks.iter()).chain(told);
+        let mut wrecks: Vec<Wreck> = seen.filter(|it| gone.contains(it.robot)).copied().collect();
+        wrecks.sort_by_key(|wreck| (wreck.robot, Reverse(wreck.heard_in)));
+        wrecks.dedup_by_key(|wreck| wreck.robot);
+        if *self.wrecks != wrecks {
+            self.wrecks = Arc::new(wrecks);
+        }
+    }
+
+    /// The places of wrecks that are not heard in this control period.
+    fn obstacles(&self) -> impl Iterator<Item = Point> {
+        let is_heard = |robot| self.neighbour(robot).is_some_and(|it| it.heard_in == self.period);
+        let unheard = move |wreck: &&Wreck| !is_heard(wreck.robot);
+        self.wrecks.iter().filter(unheard).map(|wreck| wreck.place)
+    }
+
+    /// The discs that no way leads through.
+    pub(super) fn keep_out_discs(&self, clearance: f64) -> impl Iterator<Item = Disc> {
+        let radius = clearance + ASTRAY * self.site.settings.step_radius;
+        self.obstacles().map(move |center| Disc { center, radius })
+    }
+
+    /// The sides of wrecks on which this robot stays, wherever they may be astray.
+    pub(super) fn sides_of_wrecks(&self) -> impl Iterator<Item = HalfPlane> {
+        let Settings { clearance, step_radius: step, errors, .. } = self.site.settings;
+        let kept = errors.planning_clearance(clearance * (1.0 + MARGIN));
+        let radius = 2.0 * kept + ASTRAY * step;
+        self.obstacles().filter_map(move |place| {
+            let ahead = place - self.position;
+            let away = ahead.norm();
+            if away == 0.0 || away > radius + step {
+                return None;
+            }
+            let normal = ahead / away;
+            let room = (away - radius).max(0.0);
+            Some(HalfPlane::new(normal, normal.dot(&self.position.coords) + room))
+        })
+    }
+}

@@ -1,0 +1,74 @@
+//! The roll: which robots take part, as the first access point calls it once a control period.
+//!
+//! Every beacon carries the newest roll that its sender knows. A robot moves only by a roll that is
+//! valid and does not name it, so that robots which others take to be gone do not move.
+
+use std::sync::Arc;
+
+use pleach_continuous::Point;
+use pleach_discrete::network::{IdSet, NodeId};
+use serde::{Deserialize, Serialize};
+
+use super::wire;
+
+/// A roll.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Roll {
+    /// The control period in which it is called. All robots take part by the roll of period 0.
+    pub called: u32,
+    /// The robots that do not take part.
+    #[serde(with = "wire")]
+    pub absent: Arc<Absent>,
+}
+
+/// Robots that do not take part, as far as the first access point knows.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Absent {
+    /// They may not move, and others expect to hear them before they move.
+    pub suspended: IdSet,
+    /// They may not move by any roll that is valid, and others do not expect to hear them.
+    pub gone: IdSet,
+}
+
+/// The body of a robot that is gone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wreck {
+    /// The robot.
+    pub robot: NodeId,
+    /// Where it was when it was heard last.
+    #[serde(with = "wire")]
+    pub place: Point,
+    /// The control period in which that was.
+    pub heard_in: u32,
+}
+
+impl Roll {
+    /// Takes over `heard` if it was called later; returns whether other robots are absent now.
+    pub fn merge(&mut self, heard: &Roll) -> bool {
+        if heard.called <= self.called {
+            return false;
+        }
+        self.called = heard.called;
+        let differs = self.absent != heard.absent;
+        if differs {
+            self.absent = Arc::clone(&heard.absent);
+        }
+        differs
+    }
+
+    /// Whether `robot` may move in this control period, with rolls that are valid for so many.
+    pub fn lets_move(&self, robot: NodeId, period: u32, validity: u32) -> bool {
+        let Absent { suspended, gone } = &*self.absent;
+        period <= self.called.saturating_add(validity)
+            && !suspended.contains(robot)
+            && !gone.contains(robot)
+    }
+
+    /// Whether `robot` is called gone.
+    pub fn calls_gone(&self, robot: NodeId) -> bool {
+        self.absent.gone.contains(robot)
+    }
+}

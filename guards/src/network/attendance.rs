@@ -1,0 +1,31 @@
+//! The guards of a robot's attendance, as an access point knows it.
+
+use crate::{Guard, Predicate, proposition, variable};
+
+fn is_missed() -> Predicate {
+    proposition("known") & variable("silence").more_than(variable("patience"))
+}
+
+/// It was heard of once, and has not been for too long.
+pub fn missed() -> Guard {
+    Guard::new("missed", is_missed())
+}
+
+/// It has been heard of lately.
+pub fn heard_again() -> Guard {
+    Guard::new("heard again", !is_missed())
+}
+
+fn rolls_have_expired() -> Predicate {
+    variable("age").more_than(variable("validity"))
+}
+
+/// It has not been heard of again before the rolls expired that let it move.
+pub fn rolls_expired() -> Guard {
+    Guard::new("rolls expired", is_missed() & rolls_have_expired())
+}
+
+/// The rolls that called it gone have expired.
+pub fn readmitted() -> Guard {
+    Guard::new("readmitted", !is_missed() & rolls_have_expired())
+}
