@@ -99,8 +99,8 @@ pub fn show(
     let finished = job::watch(planned, &outputs, &mut progress, &interrupt, |watchers| {
         let scenario = &planned.scenario;
         let audience = match has_faults {
-            false => Audience::Monitored(Gallery::new(scenario, watchers)),
-            true => Audience::Safe(Safety::new(scenario, watchers)),
+            false => Audience::Monitored(Box::new(Gallery::new(scenario, watchers))),
+            true => Audience::Safe(Box::new(Safety::new(scenario, watchers))),
         };
         observatory.watch(audience, &interrupt, meanwhile)
     })?;
@@ -112,9 +112,9 @@ pub fn show(
 /// Who watches, and what is checked.
 enum Audience<'a, 'w> {
     /// Everything, as in a simulation.
-    Monitored(Gallery<'a, 'w>),
+    Monitored(Box<Gallery<'a, 'w>>),
     /// What must hold whatever fails.
-    Safe(Safety<'a, 'w>),
+    Safe(Box<Safety<'a, 'w>>),
 }
 
 impl Audience<'_, '_> {

@@ -197,11 +197,11 @@ fn rubbish_is_refused_and_counted() {
     while !finish.is_finished() {
         noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         let node = noise >> 40;
-        let length = if node % 31 == 0 { 1 << 19 } else { (noise >> 33) as usize % 300 };
+        let length = if node.is_multiple_of(31) { 1 << 19 } else { (noise >> 33) as usize % 300 };
         let bytes = vec![(noise >> 56) as u8; length];
         for key in ["packet", "report"] {
             let key =
-                format!("{root}/{digest}/{key}/{}", if node % 2 == 0 { 99 } else { node % 9 });
+                format!("{root}/{digest}/{key}/{}", if node.is_multiple_of(2) { 99 } else { node % 9 });
             rogue.put(key, bytes.clone()).wait().unwrap();
         }
         rogue.put(format!("{root}/hello/{}", node % 9), bytes).wait().unwrap();
