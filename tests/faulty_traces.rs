@@ -80,7 +80,7 @@ fn a_robot_that_stops_is_a_body_and_nothing_else() {
         let is_down = (30..60).contains(&line["k"].as_u64().unwrap());
         assert_eq!(line.get("absent"), is_down.then(|| json!([3])).as_ref(), "{}", line["k"]);
         if is_down {
-            let names = |list: &Value| list.as_array().unwrap().iter().any(|it| names_three(it));
+            let names = |list: &Value| list.as_array().unwrap().iter().any(names_three);
             assert!(!names(&line["route"]) && !names(&line["tree"]), "{}", line["k"]);
         }
     }
