@@ -63,12 +63,11 @@ impl Receiver {
             }
         }
         let mut arrived = Vec::new();
-        let medium: &mut dyn FnMut(Delivery<'_, Arc<Letter>>) -> Result<(), Infallible> =
-            &mut |Delivery { from, to, message }| {
-                arrived.push((from, to, Arc::clone(message)));
-                Ok(())
-            };
-        let Ok(()) = Medium::<Arc<Letter>, Point>::deliver(&mut self.air, medium);
+        let take = |Delivery { from, to, message }: Delivery<'_, Arc<Letter>>| {
+            arrived.push((from, to, Arc::clone(message)));
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = Medium::<Arc<Letter>, Point>::deliver(&mut self.air, take);
         let mut messages = Vec::with_capacity(arrived.len());
         for (from, to, letter) in arrived {
             let Some(bytes) = self.heard.message(from, to, &letter) else { continue };

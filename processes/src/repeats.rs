@@ -59,10 +59,17 @@ impl Sent {
     }
 }
 
+/// A content with its digest.
+#[derive(Clone, Debug)]
+struct Digested {
+    digest: u64,
+    content: Arc<[u8]>,
+}
+
 /// The contents that nodes of a process have heard last: by sender and receiver.
 #[derive(Clone, Debug, Default)]
 pub struct Heard {
-    contents: BTreeMap<(NodeId, NodeId), (u64, Arc<[u8]>)>,
+    contents: BTreeMap<(NodeId, NodeId), Digested>,
     unknown: u64,
 }
 
@@ -78,11 +85,13 @@ impl Heard {
             None => return Some(letter.message.clone()),
             Some(Content::Whole(content)) => {
                 let content: Arc<[u8]> = content.as_slice().into();
-                self.contents.insert((from, to), (digest(&content), Arc::clone(&content)));
+                let digest = digest(&content);
+                let kept = Digested { digest, content: Arc::clone(&content) };
+                self.contents.insert((from, to), kept);
                 content
             }
             Some(Content::Known(known)) => match self.contents.get(&(from, to)) {
-                Some((digest, content)) if digest == known => Arc::clone(content),
+                Some(kept) if kept.digest == *known => Arc::clone(&kept.content),
                 _ => {
                     self.unknown += 1;
                     return None;
