@@ -13,9 +13,9 @@ use pleach::automaton::node::NodeId;
 use pleach::cli::status::Failure;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::sync::{Arc, mpsc};
 use std::time::Duration;
 use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
@@ -191,10 +191,7 @@ impl Transport {
 
     /// The next thing that arrives within a time.
     pub fn next_within(&self, time: Duration) -> Option<Arrival> {
-        match self.arrivals.recv_timeout(time) {
-            Ok(arrival) => Some(arrival),
-            Err(mpsc::RecvTimeoutError::Timeout | mpsc::RecvTimeoutError::Disconnected) => None,
-        }
+        self.arrivals.recv_timeout(time).ok()
     }
 
     /// Counts what came in greater number than could be kept.
