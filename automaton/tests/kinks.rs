@@ -44,7 +44,7 @@ fn run(machine: &Machine, horizon: f64) -> Trajectory {
     machine.run_with(settings, horizon).expect("it can be run")
 }
 
-/// Place and speed at the end.
+/// Place and speed at the end; nothing is in doubt.
 fn end(start: [f64; 2], rates: [Expression; 2], horizon: f64) -> [f64; 2] {
     let trajectory = run(&machine(start, rates), horizon);
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
@@ -128,8 +128,11 @@ fn a_side_without_a_value_beyond_its_kink_is_left() {
     assert_near(found[0], 0.0, 1e-9);
     // The integral of 2 − t ÷ 4.
     assert_near(found[1], 8.0, 1e-6);
+    // Of cases it is not known that they fit together where they meet.
     let case = piecewise([(p.more_than(0.0), p.square_root())], 0.0).expect("a comparison");
-    assert_near(end([4.0, 0.0], [-0.5 * case, 0.0.into()], 12.0)[0], 0.0, 1e-9);
+    let trajectory = run(&machine([4.0, 0.0], [-0.5 * case, 0.0.into()]), 12.0);
+    assert_near(trajectory.value("p", 12.0).expect("the run lasts"), 0.0, 1e-9);
+    assert!(trajectory.doubts().iter().all(|doubt| doubt.why == Why::Graze && doubt.from > 7.9));
 }
 
 /// A capacitor behind a diode, with an oscillator's voltage: a stiff flow, by the integrator's choice, and
@@ -197,7 +200,7 @@ fn a_jump_that_is_touched_is_said() {
         };
         for miss in [-1e-13, 0.0, 1e-13] {
             let trajectory = with_speed(1.0 + miss);
-            let is_near = |at: f64| (at - 2.0).abs() < 1e-4;
+            let is_near = |at: f64| (at - 2.0).abs() < 1e-2;
             let mut doubts = trajectory.doubts().iter().filter(|doubt| doubt.why == Why::Graze);
             let is_said = doubts.any(|doubt| is_near(doubt.from) && is_near(doubt.to));
             assert!(is_said, "{force} {miss}: {:?}", trajectory.doubts());

@@ -60,10 +60,13 @@ fn a_slow_mode_keeps_its_digits_beside_a_fast_one() {
         let mut time = 0.0;
         while time < 5.0 {
             let piece = flow.piece(time).unwrap();
-            let slow = (-piece.end()).exp();
-            let found = piece.value(1, piece.end());
-            assert!((found - slow).abs() < 1e-13, "{found} at {} s beside {fast:e}", piece.end());
             time = piece.end();
+            let (slow, share) = ((-time).exp(), fast / (fast - 1.0));
+            let exact = [share * slow + (2.0 - share) * (-fast * time).exp(), slow];
+            for (component, exact) in exact.into_iter().enumerate() {
+                let found = piece.value(component, time);
+                assert!((found - exact).abs() < 1e-13, "{found} at {time} s beside {fast:e}");
+            }
         }
     }
 }
