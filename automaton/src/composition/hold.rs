@@ -4,7 +4,9 @@
 use std::cell::{Cell, RefCell};
 use std::convert::Infallible;
 
-use pleach_continuous::flow::{Curve, Doubt, EventSearch, Onset, Piece, Uncertainty, Watch, isolate};
+use pleach_continuous::flow::{
+    Curve, Doubt, EventSearch, Onset, Piece, Uncertainty, Watch, isolate,
+};
 use pleach_guards::{Course, Enclosure, EvaluationError, Expression, Sides, Tracker, Verdict};
 
 use super::Component;

@@ -47,7 +47,8 @@ fn a_modulator_switches_where_its_carrier_meets_the_signal() {
     let carrier = 4.0 * (10.0 * &t - (10.0 * &t + 0.5).floor()).abs() - 1.0;
     let signal = 0.8 * (0.5 * &t).sin();
     let model = moving([0.0], [1.0.into()]).flow(There, flow([1.0.into()]));
-    let (is_above, is_below) = ((&signal - &carrier).at_most(0.0), (signal - carrier).more_than(0.0));
+    let (is_above, is_below) =
+        ((&signal - &carrier).at_most(0.0), (signal - carrier).more_than(0.0));
     let back = from(There).on(Back).to(Here).must(is_below);
     let model = model.transition(go(is_above)).transition(back).build().expect("it is sound");
     let trajectory = model.run(20.0).expect("it can be run");
@@ -175,7 +176,7 @@ fn a_tank_drains_by_the_steps_of_its_valve() {
 #[test]
 fn a_label_waits_until_all_windows_are_open() {
     let [t] = x::<1>();
-    let speeds = [1.0, 2.4142, 3.1416];
+    let speeds = [1.0, 2.4495, 3.3166];
     let member = |(speed, has_to): (f64, bool)| {
         let (window, jump) = ((speed * &t).sin().at_least(0.97), from(Here));
         let jump = jump.on(Go).to(There);
@@ -185,7 +186,8 @@ fn a_label_waits_until_all_windows_are_open() {
     let [one, two, three] = [(speeds[0], true), (speeds[1], false), (speeds[2], false)].map(member);
     let all = Composition::builder().add("a", &one).add("b", &two).add("c", &three).label("go");
     let trajectory = all.build().expect("the parts fit").run(2000.0).expect("it can be run");
-    let narrowest = |t: f64| speeds.iter().fold(f64::MAX, |least, speed| least.min((speed * t).sin()));
+    let narrowest =
+        |t: f64| speeds.iter().fold(f64::MAX, |least, speed| least.min((speed * t).sin()));
     let exact = first_root(0.0, 1e-3, |t| narrowest(t) - 0.97);
     assert_near(trajectory.jumps()[0].at.t, exact, 1e-11);
 }
@@ -219,7 +221,8 @@ fn the_least_and_the_most_of_many_decays_are_met() {
     let instant = |number: usize| (start[number] / 0.1).ln() / speed(number);
     let exact = (0..6).map(instant);
     let (earliest, latest) = (exact.clone().fold(f64::MAX, f64::min), exact.fold(0.0, f64::max));
-    let meets = |guard: Predicate| first(start, from_fn(|one| -speed(one) * &all[one]), guard, 50.0);
+    let meets =
+        |guard: Predicate| first(start, from_fn(|one| -speed(one) * &all[one]), guard, 50.0);
     let (parts, low) = (all.iter().map(Expression::from), all.iter().map(|x| x.at_most(0.1)));
     assert_near(meets(minimum(parts.clone()).at_most(0.1)), earliest, 1e-12);
     assert_near(meets(Predicate::any(low.clone())), earliest, 1e-12);

@@ -45,9 +45,8 @@ impl<'a> Simulation<'a> {
         for group in std::mem::take(&mut self.awake) {
             // A flow that fails beyond the horizon is no matter.
             let is_planned = self.plan(group).is_ok();
-            let is_last = |flight: &Flight| {
-                flight.halt.is_none() && flight.due().seconds() <= self.horizon
-            };
+            let is_last =
+                |flight: &Flight| flight.halt.is_none() && flight.due().seconds() <= self.horizon;
             if !is_planned || !self.groups[group].flight.as_ref().is_some_and(is_last) {
                 self.ground(group);
             }

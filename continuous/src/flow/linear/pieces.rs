@@ -104,9 +104,8 @@ fn remainder(most: &[f64], sums: &[f64], moved: &[f64], next: usize) -> Option<f
         let mut ratios =
             parts.iter().zip(sums).map(|(part, sum)| if *part == 0.0 { 0.0 } else { part / sum });
         // Over sums that are not finite nothing is bounded.
-        let largest = ratios.try_fold(0.0_f64, |largest, ratio| {
-            ratio.is_finite().then(|| largest.max(ratio))
-        });
+        let largest = ratios
+            .try_fold(0.0_f64, |largest, ratio| ratio.is_finite().then(|| largest.max(ratio)));
         // Rounding of the sums is far below this margin.
         largest.map(|largest| largest * (1.0 + 1e-12))
     };
