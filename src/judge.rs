@@ -1,9 +1,10 @@
 //! Judging a finished run from its trace alone.
 //!
-//! The [`Judge`] of [`crate::verify`] reads what the trace says: it holds the world against the
-//! properties, each event against the world and the events before it, and what observers concluded
+//! The [`Judge`](crate::verify::network::Judge) reads what the trace says: it holds the world against
+//! the properties, each event against the world and the events before it, and what observers concluded
 //! against what it derives itself. Nothing of the run is trusted, and nothing of it is computed
-//! again.
+//! again. Where the header says that messages are lost or nodes stop, the trace is held against what
+//! no fault may break ([`Safety`](crate::verify::network::Safety)).
 
 use std::io::BufRead;
 
@@ -13,7 +14,7 @@ use crate::automaton::network::record::{End, MissionEvent};
 use crate::automaton::network::scenario::{InvalidScenario, ValidScenario};
 use crate::discrete::network::activity::may_follow;
 use crate::trace::{TraceEntry, TraceError, TraceReader};
-use crate::verify::network::{Extremes, Instant, Judge, Property, Violation};
+use crate::verify::network::{Extremes, Instant, Property, Referee, Violation};
 
 /// What a trace amounts to.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +50,7 @@ pub enum JudgeError {
 pub fn judge<R: BufRead>(trace: TraceReader<R>) -> Result<Verdict, JudgeError> {
     let scenario = ValidScenario::new(trace.scenario().clone())?;
     let mut reading = Reading {
-        judge: Judge::new(&scenario, may_follow),
+        judge: Referee::new(&scenario, trace.faults(), may_follow),
         now: Instant { step: 0, time: 0.0 },
         periods: 0,
         events: Vec::new(),
@@ -65,7 +66,7 @@ pub fn judge<R: BufRead>(trace: TraceReader<R>) -> Result<Verdict, JudgeError> {
 
 /// A trace that is being read.
 struct Reading<'a> {
-    judge: Judge<'a>,
+    judge: Referee<'a>,
     /// The last step.
     now: Instant,
     periods: usize,

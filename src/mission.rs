@@ -11,14 +11,15 @@ use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use crate::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use crate::automaton::network::record::{End, Faults, MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::ValidScenario;
-use crate::automaton::network::{KernelTimes, Message, Network, NetworkError};
+use crate::automaton::network::{KernelTimes, Message, Network, NetworkError, RobotNode};
 use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use crate::continuous::Point;
 use crate::discrete::network::activity::may_follow;
-use crate::verify::network::{Extremes, Judge, Violation};
+use crate::verify::network::storm::{self, Storm};
+use crate::verify::network::{Extremes, Referee, Violation};
 
 /// Something that watches a mission.
 pub trait Watcher {
@@ -92,12 +93,25 @@ pub fn run(
 ///
 /// # Errors
 /// When a watcher fails.
-pub fn run_network<M: Medium<Message, Point>>(
+pub fn run_network<M: Medium<Message, Point>, N: RobotNode>(
     scenario: &ValidScenario,
-    network: &mut Network<M>,
+    network: &mut Network<M, N>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    let mut gallery = Gallery::new(scenario, watchers);
+    run_network_with_faults(scenario, Faults::default(), network, watchers)
+}
+
+/// The same for a network in which these faults occur. It is held against what no fault may break.
+///
+/// # Errors
+/// When a watcher fails.
+pub fn run_network_with_faults<M: Medium<Message, Point>, N: RobotNode>(
+    scenario: &ValidScenario,
+    faults: Faults,
+    network: &mut Network<M, N>,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<Completed, MissionError> {
+    let mut gallery = Gallery::with_faults(scenario, faults, watchers);
     let settings = network.site().settings;
     let horizon = settings.period * (settings.max_steps as f64 + 1.0);
     let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
@@ -108,6 +122,19 @@ pub fn run_network<M: Medium<Message, Point>>(
         }
     };
     Ok(Completed { times: network.times(), ..gallery.conclude(end)? })
+}
+
+/// Runs the mission of `scenario` in a storm. It is held against what no fault may break.
+///
+/// # Errors
+/// When a watcher fails.
+pub fn run_in_storm(
+    scenario: &ValidScenario,
+    storm: &Storm,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<Completed, MissionError> {
+    let mut network = storm::network(scenario, storm)?;
+    run_network_with_faults(scenario, storm.faults(), &mut network, watchers)
 }
 
 /// Far more rounds of jumps than the messages of a control period ever take: only a cycle of
@@ -132,7 +159,7 @@ const SATURATED: f64 = 0.999;
 /// The judge and the watchers of a mission: they look on while the executor runs it, or while it goes
 /// on elsewhere and its snapshots come from there.
 pub struct Gallery<'a, 'w> {
-    judge: Judge<'a>,
+    judge: Referee<'a>,
     watchers: &'a mut [&'w mut dyn Watcher],
     failure: Option<io::Error>,
     /// The robots that send all the time in the last period, with their loads.
@@ -153,7 +180,16 @@ fn saturated(snapshot: &Snapshot) -> Vec<(usize, f64)> {
 impl<'a, 'w> Gallery<'a, 'w> {
     /// Those who watch a mission of `scenario` from its beginning.
     pub fn new(scenario: &ValidScenario, watchers: &'a mut [&'w mut dyn Watcher]) -> Self {
-        let judge = Judge::new(scenario, may_follow);
+        Gallery::with_faults(scenario, Faults::default(), watchers)
+    }
+
+    /// The same for a mission in which these faults occur.
+    pub fn with_faults(
+        scenario: &ValidScenario,
+        faults: Faults,
+        watchers: &'a mut [&'w mut dyn Watcher],
+    ) -> Self {
+        let judge = Referee::new(scenario, faults, may_follow);
         Gallery { judge, watchers, failure: None, saturated: Vec::new() }
     }
 
@@ -231,10 +267,10 @@ impl<'a, 'w> Gallery<'a, 'w> {
     }
 }
 
-impl<M: Medium<Message, Point>> Observer<Network<M>> for Gallery<'_, '_> {
+impl<M: Medium<Message, Point>, N: RobotNode> Observer<Network<M, N>> for Gallery<'_, '_> {
     const SEES_JUMPS: bool = false;
 
-    fn flows(&mut self, network: &Network<M>, _: HybridTime, _: f64) -> ControlFlow<End> {
+    fn flows(&mut self, network: &Network<M, N>, _: HybridTime, _: f64) -> ControlFlow<End> {
         match self.observe(&network.snapshot(), &network.events()) {
             None => ControlFlow::Continue(()),
             Some(end) => ControlFlow::Break(end),

@@ -6,7 +6,8 @@
 //! scenario by one build is the same to the byte.
 //!
 //! The first line is the header, `{"type":"header","format":"pleach-trace","version":1,
-//! "scenario":…}`, with every default of the scenario filled in. Then follows, for each control
+//! "scenario":…}`, with every default of the scenario filled in; of a mission with faults it also says
+//! whether `messages` and `nodes` failed (`"faults":{"messages":true,"nodes":false}`). Then follows, for each control
 //! period, a line for each event that led to it and one of type `step` for the instant at which
 //! the robots are about to move. The last line, of type `end`, holds the outcome.
 //!
@@ -16,11 +17,12 @@
 //! what an observer needs to draw the picture: `phase`, `active_team`, `primary_team`, `path`,
 //! `serviced` `[[task, robot], …]` and `post`; then of every robot its `location` in the duty
 //! automaton and its place in the automaton of the `exchange` of duties, its `known_phase` of the
-//! mission, its `target` (or null), and how many messages it has `sent` and `heard` in the period.
+//! mission, its `target` (or null), and how many messages it has `sent` and `heard` in the period. While
+//! robots or access points do not run or are not heard, `absent` lists them.
 
 mod line;
 
-use crate::automaton::network::record::{End, MissionEvent, Snapshot};
+use crate::automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use crate::automaton::network::scenario::Scenario;
 use crate::mission::Watcher;
 use line::{EndLine, Line, LineOut, StepLine};
@@ -46,9 +48,17 @@ impl<W: Write> TraceWriter<W> {
     /// # Errors
     /// The header cannot be written.
     pub fn new(output: W, scenario: &Scenario) -> io::Result<Self> {
+        TraceWriter::with_faults(output, scenario, Faults::default())
+    }
+
+    /// The same for a mission in which these faults occur: the header says so.
+    ///
+    /// # Errors
+    /// The header cannot be written.
+    pub fn with_faults(output: W, scenario: &Scenario, faults: Faults) -> io::Result<Self> {
         let mut writer = Self { output };
-        let scenario = scenario.with_defaults();
-        writer.line(&LineOut::Header { format: FORMAT, version: VERSION, scenario: &scenario })?;
+        let scenario = &scenario.with_defaults();
+        writer.line(&LineOut::Header { format: FORMAT, version: VERSION, scenario, faults })?;
         Ok(writer)
     }
 
@@ -102,6 +112,7 @@ pub enum TraceEntry {
 #[derive(Debug)]
 pub struct TraceReader<R> {
     scenario: Scenario,
+    faults: Faults,
     lines: Lines<R>,
     number: usize,
 }
@@ -118,7 +129,9 @@ impl<R: BufRead> TraceReader<R> {
             Line::Header { format, version, .. } if format != FORMAT || version != VERSION => {
                 Err(TraceError::OtherFormat { format, version })
             }
-            Line::Header { scenario, .. } => Ok(Self { scenario: *scenario, lines, number: 1 }),
+            Line::Header { scenario, faults, .. } => {
+                Ok(Self { scenario: *scenario, faults, lines, number: 1 })
+            }
             _ => Err(TraceError::Misplaced { line: 1, wanted: "the header" }),
         }
     }
@@ -126,6 +139,11 @@ impl<R: BufRead> TraceReader<R> {
     /// The scenario of the mission, every default filled in.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
+    }
+
+    /// What failed in the mission.
+    pub const fn faults(&self) -> Faults {
+        self.faults
     }
 }
 

@@ -42,6 +42,27 @@ fn help_is_worth_reading() {
 }
 
 #[test]
+fn faults_are_asked_for_and_checked() {
+    let stop = |stop: &str| {
+        let output = pleach(&["run", "scenarios/too-few.toml", "--stop", stop, "--no-figures"]);
+        (output.status.code(), said(&output.stderr))
+    };
+    let (status, told) = stop("5@10");
+    assert_eq!(status, Some(2));
+    assert!(told.contains("--stop names robot 5: robots go from 0 to 4"), "{told}");
+    assert_eq!(stop("1@20..10").0, Some(2));
+    let trace = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lossy.jsonl");
+    let trace = trace.to_str().unwrap();
+    let arguments = ["run", "scenarios/redundant-node.toml", "--quiet", "--no-figures"];
+    let faults = ["--loss", "0.3", "--stop", "3@30..60", "--trace", trace];
+    assert_eq!(pleach(&[&arguments[..], &faults].concat()).status.code(), Some(0));
+    let judged = pleach(&["judge", trace]);
+    assert_eq!(judged.status.code(), Some(0));
+    let judged = said(&judged.stdout);
+    assert!(judged.contains("judged by what no fault may break"), "{judged}");
+}
+
+#[test]
 fn a_trace_that_cannot_be_written_ends_with_status_2() {
     let output = pleach(&["run", "scenarios/study-1.toml", "--trace", "no/such/folder/t.jsonl"]);
     assert_eq!(output.status.code(), Some(2));

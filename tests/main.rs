@@ -17,6 +17,7 @@ mod command_line;
 mod coverage;
 mod determinism;
 mod documents;
+mod faulty_traces;
 mod found_missions;
 mod import;
 mod layering;

@@ -105,6 +105,12 @@ const CALLS: &[Call] = &[
     ("new", DUAL, ROBOT_ROUTING, "DualState::new("),
     ("multiplier", DUAL, ROBOT_ROUTING, "state.multiplier()"),
     ("projected", DUAL, DUAL, "projected(multiplier - step * (residual - reserve))"),
+    (
+        "enclose",
+        "continuous/src/flow/piece.rs",
+        "automaton/src/composition/solver.rs",
+        "piece.enclose(from, to, &mut self.enclosures)",
+    ),
     ("advance", AFFINE, "verify/src/reach/flow.rs", "steps.advance(track)"),
     ("widen", ZONOTOPE, ZONOTOPE, "sum.widen(&self.slack)"),
     ("positive_part", LOCAL, LOCAL, "positive_part((link.value(multiplier) - budget_price)"),

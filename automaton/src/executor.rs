@@ -359,9 +359,6 @@ impl Executor {
                 }
                 continue;
             }
-            if now.t >= self.horizon {
-                break Reason::Horizon;
-            }
             let due = system.next_jump(clock)?.unwrap_or(Moment::from(f64::INFINITY));
             // Jumps whose instant is nearest to the horizon are taken.
             let next = if due.seconds() > self.horizon { Moment::from(self.horizon) } else { due };
@@ -369,6 +366,9 @@ impl Executor {
             let t = next.seconds();
             // Too short a time to change t may pass between jumps, but not twice in a row.
             let passes = t > now.t || duration > 0.0 && t == now.t && has_jumped;
+            if now.t >= self.horizon && (due.seconds() > self.horizon || !passes) {
+                break Reason::Horizon;
+            }
             if !passes {
                 break Reason::Blocked;
             }

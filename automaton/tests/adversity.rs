@@ -167,6 +167,18 @@ fn poles_and_domains_of_guards_are_met_or_said() {
     assert!((late.ending().at.t - 1.0).abs() < 1e-12, "{:?}", late.ending());
 }
 
+/// Where a formula begins to have a value, at the start, nothing is in doubt.
+#[test]
+fn formulas_that_begin_with_the_run_are_met() {
+    let root = go(line(0.0, 1.0), x().square_root().at_least(2.0), 5.0);
+    assert_event(&root, 4.0, 1e-14);
+    let logarithm = go(line(0.0, 1.0), x().ln().at_least(0.0), 5.0);
+    assert_event(&logarithm, 1.0, 1e-15);
+    let mirrored = go(line(0.0, -1.0), (-x()).square_root().at_least(2.0), 5.0);
+    assert_event(&mirrored, 4.0, 1e-14);
+    assert!([root, logarithm, mirrored].iter().all(|run| run.doubts().is_empty()));
+}
+
 /// On both sides of these poles the formulas rise, or on both they fall, and across them they jump.
 #[test]
 fn poles_between_slopes_of_one_sign_are_met() {

@@ -1,14 +1,14 @@
 //! Rates with kinks and jumps on curves: integration steps end where the state passes one, so that the
 //! errors are those of smooth flows.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use pleach_automaton::{
-    Automaton, Coordinate, Failure, Reason, Settings, Trajectory, coordinates, from,
+    Automaton, Coordinate, Failure, Reason, Settings, Trajectory, Why, coordinates, from,
 };
 use pleach_continuous::flow::Method;
 use pleach_discrete::vocabulary;
-use pleach_guards::{Expression, Table, maximum, piecewise};
+use pleach_guards::{Expression, Table, constant, maximum, piecewise};
 use proptest::prelude::*;
 
 vocabulary! {
@@ -44,10 +44,11 @@ fn run(machine: &Machine, horizon: f64) -> Trajectory {
     machine.run_with(settings, horizon).expect("it can be run")
 }
 
-/// Place and speed at the end.
+/// Place and speed at the end; nothing is in doubt.
 fn end(start: [f64; 2], rates: [Expression; 2], horizon: f64) -> [f64; 2] {
     let trajectory = run(&machine(start, rates), horizon);
     assert_eq!(trajectory.ending().reason, Reason::Horizon);
+    assert!(trajectory.doubts().is_empty(), "{:?}", trajectory.doubts());
     let values = trajectory.values_at(horizon).expect("the run lasts");
     [values[0], values[1]]
 }
@@ -127,8 +128,11 @@ fn a_side_without_a_value_beyond_its_kink_is_left() {
     assert_near(found[0], 0.0, 1e-9);
     // The integral of 2 − t ÷ 4.
     assert_near(found[1], 8.0, 1e-6);
+    // Of cases it is not known that they fit together where they meet.
     let case = piecewise([(p.more_than(0.0), p.square_root())], 0.0).expect("a comparison");
-    assert_near(end([4.0, 0.0], [-0.5 * case, 0.0.into()], 12.0)[0], 0.0, 1e-9);
+    let trajectory = run(&machine([4.0, 0.0], [-0.5 * case, 0.0.into()]), 12.0);
+    assert_near(trajectory.value("p", 12.0).expect("the run lasts"), 0.0, 1e-9);
+    assert!(trajectory.doubts().iter().all(|doubt| doubt.why == Why::Graze && doubt.from > 7.9));
 }
 
 /// A capacitor behind a diode, with an oscillator's voltage: a stiff flow, by the integrator's choice, and
@@ -153,6 +157,57 @@ fn kinks_of_stiff_flows_end_steps() {
         let exact = follows(begin + later) - follows(begin) * (-fast * later).exp();
         assert_near(at(begin + later), exact, 1e-8);
         assert_near(at(7.0), follows(7.0), 1e-8);
+    }
+}
+
+/// An angle jumps by 2π where its point crosses the axis on the left, and has no kink elsewhere.
+#[test]
+fn angles_are_integrated_over_their_jumps() {
+    let [p, s, time] = coordinates();
+    let saw = time.sin().atan2(time.cos());
+    let until = 20.0 * PI + 1.0;
+    assert_near(end([0.0; 2], [saw, 0.0.into()], until)[0], 0.5, 1e-8);
+    // A heading that turns to the nearest course, from all sides.
+    let error = || (&p - &s).sin().atan2((&p - &s).cos());
+    for (start, target) in [(3.0, 0.0), (4.0, TAU), (-3.5, -TAU), (20.0, 3.0 * TAU)] {
+        let exact = target + (start - target) * (-5f64).exp();
+        assert_near(end([start, 0.0], [-error(), 0.0.into()], 5.0)[0], exact, 1e-8);
+    }
+    // A course that turns faster than the heading can follow: the error e grows by 4 − e, and begins again
+    // with −π where it has come to π.
+    let turn = ((4.0 + PI) / (4.0 - PI)).ln();
+    let first = (4.0 / (4.0 - PI)).ln();
+    let turns = ((20.0 - first) / turn).floor();
+    let left = 20.0 - first - turns * turn;
+    let behind = PI + TAU * turns + (4.0 + PI) * (1.0 - (-left).exp());
+    assert_near(end([0.0; 2], [-error(), 4.0.into()], 20.0)[0], 80.0 - behind, 1e-7);
+}
+
+/// A body comes to a jump of its force at 1 and turns: whether it passes it, the error of the flow hides.
+#[test]
+fn a_jump_that_is_touched_is_said() {
+    let [p, s, _] = coordinates();
+    let forces = [
+        piecewise([(p.at_most(1.0), constant(-0.5))], -5.0).expect("a comparison"),
+        -2.75 - 2.25 * (&p - 1.0).sign(),
+        -0.5 - 4.5 * p.floor().max(0.0),
+        Table::steps([(-9.0, -0.5), (1.0, -5.0)]).expect("in order").at(&p),
+    ];
+    for force in forces {
+        let with_speed = |speed: f64| {
+            let rates = [Expression::from(&s), force.clone() + 0.0 * s.power(2.0)];
+            run(&machine([0.0, speed], rates), 3.0)
+        };
+        for miss in [-1e-13, 0.0, 1e-13] {
+            let trajectory = with_speed(1.0 + miss);
+            let is_near = |at: f64| (at - 2.0).abs() < 1e-2;
+            let mut doubts = trajectory.doubts().iter().filter(|doubt| doubt.why == Why::Graze);
+            let is_said = doubts.any(|doubt| is_near(doubt.from) && is_near(doubt.to));
+            assert!(is_said, "{force} {miss}: {:?}", trajectory.doubts());
+        }
+        for speed in [0.9, 0.999_999, 1.1] {
+            assert!(with_speed(speed).doubts().is_empty(), "{force} {speed}");
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Expressions with kinks, as smooth ones that each hold on one side of every kink.
 //!
-//! Absolute values, signs, floors, minima, maxima, choices and tables have kinks or jumps. Between
+//! Absolute values, signs, floors, minima, maxima, angles, choices and tables have kinks or jumps. Between
 //! them they are smooth: |x| is x or −x, and a table of lines is one of its lines. [`Sides`]
 //! compiles expressions to a form in which numbers beside the variables say on which *side* of each
 //! kink they are taken, also where the state is beyond it, and with it the predicate that some kink
@@ -8,6 +8,7 @@
 //! the smooth form until that predicate holds, and then chooses the sides anew.
 
 use std::convert::Infallible;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::course::Tracker;
@@ -21,8 +22,8 @@ use crate::valuation::EvaluationError;
 
 /// Expressions compiled by [`Sides::compile`] to smooth ones.
 ///
-/// On the sides of a state they have the values of the expressions, but for the last digits on the lines
-/// of tables. Beyond a kink, and on a line of a table at an infinite place, they may have none.
+/// On the sides of a state they have the values of the expressions, but for the last digits of angles and on
+/// the lines of tables. Beyond a kink, and on a line of a table at an infinite place, they may have none.
 ///
 /// ```
 /// use pleach_guards::{Sides, variable};
@@ -54,6 +55,8 @@ pub struct Sides {
     count: usize,
     passed: CompiledPredicate,
     tracker: Tracker,
+    /// Where an expression may jump; none if all are continuous.
+    jumps: Option<Tracker>,
 }
 
 /// A part of an expression that has kinks, over the variables and the sides of other kinks.
@@ -100,6 +103,8 @@ impl Sides {
             })
         };
         let passed = Predicate::any(drafts.parts.iter().map(Part::passed));
+        let jumps: Vec<Predicate> = drafts.parts.iter().filter_map(Part::jumped).collect();
+        let jumps = (!jumps.is_empty()).then(|| Predicate::any(jumps).track(&names));
         Ok(Some(Sides {
             variables: variables.len(),
             smooth: Tape::compile(smooth.iter().map(|draft| &draft.smooth), &names)?,
@@ -107,6 +112,7 @@ impl Sides {
             count: drafts.count,
             passed: passed.compile(&names)?,
             tracker: passed.track(&names)?,
+            jumps: jumps.transpose()?,
         }))
     }
 
@@ -133,6 +139,11 @@ impl Sides {
     /// The same, to be followed over time.
     pub fn tracker(&self) -> &Tracker {
         &self.tracker
+    }
+
+    /// Holds where the state is beyond a kink at which an expression may jump; none if all are continuous.
+    pub fn jumps(&self) -> Option<&Tracker> {
+        self.jumps.as_ref()
     }
 
     /// Writes the sides that hold where the variables are, after these in the same slice; the first part
@@ -164,6 +175,9 @@ impl Kink {
                 values[first] = UnaryOperator::Sign.apply(at(0));
             }
             Expression::Unary(..) => values[first] = at(0).floor(),
+            Expression::Binary(BinaryOperator::Angle, ..) => {
+                values[first] = if at(1) < 0.0 { 1f64.copysign(at(0)) } else { 0.0 };
+            }
             Expression::Binary(BinaryOperator::Minimum, ..) => {
                 values[first] = if at(0) > at(1) { -1.0 } else { 1.0 };
             }
@@ -224,7 +238,8 @@ impl Expression {
                 UnaryOperator::AbsoluteValue | UnaryOperator::Sign | UnaryOperator::Floor
             ),
             Expression::Binary(operator, ..) => {
-                matches!(operator, BinaryOperator::Minimum | BinaryOperator::Maximum)
+                use BinaryOperator::{Angle, Maximum, Minimum};
+                matches!(operator, Minimum | Maximum | Angle)
             }
             Expression::Lookup(table, _) => table.interpolation() != Interpolation::Flat,
             Expression::Choice(_) => true,
@@ -281,6 +296,13 @@ impl Drafts {
                 side(self.count) * operands[0].clone()
             }
             Expression::Unary(..) => side(self.count),
+            // On the left the angle of the opposite point, from where it is half a turn away.
+            Expression::Binary(BinaryOperator::Angle, ..) => {
+                let own = side(self.count);
+                let turned = 1.0 - 2.0 * own.abs();
+                let [y, x] = [0, 1].map(|number| turned.clone() * operands[number].clone());
+                y.atan2(x) + PI * own
+            }
             Expression::Lookup(..) => {
                 let [place, value, slope] = [2, 3, 4].map(|number| side(self.count + number));
                 value + slope * (operands[0].clone() - place)
@@ -327,6 +349,20 @@ fn chosen(number: usize, then: Expression, otherwise: Expression) -> Expression 
 }
 
 impl Part {
+    /// Holds where another side counts, if the part may jump there. A sign of 0 is left by any motion.
+    fn jumped(&self) -> Option<Predicate> {
+        match &self.source {
+            Expression::Unary(UnaryOperator::AbsoluteValue, _)
+            | Expression::Binary(BinaryOperator::Minimum | BinaryOperator::Maximum, ..) => None,
+            Expression::Unary(UnaryOperator::Sign, _)
+            | Expression::Binary(BinaryOperator::Angle, ..) => {
+                Some((side(self.first) * &self.operands[0]).less_than(0.0))
+            }
+            Expression::Lookup(table, _) if table.interpolation() == Interpolation::Linear => None,
+            _ => Some(self.passed()),
+        }
+    }
+
     /// Holds where another side counts.
     fn passed(&self) -> Predicate {
         let (own, operand) = (side(self.first), &self.operands[0]);
@@ -339,6 +375,11 @@ impl Part {
             Expression::Unary(..) => {
                 let above = operand - own;
                 above.less_than(0.0) | above.at_least(1.0)
+            }
+            Expression::Binary(BinaryOperator::Angle, ..) => {
+                let x = &self.operands[1];
+                let left = x.more_than(0.0) | (&own * operand).less_than(0.0);
+                own.abs().at_most(0.0) & x.less_than(0.0) | own.abs().more_than(0.0) & left
             }
             Expression::Binary(BinaryOperator::Minimum, ..) => {
                 (own * (operand - &self.operands[1])).more_than(0.0)

@@ -1,6 +1,7 @@
 //! The arguments of the commands for processes.
 
 use clap::{Args, Subcommand};
+use pleach::cli::faults::{Share, Stop};
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
@@ -136,7 +137,7 @@ pub struct OutputArguments {
 pub struct WatchArguments {
     /// The scenario: a TOML file, the same for all processes
     pub scenario: PathBuf,
-    /// Messages are lost or processes killed: check only what must hold whatever fails
+    /// Messages are lost or processes killed: check only what no fault may break
     #[arg(long)]
     pub faults: bool,
     /// What it writes.
@@ -161,7 +162,7 @@ pub struct LaunchArguments {
     /// Kill the process of a robot (SIGKILL) in control period FROM, and start it again in period TO:
     /// ROBOT@FROM..TO, or ROBOT@FROM for good
     #[arg(long, value_name = "ROBOT@FROM..TO")]
-    pub kill: Vec<Kill>,
+    pub kill: Vec<Stop>,
 }
 
 /// A name of a session: one part of a key.
@@ -195,61 +196,9 @@ impl FromStr for Seconds {
     }
 }
 
-/// A probability below 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Share(pub f64);
-
-impl FromStr for Share {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let share = text.parse().ok().filter(|share| (0.0..1.0).contains(share));
-        share.map(Share).ok_or_else(|| "write a probability from 0 to below 1, such as 0.1".into())
-    }
-}
-
-/// A process that is killed, and when it is started again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kill {
-    /// The robot.
-    pub robot: usize,
-    /// The control period in which it is killed.
-    pub from: usize,
-    /// The control period in which it is started again, if ever.
-    pub to: Option<usize>,
-}
-
-impl FromStr for Kill {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("{text:?} names no kill: write ROBOT@FROM..TO, such as 3@40..60");
-        let number = |text: &str| text.parse().map_err(|_| wrong());
-        let (robot, periods) = text.split_once('@').ok_or_else(wrong)?;
-        let (from, to) = match periods.split_once("..") {
-            Some((from, to)) => (number(from)?, Some(number(to)?)),
-            None => (number(periods)?, None),
-        };
-        if to.is_some_and(|to| to <= from) {
-            return Err(format!("{text:?}: a robot is started again after it was killed"));
-        }
-        Ok(Kill { robot: number(robot)?, from, to })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_kill_names_a_robot_and_two_periods() {
-        let read = |text: &str| text.parse::<Kill>();
-        assert_eq!(read("3@40..60"), Ok(Kill { robot: 3, from: 40, to: Some(60) }));
-        assert_eq!(read("0@7"), Ok(Kill { robot: 0, from: 7, to: None }));
-        for wrong in ["", "3", "3@", "@4", "3@9..9", "3@9..4", "x@1", "3@1..x"] {
-            assert!(read(wrong).is_err(), "{wrong}");
-        }
-    }
 
     #[test]
     fn a_session_is_one_part_of_a_key() {

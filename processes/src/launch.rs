@@ -1,11 +1,17 @@
 //! `pleach launch`: a mission with every node as a process on this machine.
 
-use crate::arguments::{Kill, LaunchArguments, NetworkArguments, NodeArguments, Seconds, Session};
+use crate::arguments::{LaunchArguments, NetworkArguments, NodeArguments, Seconds, Session};
+use crate::memory::Memory;
 use crate::process::digest_of;
 use crate::transport::{Endpoints, Interest, Transport};
 use crate::watch::{Viewing, planned, show};
+use pleach::automaton::network::record::Faults;
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::cli::faults::{Stop, check_robots};
 use pleach::cli::output::tell;
+use pleach::cli::plan::Planned;
 use pleach::cli::status::{Failure, Status};
+use pleach::continuous::Point;
 use std::fs;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
@@ -20,16 +26,14 @@ const WAIT: Duration = Duration::from_secs(60);
 /// # Errors
 /// What keeps it from being launched.
 pub fn run(arguments: &LaunchArguments) -> Result<Status, Failure> {
-    let planned = planned(&arguments.scenario)?;
+    let is_killed = !arguments.kill.is_empty();
+    let faults = Faults { messages: is_killed || arguments.node.loss.0 > 0.0, nodes: is_killed };
+    let planned = Planned { faults, ..planned(&arguments.scenario)? };
+    check_robots("--kill", &arguments.kill, &planned.scenario)?;
     let robots = planned.scenario.robot.len();
-    if let Some(kill) = arguments.kill.iter().find(|kill| kill.robot >= robots) {
-        let last = robots.saturating_sub(1);
-        let wrong = format!("--kill names robot {}: robots go from 0 to {last}", kill.robot);
-        return Err(Failure::Usage(wrong));
-    }
     let digest = digest_of(&planned.scenario)?;
     let session = format!("launch-{}", std::process::id());
-    // Whoever watches is where the others meet; packets do not go through it.
+    // Robots and access points learn of each other from the observer. Packets do not go through it.
     let meeting_point = format!("tcp/127.0.0.1:{}", free_port()?);
     let network = NetworkArguments {
         session: Session(session.clone()),
@@ -55,19 +59,18 @@ pub fn run(arguments: &LaunchArguments) -> Result<Status, Failure> {
     fleet.start(robots)?;
     let mut kills = arguments.kill.clone();
     let mut returns = Vec::new();
-    let has_faults = arguments.node.loss.0 > 0.0 || !arguments.kill.is_empty();
-    let viewing = Viewing { outputs: &arguments.outputs, wait: WAIT, has_faults };
+    let viewing = Viewing { outputs: &arguments.outputs, wait: WAIT };
     show(&planned, viewing, &transport, &mut |step| {
         fleet.check()?;
-        let due = |kill: &mut Kill| kill.from <= step;
-        for kill in kills.extract_if(.., due) {
-            fleet.kill(kill.robot)?;
-            returns.extend(kill.to.map(|to| (to, kill.robot)));
+        let mut bodies = Vec::new();
+        for Stop { robot, to, .. } in kills.extract_if(.., |kill| kill.from <= step) {
+            bodies.push((robot, fleet.kill(robot, &planned.scenario)?));
+            returns.extend(to.map(|to| (to, robot)));
         }
         for (_, robot) in returns.extract_if(.., |(to, _)| *to <= step) {
             fleet.start_robot(robot)?;
         }
-        Ok(())
+        Ok(bodies)
     })
 }
 
@@ -162,14 +165,16 @@ impl Fleet {
         Ok(())
     }
 
-    /// Kills the process of a robot, without a warning.
-    fn kill(&mut self, robot: usize) -> Result<(), Failure> {
+    /// Kills the process of a robot, without a warning, and says where its body stands.
+    fn kill(&mut self, robot: usize, scenario: &ValidScenario) -> Result<Point, Failure> {
         if let Some(mut process) = self.robots[robot].take() {
             process.kill()?;
             process.wait()?;
             tell(format_args!("the process of robot {robot} is killed"));
         }
-        Ok(())
+        let (file, start) = (self.folder.state_of(robot), scenario.robot[robot].position);
+        let memory = Memory::open(&file, &digest_of(scenario)?, robot, start)?;
+        Ok(memory.position().into())
     }
 }
 

@@ -5,7 +5,7 @@
 //! packet on its way: [`packet`] says how it is written and what is refused, [`transport`] carries
 //! it, [`lockstep`] says when all packets of a round have come, [`receiver`] which of its messages
 //! reach a node, and [`crew`] hands them to the nodes of a process. [`process`] is the loop around
-//! them. What observers read are [`report`]s; [`watch`] puts them together, and [`launch`] starts
+//! them. What observers read are [`report`]s; [`watch`] makes snapshots of them, and [`launch`] starts
 //! all processes of a scenario on this machine.
 
 #![cfg_attr(test, allow(clippy::unwrap_used))] // a test that panics has failed
@@ -18,8 +18,8 @@ pub mod memory;
 pub mod packet;
 pub mod process;
 pub mod receiver;
+pub mod repeats;
 pub mod report;
-pub mod safety;
 pub mod transport;
 pub mod watch;
 

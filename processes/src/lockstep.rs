@@ -149,8 +149,8 @@ impl Lockstep {
 /// What follows a round in which these packets were sent: answers, or another round of ticks; none if
 /// the control period is over. Messages arrive before either.
 ///
-/// Whoever hears a message may tick in the next round, whatever it has said before. If it does not,
-/// the round tells so.
+/// A node that hears a message may tick in the next round, whatever it has said before. If it does
+/// not, its packet of that round says so.
 pub fn after(stamp: Stamp, packets: &[(NodeId, Packet)]) -> Option<Stamp> {
     let mut sent = packets.iter().filter(|(_, packet)| !packet.letters.is_empty()).peekable();
     if sent.peek().is_some() {
@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn answers_come_before_the_next_tick() {
         let quiet = |next| Packet { next, ..packet(at(0, 3, 0)) };
-        let letter = Letter { to: None, message: Vec::new() };
+        let letter = Letter { to: None, message: Vec::new(), beacon: None };
         let talking = Packet { letters: vec![letter], ..quiet(Some(4)) };
         let asking = Packet { asks: true, ..talking.clone() };
         let both = [(0, quiet(Some(7))), (1, quiet(None))];

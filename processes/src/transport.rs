@@ -7,15 +7,16 @@
 
 use crate::arguments::{NetworkArguments, Session};
 use crate::packet::{Refusal, Refusals};
+use crate::repeats;
 use crate::report::LONGEST_REPORT;
 use pleach::automaton::network::scenario::Scenario;
 use pleach::automaton::node::NodeId;
 use pleach::cli::status::Failure;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::sync::{Arc, mpsc};
 use std::time::Duration;
 use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
@@ -81,8 +82,7 @@ pub enum Interest {
 /// apart, and protects nothing.
 pub fn digest(scenario: &Scenario) -> Result<String, serde_json::Error> {
     let text = serde_json::to_string(&scenario.with_defaults())?;
-    let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    Ok(format!("{:016x}", text.bytes().fold(0xcbf2_9ce4_8422_2325, fold)))
+    Ok(format!("{:016x}", repeats::digest(text.as_bytes())))
 }
 
 /// The connection of a process to the others.
@@ -191,10 +191,7 @@ impl Transport {
 
     /// The next thing that arrives within a time.
     pub fn next_within(&self, time: Duration) -> Option<Arrival> {
-        match self.arrivals.recv_timeout(time) {
-            Ok(arrival) => Some(arrival),
-            Err(mpsc::RecvTimeoutError::Timeout | mpsc::RecvTimeoutError::Disconnected) => None,
-        }
+        self.arrivals.recv_timeout(time).ok()
     }
 
     /// Counts what came in greater number than could be kept.

@@ -7,11 +7,10 @@ use crate::arguments::{MEETING_POINT, OutputArguments, WatchArguments};
 use crate::packet::{Refusal, Refusals};
 use crate::process::{digest_of, name_of};
 use crate::report::{Report, Tally};
-use crate::safety::Safety;
 use crate::transport::{Arrival, Endpoints, Interest, Transport};
 use pleach::automaton::network::Robot;
 use pleach::automaton::network::observer::{RobotReport, complete_events};
-use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use pleach::automaton::network::record::{End, Faults, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::node::{Node, NodeId, Observed, Traffic};
 use pleach::cli::interrupt::Interrupt;
@@ -21,6 +20,7 @@ use pleach::cli::plan::Planned;
 use pleach::cli::progress::Progress;
 use pleach::cli::run::{status_of, told, warn_of_tasks};
 use pleach::cli::status::{Failure, Status};
+use pleach::continuous::Point;
 use pleach::mission::{Completed, Gallery};
 use pleach::scenario_file;
 use std::collections::{BTreeMap, BTreeSet};
@@ -41,13 +41,13 @@ const MOST_AHEAD: usize = 1 << 10;
 /// # Errors
 /// What keeps it from being watched.
 pub fn run(arguments: &WatchArguments) -> Result<Status, Failure> {
-    let planned = planned(&arguments.scenario)?;
+    let faults = Faults { messages: arguments.faults, nodes: arguments.faults };
+    let planned = Planned { faults, ..planned(&arguments.scenario)? };
     let digest = digest_of(&planned.scenario)?;
     let defaults = Endpoints { listen: "tcp/127.0.0.1:0", connect: Some(MEETING_POINT) };
     let transport = Transport::open(&arguments.network, defaults, &digest, Interest::Reports)?;
     let (outputs, wait) = (&arguments.outputs, arguments.network.wait.0);
-    let viewing = Viewing { outputs, wait, has_faults: arguments.faults };
-    show(&planned, viewing, &transport, &mut |_| Ok(()))
+    show(&planned, Viewing { outputs, wait }, &transport, &mut |_| Ok(Vec::new()))
 }
 
 /// How a mission is watched.
@@ -57,9 +57,11 @@ pub struct Viewing<'a> {
     pub outputs: &'a OutputArguments,
     /// How long nobody may report.
     pub wait: Duration,
-    /// Whether only what must hold whatever fails is checked.
-    pub has_faults: bool,
 }
+
+/// What is called again and again while a mission is watched, with the control period that comes next.
+/// It gives the bodies whose place is known although they do not report.
+pub type Meanwhile<'a> = dyn FnMut(usize) -> Result<Vec<(NodeId, Point)>, Failure> + 'a;
 
 /// The mission of a scenario file.
 ///
@@ -68,11 +70,10 @@ pub struct Viewing<'a> {
 pub fn planned(path: &Path) -> Result<Planned, Failure> {
     let scenario = scenario_file::read(path)?;
     let source = path.display().to_string();
-    Ok(Planned { number: 1, source, scenario, settings: Vec::new(), seed: None })
+    Ok(Planned::once(source, scenario))
 }
 
-/// Shows a mission to its end, and says how it has ended. `meanwhile` is called again and again with
-/// the control period that comes next.
+/// Shows a mission to its end, and says how it has ended.
 ///
 /// # Errors
 /// Something cannot be written, or nobody reports for so long.
@@ -80,9 +81,9 @@ pub fn show(
     planned: &Planned,
     viewing: Viewing<'_>,
     transport: &Transport,
-    meanwhile: &mut dyn FnMut(usize) -> Result<(), Failure>,
+    meanwhile: &mut Meanwhile<'_>,
 ) -> Result<Status, Failure> {
-    let Viewing { outputs: arguments, wait, has_faults } = viewing;
+    let Viewing { outputs: arguments, wait } = viewing;
     let default_folder = || Path::new("figures").join(&planned.scenario.name);
     let outputs = Outputs {
         trace: arguments.trace.clone(),
@@ -97,45 +98,12 @@ pub fn show(
     let mut progress = Progress::new(&planned.scenario, arguments.quiet);
     let mut observatory = Observatory::new(&planned.scenario, transport, wait);
     let finished = job::watch(planned, &outputs, &mut progress, &interrupt, |watchers| {
-        let scenario = &planned.scenario;
-        let audience = match has_faults {
-            false => Audience::Monitored(Gallery::new(scenario, watchers)),
-            true => Audience::Safe(Safety::new(scenario, watchers)),
-        };
-        observatory.watch(audience, &interrupt, meanwhile)
+        let gallery = Gallery::with_faults(&planned.scenario, planned.faults, watchers);
+        observatory.watch(gallery, &interrupt, meanwhile)
     })?;
     let text = told(&finished, arguments.trace.as_deref());
     output::say(&(text + &observatory.counts()))?;
     Ok(status_of(&finished.record))
-}
-
-/// Who watches, and what is checked.
-enum Audience<'a, 'w> {
-    /// Everything, as in a simulation.
-    Monitored(Gallery<'a, 'w>),
-    /// What must hold whatever fails.
-    Safe(Safety<'a, 'w>),
-}
-
-impl Audience<'_, '_> {
-    fn observe(
-        &mut self,
-        snapshot: &Snapshot,
-        events: &[MissionEvent],
-        present: &BTreeSet<NodeId>,
-    ) -> Option<End> {
-        match self {
-            Audience::Monitored(gallery) => gallery.observe(snapshot, events),
-            Audience::Safe(safety) => safety.observe(snapshot, events, present),
-        }
-    }
-
-    fn conclude(self, end: End) -> Result<Completed, Failure> {
-        match self {
-            Audience::Monitored(gallery) => Ok(gallery.conclude(end)?),
-            Audience::Safe(safety) => safety.conclude(end),
-        }
-    }
 }
 
 /// What is known from reports.
@@ -151,6 +119,8 @@ struct Observatory<'a> {
     reports: BTreeMap<usize, BTreeMap<NodeId, Report>>,
     /// The nodes that report.
     present: BTreeSet<NodeId>,
+    /// Where bodies stand whose robots may not report any more.
+    bodies: BTreeMap<NodeId, Point>,
     /// The processes that Zenoh sees.
     alive: BTreeSet<NodeId>,
     tallies: BTreeMap<NodeId, Tally>,
@@ -175,6 +145,7 @@ impl<'a> Observatory<'a> {
             robots: scenario.robot.iter().enumerate().map(fresh).collect(),
             reports: BTreeMap::new(),
             present: (0..scenario.robot.len() + scenario.access_point.len() + 1).collect(),
+            bodies: BTreeMap::new(),
             alive: BTreeSet::new(),
             tallies: BTreeMap::new(),
             refusals: Refusals::default(),
@@ -185,9 +156,9 @@ impl<'a> Observatory<'a> {
 
     fn watch(
         &mut self,
-        mut audience: Audience<'_, '_>,
+        mut gallery: Gallery<'_, '_>,
         interrupt: &Interrupt,
-        meanwhile: &mut dyn FnMut(usize) -> Result<(), Failure>,
+        meanwhile: &mut Meanwhile<'_>,
     ) -> Result<Completed, Failure> {
         let mut last_news = Instant::now();
         let end = loop {
@@ -195,8 +166,8 @@ impl<'a> Observatory<'a> {
                 last_news = Instant::now();
                 self.take(arrival)?;
             }
-            meanwhile(self.step)?;
-            if let Some(end) = self.show_what_is_complete(&mut audience) {
+            self.bodies.extend(meanwhile(self.step)?);
+            if let Some(end) = self.show_what_is_complete(&mut gallery) {
                 break end;
             }
             if let Some(signal) = interrupt.signal() {
@@ -215,7 +186,7 @@ impl<'a> Observatory<'a> {
             }
         };
         self.transport.count_overflow(&mut self.refusals);
-        audience.conclude(end)
+        Ok(gallery.conclude(end)?)
     }
 
     fn broken_off(&self, what: String) -> End {
@@ -298,15 +269,16 @@ impl<'a> Observatory<'a> {
     }
 
     /// Shows what is complete, and says how the mission ends if it does.
-    fn show_what_is_complete(&mut self, audience: &mut Audience<'_, '_>) -> Option<End> {
+    fn show_what_is_complete(&mut self, gallery: &mut Gallery<'_, '_>) -> Option<End> {
         while self.reports.get(&self.step).is_some_and(|reports| self.is_complete(reports)) {
             let reports = self.reports.remove(&self.step).unwrap_or_default();
             let (mut events, announced) = self.digest(reports);
             let period = self.scenario.site().settings.period;
             let snapshot = Snapshot::of_reports(self.step, period, &self.robots);
+            let snapshot = snapshot.without(self.absent());
             complete_events(&mut events, &snapshot.primary_team);
             self.step += 1;
-            let end = audience.observe(&snapshot, &events, &self.present);
+            let end = gallery.observe(&snapshot, &events);
             let end = end.or_else(|| self.end(announced));
             if end.is_some() {
                 return end;
@@ -327,9 +299,18 @@ impl<'a> Observatory<'a> {
                 *known = robot;
             }
         }
+        for (&id, &body) in self.bodies.iter().filter(|(id, _)| !self.present.contains(id)) {
+            self.robots[id].position = body;
+        }
         // Stable: nodes are in their order in each exchange.
         events.sort_by_key(|(round, answer, _)| (*round, *answer));
         (events.into_iter().map(|(.., event)| event).collect(), announced)
+    }
+
+    /// The robots and access points that do not report.
+    fn absent(&self) -> Vec<NodeId> {
+        let nodes = 0..self.scenario.robot.len() + self.scenario.access_point.len();
+        nodes.filter(|node| !self.present.contains(node)).collect()
     }
 
     /// How the mission ends after this control period, if it does.
@@ -354,7 +335,23 @@ impl<'a> Observatory<'a> {
         };
         format!(
             "  packets             {refused} refused, {late} late; {lost} messages lost on purpose; \
-             nodes given up {given_up} times{observer}\n"
+             nodes given up {given_up} times{observer}\n{}",
+            self.weight()
+        )
+    }
+
+    /// How much each robot has sent in a control period, as a line of the summary.
+    fn weight(&self) -> String {
+        let robots = || self.tallies.range(..self.robots.len()).map(|(_, tally)| tally);
+        let shares = (robots().count() * self.step).max(1) as f64;
+        let each = |count: fn(&Tally) -> u64| robots().map(count).sum::<u64>() as f64 / shares;
+        let unknown: u64 = self.tallies.values().map(|tally| tally.unknown).sum();
+        format!(
+            "  each robot sends    {:.1} messages in {:.1} packets of {:.0} bytes a control period; {unknown} \
+             digests unknown\n",
+            each(|tally| tally.messages),
+            each(|tally| tally.packets),
+            each(|tally| tally.bytes) / each(|tally| tally.packets).max(1.0),
         )
     }
 }

@@ -3,6 +3,7 @@
 // What stands here is read in a terminal.
 #![allow(rustdoc::broken_intra_doc_links, rustdoc::invalid_html_tags)]
 
+use super::faults::FaultArguments;
 use super::sweep::Sweep;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -43,6 +44,9 @@ pub enum Command {
     /// Several scenarios, values to sweep or repeats give a table with a line for each run, and
     /// the exit status of the worst: 1, then 4, then 3, then 0. Ctrl-C or SIGTERM ends a mission
     /// in order: trace, summary and figures cover it up to then, and the exit status is 3.
+    ///
+    /// With --loss and --stop messages are lost and robots stop; only what no fault may break is
+    /// checked then.
     Run(RunArguments),
     /// Check whether missions can start from scenarios, and draw their starts
     ///
@@ -62,7 +66,8 @@ pub enum Command {
     /// the tree at every instant, each event against the world and the events before it, and
     /// teams, posts and phases against what follows from these. Exit status 0: it is sound; 4: the
     /// first thing that is not is told, with the property, the step and the time; 2: the trace
-    /// cannot be read.
+    /// cannot be read. The trace of a mission with faults says so, and is held against what no fault
+    /// may break.
     Judge(JudgeArguments),
     /// Turn a trace into an MCAP recording, which Foxglove plays
     #[cfg(feature = "mcap")]
@@ -117,6 +122,9 @@ pub struct RunArguments {
     /// The seed of the first random starts; each repeat takes the next one
     #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "repeat")]
     pub seed: u64,
+    /// What fails.
+    #[command(flatten)]
+    pub faults: FaultArguments,
     /// Run up to COUNT missions at once [default: one for each processor]
     #[arg(long, short, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,

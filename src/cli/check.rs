@@ -30,7 +30,7 @@ pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
             };
             let drawing = draw(&scenario, arguments)?;
             let name = source.name.display().to_string();
-            let planned = Planned { number: 1, source: name, scenario, settings, seed: None };
+            let planned = Planned { settings, ..Planned::once(name, scenario) };
             let remarks = planned.scenario.remarks();
             let told = report(&planned, &remarks, drawing);
             let told = terminal::wrapped(&told, terminal::width(), terminal::SUMMARY_INDENT);

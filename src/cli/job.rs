@@ -49,7 +49,11 @@ pub fn run(
     interrupt: &Interrupt,
 ) -> Result<Finished, Failure> {
     watch(planned, outputs, progress, interrupt, |watchers| {
-        Ok(mission::run(&planned.scenario, watchers)?)
+        let scenario = &planned.scenario;
+        Ok(match &planned.storm {
+            None => mission::run(scenario, watchers)?,
+            Some(storm) => mission::run_in_storm(scenario, storm, watchers)?,
+        })
     })
 }
 
@@ -65,7 +69,9 @@ pub fn watch(
     let mut interrupt = interrupt.clone();
     let mut summary = Summary::new(scenario);
     let mut trace = match &outputs.trace {
-        Some(path) => Some(TraceWriter::new(output::open(path)?, scenario)?),
+        Some(path) => {
+            Some(TraceWriter::with_faults(output::open(path)?, scenario, planned.faults)?)
+        }
         None => None,
     };
     if let Some(folder) = &outputs.figures {
@@ -74,7 +80,8 @@ pub fn watch(
     #[cfg(feature = "pdf")]
     let printer = outputs.pdf.then(Printer::new).transpose()?;
     let open = |album: Album| if outputs.plain { album.plain() } else { album };
-    let mut album = outputs.figures.as_ref().map(|_| open(Album::new(scenario)));
+    let mut album =
+        outputs.figures.as_ref().map(|_| open(Album::with_faults(scenario, planned.faults)));
 
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut summary, progress, &mut interrupt];
     watchers.extend(trace.as_mut().map(|trace| trace as &mut dyn Watcher));

@@ -14,11 +14,12 @@ pub fn run(arguments: &JudgeArguments) -> Result<Status, Failure> {
     let input =
         source::open(path).map_err(|error| unreadable(format!("cannot be read: {error}")))?;
     let reader = TraceReader::new(input).map_err(|error| unreadable(error.to_string()))?;
+    let whole = if reader.faults().are_none() { "" } else { ", judged by what no fault may break" };
     match judge(reader).map_err(|error| unreadable(error.to_string()))? {
         Verdict::Sound { periods, end, .. } => {
             let (trace, name) = (path.display(), end.outcome.name().replace('_', " "));
             output::say(&format!(
-                "{trace}: sound, {periods} control periods; the outcome is: {name}\n"
+                "{trace}: sound, {periods} control periods{whole}; the outcome is: {name}\n"
             ))?;
             Ok(Status::Done)
         }

@@ -8,6 +8,7 @@ mod check;
 mod diagram;
 #[cfg(feature = "mcap")]
 mod export;
+pub mod faults;
 mod import;
 pub mod interrupt;
 pub mod job;

@@ -4,9 +4,11 @@ use super::arguments::RunArguments;
 use super::source::Source;
 use super::status::Failure;
 use super::sweep::Sweep;
+use pleach::automaton::network::record::Faults;
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::scenario_file::Setting;
 use pleach::starts;
+use pleach::verify::network::storm::Storm;
 
 /// The most runs of one call.
 const MOST_RUNS: usize = 100_000;
@@ -24,6 +26,10 @@ pub struct Planned {
     pub settings: Vec<Setting>,
     /// The seed of the random starts.
     pub seed: Option<u64>,
+    /// What fails in it, if it is simulated.
+    pub storm: Option<Storm>,
+    /// What fails, as far as that decides on what must hold.
+    pub faults: Faults,
 }
 
 /// Every run that the arguments ask for. All scenarios are read before any of them runs, and all
@@ -55,12 +61,15 @@ pub fn plan(arguments: &RunArguments) -> Result<Vec<Planned>, Failure> {
                     None => scenario.clone(),
                     Some(seed) => starts::draw(&scenario, seed)?,
                 };
+                let storm = arguments.faults.storm(&scenario)?;
                 runs.push(Planned {
                     number: runs.len() + 1,
                     source: source.name.display().to_string(),
+                    faults: storm.as_ref().map_or_else(Faults::default, Storm::faults),
                     scenario,
                     settings: settings.clone(),
                     seed,
+                    storm,
                 });
             }
         }
@@ -69,6 +78,19 @@ pub fn plan(arguments: &RunArguments) -> Result<Vec<Planned>, Failure> {
 }
 
 impl Planned {
+    /// A single run of a scenario as it stands, without faults.
+    pub fn once(source: String, scenario: ValidScenario) -> Self {
+        Planned {
+            number: 1,
+            source,
+            scenario,
+            settings: Vec::new(),
+            seed: None,
+            storm: None,
+            faults: Faults::default(),
+        }
+    }
+
     /// A name for the files of this run, one of `count`.
     pub fn file_name(&self, count: usize) -> String {
         let digits = count.to_string().len();

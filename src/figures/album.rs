@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use pleach_automaton::network::record::{End, MissionEvent, Snapshot};
+use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 
 use crate::mission::Watcher;
@@ -56,13 +56,19 @@ impl Album {
     /// Opens an empty album of a mission of `scenario`.
     #[must_use]
     pub fn new(scenario: &ValidScenario) -> Album {
+        Album::with_faults(scenario, Faults::default())
+    }
+
+    /// The same of a mission in which these faults occur.
+    #[must_use]
+    pub fn with_faults(scenario: &ValidScenario, faults: Faults) -> Album {
         let corners = |ring: &Vec<_>| ring.iter().map(|&corner| <[f64; 2]>::from(corner)).collect();
         let outline = scenario.site().free_space.outline().iter().map(corners).collect();
         let robots = scenario.robot.len();
         Album {
             plan: Plan::new(scenario, outline),
             walls: Walls::new(&scenario.workspace),
-            page: MissionPage::new(scenario),
+            page: MissionPage::with_faults(scenario, faults),
             pictures: Vec::new(),
             film: Film::default(),
             trails: Vec::new(),

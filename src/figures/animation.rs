@@ -5,7 +5,7 @@ use pleach_drawing::svg::node::element::{Animate, AnimateTransform, Group, Line}
 use pleach_drawing::{disc, layer, number};
 
 use super::canvas::{Spot, View, rectangle, sheet, text};
-use super::marks::{Mark, TaskState};
+use super::marks::{Mark, TaskState, cross_out};
 use super::palette;
 use super::plan::Plan;
 
@@ -146,6 +146,9 @@ impl Reel<'_> {
                 let drawn = || mark.draw([0.0, 0.0], self.radius(), mark.name());
                 self.shown(group, &marks, mark, drawn)
             });
+            let absent: Vec<bool> =
+                self.frames.iter().map(|frame| frame.absent.contains(&robot)).collect();
+            let shape = self.shown(shape, &absent, true, || cross_out([0.0, 0.0], self.radius()));
             let number_of =
                 text(robot.to_string(), [self.radius() + 2.0, -4.0], 10.0, palette::INK)
                     .set("stroke", palette::FLOOR)

@@ -217,6 +217,16 @@ pub(super) fn active_ring(centre: Spot, radius: f64) -> Circle {
         .set("stroke-width", "1.3")
 }
 
+/// What crosses out a node that does not run, whose mark looks as large as a dot of this radius.
+pub(super) fn cross_out([x, y]: Spot, radius: f64) -> Group {
+    let arm = 1.7 * radius;
+    let stroke = |from, to| stroke(from, to, palette::INK, radius * 0.36);
+    layer("stopped")
+        .add(Title::new("stopped"))
+        .add(stroke([x - arm, y - arm], [x + arm, y + arm]))
+        .add(stroke([x - arm, y + arm], [x + arm, y - arm]))
+}
+
 /// A regular figure whose corners take turns among `radii`; `turn` counts in corners, from the
 /// top.
 fn ring_of_corners(count: usize, radii: &[f64], turn: f64) -> Shape {

@@ -9,7 +9,7 @@ use pleach_drawing::{disc, layer, number, polyline};
 use super::canvas::{Spot, View, headed, stroke, text};
 use super::labels::LabelPlaces;
 use super::legend;
-use super::marks::{Mark, TaskState, active_ring};
+use super::marks::{Mark, TaskState, active_ring, cross_out};
 use super::palette;
 use super::plan::{PaperWalls, Plan};
 
@@ -202,6 +202,10 @@ impl Picture<'_> {
             let disc = self.plan.disc_radius(&self.view).filter(|_| node < robots);
             let group = disc.into_iter().fold(group, |group, disc| group.add(to_scale(spot, disc)));
             let group = group.add(mark.draw(spot, self.radius, &tooltip));
+            let group = match snapshot.absent.contains(&node) {
+                true => group.add(cross_out(spot, self.radius)),
+                false => group,
+            };
             if snapshot.active_team.contains(&node) {
                 group.add(active_ring(spot, self.radius))
             } else {
@@ -335,6 +339,10 @@ fn subtitle(snapshot: &Snapshot) -> String {
         .collect();
     if !held.is_empty() {
         parts.push(format!("held: {}", held.join(", ")));
+    }
+    if !snapshot.absent.is_empty() {
+        let stopped: Vec<String> = snapshot.absent.iter().map(usize::to_string).collect();
+        parts.push(format!("stopped: {}", stopped.join(", ")));
     }
     parts.join("  ·  ")
 }

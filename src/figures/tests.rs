@@ -112,6 +112,7 @@ fn moment(step: usize, share: f64) -> Snapshot {
             junction: false,
         }],
         robots: Vec::new(),
+        absent: Vec::new(),
     }
 }
 

@@ -2,11 +2,11 @@
 
 use std::io;
 
-use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
+use pleach_automaton::network::record::{End, Faults, MissionEvent, Outcome, Snapshot};
 use pleach_automaton::network::scenario::{Scenario, Settings, ValidScenario};
 use pleach_continuous::geometry::{Destination, FreeSpace};
 use pleach_discrete::network::activity::may_follow;
-use pleach_verify::network::{Monitor, Violation};
+use pleach_verify::network::{Referee, Violation};
 use serde_json::{Map, Value, json};
 
 use crate::figures::{self, Mark, TaskState, Walls};
@@ -35,8 +35,8 @@ pub struct MissionPage {
     /// By task: where its leader goes.
     destinations: Vec<Destination>,
     summary: Summary,
-    monitor: Monitor<'static>,
-    /// What the monitor found; it looks no further.
+    judge: Referee<'static>,
+    /// What the judge found; it looks no further.
     violation: Option<Violation>,
     steps: Steps,
     events: Vec<Value>,
@@ -46,6 +46,11 @@ pub struct MissionPage {
 impl MissionPage {
     /// The page of a mission of `scenario` that has not begun.
     pub fn new(scenario: &ValidScenario) -> MissionPage {
+        MissionPage::with_faults(scenario, Faults::default())
+    }
+
+    /// The same of a mission in which these faults occur.
+    pub fn with_faults(scenario: &ValidScenario, faults: Faults) -> MissionPage {
         let settings = *scenario.settings();
         let free_space = scenario.site().free_space.clone();
         let goal = |place: [f64; 2]| free_space.destination(free_space.nearest(place.into()));
@@ -54,7 +59,7 @@ impl MissionPage {
             destinations: scenario.task.iter().map(|task| goal(task.position)).collect(),
             walls: Walls::new(&scenario.workspace),
             summary: Summary::new(scenario),
-            monitor: Monitor::new(scenario, may_follow),
+            judge: Referee::new(scenario, faults, may_follow),
             violation: None,
             steps: Steps::new(decimals.clamp(0.0, 9.0) as i32),
             events: Vec::new(),
@@ -125,9 +130,11 @@ impl Watcher for MissionPage {
             self.events.push(event_data(snapshot.step, event)?);
         }
         let more = self.derived(snapshot);
-        self.steps.push(trace::step_line(snapshot)?, more);
+        let mut line = trace::step_line(snapshot)?;
+        line.entry("absent").or_insert_with(|| json!([]));
+        self.steps.push(line, more);
         if self.violation.is_none() {
-            self.violation = self.monitor.observe(snapshot).err();
+            self.violation = self.judge.observe(snapshot, events).err();
         }
         Ok(())
     }
@@ -209,7 +216,7 @@ impl MissionPage {
             .collect();
         rows.push(Row::new("recruits elected", self.summary.recruits().to_string()));
         rows.push(Row::new("stationary points", self.summary.stationary_points().to_string()));
-        let measured = summary::measured(self.monitor.extremes(), &self.settings);
+        let measured = summary::measured(self.judge.extremes(), &self.settings);
         rows.extend(measured.into_iter().map(|Measured { name, value, step, robots, bound }| {
             Row::at(name, format!("{value} ({robots}); {bound}"), step)
         }));

@@ -36,7 +36,7 @@ pub enum PageError {
 pub fn of_trace(trace: impl BufRead) -> Result<String, PageError> {
     let mut reader = TraceReader::new(trace)?;
     let scenario = ValidScenario::new(reader.scenario().clone())?;
-    let mut page = MissionPage::new(&scenario);
+    let mut page = MissionPage::with_faults(&scenario, reader.faults());
     let mut events: Vec<MissionEvent> = Vec::new();
     while let Some(entry) = reader.next() {
         match entry {

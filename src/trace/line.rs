@@ -1,7 +1,7 @@
 //! The lines of a trace as JSON shows them.
 
 use crate::automaton::network::record::{
-    End, MissionEvent, Outcome, PostView, RobotSnapshot, Route, Snapshot,
+    End, Faults, MissionEvent, Outcome, PostView, RobotSnapshot, Route, Snapshot,
 };
 use crate::automaton::network::scenario::Scenario;
 use crate::discrete::Location;
@@ -18,6 +18,8 @@ pub(super) enum LineOut<'a> {
         format: &'a str,
         version: u32,
         scenario: &'a Scenario,
+        #[serde(skip_serializing_if = "Faults::are_none")]
+        faults: Faults,
     },
     Event {
         k: usize,
@@ -36,6 +38,8 @@ pub(super) enum Line {
         format: String,
         version: u32,
         scenario: Box<Scenario>,
+        #[serde(default)]
+        faults: Faults,
     },
     Event {
         k: usize,
@@ -67,6 +71,8 @@ pub(super) struct StepLine {
     post: Vec<PostLine>,
     #[serde(flatten)]
     robots: RobotsLine,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    absent: Vec<usize>,
 }
 
 /// The [`RobotSnapshot`]s, each list with an element for each robot; traces may lack all of them.
@@ -122,6 +128,7 @@ impl From<&Snapshot> for StepLine {
             serviced: snapshot.serviced.clone(),
             post: snapshot.posts.iter().map(PostLine::from).collect(),
             robots: RobotsLine::from(&*snapshot.robots),
+            absent: snapshot.absent.clone(),
         }
     }
 }
@@ -162,6 +169,7 @@ impl TryFrom<StepLine> for Snapshot {
             serviced: line.serviced,
             posts: line.post.into_iter().map(PostView::from).collect(),
             robots: line.robots.views(robots)?,
+            absent: line.absent,
         })
     }
 }

@@ -95,6 +95,7 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
                 heard: 8,
             },
         ],
+        absent: vec![],
     }
 }
 

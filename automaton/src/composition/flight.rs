@@ -33,6 +33,8 @@ pub(super) struct Flight {
     pub(super) landing: Vec<f64>,
     /// Where it cannot be said whether something happens.
     pub(super) doubts: Vec<Doubt>,
+    /// Where its solution touches a jump of its rates, for all that is known.
+    pub(super) grazes: Vec<Doubt>,
     /// Why something may be missed at any time of it.
     pub(super) unknowns: Vec<Why>,
     /// Whether no time can pass at its end, because an invariant ends right after it.
@@ -85,6 +87,7 @@ impl Plan<'_> {
             pieces: Vec::new(),
             landing: field.start.clone(),
             doubts: Vec::new(),
+            grazes: Vec::new(),
             unknowns: Vec::new(),
             must_leave: false,
             halt: None,
@@ -152,6 +155,7 @@ impl Flight {
             pieces: vec![piece],
             landing,
             doubts: Vec::new(),
+            grazes: Vec::new(),
             unknowns: Vec::new(),
             must_leave: false,
             halt: None,
@@ -166,6 +170,7 @@ impl Flight {
             self.pieces.push(last.within(0.0, time));
         }
         self.doubts.retain(|doubt| doubt.from <= time);
+        self.grazes.retain(|graze| graze.from <= time);
         Flight { duration: Moment::from(time), must_leave: false, ..self }
     }
 }

@@ -2,9 +2,12 @@
 //! up to where the state passes a kink.
 
 use std::cell::{Cell, RefCell};
+use std::convert::Infallible;
 
-use pleach_continuous::flow::{Curve, EventSearch, Onset, Piece, Watch, isolate};
-use pleach_guards::{Course, Enclosure, EvaluationError, Expression, Sides, Verdict};
+use pleach_continuous::flow::{
+    Curve, Doubt, EventSearch, Onset, Piece, Uncertainty, Watch, isolate,
+};
+use pleach_guards::{Course, Enclosure, EvaluationError, Expression, Sides, Tracker, Verdict};
 
 use super::Component;
 use super::blueprint::{Mode, ModeMotion};
@@ -127,6 +130,39 @@ impl<'a> Hold<'a> {
         let found = isolate(&piece, piece.start(), piece.end(), &search, &mut passage, &mut spans);
         found.map(|found| found.onset).map_err(|_| Unclear)
     }
+
+    /// The spans of a piece of the solution in which its error hides whether the state passes a jump of
+    /// the rates: it comes to one and turns.
+    pub(super) fn grazes(&self, piece: &Piece) -> Vec<Doubt> {
+        if self.parts.iter().flatten().all(|part| part.sides.jumps().is_none()) {
+            return Vec::new();
+        }
+        let mut graze = Graze { hold: self, states: Vec::new() };
+        let (search, mut spans) = (EventSearch::default(), MOST_SPANS);
+        let found = isolate(piece, piece.start(), piece.end(), &search, &mut graze, &mut spans);
+        let throughout = Doubt { from: piece.start(), to: piece.end(), why: Uncertainty::Touch };
+        found.map_or_else(|_| vec![throughout], |found| found.doubts)
+    }
+
+    /// What is known of something about the sides of all parts, of which one is enough.
+    fn course(
+        &self,
+        states: &[Enclosure],
+        room: &mut Vec<Enclosure>,
+        half_width: f64,
+        of: impl Fn(&'a Sides) -> Option<&'a Tracker>,
+    ) -> Course {
+        let values = self.values.borrow();
+        room.clear();
+        room.extend_from_slice(states);
+        room.extend(values[states.len()..].iter().map(|side| Enclosure::constant(*side)));
+        self.parts.iter().flatten().fold(Course::Never, |course, part| match of(part.sides) {
+            Some(tracker) => {
+                course.or(tracker.course(room, &part.slots, half_width, 0.0, &|_| None))
+            }
+            None => course,
+        })
+    }
 }
 
 /// Whether a kink is passed, followed over time.
@@ -135,7 +171,7 @@ struct Passage<'h, 'a> {
     states: Vec<Enclosure>,
 }
 
-impl Watch for Passage<'_, '_> {
+impl<'a> Watch for Passage<'_, 'a> {
     type Error = EvaluationError;
 
     fn verdict(&mut self, state: &[f64]) -> Result<Verdict, EvaluationError> {
@@ -147,13 +183,29 @@ impl Watch for Passage<'_, '_> {
     }
 
     fn course(&mut self, states: &[Enclosure], half_width: f64) -> Course {
-        let values = self.hold.values.borrow();
-        self.states.clear();
-        self.states.extend_from_slice(states);
-        self.states.extend(values[states.len()..].iter().map(|side| Enclosure::constant(*side)));
-        self.hold.parts.iter().flatten().fold(Course::Never, |course, part| {
-            let tracker = part.sides.tracker();
-            course.or(tracker.course(&self.states, &part.slots, half_width, 0.0, &|_| None))
-        })
+        let passed = |sides: &'a Sides| Some(sides.tracker());
+        self.hold.course(states, &mut self.states, half_width, passed)
+    }
+}
+
+/// Whether it can be told, from the course alone, when a jump of the rates is passed.
+struct Graze<'h, 'a> {
+    hold: &'h Hold<'a>,
+    states: Vec<Enclosure>,
+}
+
+impl Watch for Graze<'_, '_> {
+    type Error = Infallible;
+
+    /// Nothing is looked for: what is left in doubt is what counts.
+    fn verdict(&mut self, _state: &[f64]) -> Result<Verdict, Infallible> {
+        Ok(Verdict::NEVER)
+    }
+
+    fn course(&mut self, states: &[Enclosure], half_width: f64) -> Course {
+        match self.hold.course(states, &mut self.states, half_width, Sides::jumps) {
+            course @ (Course::Open | Course::Blurred) => course,
+            _ => Course::Never,
+        }
     }
 }

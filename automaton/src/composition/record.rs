@@ -8,7 +8,7 @@ use super::{Component, Composition};
 use crate::executor::Ending;
 use crate::moment::Moment;
 use crate::time::HybridTime;
-use crate::trajectory::{Doubt, JumpRecord, Participant, Strand, Stretch, Trajectory};
+use crate::trajectory::{Doubt, JumpRecord, Participant, Strand, Stretch, Trajectory, Why};
 
 /// A trajectory in the making.
 pub(super) struct Record {
@@ -42,20 +42,18 @@ impl Record {
     /// The group has flown.
     pub(super) fn flown(&mut self, number: usize, flight: Flight) {
         let Strand { stretches, components, .. } = &mut self.strands[number];
-        for doubt in &flight.doubts {
-            let at = |time: f64| (flight.since + Moment::from(time)).seconds();
-            let doubt = Doubt {
-                components: components.clone(),
-                from: at(doubt.from),
-                to: at(doubt.to),
-                why: doubt.why.into(),
-            };
-            doubt.note(&mut self.doubts);
+        let mut doubt = |from: f64, to: f64, why: Why| {
+            Doubt { components: components.clone(), from, to, why }.note(&mut self.doubts);
+        };
+        let at = |time: f64| (flight.since + Moment::from(time)).seconds();
+        for one in &flight.doubts {
+            doubt(at(one.from), at(one.to), one.why.into());
+        }
+        for one in &flight.grazes {
+            doubt(at(one.from), at(one.to), Why::Graze);
         }
         for &why in &flight.unknowns {
-            let (from, to) = (flight.since.seconds(), flight.due().seconds());
-            let components = components.clone();
-            Doubt { components, from, to, why }.note(&mut self.doubts);
+            doubt(flight.since.seconds(), flight.due().seconds(), why);
         }
         let Some(mut stretch) = stretches.pop() else { return };
         if !stretch.pieces.is_empty() {

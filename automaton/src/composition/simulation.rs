@@ -215,8 +215,9 @@ impl System for Simulation<'_> {
         if !jumped {
             jumped = self.leave(round, &awake)?;
         }
-        // At the horizon there is no flow to come.
-        if !jumped && self.now.seconds() < self.horizon {
+        if !jumped && self.now.seconds() >= self.horizon {
+            self.plan_last();
+        } else if !jumped {
             let mut stuck = BTreeSet::new();
             for &group in &awake {
                 self.plan(group)?;

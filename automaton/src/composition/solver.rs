@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::flow::{
-    Curve, IntegrationFailure, Integrator, InvalidFlow, LinearFlow, Onset, Piece,
+    Curve, Doubt, IntegrationFailure, Integrator, InvalidFlow, LinearFlow, Onset, Piece,
 };
 use pleach_guards::{Enclosure, Expression};
 
@@ -37,6 +37,8 @@ pub(super) struct Solver<'a> {
     crawled: u32,
     /// The formula with the kink at which the last piece ends, if it ends at one.
     kink: Option<&'a Expression>,
+    /// Where the solution touches a jump of its rates, for all that is known.
+    grazes: Vec<Doubt>,
     enclosures: Vec<Enclosure>,
 }
 
@@ -69,9 +71,9 @@ impl<'a> Solver<'a> {
                 Method::Steps(Box::new(integrator.with_method(settings.method)))
             }
         };
-        let (pieces, enclosures) = (Vec::new(), Vec::new());
+        let (pieces, grazes, enclosures) = (Vec::new(), Vec::new(), Vec::new());
         let (size, reached, crawled, kink) = (0, 0.0, 0, None);
-        Ok(Solver { field, method, pieces, size, reached, crawled, kink, enclosures })
+        Ok(Solver { field, method, pieces, size, reached, crawled, kink, grazes, enclosures })
     }
 
     /// Whether all variables move along lines, so that nothing needs to be solved.
@@ -84,6 +86,13 @@ impl<'a> Solver<'a> {
         let solution = self.field.has_solutions().then_some(Why::Solution);
         let field = self.field.has_functions().then_some(Why::Field);
         solution.into_iter().chain(field).collect()
+    }
+
+    /// Where the solution, up to this time, touches a jump of its rates within its error.
+    pub(super) fn grazes(&mut self, time: f64) -> Vec<Doubt> {
+        let mut grazes = std::mem::take(&mut self.grazes);
+        grazes.retain(|graze| graze.from < time);
+        grazes
     }
 
     /// The state at the start.
@@ -223,22 +232,26 @@ impl<'a> Solver<'a> {
                 passed = hold.passed(&piece);
             }
         }
-        match passed {
-            Ok(None) => {}
+        let grazes = match passed {
+            Ok(None) => hold.grazes(&piece),
             Ok(Some(Onset { time, .. })) => {
+                let up_to = piece.clone().within(0.0, time);
+                let grazes = hold.grazes(&up_to);
                 let kink = self.begin_sides(hold, &piece, time);
                 if kink.is_none() {
                     self.integrator()?.undo();
                     return None;
                 }
                 self.kink = kink;
-                piece = piece.within(0.0, time);
+                piece = up_to;
+                grazes
             }
             Err(Unclear) => {
                 self.integrator()?.undo();
                 return None;
             }
-        }
+        };
+        self.grazes.extend(grazes);
         Some(piece)
     }
 

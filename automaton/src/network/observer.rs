@@ -1,4 +1,4 @@
-//! What observers see: snapshots of the whole network, put together from what each robot reports.
+//! What observers see: snapshots of the whole network, made from the reports of all robots.
 //!
 //! No robot reads any of this.
 
@@ -113,6 +113,7 @@ impl Snapshot {
             serviced: overview.serviced(),
             posts: overview.posts(),
             robots: reports.iter().map(RobotSnapshot::from).collect(),
+            absent: Vec::new(),
         }
     }
 }
@@ -145,7 +146,14 @@ pub fn complete_events(events: &mut [MissionEvent], primary_team: &[NodeId]) {
 impl<M, N: RobotNode> Network<M, N> {
     /// The observers' view of this instant, just before the robots move.
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot::of_reports(self.step, self.site.settings.period, &self.reports())
+        let snapshot = Snapshot::of_reports(self.step, self.site.settings.period, &self.reports());
+        let nodes =
+            self.nodes.nodes().iter().take(self.site.robots + self.site.access_points.len());
+        let absent = nodes.enumerate().filter(|(_, node)| !node.is_running()).map(|(id, _)| id);
+        match absent.collect::<Vec<_>>() {
+            absent if absent.is_empty() => snapshot,
+            absent => snapshot.without(absent),
+        }
     }
 
     /// What observers need to know of each robot, by number.

@@ -44,6 +44,46 @@ pub struct Snapshot {
     pub posts: Vec<PostView>,
     /// What else each robot shows of itself; empty in what is read from traces that lack it.
     pub robots: Vec<RobotSnapshot>,
+    /// The robots and access points that do not run or are not heard, ascending. They are bodies,
+    /// and nothing else of them is in the lists above but what each has one entry for every robot.
+    pub absent: Vec<usize>,
+}
+
+impl Snapshot {
+    /// The same, where these nodes do not run or are not heard.
+    #[must_use]
+    pub fn without(mut self, absent: Vec<usize>) -> Self {
+        let is_there = |node: &usize| absent.binary_search(node).is_err();
+        self.routes.retain(|route| is_there(&route.from) && is_there(&route.to));
+        self.tree.retain(|(child, parent)| is_there(child) && is_there(parent));
+        self.posts.retain(|post| is_there(&post.holder));
+        self.serviced.retain(|(_, robot)| is_there(robot));
+        for team in
+            [&mut self.active, &mut self.active_team, &mut self.primary_team, &mut self.path]
+        {
+            team.retain(is_there);
+        }
+        self.absent = absent;
+        self
+    }
+}
+
+/// What fails in a mission, as far as that decides on what must hold in it. Errors of position and
+/// motion are settings of its scenario.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Faults {
+    /// Messages are lost, late or doubled.
+    pub messages: bool,
+    /// Nodes stop, restart or join late.
+    pub nodes: bool,
+}
+
+impl Faults {
+    /// Whether nothing fails.
+    pub const fn are_none(&self) -> bool {
+        !self.messages && !self.nodes
+    }
 }
 
 /// Where a robot is in its automata, where it goes, and how much it sends and receives.

@@ -5,8 +5,8 @@ use std::fmt;
 use pleach_continuous::flow::Uncertainty;
 use serde::{Deserialize, Serialize};
 
-/// A span of time in which a transition may have become due, or an invariant ended, without being
-/// seen. Everywhere else it is proven, up to the error of the flow's solution, that none has.
+/// A span of time in which a transition may have become due, or an invariant ended, or rates jumped, without
+/// being seen. Everywhere else it is proven, up to the error of the flow's solution, that none has.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Doubt {
     /// The components of the group that it concerns, by their numbers.
@@ -26,6 +26,9 @@ pub enum Why {
     /// The margin of a guard or an invariant touches zero, as closely as rounding or the error of
     /// the solution lets one see, and does not pass it.
     Touch,
+    /// The solution of a flow comes to a jump of its rates and turns, as closely as its error lets one
+    /// see: whether it passes the jump, and so which rates it has behind, is undecided.
+    Graze,
     /// A guard or an invariant is given as a function, which was looked at only here and there.
     Function,
     /// A flow is given as a function that solves it, which was taken at a few instants only.
@@ -40,7 +43,7 @@ impl Doubt {
     pub(crate) fn note(self, doubts: &mut Vec<Doubt>) {
         let same = |one: &&mut Doubt| one.why == self.why && one.components == self.components;
         match doubts.iter_mut().rev().take(NEAR).find(same) {
-            Some(last) if last.why != Why::Touch || last.to >= self.from => last.to = self.to,
+            Some(last) if !self.why.is_brief() || last.to >= self.from => last.to = self.to,
             _ => doubts.push(self),
         }
     }
@@ -48,6 +51,13 @@ impl Doubt {
 
 /// How many doubts back one of the same kind is looked for.
 const NEAR: usize = 16;
+
+impl Why {
+    /// Whether it concerns an instant, and not a flow as a whole.
+    fn is_brief(self) -> bool {
+        matches!(self, Why::Touch | Why::Graze)
+    }
+}
 
 impl From<Uncertainty> for Why {
     fn from(uncertainty: Uncertainty) -> Why {
@@ -63,6 +73,7 @@ impl fmt::Display for Doubt {
         let Doubt { from, to, .. } = self;
         let why = match self.why {
             Why::Touch => "a margin touches zero and does not visibly pass it",
+            Why::Graze => "the solution touches a jump of its rates and does not visibly pass it",
             Why::Function => "a condition is a function and was looked at only here and there",
             Why::Field => "rates are a function and were taken only here and there",
             Why::Solution => "a flow is a function and was taken only here and there",

@@ -27,6 +27,9 @@ fn a_flow_ends_where_it_is_singular() {
     }
     let quotient = singular(1.0 / (&px - 1.0));
     assert!((quotient.ending().at.t - 1.0).abs() < 1e-9, "{:?}", quotient.ending());
+    // A pole so weak that no step shows it.
+    let weak = singular(1e-15 * (&px - 1.0).power(-1.0));
+    assert!((weak.ending().at.t - 1.0).abs() < 1e-9, "{:?}", weak.ending());
     // What has no pole goes on.
     assert_eq!(singular(1.0 / (&px + 1.0)).ending().reason, Reason::Horizon);
 }

@@ -1,6 +1,6 @@
 //! Instants do not drift.
 
-use pleach_automaton::{Automaton, Reason, from};
+use pleach_automaton::{Automaton, Composition, Reason, from};
 
 use super::Cue::Go;
 use super::Place::Here;
@@ -13,6 +13,31 @@ fn ticks_at_the_horizon_are_taken() {
         assert_eq!(trajectory.jumps().len(), ticks, "{period} {horizon}");
         assert_eq!(trajectory.ending().at.t, horizon);
     }
+}
+
+/// A hundred tenths are a little more than 10, for a tenth is no number: the last tick is due after that of
+/// the other clock, and nearest to the horizon all the same.
+#[test]
+fn ticks_of_several_clocks_at_the_horizon_are_taken() {
+    let apart = Composition::builder()
+        .add("slow", &metronome(0.25, 1.0))
+        .add("fast", &metronome(0.1, 1.0))
+        .build()
+        .expect("the parts fit");
+    let trajectory = apart.run(10.0).expect("it can be run");
+    assert_eq!(trajectory.jumps().len(), 40 + 100);
+    assert_eq!(trajectory.ending().reason, Reason::Horizon);
+
+    let Body { h, v, clock } = Body::coordinates();
+    let tick = |guard, reset| from(Here).on(Go).to(Here).must(guard).then(reset);
+    let together = Automaton::starting_in(Here)
+        .initially(Body { h: 0.0, v: 0.0, clock: 1.0 })
+        .flow(Here, [h.rate(1.0), v.rate(1.0), clock.rate(-1.0 * &clock)])
+        .transition(tick(h.at_least(0.25), h.becomes(0.0)))
+        .transition(tick(v.at_least(0.1), v.becomes(0.0)));
+    let trajectory = run(&built(together), 10.0);
+    assert_eq!(trajectory.jumps().len(), 40 + 100);
+    assert_eq!((&trajectory.ending().reason, trajectory.ending().at.t), (&Reason::Horizon, 10.0));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Models of the literature, each with an answer that is known from elsewhere: a closed form, a number
 //! that mpmath computes, or digits that are published.
 
+mod control;
 mod flows;
 mod hybrid;
 mod stiff;

@@ -322,6 +322,9 @@ struct Extremes {
     lowest: f64,
     highest: f64,
     magnitude: f64,
+    /// Whether a term may be negative, and whether one may be positive.
+    has_negative: bool,
+    has_positive: bool,
 }
 
 impl Extremes {
@@ -330,12 +333,22 @@ impl Extremes {
         self.lowest += one.min(other);
         self.highest += one.max(other);
         self.magnitude += one.abs().max(other.abs());
+        self.has_negative |= one < 0.0 || other < 0.0;
+        self.has_positive |= one > 0.0 || other > 0.0;
     }
 
     fn interval(&self, noise: f64, error: f64) -> Interval {
         // A sum of one term that is no power is exact; so is one of zeros.
         let rest = error + noise * self.magnitude;
-        ordered(self.lowest - rest, self.highest + rest)
+        let (mut lower, mut upper) = (self.lowest - rest, self.highest + rest);
+        // Whatever is rounded, a sum without negative terms is not negative.
+        if !self.has_negative {
+            lower = lower.max(0.0 - error);
+        }
+        if !self.has_positive {
+            upper = upper.min(0.0 + error);
+        }
+        ordered(lower, upper)
     }
 }
 

@@ -44,6 +44,33 @@ fn a_large_offset_costs_no_accuracy() {
     }
 }
 
+/// ẋ = k (y − x) beside ẏ = −y, up to k = 10¹⁵: in the powers of the exponential the slow mode is by so much
+/// smaller than the fast one, and keeps its digits.
+#[test]
+fn a_slow_mode_keeps_its_digits_beside_a_fast_one() {
+    for fast in [1e3, 1e6, 1e9, 1e12, 1e15] {
+        let matrix = dmatrix![-fast, fast; 0.0, -1.0];
+        let flow = LinearFlow::new(&matrix, &[0.0, 0.0], &[2.0, 1.0], 5.0).unwrap();
+        for time in [0.1, 1.0, 2.5, 5.0_f64] {
+            let slow = (-time).exp();
+            let exact = [slow * fast / (fast - 1.0), slow];
+            let error = distance(&state(&flow, time), &exact);
+            assert!(error < 1e-14 * slow, "{error:e} at {time} s beside {fast:e}");
+        }
+        let mut time = 0.0;
+        while time < 5.0 {
+            let piece = flow.piece(time).unwrap();
+            time = piece.end();
+            let (slow, share) = ((-time).exp(), fast / (fast - 1.0));
+            let exact = [share * slow + (2.0 - share) * (-fast * time).exp(), slow];
+            for (component, exact) in exact.into_iter().enumerate() {
+                let found = piece.value(component, time);
+                assert!((found - exact).abs() < 1e-13, "{found} at {time} s beside {fast:e}");
+            }
+        }
+    }
+}
+
 #[test]
 fn fast_modes_set_the_time_scale_until_they_have_faded() {
     let matrix = dmatrix![-1000.0, 0.0, 0.0; 0.0, 0.0, 1.0; 0.0, -1.0, 0.0];

@@ -83,6 +83,14 @@ function drawMark(context, { key, shape }, [x, y], radius) {
   }
 }
 
+/** Crosses out a node that does not run. */
+function drawCross(context, [x, y], arm) {
+  context.strokeStyle = colours.get("ink");
+  context.lineWidth = 2.2;
+  strokeThrough(context, [[x - arm, y - arm], [x + arm, y + arm]]);
+  strokeThrough(context, [[x - arm, y + arm], [x + arm, y - arm]]);
+}
+
 function strokeThrough(context, spots) {
   context.beginPath();
   spots.forEach((spot, index) => context[index ? "lineTo" : "moveTo"](...spot));

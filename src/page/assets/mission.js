@@ -33,6 +33,9 @@ class Mission {
     return this.markKeys.get(key);
   }
 
+  /** Whether a node does not run, or is not heard. */
+  isAbsent(node, step) { return this.count > 0 && this.value("absent", step).includes(node); }
+
   /** What is more telling comes first. */
   rank(node, step) { return this.markOf(node, step).rank; }
 
@@ -151,6 +154,7 @@ class Facts {
     const [out, into] = [links.filter(link => link.from === robot), links.filter(link => link.to === robot)];
     const load = out.reduce((sum, link) => sum + link.share, 0);
     return [`Robot ${robot}`, [
+      mission.isAbsent(robot, step) && ["state", "stopped, or not heard"],
       ["role", mission.role(robot, step)],
       ["location", this.location(robot, step)],
       ["target", this.target(robot, step)],
@@ -242,7 +246,7 @@ class Facts {
 }
 
 const KNOWN_FIELDS = new Set(["role", "mark", "location", "exchange", "known_phase", "active", "tree", "task", "phase", "active_team", "primary_team",
-  "path", "serviced", "post", "task_state", "geodesic"]);
+  "path", "serviced", "post", "task_state", "geodesic", "absent"]);
 
 Mission.prototype.nodeName = function (node) {
   return node < this.robots ? `robot ${node}` : `AP ${node}`;

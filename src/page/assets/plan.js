@@ -316,6 +316,7 @@ class Plan {
         context.globalAlpha = 1;
       }
       drawMark(context, mark, [x, y], radius);
+      if (mission.isAbsent(node, step)) drawCross(context, [x, y], 1.7 * radius);
       const isShown = node === this.selection.shown;
       if (!team.includes(node) && !isShown) continue;
       context.beginPath();

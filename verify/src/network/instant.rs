@@ -92,6 +92,9 @@ fn identity_fault(snapshot: &Snapshot, limits: &Limits) -> Option<String> {
             return Some(format!("the {name} {from} → {to} does not join two nodes of {nodes}"));
         }
     }
+    if let Some(node) = snapshot.absent.iter().find(|&&node| node >= nodes) {
+        return Some(format!("node {node} is absent, of {nodes}"));
+    }
     let serviced = snapshot.serviced.iter().map(|&(task, robot)| (Some(task), robot));
     let posts = snapshot.posts.iter().map(|post| (post.task, post.holder));
     for (task, robot) in serviced.chain(posts) {
@@ -105,6 +108,9 @@ fn identity_fault(snapshot: &Snapshot, limits: &Limits) -> Option<String> {
 fn team_fault(snapshot: &Snapshot) -> Option<String> {
     if !snapshot.active.is_sorted_by(|one, next| one < next) {
         return Some("the active robots are not listed in ascending order, each once".to_owned());
+    }
+    if !snapshot.absent.is_sorted_by(|one, next| one < next) {
+        return Some("the absent nodes are not listed in ascending order, each once".to_owned());
     }
     let teams = [
         ("the active team", &snapshot.active_team),

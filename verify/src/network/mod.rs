@@ -62,6 +62,7 @@
 //!     serviced: Vec::new(),
 //!     posts: Vec::new(),
 //!     robots: Vec::new(),
+//!     absent: Vec::new(),
 //! };
 //! let any_role_change = |_, _| true;
 //! let mut monitor = Monitor::new(&scenario, any_role_change);
@@ -102,7 +103,7 @@ mod tests;
 mod violation;
 
 pub use extremes::{Extreme, Extremes};
-pub use judge::Judge;
+pub use judge::{Judge, Referee, Safety};
 pub use limits::{Limits, SLACK};
 pub use monitor::{Monitor, RoleTable, audit};
 pub use property::Property;

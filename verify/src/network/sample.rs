@@ -82,6 +82,7 @@ pub(super) fn snapshot(step: usize) -> Snapshot {
             PostView { reference: point![0.2, 0.2], holder: 3, task: None, junction: false },
         ],
         robots: Vec::new(),
+        absent: Vec::new(),
     };
     route(&mut snapshot, &[(0, 4, 0.3), (1, 0, 0.15), (2, 4, 0.1), (3, 4, 0.1)]);
     snapshot

@@ -37,6 +37,7 @@ impl Search<'_, '_> {
         let duration = self.noticeable(duration);
         let landing = self.solver.state_at(duration).map_err(|reason| failed(reason.into()))?;
         let unknowns = self.solver.unknowns();
+        let grazes = self.solver.grazes(duration.seconds());
         let pieces = self.solver.into_pieces(duration.seconds());
         Ok(Flight {
             unknowns,
@@ -45,6 +46,7 @@ impl Search<'_, '_> {
             pieces: pieces.map_err(|reason| failed(reason.into()))?,
             landing,
             doubts: self.doubts,
+            grazes,
             must_leave,
             halt: None,
         })

@@ -40,6 +40,19 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
+    /// Plans what is left at the horizon: flights of groups that end there for rounding, with a jump.
+    pub(super) fn plan_last(&mut self) {
+        for group in std::mem::take(&mut self.awake) {
+            // A flow that fails beyond the horizon is no matter.
+            let is_planned = self.plan(group).is_ok();
+            let is_last =
+                |flight: &Flight| flight.halt.is_none() && flight.due().seconds() <= self.horizon;
+            if !is_planned || !self.groups[group].flight.as_ref().is_some_and(is_last) {
+                self.ground(group);
+            }
+        }
+    }
+
     /// The flow of a group from here on.
     fn fly(&mut self, group: usize, policy: Policy) -> Result<Flight, Halt> {
         let parts = &self.composition.groups[group];
@@ -53,8 +66,8 @@ impl<'a> Simulation<'a> {
             allowance: self.groups[group].allowance,
             since: self.now,
             start: parts.slots.iter().map(|&slot| self.values[slot]).collect(),
-            // A little more, for what happens at the instant nearest to the horizon.
             last: self.groups[group].last,
+            // A little more, for what happens at the instant nearest to the horizon.
             limit: left.seconds() + f64::EPSILON * self.horizon,
             linear: &mut linear,
         };

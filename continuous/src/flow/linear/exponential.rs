@@ -25,6 +25,9 @@ pub(super) struct Exponential {
 #[derive(Debug)]
 struct Power {
     matrix: DMatrix<f64>,
+    /// What the entries of the diagonal differ from 1 by. Where a slow variable is beside a fast one, that is
+    /// far below 1, and of a rounded entry most of its digits would be missing.
+    change: DVector<f64>,
     square: OnceLock<Box<Power>>,
 }
 
@@ -58,7 +61,7 @@ impl Exponential {
         generator.view_mut((0, 0), (dimension, dimension)).copy_from(matrix);
         generator.view_mut((0, dimension), (dimension, 1)).copy_from(&(offset / constant));
         let span = 0.5 * power_of_two_above(LARGEST_NORM / one_norm(&generator));
-        let power = Power::new((&generator * span).exp());
+        let power = Power::of(&(&generator * span));
         Exponential {
             generator: super::entries(&generator),
             constant,
@@ -94,12 +97,36 @@ impl Exponential {
 }
 
 impl Power {
-    fn new(matrix: DMatrix<f64>) -> Self {
-        Power { matrix, square: OnceLock::new() }
+    /// The exponential of a matrix whose norm is at most [`LARGEST_NORM`], by its series.
+    fn of(generator: &DMatrix<f64>) -> Self {
+        let mut term = generator.clone();
+        let mut matrix = term.clone();
+        for degree in 2..=TERMS {
+            term = &term * generator / degree as f64;
+            matrix += &term;
+        }
+        let change = matrix.diagonal();
+        matrix.set_diagonal(&change.add_scalar(1.0));
+        Power { matrix, change, square: OnceLock::new() }
     }
 
     fn square(&self) -> &Power {
-        self.square.get_or_init(|| Box::new(Power::new(&self.matrix * &self.matrix)))
+        self.square.get_or_init(|| {
+            let mut matrix = &self.matrix * &self.matrix;
+            let mut change = self.change.clone();
+            for (place, change) in change.iter_mut().enumerate() {
+                let around = (0..matrix.nrows()).filter(|other| *other != place);
+                let around: f64 = around
+                    .map(|other| self.matrix[(place, other)] * self.matrix[(other, place)])
+                    .sum();
+                *change = *change * (2.0 + *change) + around;
+                // Of a mode that has faded the entry itself has more digits.
+                if change.abs() < 0.5 {
+                    matrix[(place, place)] = 1.0 + *change;
+                }
+            }
+            Box::new(Power { matrix, change, square: OnceLock::new() })
+        })
     }
 
     /// Moves a state by the largest multiple of `duration` in `time`; what is left of the time. This

@@ -101,11 +101,14 @@ impl Exponential {
 /// |M| s, for the length of the piece.
 fn remainder(most: &[f64], sums: &[f64], moved: &[f64], next: usize) -> Option<f64> {
     let largest = |parts: &[f64]| {
-        let ratios =
-            parts.iter().zip(sums).map(|(part, sum)| if *part > 0.0 { part / sum } else { 0.0 });
+        let mut ratios =
+            parts.iter().zip(sums).map(|(part, sum)| if *part == 0.0 { 0.0 } else { part / sum });
+        // Over sums that are not finite nothing is bounded.
+        let largest = ratios
+            .try_fold(0.0_f64, |largest, ratio| ratio.is_finite().then(|| largest.max(ratio)));
         // Rounding of the sums is far below this margin.
-        ratios.fold(0.0, f64::max) * (1.0 + 1e-12)
+        largest.map(|largest| largest * (1.0 + 1e-12))
     };
-    let ratio = largest(moved) / next as f64;
-    (ratio < 0.5).then(|| largest(most) / (1.0 - ratio))
+    let ratio = largest(moved)? / next as f64;
+    if ratio < 0.5 { Some(largest(most)? / (1.0 - ratio)) } else { None }
 }

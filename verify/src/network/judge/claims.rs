@@ -81,7 +81,9 @@ fn record(sentence: String) -> Result<(), Dispute> {
 /// What is not so, as [`Property::Events`] or [`Property::Subgroups`].
 pub(super) fn is_true(event: &MissionEvent, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
     match event {
-        MissionEvent::TaskServiced { task, robot } => is_serviced(*task, *robot, scene),
+        MissionEvent::TaskServiced { task, robot } => {
+            is_at_task(*task, *robot, scene.snapshot, scene.limits)
+        }
         MissionEvent::Stationary { .. } => stands_still(&ledger.primary_team, scene),
         MissionEvent::RecruitElected { robot, path, break_points } => {
             is_free(*robot, scene)?;
@@ -98,10 +100,14 @@ pub(super) fn is_true(event: &MissionEvent, ledger: &Ledger, scene: &Scene) -> R
 }
 
 /// Eq. (2): the robot is within δ of the task.
-fn is_serviced(task: usize, robot: usize, scene: &Scene) -> Result<(), Dispute> {
-    let place = scene.limits.tasks()[task];
-    let distance = (scene.snapshot.positions[robot] - place).norm();
-    let bound = scene.limits.service_radius();
+pub(super) fn is_at_task(
+    task: usize,
+    robot: usize,
+    snapshot: &Snapshot,
+    limits: &Limits,
+) -> Result<(), Dispute> {
+    let distance = (snapshot.positions[robot] - limits.tasks()[task]).norm();
+    let bound = limits.service_radius();
     let sentence =
         || format!("robot {robot} services task {task} from {distance:.6}, more than {bound:.6}");
     at_most(distance, bound, &[robot], sentence)

@@ -11,13 +11,20 @@
 //!
 //! So nothing is taken on trust but that robots are where the record shows them. A run is judged
 //! while it goes on, and a trace afterwards, by the same code.
+//!
+//! Where messages are lost and nodes stop, robots need not know the same, and observers cannot
+//! conclude what they can without faults. Such a record is held against what no fault may break
+//! ([`Safety`]). The [`Referee`] is the one or the other.
 
 mod claims;
+mod clock;
 mod conclusions;
 mod lately;
 mod ledger;
 mod places;
 mod posts;
+mod referee;
+mod safety;
 mod states;
 mod walk;
 
@@ -26,13 +33,16 @@ use pleach_automaton::network::scenario::ValidScenario;
 use pleach_discrete::network::Role;
 
 use super::extremes::Extremes;
-use super::limits::{Limits, SLACK};
+use super::limits::Limits;
 use super::monitor::Monitor;
 use super::property::Property;
 use super::violation::{Instant, Violation};
+use clock::Clock;
 use conclusions::Conclusions;
 pub use ledger::{Ledger, Stage};
 use places::Places;
+pub use referee::Referee;
+pub use safety::{Safety, relayed};
 pub use walk::Walk;
 
 /// What is wrong with an entry of the record; the instant is added where it is known.
@@ -79,9 +89,7 @@ struct Scene<'a> {
 #[derive(Clone, Debug)]
 pub struct Judge<'a> {
     monitor: Monitor<'a>,
-    period: f64,
-    max_steps: usize,
-    starts: Vec<[f64; 2]>,
+    clock: Clock,
     ledger: Ledger,
     conclusions: Conclusions,
     places: Places,
@@ -94,11 +102,8 @@ impl<'a> Judge<'a> {
     pub fn new(scenario: &ValidScenario, role_table: impl Fn(Role, Role) -> bool + 'a) -> Self {
         let monitor = Monitor::new(scenario, role_table);
         let (robots, nodes) = (monitor.limits().robots(), monitor.limits().nodes());
-        let settings = monitor.limits().settings();
         Judge {
-            period: settings.period,
-            max_steps: settings.max_steps,
-            starts: scenario.robot.iter().map(|robot| robot.position).collect(),
+            clock: Clock::of(scenario),
             ledger: Ledger::new(robots),
             conclusions: Conclusions::new(nodes),
             places: Places::new(robots),
@@ -119,7 +124,8 @@ impl<'a> Judge<'a> {
     ) -> Result<(), Violation> {
         let now = Instant::of(snapshot);
         self.monitor.observe(snapshot)?;
-        self.check_clock(snapshot).map_err(|dispute| dispute.at(now))?;
+        let opens = self.previous.is_none();
+        self.clock.check(snapshot, opens).map_err(|dispute| dispute.at(now))?;
         for event in events {
             let limits = self.monitor.limits();
             claims::names_exist(event, limits).map_err(|dispute| dispute.at(now))?;
@@ -129,29 +135,6 @@ impl<'a> Judge<'a> {
         self.conclude_period(snapshot, events).map_err(|dispute| dispute.at(now))?;
         self.previous = Some(snapshot.clone());
         Ok(())
-    }
-
-    /// The record begins with k = 0, when robots are where the scenario has them, and t_k = k Δt.
-    fn check_clock(&self, snapshot: &Snapshot) -> Result<(), Dispute> {
-        let record = |sentence| Dispute::of(Property::Record, &[], sentence);
-        if self.previous.is_none() && snapshot.step != 0 {
-            let sentence = format!("the record begins with step {}, not with 0", snapshot.step);
-            return Err(record(sentence));
-        }
-        let expected = snapshot.step as f64 * self.period;
-        if (snapshot.time - expected).abs() > SLACK * self.period {
-            let sentence = format!("the time is {} s, and k Δt is {expected} s", snapshot.time);
-            return Err(record(sentence).measuring(snapshot.time, expected));
-        }
-        let mut pairs = self.starts.iter().zip(&snapshot.positions).enumerate();
-        match pairs.find(|(_, (start, place))| **start != [place.x, place.y]) {
-            Some((robot, (start, _))) if self.previous.is_none() => Err(Dispute::of(
-                Property::Record,
-                &[robot],
-                format!("robot {robot} does not start at ({}, {})", start[0], start[1]),
-            )),
-            _ => Ok(()),
-        }
     }
 
     /// Enters the events of a period, each as soon as it can follow those before it.
@@ -242,18 +225,9 @@ impl<'a> Judge<'a> {
     pub fn conclude(&self, end: &End) -> Result<(), Violation> {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
         let (serviced, tasks) = (self.ledger.serviced.len(), self.monitor.limits().tasks().len());
-        let complaint = match end.outcome {
-            _ if self.previous.is_none() => Some("nothing is on record".to_owned()),
-            Outcome::Serviced if serviced < tasks => {
-                Some(format!("the outcome is “serviced”, and {serviced} of {tasks} tasks are"))
-            }
-            Outcome::InvariantViolated => Some(format!("the run says: {}", end.reason)),
-            // The record ends with the sample at which the last period began.
-            Outcome::StepLimit if now.step + 1 < self.max_steps => Some(format!(
-                "the outcome is “step_limit” after {} of {} control periods",
-                now.step + 1,
-                self.max_steps
-            )),
+        let last = self.previous.as_ref().map(|snapshot| snapshot.step);
+        let complaint = self.clock.contradiction(end, last, (serviced, tasks));
+        let complaint = complaint.or_else(|| match end.outcome {
             _ if self.conclusions.overdue(now.step) => {
                 Some("the robots had given up, and the mission went on".to_owned())
             }
@@ -271,7 +245,7 @@ impl<'a> Judge<'a> {
                 Some(format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
             }
             _ => None,
-        };
+        });
         match complaint {
             None => Ok(()),
             Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),

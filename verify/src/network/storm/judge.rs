@@ -2,15 +2,16 @@
 
 use std::collections::BTreeSet;
 
+use pleach_automaton::network::Frail;
 use pleach_automaton::network::record::Snapshot;
 use pleach_automaton::network::scenario::ValidScenario;
-use pleach_automaton::network::{Frail, Trouble};
 use pleach_automaton::node::Observed;
 use pleach_discrete::network::{Anchor, Post, PostId, Role};
 
+use super::super::judge::relayed;
 use super::super::period::{self, Period};
 use super::super::property::Property;
-use super::super::{Limits, SLACK, Violation, instant, link};
+use super::super::{Limits, Violation, instant};
 use super::Storm;
 use crate::network::violation::Instant;
 
@@ -30,12 +31,9 @@ pub struct Judge {
 impl Judge {
     /// A judge that has seen nothing yet.
     pub fn new(scenario: &ValidScenario, storm: &Storm) -> Self {
-        let is_down = |trouble: &Trouble| trouble.crash.is_some() || trouble.joins.is_some();
-        let loses_nodes = storm.troubles.iter().any(|(_, trouble)| is_down(trouble))
-            || !storm.weather.partitions.is_empty();
         Judge {
             limits: Limits::of(scenario),
-            loses_nodes,
+            loses_nodes: storm.faults().nodes,
             previous: None,
             violations: Vec::new(),
             unheard: None,
@@ -56,17 +54,16 @@ impl Judge {
 
     /// Robots are about to move.
     pub fn observe(&mut self, snapshot: &Snapshot, nodes: &[Frail]) {
-        let seen = of_running(snapshot, nodes);
-        self.look_at_instant(&seen, nodes);
+        self.look_at_instant(snapshot, nodes);
         if let Some(before) = self.previous.take()
-            && let Ok(period) = Period::between(&before, &seen)
+            && let Ok(period) = Period::between(&before, snapshot)
         {
-            if before.positions != seen.positions {
+            if before.positions != snapshot.positions {
                 self.last_motion = before.step;
             }
             self.look_at_period(&period, nodes);
         }
-        self.previous = Some(seen);
+        self.previous = Some(snapshot.clone());
     }
 
     fn find(&mut self, found: Result<(), Violation>) {
@@ -99,39 +96,6 @@ impl Judge {
         self.find(rooted(seen, nodes));
         self.find(led(seen, nodes));
         self.find(held_once(seen, nodes));
-    }
-}
-
-/// The same, with the bodies of nodes that do not run and nothing else of them.
-fn of_running(snapshot: &Snapshot, nodes: &[Frail]) -> Snapshot {
-    let runs = |node: usize| nodes.get(node).is_some_and(Frail::is_running);
-    let mut seen = snapshot.clone();
-    seen.routes.retain(|route| runs(route.from) && runs(route.to));
-    seen.tree.retain(|&(child, parent)| runs(child) && runs(parent));
-    for (robot, role) in seen.roles.iter_mut().enumerate() {
-        if !runs(robot) {
-            *role = Role::Redundant;
-        }
-    }
-    seen
-}
-
-/// [`Property::Residual`]: a robot to which others send passes on all of it, and what is its own.
-fn relayed(seen: &Snapshot, limits: &Limits) -> Result<(), Violation> {
-    let residuals = link::residuals(&seen.routes, limits.rates());
-    let bound = limits.least_residual();
-    let is_sent_to = |robot| {
-        seen.routes.iter().any(|route| route.to == robot && route.share * route.reliability > SLACK)
-    };
-    let short = |&robot: &usize| residuals[robot] < bound - SLACK && is_sent_to(robot);
-    match (0..residuals.len()).find(short) {
-        None => Ok(()),
-        Some(robot) => Err(Instant::of(seen).violation(
-            Property::Residual,
-            &[robot],
-            (residuals[robot], bound),
-            format!("robot {robot} is sent more than it passes on: c = {:.6}", residuals[robot]),
-        )),
     }
 }
 

@@ -12,7 +12,7 @@ mod shrink;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use pleach_automaton::network::record::{End, MissionEvent, Snapshot};
+use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_automaton::network::{
     AccessPoint, Frail, Member, Message, Network, NetworkError, Radio, Robot, Site, Trouble, User,
@@ -35,6 +35,23 @@ pub struct Storm {
     pub weather: Weather,
     /// The faults of nodes, by number; the others have none.
     pub troubles: Vec<(usize, Trouble)>,
+}
+
+impl Storm {
+    /// What fails, as far as that decides on what must hold. A node that is cut off is given up like
+    /// one that stops.
+    pub fn faults(&self) -> Faults {
+        let Weather { loss, silence, lateness, copies, partitions, .. } = &self.weather;
+        let troubles = || self.troubles.iter().map(|(_, trouble)| trouble);
+        let is_shifted = |trouble: &Trouble| trouble.shift > 0.0;
+        let stops = |trouble: &Trouble| trouble.crash.is_some() || trouble.joins.is_some();
+        Faults {
+            messages: [loss, silence, lateness, copies].into_iter().any(|chance| *chance > 0.0)
+                || !partitions.is_empty()
+                || troubles().any(is_shifted),
+            nodes: !partitions.is_empty() || troubles().any(stops),
+        }
+    }
 }
 
 /// Why a mission cannot be run.

@@ -1,0 +1,143 @@
+//! What must hold in a mission with faults, whatever fails.
+
+use std::collections::BTreeSet;
+
+use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
+use pleach_automaton::network::scenario::ValidScenario;
+
+use super::clock::Clock;
+use super::{Dispute, claims};
+use crate::network::extremes::{Extremes, keep_larger, keep_smaller};
+use crate::network::limits::{Limits, SLACK};
+use crate::network::period::{self, Period};
+use crate::network::property::Property;
+use crate::network::violation::{Instant, Violation};
+use crate::network::{instant, link};
+
+/// Judges a mission with faults, period by period, and stops at the first violation.
+///
+/// What it holds a record against is what no fault breaks: distances between robots and to walls, the
+/// length of steps, shares, loads, the length of links of the tree, and, as long as all nodes run,
+/// that no robot is sent more than it forwards. Of events it checks that robots are at the tasks that
+/// they service, and of the outcome that all tasks have been serviced where it says so. What nodes
+/// know of each other may differ, and is not compared.
+///
+/// Nodes that do not run or are not heard ([`Snapshot::absent`]) are bodies, and nothing else.
+#[derive(Clone, Debug)]
+pub struct Safety {
+    limits: Limits,
+    faults: Faults,
+    clock: Clock,
+    previous: Option<Snapshot>,
+    /// Whether a node has been absent: what flowed there is lost.
+    has_lost_nodes: bool,
+    serviced: BTreeSet<usize>,
+    extremes: Extremes,
+}
+
+impl Safety {
+    /// A judge of missions with these faults that has seen nothing yet.
+    pub fn new(scenario: &ValidScenario, faults: Faults) -> Self {
+        Safety {
+            limits: Limits::of(scenario),
+            faults,
+            clock: Clock::of(scenario),
+            previous: None,
+            has_lost_nodes: false,
+            serviced: BTreeSet::new(),
+            extremes: Extremes::default(),
+        }
+    }
+
+    /// Judges the control period that ends with this snapshot, its events, and the snapshot.
+    ///
+    /// # Errors
+    ///
+    /// The first violation; what is observed after it has no meaning.
+    pub fn observe(
+        &mut self,
+        snapshot: &Snapshot,
+        events: &[MissionEvent],
+    ) -> Result<(), Violation> {
+        let now = Instant::of(snapshot);
+        let told = |dispute: Dispute| dispute.at(now);
+        instant::record(snapshot, &self.limits)?;
+        self.clock.check(snapshot, self.previous.is_none()).map_err(told)?;
+        self.observe_period(snapshot)?;
+        self.observe_instant(snapshot)?;
+        for event in events {
+            claims::names_exist(event, &self.limits).map_err(told)?;
+            if let MissionEvent::TaskServiced { task, robot } = *event {
+                claims::is_at_task(task, robot, snapshot, &self.limits).map_err(told)?;
+                self.serviced.insert(task);
+            }
+        }
+        self.previous = Some(snapshot.clone());
+        Ok(())
+    }
+
+    fn observe_period(&mut self, snapshot: &Snapshot) -> Result<(), Violation> {
+        let Safety { limits, extremes, previous, .. } = self;
+        let period = match previous {
+            Some(previous) => Period::between(previous, snapshot)?,
+            None => Period::opening(snapshot),
+        };
+        keep_smaller(&mut extremes.pair_distance, period::separation(&period, limits)?);
+        keep_smaller(&mut extremes.clearance, period::clearance(&period, limits)?);
+        period::step_length(&period, limits)?;
+        keep_larger(&mut extremes.load, period::load(&period, limits)?);
+        period::tree_range(&period, limits)
+    }
+
+    fn observe_instant(&mut self, snapshot: &Snapshot) -> Result<(), Violation> {
+        self.has_lost_nodes |= !snapshot.absent.is_empty();
+        instant::shares(snapshot, &self.limits)?;
+        if !self.faults.nodes && !self.has_lost_nodes {
+            relayed(snapshot, &self.limits)?;
+        }
+        Ok(())
+    }
+
+    /// Judges how the mission ended.
+    ///
+    /// # Errors
+    ///
+    /// [`Property::Outcome`] if the record does not show what the outcome says.
+    pub fn conclude(&self, end: &End) -> Result<(), Violation> {
+        let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
+        let last = self.previous.as_ref().map(|snapshot| snapshot.step);
+        let counts = (self.serviced.len(), self.limits.tasks().len());
+        match self.clock.contradiction(end, last, counts) {
+            None => Ok(()),
+            Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),
+        }
+    }
+
+    /// How near the mission has come to its bounds so far.
+    pub const fn extremes(&self) -> &Extremes {
+        &self.extremes
+    }
+}
+
+/// [`Property::Residual`]: a robot to which others send passes on all of it, and what is its own.
+///
+/// # Errors
+///
+/// The first robot that does not.
+pub fn relayed(seen: &Snapshot, limits: &Limits) -> Result<(), Violation> {
+    let residuals = link::residuals(&seen.routes, limits.rates());
+    let bound = limits.least_residual();
+    let is_sent_to = |robot| {
+        seen.routes.iter().any(|route| route.to == robot && route.share * route.reliability > SLACK)
+    };
+    let short = |&robot: &usize| residuals[robot] < bound - SLACK && is_sent_to(robot);
+    match (0..residuals.len()).find(short) {
+        None => Ok(()),
+        Some(robot) => Err(Instant::of(seen).violation(
+            Property::Residual,
+            &[robot],
+            (residuals[robot], bound),
+            format!("robot {robot} is sent more than it passes on: c = {:.6}", residuals[robot]),
+        )),
+    }
+}
