@@ -215,4 +215,6 @@ mod how_to {
     struct Medium;
     #[doc = include_str!("../docs/how-to/monitor.md")]
     struct Monitor;
+    #[doc = include_str!("../docs/how-to/real-robots.md")]
+    struct RealRobots;
 }

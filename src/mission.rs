@@ -98,7 +98,30 @@ pub fn run_network<M: Medium<Message, Point>, N: RobotNode>(
     network: &mut Network<M, N>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    run_before(Gallery::new(scenario, watchers), network)
+    run_network_with_faults(scenario, Faults::default(), network, watchers)
+}
+
+/// The same for a network in which these faults occur. It is held against what no fault may break.
+///
+/// # Errors
+/// When a watcher fails.
+pub fn run_network_with_faults<M: Medium<Message, Point>, N: RobotNode>(
+    scenario: &ValidScenario,
+    faults: Faults,
+    network: &mut Network<M, N>,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<Completed, MissionError> {
+    let mut gallery = Gallery::with_faults(scenario, faults, watchers);
+    let settings = network.site().settings;
+    let horizon = settings.period * (settings.max_steps as f64 + 1.0);
+    let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
+    let end = match ending.reason {
+        Reason::Finished(end) | Reason::Interrupted(end) => end,
+        other => {
+            return Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") });
+        }
+    };
+    Ok(Completed { times: network.times(), ..gallery.conclude(end)? })
 }
 
 /// Runs the mission of `scenario` in a storm. It is held against what no fault may break.
@@ -110,25 +133,8 @@ pub fn run_in_storm(
     storm: &Storm,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    let gallery = Gallery::with_faults(scenario, storm.faults(), watchers);
-    run_before(gallery, &mut storm::network(scenario, storm)?)
-}
-
-/// Runs a network to its end before those who watch.
-fn run_before<M: Medium<Message, Point>, N: RobotNode>(
-    mut gallery: Gallery<'_, '_>,
-    network: &mut Network<M, N>,
-) -> Result<Completed, MissionError> {
-    let settings = network.site().settings;
-    let horizon = settings.period * (settings.max_steps as f64 + 1.0);
-    let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
-    let end = match ending.reason {
-        Reason::Finished(end) | Reason::Interrupted(end) => end,
-        other => {
-            return Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") });
-        }
-    };
-    Ok(Completed { times: network.times(), ..gallery.conclude(end)? })
+    let mut network = storm::network(scenario, storm)?;
+    run_network_with_faults(scenario, storm.faults(), &mut network, watchers)
 }
 
 /// Far more rounds of jumps than the messages of a control period ever take: only a cycle of

@@ -10,20 +10,24 @@ use std::{fs, io};
 use crate::generated::{is_update, read, root};
 use pleach::automaton::network::Automata;
 use pleach::automaton::network::access_point::ACCESS_POINT_GLOSSARY;
+use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::robot::GLOSSARY;
 use pleach::automaton::network::scenario::{Control, Scenario, ValidScenario};
 use pleach::automaton::network::user::USER_GLOSSARY;
+use pleach::automaton::network::{Crash, Trouble};
+use pleach::automaton::node::Weather;
 use pleach::automaton::{Automaton, diagram};
 use pleach::discrete::{Event, Location};
 use pleach::figures::Album;
 use pleach::guards::Valuation;
 use pleach::mission::{self, Watcher};
 use pleach::summary::Summary;
+use pleach::verify::network::storm::Storm;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 21] = [
+const WRITTEN: [&str; 23] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
@@ -35,6 +39,7 @@ const WRITTEN: [&str; 21] = [
     "docs/robot.md",
     "docs/proofs.md",
     "docs/exploration.md",
+    "docs/radio.md",
     "docs/how-to/batch.md",
     "docs/how-to/controller.md",
     "docs/how-to/link-model.md",
@@ -45,6 +50,7 @@ const WRITTEN: [&str; 21] = [
     "docs/how-to/mcap.md",
     "docs/how-to/python.md",
     "docs/how-to/processes.md",
+    "docs/how-to/real-robots.md",
 ];
 
 fn keep_up_to_date(path: &str, document: &str) {
@@ -227,6 +233,43 @@ fn the_run_in_the_readme_is_up_to_date() {
     let run = run.join("\n");
     let refreshed = format!("{before}{BEGIN_OF_RUN}\n```text\n{run}\n```\n{END_OF_RUN}{after}");
     keep_up_to_date("README.md", &refreshed);
+}
+
+/// Study I while three of ten messages are lost and the leader stops on its way to the first task, as the
+/// page on real robots shows it. The pictures are drawn anew with everything else.
+#[test]
+fn a_robot_that_is_lost_is_replaced_as_the_page_says() {
+    let scenario = study();
+    let crash = Crash { time: 200.0, inputs: 0, back: None };
+    let storm = Storm {
+        seed: 1,
+        weather: Weather { loss: 0.3, ..Weather::default() },
+        troubles: vec![(12, Trouble { crash: Some(crash), ..Trouble::default() })],
+    };
+    let mut album = Album::with_faults(&scenario, storm.faults());
+    let mut story = Story::default();
+    let completed =
+        mission::run_in_storm(&scenario, &storm, &mut [&mut story, &mut album]).unwrap();
+    assert_eq!(completed.end.outcome, Outcome::Serviced);
+    let page = read("docs/how-to/real-robots.md");
+    let at = |sentence: &str| -> usize {
+        let told = story.0.iter().find(|line| line.contains(sentence)).unwrap();
+        told.split_whitespace().nth(2).unwrap().parse().unwrap()
+    };
+    let elected = at("robot 8 is elected to lead to task 0");
+    let serviced = at("task 0 is serviced by robot 8");
+    let last = at("task 2 is serviced");
+    let says = |sentence: String| assert!(page.contains(&sentence), "the page lacks: {sentence}");
+    says(format!("services the task {} control\nperiods later", serviced - elected));
+    says(format!("after {} control periods", last + 2));
+    if is_update() {
+        let folder = std::env::temp_dir().join(format!("pleach-lost-{}", std::process::id()));
+        let figures = album.write(&folder, &completed.end).unwrap();
+        keep_picture(&figures, &format!("k{elected:05}"), 0, "study-1-robot-lost.svg");
+        keep_picture(&figures, &format!("k{serviced:05}"), 0, "study-1-robot-replaced.svg");
+        keep_picture(&figures, "animation", 0, "study-1-robot-lost-plays.svg");
+        fs::remove_dir_all(folder).unwrap();
+    }
 }
 
 const BEGIN_OF_RUN: &str =

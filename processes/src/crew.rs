@@ -4,6 +4,7 @@
 //! messages are heard before clocks tick, and a node may let rounds pass.
 
 use crate::packet::Letter;
+use crate::repeats::Sent;
 use pleach::automaton::network::beacon::Notice;
 use pleach::automaton::network::observer::RobotReport;
 use pleach::automaton::network::record::{End, MissionEvent};
@@ -22,6 +23,7 @@ pub struct Seat {
     member: Member,
     outputs: Outputs<Message, MissionEvent>,
     traffic: Traffic,
+    sent: Sent,
     /// The round of this control period in which it has ticked last; 0 if in none.
     ticked: u32,
     /// The round in which it ticks next, if it hears nothing until then.
@@ -37,7 +39,7 @@ pub struct Crew {
 impl Seat {
     fn of(id: NodeId, member: Member) -> Self {
         let (outputs, traffic) = (Outputs::of(id), Traffic::default());
-        Seat { id, member, outputs, traffic, ticked: 0, ticks: None }
+        Seat { id, member, outputs, traffic, sent: Sent::default(), ticked: 0, ticks: None }
     }
 
     fn ask(&mut self) {
@@ -68,8 +70,9 @@ impl Seat {
         let sent = self.outputs.sent();
         let asks = sent.iter().any(|envelope| envelope.message.may_be_answered_at_once());
         self.traffic.sent += sent.len() as u64;
+        let Seat { outputs, sent, .. } = self;
         let letters =
-            self.outputs.drain_sent().map(|envelope| Letter::of(envelope.to, &envelope.message));
+            outputs.drain_sent().map(|envelope| sent.letter(envelope.to, &envelope.message));
         Ok((letters.collect::<Result<_, _>>()?, asks))
     }
 

@@ -18,6 +18,7 @@ pub mod memory;
 pub mod packet;
 pub mod process;
 pub mod receiver;
+pub mod repeats;
 pub mod report;
 pub mod transport;
 pub mod watch;

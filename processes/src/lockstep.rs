@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn answers_come_before_the_next_tick() {
         let quiet = |next| Packet { next, ..packet(at(0, 3, 0)) };
-        let letter = Letter { to: None, message: Vec::new() };
+        let letter = Letter { to: None, message: Vec::new(), beacon: None };
         let talking = Packet { letters: vec![letter], ..quiet(Some(4)) };
         let asking = Packet { asks: true, ..talking.clone() };
         let both = [(0, quiet(Some(7))), (1, quiet(None))];

@@ -4,6 +4,7 @@
 //! it is bounded in length, read without trust, and refused where it is not what a node can have
 //! sent.
 
+use crate::repeats::Content;
 use pleach::automaton::network::Message;
 use pleach::automaton::node::{Destination, NodeId};
 use pleach::continuous::Point;
@@ -55,8 +56,10 @@ pub struct Packet {
 pub struct Letter {
     /// The receiver; none if it is for all that hear the sender.
     pub to: Option<u32>,
-    /// The message.
+    /// The message; of a beacon, what stands before its content.
     pub message: Vec<u8>,
+    /// The content of a beacon, unless it is in the message.
+    pub beacon: Option<Content>,
 }
 
 /// Why something that has arrived is refused.
@@ -164,24 +167,24 @@ impl Letter {
             Destination::Everyone => None,
             Destination::One(node) => Some(node as u32),
         };
-        Ok(Letter { to, message: postcard::to_stdvec(message)? })
+        Ok(Letter { to, message: postcard::to_stdvec(message)?, beacon: None })
     }
 
     /// Whether it is for this node.
     pub fn is_for(&self, node: NodeId) -> bool {
         self.to.is_none_or(|to| to as usize == node)
     }
+}
 
-    /// The message that node `from` has sent.
-    ///
-    /// # Errors
-    /// Why it is refused.
-    pub fn open(&self, from: NodeId) -> Result<Message, Refusal> {
-        let message: Message = read(&self.message).ok_or(Refusal::Message)?;
-        match &message {
-            Message::Beacon { beacon, .. } if beacon.sender != from => Err(Refusal::Message),
-            _ => Ok(message),
-        }
+/// The message that node `from` has sent in these bytes.
+///
+/// # Errors
+/// Why it is refused.
+pub fn open(bytes: &[u8], from: NodeId) -> Result<Message, Refusal> {
+    let message: Message = read(bytes).ok_or(Refusal::Message)?;
+    match &message {
+        Message::Beacon { beacon, .. } if beacon.sender != from => Err(Refusal::Message),
+        _ => Ok(message),
     }
 }
 

@@ -125,6 +125,8 @@ struct Process<'a> {
     receiver: Receiver,
     refusals: Refusals,
     given_up: u64,
+    /// What was sent.
+    sent: Tally,
     started: u64,
     hears_all: bool,
     is_running: bool,
@@ -168,6 +170,7 @@ impl<'a> Process<'a> {
             receiver: Receiver::new(site, bodies, options.loss.0, seed),
             refusals: Refusals::default(),
             given_up: 0,
+            sent: Tally::default(),
             started: since.map_or(0, |since| since.as_nanos() as u64),
             hears_all: false,
             is_running: false,
@@ -398,6 +401,9 @@ impl<'a> Process<'a> {
                     "a packet has {length} bytes, more than {LONGEST_PACKET}"
                 )));
             }
+            self.sent.packets += 1;
+            self.sent.messages += packet.letters.len() as u64;
+            self.sent.bytes += bytes.len() as u64;
             sender.send(bytes);
             packets.push((seat.id, packet));
         }
@@ -435,7 +441,9 @@ impl<'a> Process<'a> {
             refused: self.refusals.total(),
             late: self.lockstep.late(),
             lost: self.receiver.lost(),
+            unknown: self.receiver.unknown(),
             given_up: self.given_up,
+            ..self.sent
         };
         let seats = self.parts.crew.seats_mut().iter().zip(&self.senders).zip(&mut self.events);
         for ((seat, sender), events) in seats {

@@ -4,13 +4,15 @@
 //! where the nodes are which of them hear a sender, and [`Unreliable`] loses as many of the messages
 //! as it is told to. What does not reach a node is not even read.
 
-use crate::packet::{Letter, Packet, Refusals};
+use crate::packet::{Letter, Packet, Refusal, Refusals, open};
+use crate::repeats::Heard;
 use pleach::automaton::network::{Message, Radio, Site};
 use pleach::automaton::node::{
     Delivery, Destination, Envelope, FullMesh, Medium, NodeId, Unreliable, Weather,
 };
 use pleach::continuous::Point;
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::sync::Arc;
 
 /// The radio of a process, at the receiving end.
@@ -18,7 +20,8 @@ use std::sync::Arc;
 pub struct Receiver {
     radio: Radio,
     bodies: Vec<Point>,
-    air: Unreliable<Message, FullMesh<Message>>,
+    air: Unreliable<Arc<Letter>, FullMesh<Arc<Letter>>>,
+    heard: Heard,
     /// The beacon heard last of each sender, as it was written and as it was read.
     beacons: BTreeMap<NodeId, (Vec<u8>, Message)>,
 }
@@ -32,12 +35,17 @@ impl Receiver {
         let mut radio = Radio::new(site);
         radio.update(&bodies);
         let air = Unreliable::new(FullMesh::new(), weather, seed);
-        Receiver { radio, bodies, air, beacons: BTreeMap::new() }
+        Receiver { radio, bodies, air, heard: Heard::default(), beacons: BTreeMap::new() }
     }
 
     /// How many messages were lost on purpose.
     pub const fn lost(&self) -> u64 {
         self.air.lost()
+    }
+
+    /// How many beacons were lost because only their digest came.
+    pub const fn unknown(&self) -> u64 {
+        self.heard.unknown()
     }
 
     /// The messages of a round that reach the nodes `own`: each with its sender and its receiver, in
@@ -51,51 +59,55 @@ impl Receiver {
         self.look_at_bodies(packets);
         for (from, packet) in packets {
             for letter in &packet.letters {
-                self.receive(*from, letter, own, refusals);
+                self.receive(*from, letter, own);
             }
         }
-        let mut heard = Vec::new();
-        let medium: &mut dyn FnMut(Delivery<'_, Message>) -> Result<(), std::convert::Infallible> =
-            &mut |Delivery { from, to, message }| {
-                heard.push((from, to, message.clone()));
-                Ok(())
-            };
-        let Ok(()) = Medium::<Message, Point>::deliver(&mut self.air, medium);
-        heard
+        let mut arrived = Vec::new();
+        let take = |Delivery { from, to, message }: Delivery<'_, Arc<Letter>>| {
+            arrived.push((from, to, Arc::clone(message)));
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = Medium::<Arc<Letter>, Point>::deliver(&mut self.air, take);
+        let mut messages = Vec::with_capacity(arrived.len());
+        for (from, to, letter) in arrived {
+            let Some(bytes) = self.heard.message(from, to, &letter) else { continue };
+            match self.read(from, bytes) {
+                Ok(message) => messages.push((from, to, message)),
+                Err(refusal) => refusals.count(refusal),
+            }
+        }
+        messages
     }
 
-    fn receive(&mut self, from: NodeId, letter: &Letter, own: &[NodeId], refusals: &mut Refusals) {
+    fn receive(&mut self, from: NodeId, letter: &Letter, own: &[NodeId]) {
         let audience = self.radio.audience(from);
         let hears = |to: &&NodeId| letter.is_for(**to) && audience.binary_search(to).is_ok();
         let hearers: Vec<NodeId> = own.iter().filter(hears).copied().collect();
         if hearers.is_empty() {
             return;
         }
-        match self.read(from, letter) {
-            Ok(message) => hearers.into_iter().for_each(|to| {
-                let envelope =
-                    Envelope { from, to: Destination::One(to), message: message.clone() };
-                Medium::<Message, Point>::send(&mut self.air, envelope);
-            }),
-            Err(refusal) => refusals.count(refusal),
+        let letter = Arc::new(letter.clone());
+        for to in hearers {
+            let (to, message) = (Destination::One(to), Arc::clone(&letter));
+            Medium::<Arc<Letter>, Point>::send(&mut self.air, Envelope { from, to, message });
         }
     }
 
-    /// The message of a letter. Beacons are mostly those of the round before: what was read of them
+    /// The message in these bytes. Beacons are mostly those of the round before: what was read of them
     /// is shared.
-    fn read(&mut self, from: NodeId, letter: &Letter) -> Result<Message, crate::packet::Refusal> {
+    fn read(&mut self, from: NodeId, bytes: Vec<u8>) -> Result<Message, Refusal> {
         let known = self.beacons.get(&from);
-        if let Some((_, message)) = known.filter(|(bytes, _)| *bytes == letter.message) {
+        if let Some((_, message)) = known.filter(|(known, _)| *known == bytes) {
             return Ok(message.clone());
         }
-        let mut message = letter.open(from)?;
+        let mut message = open(&bytes, from)?;
         if let Message::Beacon { beacon, .. } = &mut message {
             if let Some((_, Message::Beacon { beacon: last, .. })) = known
                 && **last == **beacon
             {
                 *beacon = Arc::clone(last);
             }
-            self.beacons.insert(from, (letter.message.clone(), message.clone()));
+            self.beacons.insert(from, (bytes, message.clone()));
         }
         Ok(message)
     }

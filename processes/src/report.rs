@@ -48,8 +48,16 @@ pub struct Tally {
     pub late: u64,
     /// Messages lost on purpose.
     pub lost: u64,
+    /// Beacons lost because only their digest came.
+    pub unknown: u64,
     /// How often a node was given up.
     pub given_up: u64,
+    /// Packets sent by all nodes of the process, one for each round.
+    pub packets: u64,
+    /// The messages in them.
+    pub messages: u64,
+    /// The bytes of these packets.
+    pub bytes: u64,
 }
 
 impl From<End> for AnnouncedEnd {

@@ -7,6 +7,7 @@
 
 use crate::arguments::{NetworkArguments, Session};
 use crate::packet::{Refusal, Refusals};
+use crate::repeats;
 use crate::report::LONGEST_REPORT;
 use pleach::automaton::network::scenario::Scenario;
 use pleach::automaton::node::NodeId;
@@ -81,8 +82,7 @@ pub enum Interest {
 /// apart, and protects nothing.
 pub fn digest(scenario: &Scenario) -> Result<String, serde_json::Error> {
     let text = serde_json::to_string(&scenario.with_defaults())?;
-    let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    Ok(format!("{:016x}", text.bytes().fold(0xcbf2_9ce4_8422_2325, fold)))
+    Ok(format!("{:016x}", repeats::digest(text.as_bytes())))
 }
 
 /// The connection of a process to the others.

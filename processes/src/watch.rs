@@ -335,7 +335,23 @@ impl<'a> Observatory<'a> {
         };
         format!(
             "  packets             {refused} refused, {late} late; {lost} messages lost on purpose; \
-             nodes given up {given_up} times{observer}\n"
+             nodes given up {given_up} times{observer}\n{}",
+            self.weight()
+        )
+    }
+
+    /// How much each robot has sent in a control period, as a line of the summary.
+    fn weight(&self) -> String {
+        let robots = || self.tallies.range(..self.robots.len()).map(|(_, tally)| tally);
+        let shares = (robots().count() * self.step).max(1) as f64;
+        let each = |count: fn(&Tally) -> u64| robots().map(count).sum::<u64>() as f64 / shares;
+        let unknown: u64 = self.tallies.values().map(|tally| tally.unknown).sum();
+        format!(
+            "  each robot sends    {:.1} messages in {:.1} packets of {:.0} bytes a control period; {unknown} \
+             digests unknown\n",
+            each(|tally| tally.messages),
+            each(|tally| tally.packets),
+            each(|tally| tally.bytes) / each(|tally| tally.packets).max(1.0),
         )
     }
 }

@@ -7,8 +7,10 @@ use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Message, Network, Radio};
 use pleach::automaton::node::{Delivery, Destination, Envelope, Medium, NodeId};
 use pleach::continuous::Point;
+use pleach::discrete::network::IdSet;
 use pleach_processes::crew::Crew;
-use pleach_processes::packet::{LONGEST_PACKET, Letter, Packet, Refusal, Stamp};
+use pleach_processes::packet::{LONGEST_PACKET, Letter, Packet, Refusal, Stamp, open};
+use pleach_processes::repeats::{Content, Heard};
 use pleach_processes::report::Report;
 use proptest::prelude::*;
 use std::path::Path;
@@ -78,6 +80,10 @@ fn letters() -> &'static [(NodeId, Letter)] {
     })
 }
 
+fn empty() -> Letter {
+    Letter { to: None, message: Vec::new(), beacon: None }
+}
+
 fn packet(letters: Vec<Letter>) -> Packet {
     let stamp = Stamp { period: 3, round: 2, answer: 0 };
     Packet { stamp, next: Some(7), asks: true, is_over: false, position: [0.3, 0.4], letters }
@@ -87,7 +93,7 @@ fn packet(letters: Vec<Letter>) -> Packet {
 fn messages_of_a_mission_are_read_as_they_were_written() {
     assert!(letters().len() > 1_000);
     for (from, letter) in letters() {
-        let message = letter.open(*from).unwrap();
+        let message = open(&letter.message, *from).unwrap();
         assert_eq!(Letter::of(Destination::Everyone, &message).unwrap().message, letter.message);
     }
 }
@@ -95,10 +101,10 @@ fn messages_of_a_mission_are_read_as_they_were_written() {
 #[test]
 fn no_beacon_is_taken_in_the_name_of_another_node() {
     let is_beacon = |(from, letter): &&(NodeId, Letter)| {
-        matches!(letter.open(*from).unwrap(), Message::Beacon { .. })
+        matches!(open(&letter.message, *from).unwrap(), Message::Beacon { .. })
     };
     let (from, letter) = letters().iter().find(is_beacon).unwrap();
-    assert_eq!(letter.open(from + 1), Err(Refusal::Message));
+    assert_eq!(open(&letter.message, from + 1), Err(Refusal::Message));
 }
 
 #[test]
@@ -117,8 +123,8 @@ fn packets_are_bounded() {
     refused(Packet { stamp: at(1, u32::MAX), ..sound.clone() });
     refused(Packet { next: Some(2), ..sound.clone() });
     refused(Packet { next: Some(u32::MAX), ..sound.clone() });
-    refused(packet(vec![Letter { to: Some(nodes() as u32), message: Vec::new() }]));
-    refused(packet(vec![Letter { to: None, message: Vec::new() }; 1_025]));
+    refused(packet(vec![Letter { to: Some(nodes() as u32), ..empty() }]));
+    refused(packet(vec![empty(); 1_025]));
 }
 
 /// Changes of bytes.
@@ -170,7 +176,7 @@ fn hostile() -> impl Strategy<Value = (NodeId, Letter)> {
     (any::<prop::sample::Index>(), changes()).prop_map(|(which, changes)| {
         let (from, letter) = which.get(letters());
         let message = changed(&letter.message, &changes);
-        (*from, Letter { to: letter.to, message })
+        (*from, Letter { message, ..letter.clone() })
     })
 }
 
@@ -181,7 +187,21 @@ proptest! {
     fn bytes_are_read_or_refused(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
         let _ = Packet::decode(&bytes, nodes());
         let _ = Report::decode(&bytes, scenario());
-        let _ = Letter { to: None, message: bytes }.open(0);
+        let _ = open(&bytes, 0);
+        let beacon = Some(Content::Whole(bytes.clone()));
+        let letter = Letter { to: None, message: bytes, beacon };
+        let whole = Heard::default().message(0, 1, &letter);
+        let _ = open(&whole.unwrap_or_default(), 0);
+    }
+
+    /// For machines sets are written as runs.
+    #[test]
+    fn sets_are_read_as_they_were_written(numbers in proptest::collection::btree_set(0..300_usize, 0..80)) {
+        let set: IdSet = numbers.iter().copied().collect();
+        let bytes = postcard::to_stdvec(&set).unwrap();
+        prop_assert_eq!(postcard::from_bytes::<IdSet>(&bytes), Ok(set));
+        let everyone: IdSet = (0..1_000).collect();
+        prop_assert!(postcard::to_stdvec(&everyone).unwrap().len() < 5);
     }
 
     #[test]
@@ -217,7 +237,7 @@ proptest! {
                 let heard: Vec<_> = letters
                     .iter()
                     .filter(|((from, _), at)| *at == round && *from != node)
-                    .filter_map(|((from, letter), _)| Some((*from, node, letter.open(*from).ok()?)))
+                    .filter_map(|((from, letter), _)| Some((*from, node, open(&letter.message, *from).ok()?)))
                     .collect();
                 prop_assert!(crew.tick(round).is_ok());
                 prop_assert!(crew.hear(&heard).is_ok());

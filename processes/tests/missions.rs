@@ -116,6 +116,17 @@ fn a_robot_is_killed_and_started_again_while_messages_are_lost() {
     assert_eq!(judge(&trace).0, Some(0), "{:?}", judge(&trace));
 }
 
+#[test]
+#[ignore = "it takes minutes"]
+fn study_one_is_serviced_although_messages_are_lost_and_a_robot_is_killed() {
+    let _alone = alone();
+    let (status, said, trace) = launch("study-1", &["--loss", "0.1", "--kill", "5@250..320"]);
+    assert_eq!(status, Some(0), "{said}");
+    assert!(said.contains("3 of 3 tasks serviced"), "{said}");
+    assert!(said.contains("the process of robot 5 is there again"), "{said}");
+    assert_eq!(judge(&trace).0, Some(0), "{:?}", judge(&trace));
+}
+
 // ---- Processes by hand -------------------------------------------------------------------------
 
 /// A session of this test, with the port where its access points listen.

@@ -15,16 +15,66 @@ use super::{Agreement, Bid, Election, IdSet, Lineage, NodeId, NoticeId, PostId};
 /// Sets of identities hold numbers below this, so that a set that is read is small.
 const LARGEST_SET: usize = 1 << 16;
 
+/// A set is written as its numbers, ascending, for people to read. For machines it is written as
+/// its runs, each with how many numbers are missing before it and how many are in it, since the sets
+/// of large networks are mostly full or empty.
 impl Serialize for IdSet {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         // Formats without an end of sequences want to know the length beforehand.
-        serializer.collect_seq(self.iter().collect::<Vec<_>>())
+        match serializer.is_human_readable() {
+            true => serializer.collect_seq(self.iter().collect::<Vec<_>>()),
+            false => serializer.collect_seq(runs(self)),
+        }
     }
 }
 
 impl<'de> Deserialize<'de> for IdSet {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_seq(Ascending)
+        match deserializer.is_human_readable() {
+            true => deserializer.deserialize_seq(Ascending),
+            false => deserializer.deserialize_seq(Runs),
+        }
+    }
+}
+
+/// The runs of a set.
+fn runs(set: &IdSet) -> Vec<(usize, usize)> {
+    let (mut runs, mut end): (Vec<(usize, usize)>, usize) = (Vec::new(), 0);
+    for number in set.iter() {
+        match runs.last_mut() {
+            Some((_, length)) if number == end => *length += 1,
+            _ => runs.push((number - end, 1)),
+        }
+        end = number + 1;
+    }
+    runs
+}
+
+struct Runs;
+
+impl<'de> Visitor<'de> for Runs {
+    type Value = IdSet;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "runs of numbers below {LARGEST_SET}")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut runs: A) -> Result<IdSet, A::Error> {
+        let (mut set, mut end) = (IdSet::new(), 0_usize);
+        while let Some((gap, length)) = runs.next_element::<(usize, usize)>()? {
+            let begin = end.saturating_add(gap);
+            // Only the first run may begin at once.
+            let is_apart = gap > 0 || end == 0;
+            end = begin.saturating_add(length);
+            if length == 0 || !is_apart || end > LARGEST_SET {
+                let wrong = format_args!("a run of {length} numbers from {begin} in a set");
+                return Err(A::Error::custom(wrong));
+            }
+            for number in begin..end {
+                set.insert(number);
+            }
+        }
+        Ok(set)
     }
 }
 
