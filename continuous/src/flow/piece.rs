@@ -342,11 +342,11 @@ impl Extremes {
         let rest = error + noise * self.magnitude;
         let (mut lower, mut upper) = (self.lowest - rest, self.highest + rest);
         // Whatever is rounded, a sum without negative terms is not negative.
-        if !self.has_negative {
-            lower = lower.max(0.0 - error);
+        if !self.has_negative && lower < -error {
+            lower = 0.0 - error;
         }
-        if !self.has_positive {
-            upper = upper.min(0.0 + error);
+        if !self.has_positive && upper > error {
+            upper = error;
         }
         ordered(lower, upper)
     }

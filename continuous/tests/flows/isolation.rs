@@ -6,7 +6,8 @@ use pleach_continuous::flow::{
     Tolerances, Uncertainty, Watch, isolate,
 };
 use pleach_guards::{
-    CompiledPredicate, Course, Enclosure, EvaluationError, Predicate, Tracker, Verdict, variable,
+    CompiledPredicate, Course, Enclosure, EvaluationError, Interval, Predicate, Tracker, Verdict,
+    variable,
 };
 use proptest::prelude::*;
 
@@ -265,6 +266,19 @@ fn ranges_contain_what_pieces_are() {
         }
         assert!(ranges[1].width() < 1e-13, "{}", ranges[1]);
     }
+}
+
+/// A sum without negative terms is not negative, but for its error; of what is no number, nothing is known.
+#[test]
+fn ranges_keep_signs_and_know_nothing_of_what_is_no_number() {
+    let mut piece = Piece::new(0.0, 1.0, 0.0, 1.0);
+    piece.push([0.0, 0.1, 0.2], 0.0);
+    piece.push([0.0, -0.1, -0.2], 0.5);
+    piece.push([1.0, f64::INFINITY], 0.0);
+    let [rises, falls, unknown] = [0, 1, 2].map(|component| piece.range(component));
+    assert!(rises.lower() == 0.0 && rises.upper() >= 0.3, "{rises}");
+    assert!(falls.upper() == 0.5 && falls.lower() <= -0.8, "{falls}");
+    assert_eq!(unknown, Interval::WHOLE);
 }
 
 /// How many different roots of the polynomial lie in (from, to], by Sturm's theorem.
