@@ -86,6 +86,9 @@ fn table(seeds: u64, only: Option<&String>) -> Result<(), Box<dyn Error>> {
                         for violation in &verdict.violations {
                             count(&mut broken, violation.property.name());
                         }
+                        if verdict.unheard.is_some() {
+                            count(&mut broken, "(contact before it joins)");
+                        }
                     }
                     Err(error) => count(&mut broken, &error.to_string()),
                 }

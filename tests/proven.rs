@@ -14,6 +14,7 @@ type Call = (&'static str, &'static str, &'static str, &'static str);
 const AFFINE: &str = "verify/src/reach/affine.rs";
 const AGREEMENT: &str = "discrete/src/network/agreement.rs";
 const BULLETIN: &str = "discrete/src/network/bulletin.rs";
+const CONFIRMATION: &str = "discrete/src/network/confirmation.rs";
 const CELL: &str = "continuous/src/geometry/cell.rs";
 const DUAL: &str = "continuous/src/network/routing/dual.rs";
 const ELECTION: &str = "discrete/src/network/election.rs";
@@ -83,6 +84,12 @@ const CALLS: &[Call] = &[
     ("last_break_point", PATH, ROBOT_FACTS, "shift.path.last_break_point()"),
     ("subgroups", PATH, ROBOT_PATH, "subgroups(&points)"),
     ("places", PATH, ROBOT_FACTS, "active.places()"),
+    (
+        "admits",
+        CONFIRMATION,
+        "automaton/src/network/robot/confirmation.rs",
+        "self.confirmation.admits(neighbour.confirmed)",
+    ),
     ("planning_clearance", ERRORS, ROBOT_MOTION, "errors.planning_clearance(kept)"),
     ("wall_half_planes", ERRORS, ROBOT_MOTION, "errors.wall_half_planes(&site.workspace"),
     ("own_side", CELL, CELL, "Some(own_side(bisector, position, clearance))"),

@@ -38,6 +38,7 @@ const HOLDS: &[Property] = &[
     Property::Shares,
     Property::Load,
     Property::TreeRange,
+    Property::RootedTree,
 ];
 
 #[test]
@@ -50,6 +51,7 @@ fn no_loss_of_messages_brings_robots_into_contact_or_breaks_routes() {
         (Kind::Copies, 2),
         (Kind::Silence, 2),
         (Kind::Radio, 2),
+        (Kind::Late, 4),
     ];
     for name in ["corridor", "study-2"] {
         for (kind, seeds) in kinds {
@@ -60,6 +62,21 @@ fn no_loss_of_messages_brings_robots_into_contact_or_breaks_routes() {
                 }
             }
         }
+    }
+}
+
+/// Robots that are cut off attach to none of those that are attached to them; without confirmations
+/// some do in each of these storms.
+#[test]
+fn no_path_up_the_tree_becomes_a_cycle_whoever_is_cut_off() {
+    for (name, kind, seed, duration) in
+        [("corridor", Kind::Partition, 3, 496.0), ("discs", Kind::Radio, 2, 815.0)]
+    {
+        let scenario = ValidScenario::new(shipped(name)).expect("it is valid");
+        let storm = draw(kind, seed, &scenario, duration);
+        let verdict = ride(&scenario, &storm, 650).expect("nodes go on whatever they receive");
+        let cycle = verdict.violations.iter().find(|it| it.property == Property::RootedTree);
+        assert_eq!(cycle, None, "{name}, {}", kind.name());
     }
 }
 
@@ -96,6 +113,21 @@ fn robots_that_join_late_or_restart_go_on() {
             assert!(verdict.periods > 0, "{} {seed}", kind.name());
         }
     }
+}
+
+/// A robot that restarts during an election does not know of it: the election is held again. One that
+/// restarts in the only way does not know the task, and the mission ends with a reason.
+#[test]
+fn missions_with_a_robot_that_restarts_come_to_an_end() {
+    let scenario = ValidScenario::new(shipped("corridor")).expect("it is valid");
+    let end = |seed| {
+        let storm = draw(Kind::Restart, seed, &scenario, 497.0);
+        let verdict = ride(&scenario, &storm, 1_500).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{seed}");
+        verdict.end.unwrap_or_else(|| panic!("{seed}: it does not end"))
+    };
+    assert_eq!(end(1).outcome, Outcome::Serviced);
+    assert_eq!(end(2).outcome, Outcome::Blocked);
 }
 
 /// A robot that stops is given up, and nothing breaks. The others go round it and service all tasks, but

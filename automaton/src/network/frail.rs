@@ -18,7 +18,7 @@ use crate::node::{Input, Node, Observed, Outputs};
 /// The faults of one node. Times are in seconds from the beginning.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trouble {
-    /// When it joins; its body stands at its start from the beginning.
+    /// When it joins. Its body stands at its start from the beginning, and nobody knows of it.
     pub joins: Option<f64>,
     /// When it stops.
     pub crash: Option<Crash>,
@@ -52,6 +52,7 @@ pub struct Frail {
     trouble: Trouble,
     chance: Chance,
     state: State,
+    has_begun: bool,
     /// The true position.
     true_position: Point,
     time: f64,
@@ -93,6 +94,7 @@ impl Frail {
             maker,
             chance: Chance::new(seed, 0),
             state: if begin > 0.0 { State::Waiting(begin) } else { State::Running },
+            has_begun: begin <= 0.0,
             true_position: place,
             time: 0.0,
             period,
@@ -110,6 +112,11 @@ impl Frail {
     /// Whether it runs.
     pub fn is_running(&self) -> bool {
         self.state == State::Running
+    }
+
+    /// Whether it runs, or ran before it stopped: no other node knows of one that has not begun.
+    pub const fn has_begun(&self) -> bool {
+        self.has_begun
     }
 
     fn is_at(&self, time: f64) -> bool {
@@ -131,7 +138,7 @@ impl Frail {
     }
 
     fn begin(&mut self) {
-        self.state = State::Running;
+        (self.state, self.has_begun) = (State::Running, true);
         self.member = (self.maker)(self.true_position);
         self.disturbance = None;
     }

@@ -43,6 +43,8 @@ pub enum Message {
         period: u32,
         /// The newest roll that the sender knows.
         roll: Roll,
+        /// The newest control period in which an access point has confirmed the sender's way to it.
+        confirmed: Option<u32>,
         /// The public state.
         #[serde(with = "wire")]
         beacon: Arc<Beacon>,

@@ -32,6 +32,8 @@ pub struct Announced {
     pub task: usize,
     /// The robots that take part in elections for it.
     pub roster: Arc<IdSet>,
+    /// How many elections for it have not been answered by all of them.
+    pub unanswered: u32,
 }
 
 /// The data of [`Service::Electing`].

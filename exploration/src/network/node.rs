@@ -203,6 +203,7 @@ impl Nodes {
             let message = Message::Beacon {
                 period: PERIOD,
                 roll: Roll::default(),
+                confirmed: Some(PERIOD + 1),
                 beacon: Arc::clone(beacon),
             };
             node.step(Input::Heard { from: beacon.sender, message: &message })

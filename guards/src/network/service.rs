@@ -83,16 +83,30 @@ pub fn no_bid() -> Guard {
     named("no bid", over & proposition("leader_wanted") & !proposition("has_bid"))
 }
 
-/// The election lasts longer than news can take, and all who take part have been heard of.
+/// The election lasts longer than news can take, all who take part have been heard of, and so it has
+/// been each time.
 pub fn no_answer() -> Guard {
-    let overdue = variable("waited").more_than(variable("longest_wait"));
-    let all_heard = !proposition("expects_elector") & !proposition("misses_elector");
-    named("no answer", pursues() & !proposition("election_over") & overdue & all_heard)
+    let each_time = variable("unanswered").at_least(variable("attempts"));
+    named("no answer", pursues() & goes_unanswered() & each_time)
 }
 
 /// A robot that takes part in the elections for the task is gone.
 pub fn announces_again() -> Guard {
     named("announces again", pursues() & proposition("misses_elector"))
+}
+
+/// So it is while the election is under way, or that goes unanswered.
+pub fn elects_again() -> Guard {
+    let another_time = variable("unanswered").less_than(variable("attempts"));
+    let unanswered = goes_unanswered() & another_time;
+    named("announces again", pursues() & (proposition("misses_elector") | unanswered))
+}
+
+/// The election lasts longer than news can take, although all who take part have been heard of.
+fn goes_unanswered() -> Predicate {
+    let overdue = variable("waited").more_than(variable("longest_wait"));
+    let all_heard = !proposition("expects_elector") & !proposition("misses_elector");
+    !proposition("election_over") & overdue & all_heard
 }
 
 /// A task is pursued, and those are known who take part in its elections.

@@ -81,14 +81,30 @@ impl<'a> Period<'a> {
 ///
 /// The closest pair, if it comes nearer than 2ρ.
 pub fn separation(period: &Period, limits: &Limits) -> Result<Option<Extreme>, Violation> {
+    let robots: Vec<usize> = (0..period.motions.len()).collect();
+    separation_among(&robots, period, limits)
+}
+
+/// The same among these robots, by their numbers; those that the record does not know do not count.
+///
+/// # Errors
+///
+/// The closest pair, if it comes nearer than 2ρ.
+pub fn separation_among(
+    robots: &[usize],
+    period: &Period,
+    limits: &Limits,
+) -> Result<Option<Extreme>, Violation> {
     let bound = limits.separation();
-    let Some(pair) = closest_pair(&period.motions, bound) else { return Ok(None) };
+    let (robots, motions): (Vec<usize>, Vec<Segment>) =
+        robots.iter().filter_map(|&it| Some((it, *period.motions.get(it)?))).unzip();
+    let Some(pair) = closest_pair(&motions, bound) else { return Ok(None) };
     let (value, instant) = (pair.approach.distance, period.at(pair.approach.fraction));
-    let robots = vec![pair.first, pair.second];
+    let robots = vec![robots[pair.first], robots[pair.second]];
     if value < bound - SLACK {
         let sentence = format!(
             "robots {} and {} come within {value:.6} of each other, less than {bound:.6}",
-            pair.first, pair.second
+            robots[0], robots[1]
         );
         return Err(instant.violation(Property::Separation, &robots, (value, bound), sentence));
     }

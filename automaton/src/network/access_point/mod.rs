@@ -402,7 +402,7 @@ impl Node for AccessPoint {
         outputs: &mut Outputs<Message, MissionEvent>,
     ) -> Result<(), RobotError> {
         match input {
-            Input::Heard { message: Message::Beacon { period, roll, beacon }, .. } => {
+            Input::Heard { message: Message::Beacon { period, roll, beacon, .. }, .. } => {
                 self.hear(*period, roll, beacon);
             }
             Input::Heard { message: Message::Request(tasks), .. } => {

@@ -105,7 +105,8 @@ impl AccessPoint {
                 RoundAct::TellUser => self.tell_user(outputs),
                 RoundAct::TellBeacon => {
                     let (period, roll) = (self.period, self.roll.clone());
-                    outputs.broadcast(Message::Beacon { period, roll, beacon: self.next_beacon() });
+                    let (confirmed, beacon) = (Some(period), self.next_beacon());
+                    outputs.broadcast(Message::Beacon { period, roll, confirmed, beacon });
                 }
             }
         }

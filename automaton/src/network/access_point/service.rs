@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{NodeId, SERVICE, Service, ServiceEvent};
+use pleach_discrete::network::{IdSet, NodeId, SERVICE, Service, ServiceEvent};
 use pleach_guards::{Guard, network::service as guards};
 
 use crate::located::{Current, DataOf, Holds};
@@ -14,6 +14,10 @@ use super::super::service::{Announced, Electing, Gathering, Over, Serviced, Serv
 use super::super::shared::Shared;
 use super::attendance::Attendee;
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
+
+/// A task is announced again at most this many times because robots that are heard of do not answer:
+/// one that restarts does not know of the election under way.
+const ATTEMPTS_TO_ELECT: f64 = 3.0;
 
 /// The automaton of the service.
 pub type ServiceAutomaton = Automaton<Service, ServiceEvent, AccessPoint>;
@@ -41,6 +45,10 @@ crate::observed! {
         waited: point.election_rounds as f64,
         /// Rounds after which an election should be over.
         longest_wait: (PATIENCE_WITH_ELECTIONS * point.longest_wait()) as f64,
+        /// Elections for its task that were not answered by all.
+        unanswered: point.announced().map_or(0.0, |announced| f64::from(announced.unanswered)),
+        /// Elections that may go unanswered before the mission ends.
+        attempts: ATTEMPTS_TO_ELECT,
     }
     propositions {
         /// A robot that takes part in the elections for its task is gone.
@@ -141,6 +149,25 @@ impl AccessPoint {
         self.requested.as_ref().is_some_and(|tasks| next < tasks.len()).then_some(next)
     }
 
+    /// The robots that have not answered in the election under way.
+    fn unanswering(&self, roster: &IdSet) -> Vec<NodeId> {
+        let has_token =
+            |robot| self.election.as_ref().is_some_and(|election| election.has_token(robot));
+        roster.iter().filter(|&robot| !has_token(robot)).collect()
+    }
+
+    /// The notice by which a task is announced to the robots that take part now.
+    fn task_notice(&self, task: usize) -> Option<Notice> {
+        let position = *self.requested.as_ref()?.get(task)?;
+        let eligible = Arc::new((0..self.site.access_points.len()).collect());
+        Some(Notice::Task { task, position, roster: Arc::clone(&self.roster), eligible })
+    }
+
+    fn electing(&self, task: usize, unanswered: u32) -> Electing {
+        let roster = Arc::clone(&self.roster);
+        Electing { announced: Some(Announced { task, roster, unanswered }) }
+    }
+
     fn is_election_over(&self) -> bool {
         self.announced().is_some_and(|announced| {
             self.election.as_ref().is_some_and(|known| known.is_complete(&announced.roster))
@@ -186,7 +213,7 @@ fn hear_election<A: Knows>(
     effects: &mut Effects,
 ) -> Option<Electing> {
     let announced = match take_up(point, effects)? {
-        Notice::Task { task, roster, .. } => Some(Announced { task, roster }),
+        Notice::Task { task, roster, .. } => Some(Announced { task, roster, unanswered: 0 }),
         _ => place.announced(),
     };
     Some(Electing { announced })
@@ -214,21 +241,17 @@ fn hear_end<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Over
 
 fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Electing> {
     let task = point.next_task()?;
-    let position = *point.requested.as_ref()?.get(task)?;
-    let roster = Arc::clone(&point.roster);
-    let announced = Some(Announced { task, roster: Arc::clone(&roster) });
-    let eligible = Arc::new((0..point.site.access_points.len()).collect());
+    let notice = point.task_notice(task)?;
     effects.push(ServiceEffect::Report(match point.abandoned_task() {
         Some(task) => MissionEvent::TaskReannounced { task, gone: point.gone() },
         None => MissionEvent::TaskAnnounced { task },
     }));
-    let notice = Notice::Task { task, position, roster, eligible };
     effects.push(match point.misses_robots() {
         // They may still go by an earlier announcement when they come back.
         true => ServiceEffect::Supersede(notice),
         false => ServiceEffect::Issue(notice),
     });
-    Some(Electing { announced })
+    Some(point.electing(task, 0))
 }
 
 /// The task is announced again, to the robots that are left.
@@ -237,15 +260,13 @@ fn announce_again<A: Knows>(
     point: &AccessPoint,
     effects: &mut Effects,
 ) -> Option<Electing> {
-    let task = place.announced()?.task;
-    let position = *point.requested.as_ref()?.get(task)?;
-    let roster = Arc::clone(&point.roster);
-    let announced = Some(Announced { task, roster: Arc::clone(&roster) });
-    let eligible = Arc::new((0..point.site.access_points.len()).collect());
-    let gone = point.gone();
+    let Announced { task, roster, unanswered } = place.announced()?;
+    let notice = point.task_notice(task)?;
+    let is_unanswered = !point.electors().any(Attendee::is_gone);
+    let gone = if is_unanswered { point.unanswering(&roster) } else { point.gone() };
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone }));
-    effects.push(ServiceEffect::Supersede(Notice::Task { task, position, roster, eligible }));
-    Some(Electing { announced })
+    effects.push(ServiceEffect::Supersede(notice));
+    Some(point.electing(task, unanswered + u32::from(is_unanswered)))
 }
 
 fn end(effects: &mut Effects, outcome: Outcome, task: Option<usize>, reason: String) -> Over {
@@ -273,9 +294,8 @@ fn end_without_bid(place: &Electing, _: &AccessPoint, effects: &mut Effects) -> 
 }
 
 fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
-    let Announced { task, roster } = place.announced.as_ref()?;
-    let election = point.election.as_ref()?;
-    let missing: Vec<NodeId> = roster.iter().filter(|&robot| !election.has_token(robot)).collect();
+    let Announced { task, roster, .. } = place.announced.as_ref()?;
+    let missing = point.unanswering(roster);
     let reason = format!(
         "the election for task {task} cannot end: robots {missing:?} do not answer any more"
     );
@@ -310,8 +330,8 @@ fn announces<A: DataOf<Serving>>(guard: Guard) -> Row {
     Transfer::where_known(ServiceEvent::Announces, guard, "announce the next task", announce::<A>)
 }
 
-fn announces_again<A: DataOf<Serving> + Knows>() -> Row {
-    let (guard, name) = (guards::announces_again(), "announce the task again");
+fn announces_again<A: DataOf<Serving> + Knows>(guard: Guard) -> Row {
+    let name = "announce the task again";
     Transfer::where_known(ServiceEvent::AnnouncesAgain, guard, name, announce_again::<A>)
 }
 
@@ -352,8 +372,8 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(end_heard::<Serviced>())
         .carried_out(announces::<Gathering>(guards::announces_first()))
         .carried_out(announces::<Serviced>(guards::announces_next()))
-        .carried_out(announces_again::<Electing>())
-        .carried_out(announces_again::<UnderWay>())
+        .carried_out(announces_again::<Electing>(guards::elects_again()))
+        .carried_out(announces_again::<UnderWay>(guards::announces_again()))
         .carried_out(no_robot::<Gathering>(guards::no_robot_first()))
         .carried_out(no_robot::<Serviced>(guards::no_robot_next()))
         .carried_out(all_serviced::<Gathering>(guards::nothing_to_service()))

@@ -142,8 +142,12 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
 fn messages() -> Vec<Message> {
     let absent = Absent { suspended: IdSet::singleton(2), gone: IdSet::singleton(3) };
     let roll = Roll { called: 6, absent: Arc::new(absent) };
-    let beacon =
-        |beacon| Message::Beacon { period: 7, roll: roll.clone(), beacon: Arc::new(beacon) };
+    let beacon = |beacon| Message::Beacon {
+        period: 7,
+        roll: roll.clone(),
+        confirmed: Some(6),
+        beacon: Arc::new(beacon),
+    };
     let of_duty = |duty| beacon(talkative(duty, Notice::Quiet));
     let of_notice = |notice| beacon(talkative(duties()[0], notice));
     let news = |notice| Message::News(Bulletin::first(Shared::new(notice)));

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Bid, NodeId, NoticeId, Phase, Subgroup};
+use pleach_discrete::network::{Bid, Confirmation, NodeId, NoticeId, Phase, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::Path;
@@ -71,9 +71,11 @@ impl Robot {
         self.jump()
     }
 
-    /// The next round counts as the first one of a control period, in which all robots send.
+    /// The next round counts as the first one of a control period, in which all robots send, and
+    /// every way to an access point as confirmed anew.
     pub fn count_rounds_anew(&mut self) {
         self.round_count.restart();
+        self.confirmation = Confirmation::default();
     }
 
     /// In place of the last stages of a control period and the beginning of the next: the robot
@@ -123,6 +125,7 @@ impl Robot {
             route,
             agreement,
             team,
+            followed_post,
             neighbours: _, // by their beacons and their silence
             // Constant.
             rate: _,
@@ -147,6 +150,9 @@ impl Robot {
             heard_up_to: _,
             desired_parent: _,
             reattaches_to: _,
+            // The explorer confirms every way.
+            confirmation: _,
+            awaits_confirmation: _,
             partner: _,
             taking_over: _,
             log: _,
@@ -200,7 +206,7 @@ impl Robot {
                 (id, position, still_periods, &**duty, &**mission, unused_periods,),
                 (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
                 ((bulletin, epoch), tasks, roster, eligible, election, bid, waited, route),
-                (agreement, team, silences),
+                (agreement, team, followed_post, silences),
             )
         )
     }

@@ -37,7 +37,7 @@ impl Robot {
             self.collect_below();
             return Ok(());
         }
-        self.desired_parent = match self.duty.location() {
+        let desired = match self.duty.location() {
             Activity::Standby if !self.tree_is_frozen() || self.anchor().is_none() => {
                 self.choose_parent()
             }
@@ -47,6 +47,7 @@ impl Robot {
             Activity::Relay | Activity::Junction | Activity::Leaf => self.replace_parent(),
             _ => None,
         };
+        self.desired_parent = self.await_confirmation(desired);
         self.look_after_place()
     }
 
@@ -136,6 +137,7 @@ impl Robot {
             let lineage = neighbour.beacon.lineage.as_ref()?;
             let usable = Self::accepts_redundant(neighbour)
                 && leads_elsewhere(lineage)
+                && self.is_confirmed(neighbour)
                 && self.walk_to(neighbour) <= limit;
             usable.then(|| (lineage.hops(), self.anchor_of(neighbour)))
         });
@@ -153,7 +155,11 @@ impl Robot {
                     <= (self.site.hard_length + 2.0 * self.stray()) * (1.0 + ROUNDING);
             usable.then_some((lineage.hops(), anchor))
         });
-        let best = self.best_parent(post.id, None);
+        let best = |admits: &dyn Fn(&Neighbour) -> bool| self.best_parent(post.id, None, admits);
+        let best = match current {
+            Some(_) => best(&|_| true),
+            None => best(&|node| self.is_confirmed(node)).or_else(|| best(&|_| true)),
+        };
         Some(match (current, best) {
             (Some((hops, anchor)), Some((fewer, _))) if hops <= fewer => Some(anchor),
             (Some((_, anchor)), None) => Some(anchor),
@@ -161,9 +167,14 @@ impl Robot {
         })
     }
 
-    /// The best node to attach to, with its number of links to the access point; ways through
-    /// `avoided` do not count.
-    fn best_parent(&self, own: PostId, avoided: Option<PostId>) -> Option<(usize, Anchor)> {
+    /// The best node to attach to of those admitted, with its number of links to the access point; ways
+    /// through `avoided` do not count.
+    fn best_parent(
+        &self,
+        own: PostId,
+        avoided: Option<PostId>,
+        admits: &dyn Fn(&Neighbour) -> bool,
+    ) -> Option<(usize, Anchor)> {
         let mut best: Option<(usize, f64, Anchor)> = None;
         for neighbour in &self.neighbours {
             let Some(lineage) = &neighbour.beacon.lineage else { continue };
@@ -172,6 +183,7 @@ impl Robot {
                 hops < fewest || hops == fewest && neighbour.reliability > reliability
             });
             if better
+                && admits(neighbour)
                 && neighbour.distance <= self.site.build_length * (1.0 + ROUNDING)
                 && Self::accepts_redundant(neighbour)
                 && !lineage.contains(own)
@@ -216,7 +228,7 @@ impl Robot {
     fn finds_other_parent(&self) -> bool {
         match (self.duty.post(), self.anchor()) {
             (Some(post), Some(Anchor::Post(parent))) => {
-                self.best_parent(post.id, Some(parent)).is_some()
+                self.best_parent(post.id, Some(parent), &|_| true).is_some()
             }
             _ => true,
         }

@@ -89,11 +89,15 @@ impl Robot {
     ) -> Result<Option<Jump<Activity, DutyEvent>>, TransitionError> {
         let site = Arc::clone(&self.site);
         self.label = label;
+        let held = self.duty.post().map(|post| post.id);
         let jump = site.automata.duty.step_in_place::<Duty>(self);
         self.label = Label::Alone;
         if matches!(jump, Ok(Some(_))) {
             self.is_quiet = false;
             self.note_change();
+            if self.duty.post().is_some_and(|post| Some(post.id) != held) {
+                self.confirmation.take_over(self.period);
+            }
             self.look_after_place()?;
         }
         jump

@@ -119,6 +119,7 @@ impl Robot {
         let site = Arc::clone(&self.site);
         while let Some(jump) = site.automata.exchange.step_in_place::<Exchange>(self)? {
             self.note_change();
+            self.is_quiet = false;
             if let Some((duty, partner)) = self.taking_over.take() {
                 self.exchange_duty(duty, partner)?;
                 if jump.event == ExchangeEvent::DutyTaken {

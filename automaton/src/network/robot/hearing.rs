@@ -16,6 +16,8 @@ use super::Robot;
 #[repr(align(64))] // a cache line
 pub(super) struct Neighbour {
     pub beacon: Arc<Beacon>,
+    /// The newest confirmation of its way that it has passed on.
+    pub confirmed: Option<u32>,
     pub distance: f64,
     pub reliability: f64,
     walk: OnceLock<f64>,
@@ -36,10 +38,17 @@ pub(in super::super) const ROUNDS_TO_BE_HEARD: usize = 3;
 
 impl Neighbour {
     /// A node as heard from `own`.
-    fn new(beacon: &Arc<Beacon>, period: u32, own: Point, site: &Site) -> Self {
+    fn new(
+        beacon: &Arc<Beacon>,
+        confirmed: Option<u32>,
+        period: u32,
+        own: Point,
+        site: &Site,
+    ) -> Self {
         let distance = (beacon.position - own).norm();
         Neighbour {
             beacon: Arc::clone(beacon),
+            confirmed,
             distance,
             reliability: site.link.reliability(distance),
             walk: OnceLock::new(),
@@ -56,7 +65,7 @@ impl Neighbour {
         Neighbour {
             is_heard,
             silent_rounds,
-            ..Neighbour::new(&self.beacon, self.heard_in, own, site)
+            ..Neighbour::new(&self.beacon, self.confirmed, self.heard_in, own, site)
         }
     }
 
@@ -84,7 +93,12 @@ impl Neighbour {
 impl Robot {
     /// Takes in a beacon. One that arrives after a newer one of its sender is ignored, and so is one
     /// that has been late since an earlier control period.
-    pub(super) fn hear_beacon(&mut self, period: u32, beacon: &Arc<Beacon>) {
+    pub(super) fn hear_beacon(
+        &mut self,
+        period: u32,
+        confirmed: Option<u32>,
+        beacon: &Arc<Beacon>,
+    ) {
         if period < self.period {
             return;
         }
@@ -95,22 +109,25 @@ impl Robot {
             && known.measured_at == self.position
         {
             (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
+            self.has_news |= self.awaits_confirmation && known.confirmed < confirmed;
+            known.confirmed = known.confirmed.max(confirmed);
             self.heard_up_to += 1;
         } else {
-            self.hear_news(period, beacon);
+            self.hear_news(period, confirmed, beacon);
         }
     }
 
     #[inline(never)]
-    fn hear_news(&mut self, period: u32, beacon: &Arc<Beacon>) {
+    fn hear_news(&mut self, period: u32, confirmed: Option<u32>, beacon: &Arc<Beacon>) {
         if self.is_new && period > self.period {
             self.join_in(period);
         }
         let known = self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id);
         match known {
-            Ok(at) => self.renew(at, period, beacon),
+            Ok(at) => self.renew(at, period, confirmed, beacon),
             Err(at) => {
-                let neighbour = Neighbour::new(beacon, period, self.position, &self.site);
+                let neighbour =
+                    Neighbour::new(beacon, confirmed, period, self.position, &self.site);
                 self.neighbours.insert(at, neighbour);
                 self.receive_news();
             }
@@ -119,19 +136,24 @@ impl Robot {
         self.heard_up_to = at + 1;
     }
 
-    /// A neighbour that the robot knows is heard again.
-    fn renew(&mut self, at: usize, period: u32, beacon: &Arc<Beacon>) {
+    /// A neighbour that the robot knows is heard again. What it has passed on counts for the post that it
+    /// holds in the same message.
+    fn renew(&mut self, at: usize, period: u32, confirmed: Option<u32>, beacon: &Arc<Beacon>) {
         let known = &mut self.neighbours[at];
         let is_same = Arc::ptr_eq(&known.beacon, beacon);
         if !is_same && beacon.is_older_than(&known.beacon) {
             return;
         }
         (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
+        let is_newer = known.confirmed < confirmed;
+        let confirmed = if is_same { known.confirmed.max(confirmed) } else { confirmed };
         if (known.measured_at, known.position()) != (self.position, beacon.position) {
-            *known = Neighbour::new(beacon, period, self.position, &self.site);
+            *known = Neighbour::new(beacon, confirmed, period, self.position, &self.site);
         } else if !is_same {
-            known.beacon = Arc::clone(beacon);
+            (known.beacon, known.confirmed) = (Arc::clone(beacon), confirmed);
         } else {
+            known.confirmed = confirmed;
+            self.has_news |= self.awaits_confirmation && is_newer;
             return;
         }
         self.receive_news();

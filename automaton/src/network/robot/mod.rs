@@ -5,7 +5,7 @@
 //! [`Node`](crate::node::Node): `step` says what it does with each input, stage by stage of a
 //! control period. The chapters follow that period: it receives beacons (`hearing`) and learns who
 //! does not take part (`absence`), keeps its place
-//! in the tree (`attachment`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
+//! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
 //! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`motion`, `negotiation`);
 //! what its guards see of all this are `facts`.
@@ -14,6 +14,7 @@ mod absence;
 #[cfg(feature = "abstraction")]
 mod abstraction;
 mod attachment;
+mod confirmation;
 mod control;
 mod duties;
 mod exchange;
@@ -45,7 +46,8 @@ use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{
-    Agreement, Anchor, Bid, Election, IdSet, NodeId, NoticeId, Offers, Post, PostId, Role,
+    Agreement, Anchor, Bid, Confirmation, Election, IdSet, NodeId, NoticeId, Offers, Post, PostId,
+    Role,
 };
 
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
@@ -164,6 +166,10 @@ pub struct Robot {
     desired_parent: Option<Option<Anchor>>,
     /// The node that p₁ finds to be a better parent.
     reattaches_to: Option<NodeId>,
+    /// How recently the way from its post has been confirmed.
+    confirmation: Confirmation,
+    /// Another parent would be better, and is not confirmed yet.
+    awaits_confirmation: bool,
     can_detach: bool,
     unused_periods: u32,
     /// It has joined a mission under way, and not taken a new post yet.
@@ -184,6 +190,8 @@ pub struct Robot {
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     agreement: Option<Agreement>,
     team: Option<TeamReport>,
+    /// Its own post, if another robot of the primary team follows it.
+    followed_post: Option<PostId>,
 
     // Communication variables.
     routing: routing::RoutingState,
@@ -281,6 +289,8 @@ impl Robot {
             serves: Arc::default(),
             desired_parent: None,
             reattaches_to: None,
+            confirmation: Confirmation::default(),
+            awaits_confirmation: false,
             can_detach: false,
             unused_periods: 0,
             is_late: false,
@@ -296,6 +306,7 @@ impl Robot {
             route: None,
             agreement: None,
             team: None,
+            followed_post: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
             upstream: None,
@@ -352,7 +363,8 @@ impl Robot {
         if !self.has_told_beacon() {
             self.beacon_told += 1;
             let (period, roll) = (self.period, self.roll.clone());
-            outputs.broadcast(Message::Beacon { period, roll, beacon });
+            let confirmed = self.pass_on_confirmation();
+            outputs.broadcast(Message::Beacon { period, roll, confirmed, beacon });
         }
     }
 
@@ -449,6 +461,7 @@ impl Robot {
         (self.has_unsent_news, self.is_unmeasured) = (true, true);
         self.advance_exchange()?;
         self.locate_wrecks();
+        self.note_follower();
         self.keep_place()?;
         self.hear_notices();
         self.remember_parent();

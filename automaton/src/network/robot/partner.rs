@@ -135,9 +135,17 @@ impl Robot {
         })
     }
 
-    /// Whether this robot may leave its post to a mover.
+    /// Whether this robot may leave its post to a mover, and go on for it.
     pub(super) fn may_be_relieved(&self) -> bool {
-        self.is_parked() && self.offers().offer().is_none() && self.duty.station().is_some()
+        self.is_parked()
+            && self.knows_task()
+            && self.offers().offer().is_none()
+            && self.duty.station().is_some()
+    }
+
+    /// Whether it goes by the announcement by which the others go: one that has restarted does not.
+    fn knows_task(&self) -> bool {
+        self.current_task().is_some() && self.epoch == self.notice_id().epoch()
     }
 
     /// Whether an exchange is under way. The robot then stands still, and what it does stays what

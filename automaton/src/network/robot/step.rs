@@ -181,9 +181,9 @@ impl Robot {
     #[inline]
     fn hear(&mut self, from: NodeId, message: &Message, outputs: &mut Out) {
         match message {
-            Message::Beacon { period, roll, beacon } => {
+            Message::Beacon { period, roll, confirmed, beacon } => {
                 self.hear_roll(roll);
-                self.hear_beacon(*period, beacon);
+                self.hear_beacon(*period, *confirmed, beacon);
             }
             _ if self.is_planning_routes() => self.hear_of_routes(from, message, outputs),
             _ => self.hear_of_flows_or_moves(from, message),

@@ -1,12 +1,13 @@
 //! The primary team (Sec. V-A): its leader, its order, and when it is stuck.
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Phase, PostId, PostKind};
+use pleach_discrete::network::{Phase, Post, PostId, PostKind};
 
 use super::super::beacon::{Beacon, Notice, TeamReport};
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
 use super::Robot;
+use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
 /// The leader stops at δ − 2.2ρ from its task, so that a robot 2ρ behind it is within δ as well.
@@ -70,11 +71,21 @@ impl Robot {
             Notice::Advance { joined: Some((_, followed)) } if followed == post.id);
         let gives =
             |beacon: &Beacon| beacon.reply.as_ref().is_some_and(|reply| reply.accepted.is_some());
-        !told
+        self.followed_post != Some(post.id)
+            && !told
             && !self.neighbours.iter().any(|neighbour| {
                 neighbour.post().is_some_and(|post| post.kind == follower)
                     || gives(&neighbour.beacon)
             })
+    }
+
+    /// Remembers that a robot follows it: one that falls silent follows all the same.
+    pub(super) fn note_follower(&mut self) {
+        let own = self.duty.post().filter(|post| post.is_primary()).map(|post| post.id);
+        let follows = |post: &Post| post.kind == PostKind::Primary { follows: own };
+        let is_followed = self.followed_post == own
+            || self.neighbours.iter().filter_map(Neighbour::post).any(follows);
+        self.followed_post = own.filter(|_| is_followed);
     }
 
     /// The post of a newcomer that this robot should attach to but does not yet reach.

@@ -120,6 +120,8 @@ pub fn allowing_for(
     ValidScenario::new(stated)
 }
 
+/// Foul weather ends after this many times the duration of the mission: then everything is done.
+const CLEARS_AFTER: f64 = 1.5;
 /// Seconds after which faults that come later begin.
 const LATER: f64 = 20.0;
 
@@ -175,7 +177,7 @@ fn foul(draws: &mut Draws, robots: usize, duration: f64) -> Weather {
         longest_delay: 1 + draws.below(100) as u64,
         partitions: partitions(draws, robots, duration),
         begin: 0.0,
-        end: None,
+        end: Some(CLEARS_AFTER * duration),
         wired_from: None,
     }
 }

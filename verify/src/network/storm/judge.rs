@@ -1,15 +1,17 @@
 //! The judge of storms: what must hold whatever fails, on true positions.
 
+use std::collections::BTreeSet;
+
 use pleach_automaton::network::Frail;
 use pleach_automaton::network::record::Snapshot;
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_automaton::node::Observed;
-use pleach_discrete::network::Role;
+use pleach_discrete::network::{Anchor, Post, PostId, Role};
 
 use super::super::judge::relayed;
 use super::super::period::{self, Period};
 use super::super::property::Property;
-use super::super::{Limits, Violation, instant, tree};
+use super::super::{Limits, Violation, instant};
 use super::Storm;
 use crate::network::violation::Instant;
 
@@ -22,6 +24,7 @@ pub struct Judge {
     loses_nodes: bool,
     previous: Option<Snapshot>,
     violations: Vec<Violation>,
+    unheard: Option<Violation>,
     last_motion: usize,
 }
 
@@ -33,13 +36,15 @@ impl Judge {
             loses_nodes: storm.faults().nodes,
             previous: None,
             violations: Vec::new(),
+            unheard: None,
             last_motion: 0,
         }
     }
 
-    /// The first violation of each property, in the order in which they were found.
-    pub fn into_violations(self) -> Vec<Violation> {
-        self.violations
+    /// The first violation of each property, in the order in which they were found; and the first time
+    /// that a robot came too near to one that had not begun yet, which no message could prevent.
+    pub fn into_violations(self) -> (Vec<Violation>, Option<Violation>) {
+        (self.violations, self.unheard)
     }
 
     /// The last control period in which a robot moved.
@@ -56,7 +61,7 @@ impl Judge {
             if before.positions != snapshot.positions {
                 self.last_motion = before.step;
             }
-            self.look_at_period(&period);
+            self.look_at_period(&period, nodes);
         }
         self.previous = Some(snapshot.clone());
     }
@@ -69,9 +74,14 @@ impl Judge {
         }
     }
 
-    fn look_at_period(&mut self, period: &Period) {
+    fn look_at_period(&mut self, period: &Period, nodes: &[Frail]) {
         let limits = self.limits.clone();
-        self.find(period::separation(period, &limits).map(drop));
+        let begun: Vec<usize> = (0..nodes.len()).filter(|&it| nodes[it].has_begun()).collect();
+        self.find(period::separation_among(&begun, period, &limits).map(drop));
+        if self.unheard.is_none() && nodes.iter().any(|node| !node.has_begun()) {
+            let found = period::separation(period, &limits).err();
+            self.unheard = found.filter(|pair| pair.robots.iter().any(|it| !begun.contains(it)));
+        }
         self.find(period::clearance(period, &limits).map(drop));
         self.find(period::load(period, &limits).map(drop));
         self.find(period::tree_range(period, &limits));
@@ -83,25 +93,35 @@ impl Judge {
         if !self.loses_nodes {
             self.find(relayed(seen, &limits));
         }
-        self.find(rooted(seen));
+        self.find(rooted(seen, nodes));
         self.find(led(seen, nodes));
         self.find(held_once(seen, nodes));
     }
 }
 
-/// [`Property::RootedTree`]: the path of no robot up the tree leads back to it.
-fn rooted(seen: &Snapshot) -> Result<(), Violation> {
-    let mut parents = vec![None; seen.roles.len()];
-    let instant = Instant::of(seen);
-    if let Err(robot) = tree::parents_of(&seen.tree, &mut parents) {
-        let sentence = format!("robot {robot} has two parents in the tree");
-        return Err(instant.violation(Property::SingleParent, &[robot], (0.0, 1.0), sentence));
-    }
-    match (0..parents.len()).find(|&robot| tree::descends_from(&parents, robot, robot)) {
-        None => Ok(()),
-        Some(robot) => {
-            let sentence = format!("the path of robot {robot} up the tree is a cycle");
-            Err(instant.violation(Property::RootedTree, &[robot], (0.0, 1.0), sentence))
+/// [`Property::RootedTree`]: no post is attached to itself, directly or over others.
+fn rooted(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
+    let held =
+        |node: &Frail| node.member().view().robot().and_then(|robot| robot.duty().post().copied());
+    let attached = |post: Post| match post.parent {
+        Some(Anchor::Post(parent)) => Some((post.id, parent)),
+        _ => None,
+    };
+    let running = nodes.iter().filter(|node| node.is_running());
+    let mut links: Vec<(PostId, PostId)> = running.filter_map(held).filter_map(attached).collect();
+    // What is attached to a post that is not attached itself lies on no cycle.
+    loop {
+        let children: BTreeSet<PostId> = links.iter().map(|&(child, _)| child).collect();
+        let known = links.len();
+        links.retain(|(_, parent)| children.contains(parent));
+        match links.first() {
+            None => return Ok(()),
+            Some(&(post, _)) if links.len() == known => {
+                let sentence = format!("the path of post {} up the tree is a cycle", post.0);
+                let found = Instant::of(seen);
+                return Err(found.violation(Property::RootedTree, &[], (0.0, 1.0), sentence));
+            }
+            Some(_) => {}
         }
     }
 }

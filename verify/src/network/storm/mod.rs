@@ -77,6 +77,9 @@ pub struct Verdict {
     pub periods: usize,
     /// The first violation of each property.
     pub violations: Vec<Violation>,
+    /// The first time that a robot came too near to one that had not begun, and that it could not
+    /// hear.
+    pub unheard: Option<Violation>,
     /// The last control period in which a robot moved.
     pub last_motion: usize,
     /// What happened, each with its control period.
@@ -155,13 +158,8 @@ pub fn ride_watched(
     };
     let Log { judge, events, .. } = log;
     let last_motion = judge.last_motion();
-    Ok(Verdict {
-        end,
-        periods: network.step(),
-        violations: judge.into_violations(),
-        last_motion,
-        events,
-    })
+    let (violations, unheard) = judge.into_violations();
+    Ok(Verdict { end, periods: network.step(), violations, unheard, last_motion, events })
 }
 
 /// Only a cycle of jumps that takes no time reaches it.
