@@ -416,8 +416,11 @@ fn a_violated_invariant_is_told_and_marked() {
     let other = snapshots[39].positions[1];
     snapshots[39].positions[0] = other + nalgebra::Vector2::new(0.001, 0.0);
     let mut made = MissionPage::new(&run.scenario);
+    let events = run.events();
     for snapshot in &snapshots {
-        made.observe(snapshot, &[] as &[MissionEvent]).unwrap();
+        let now = events.iter().filter(|(step, _)| *step == snapshot.step);
+        let now: Vec<MissionEvent> = now.map(|(_, event)| event.clone()).collect();
+        made.observe(snapshot, &now).unwrap();
     }
     let reason = "two robots touch".to_owned();
     made.end(&End { outcome: Outcome::InvariantViolated, reason, task: None }).unwrap();

@@ -158,6 +158,43 @@ impl Beacon {
     }
 }
 
+/// What a node tells those nearer to an access point of the robots beyond it, collected from their
+/// beacons.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Reports {
+    /// The robots of its branch of the tree.
+    pub below: IdSet,
+    /// Robots that are heard there and know no way to an access point.
+    pub strays: IdSet,
+    /// The tasks that all of them service.
+    pub serves: IdSet,
+}
+
+impl Reports {
+    /// Takes in the beacon of a robot that node `own` hears, and whose post is attached to that node's or
+    /// is not. Robots that know no way count if the node itself `knows_way`.
+    pub fn take_in(&mut self, beacon: &Beacon, is_child: bool, own: NodeId, knows_way: bool) {
+        if is_child {
+            self.take_in_branch(beacon);
+        } else if beacon.parent == Some(own) {
+            // Its post is attached to one that has no holder at present.
+            self.strays.merge(&beacon.below);
+            self.strays.merge(&beacon.strays);
+            self.serves.merge(&beacon.serves);
+        } else if beacon.lineage.is_none() && knows_way {
+            self.strays.insert(beacon.sender);
+            self.serves.extend(beacon.task());
+        }
+    }
+
+    /// Takes in all that the sender reports.
+    pub fn take_in_branch(&mut self, beacon: &Beacon) {
+        self.below.merge(&beacon.below);
+        self.strays.merge(&beacon.strays);
+        self.serves.merge(&beacon.serves);
+    }
+}
+
 /// The beacon that a node sent last. As long as its public state does not change, a node sends the
 /// very same beacon again, and receivers need not read it.
 #[derive(Clone, Debug, Default)]

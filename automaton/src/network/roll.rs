@@ -59,7 +59,8 @@ impl Roll {
         differs
     }
 
-    /// Whether `robot` may move in this control period, with rolls that are valid for so many.
+    /// Whether `robot` may move in control period `period` by this roll, if rolls are valid for
+    /// `validity` periods.
     pub fn lets_move(&self, robot: NodeId, period: u32, validity: u32) -> bool {
         let Absent { suspended, gone } = &*self.absent;
         period <= self.called.saturating_add(validity)

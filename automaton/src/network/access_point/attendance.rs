@@ -209,9 +209,9 @@ fn row<A: DataOf<Standing>, B: DataOf<Standing> + Copy>(
     event: AttendanceEvent,
     guard: pleach_guards::Guard,
     name: &'static str,
-    next: fn(&A, &Attendee, &mut ()) -> B,
+    next: fn(&A) -> B,
 ) -> Row {
-    Transfer::new(event, guard, name, next)
+    Transfer::new(event, guard, name, move |standing: &A, _: &Attendee, (): &mut ()| next(standing))
 }
 
 /// The automaton of a robot's attendance.
@@ -223,34 +223,21 @@ pub fn attendance_automaton() -> Result<AttendanceAutomaton, BuildError> {
     let expect = "others expect to hear it";
     Automaton::builder(ATTENDANCE, Attendance::Present)
         .observing()
-        .carried_out(row(On::Missed, guards::missed(), "it may not move", |_: &Present, _, _| {
-            Suspended
+        .carried_out(row(On::Missed, guards::missed(), "it may not move", |_: &Present| Suspended))
+        .carried_out(row(On::HeardAgain, guards::heard_again(), "it may move", |_: &Suspended| {
+            Present
         }))
-        .carried_out(row(
-            On::HeardAgain,
-            guards::heard_again(),
-            "it may move",
-            |_: &Suspended, _, _| Present,
-        ))
         .carried_out(row(
             On::RollsExpired,
             guards::rolls_expired(),
             "others go round it",
-            |_: &Suspended, _, _| Gone,
+            |_: &Suspended| Gone,
         ))
-        .carried_out(row(On::HeardAgain, guards::heard_again(), expect, |_: &Gone, _, _| Returning))
-        .carried_out(row(
-            On::Missed,
-            guards::missed(),
-            "others go round it",
-            |_: &Returning, _, _| Gone,
-        ))
-        .carried_out(row(
-            On::Readmitted,
-            guards::readmitted(),
-            "it may move",
-            |_: &Returning, _, _| Present,
-        ))
+        .carried_out(row(On::HeardAgain, guards::heard_again(), expect, |_: &Gone| Returning))
+        .carried_out(row(On::Missed, guards::missed(), "others go round it", |_: &Returning| Gone))
+        .carried_out(row(On::Readmitted, guards::readmitted(), "it may move", |_: &Returning| {
+            Present
+        }))
         .build()
 }
 

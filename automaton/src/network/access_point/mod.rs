@@ -16,8 +16,8 @@ mod attendance;
 mod rounds;
 mod service;
 
-use super::beacon::{Beacon, Bulletin, LastBeacon, Notice};
-use super::duty::{Duty, Hop};
+use super::beacon::{Beacon, Bulletin, LastBeacon, Notice, Reports};
+use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
@@ -307,47 +307,36 @@ impl AccessPoint {
     /// heard.
     fn update_roster(&mut self) {
         let own = Anchor::Access(self.number);
-        let [mut attached, mut strays, mut serves] = [IdSet::new(), IdSet::new(), IdSet::new()];
-        let [mut elsewhere, mut strays_elsewhere, mut serves_elsewhere] =
-            [IdSet::new(), IdSet::new(), IdSet::new()];
+        let (mut here, mut elsewhere) = (Reports::default(), Reports::default());
         for beacon in &self.heard {
-            let post = beacon.duty.as_ref().and_then(Duty::post);
-            if beacon.duty.is_none() {
-                elsewhere.merge(&beacon.below);
-                strays_elsewhere.merge(&beacon.strays);
-                serves_elsewhere.merge(&beacon.serves);
-            } else if post.is_some_and(|post| post.parent == Some(own)) {
-                attached.merge(&beacon.below);
-                strays.merge(&beacon.strays);
-                serves.merge(&beacon.serves);
-            } else if beacon.parent == Some(self.id()) {
-                strays.merge(&beacon.below);
-                strays.merge(&beacon.strays);
-                serves.merge(&beacon.serves);
-            } else if beacon.lineage.is_none() {
-                strays.insert(beacon.sender);
-                serves.extend(beacon.task());
+            match &beacon.duty {
+                None => elsewhere.take_in_branch(beacon),
+                Some(duty) => {
+                    let is_child = duty.post().is_some_and(|post| post.parent == Some(own));
+                    here.take_in(beacon, is_child, self.id(), true);
+                }
             }
         }
-        let mut heard_of = attached.clone();
-        heard_of.merge(&elsewhere);
+        let mut heard_of = here.below.clone();
+        heard_of.merge(&elsewhere.below);
         for robot in heard_of.iter() {
             if let Some(attendee) = self.attendees.get_mut(robot) {
                 attendee.attend();
             }
         }
-        for robot in strays.iter().chain(strays_elsewhere.iter()) {
+        for robot in here.strays.iter().chain(elsewhere.strays.iter()) {
             if let Some(attendee) = self.attendees.get_mut(robot).filter(|it| it.is_known()) {
                 attendee.attend();
             }
         }
-        for task in serves.iter().chain(serves_elsewhere.iter()) {
+        for task in here.serves.iter().chain(elsewhere.serves.iter()) {
             if let Some(silence) = self.tasks_serviced.get_mut(task) {
                 *silence = 0;
             }
         }
         if self.site.access_points.len() > 1 {
-            (self.attached, self.strays) = (Arc::new(attached), Arc::new(strays));
+            let Reports { below, strays, serves } = here;
+            (self.attached, self.strays) = (Arc::new(below), Arc::new(strays));
             self.serves = Arc::new(serves);
         }
         let roster = self.attending();

@@ -25,7 +25,7 @@ impl Robot {
     /// A roll is received.
     #[inline]
     pub(super) fn hear_roll(&mut self, roll: &Roll) {
-        if roll.called > self.roll.called && self.roll.merge(roll) {
+        if self.roll.merge(roll) {
             self.note_change();
         }
     }

@@ -13,6 +13,7 @@ use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, Phase, PostId, 
 use crate::automaton::TransitionError;
 use crate::located::Place as _;
 
+use super::super::beacon::Reports;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
@@ -237,29 +238,20 @@ impl Robot {
     /// The robots and tasks of which an access point hears through this one: those of its branch of the
     /// tree, and robots that know no way, on their way along Σ or with a parent that has failed.
     fn collect_below(&mut self) {
-        let mut below = IdSet::singleton(self.id);
-        let mut strays = IdSet::new();
-        let mut serves: IdSet = self.duty.post().and_then(|post| post.task).into_iter().collect();
         let own = self.duty.post().map(|post| post.id);
+        let mut reports = Reports {
+            below: IdSet::singleton(self.id),
+            serves: self.duty.post().and_then(|post| post.task).into_iter().collect(),
+            ..Reports::default()
+        };
         for neighbour in self.neighbours.iter().filter(|it| it.heard_in + 1 >= self.period) {
-            let beacon = &neighbour.beacon;
-            if neighbour.post().is_some_and(|post| own.is_some_and(|own| post.is_child_of(own))) {
-                below.merge(&beacon.below);
-                strays.merge(&beacon.strays);
-                serves.merge(&beacon.serves);
-            } else if beacon.parent == Some(self.id) {
-                // Its post is attached to one that has no holder at present.
-                strays.merge(&beacon.below);
-                strays.merge(&beacon.strays);
-                serves.merge(&beacon.serves);
-            } else if beacon.lineage.is_none() && self.lineage().is_some() {
-                strays.insert(beacon.sender);
-                serves.extend(beacon.task());
-            }
+            let is_child =
+                neighbour.post().is_some_and(|post| own.is_some_and(|own| post.is_child_of(own)));
+            reports.take_in(&neighbour.beacon, is_child, self.id, self.lineage().is_some());
         }
-        renew(&mut self.below, below);
-        renew(&mut self.strays, strays);
-        renew(&mut self.serves, serves);
+        renew(&mut self.below, reports.below);
+        renew(&mut self.strays, reports.strays);
+        renew(&mut self.serves, reports.serves);
     }
 
     /// Remark 5.6: p₁ attaches to a fixed or redundant robot or an access point that is

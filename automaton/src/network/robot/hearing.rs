@@ -182,10 +182,10 @@ impl Robot {
             *known = known.seen_from(self.position, &self.site);
         }
         known.silent_rounds = silent_rounds;
-        let is_lost = usize::from(silent_rounds) == ROUNDS_TO_BE_HEARD
-            && (known.is_access_point() || !self.site.is_near(known.distance));
+        let is_silent = usize::from(silent_rounds) == ROUNDS_TO_BE_HEARD;
+        let is_lost = is_silent && (known.is_access_point() || !self.site.is_near(known.distance));
         let (id, reliability) = (known.id(), known.reliability);
-        let is_gone = usize::from(silent_rounds) == ROUNDS_TO_BE_HEARD && self.is_gone(id);
+        let is_gone = is_silent && self.is_gone(id);
         if is_lost && !self.sends_to(id) || is_gone || reliability <= 0.0 {
             let lost = self.neighbours.remove(at);
             self.lose_sight_of(&lost);
