@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The content of a beacon: all of it but the control period and the roll.
+/// The content of a beacon: all of it but the control period, the roll and the confirmation.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Content {
     /// As it is written.
@@ -124,8 +124,8 @@ mod tests {
         AccessPoint::new(0, site).step(Input::Tick { passed: 0 }, &mut outputs).unwrap();
         let mut sent = outputs.drain_sent().map(|envelope| envelope.message);
         match sent.find(|message| matches!(message, Message::Beacon { .. })).unwrap() {
-            Message::Beacon { roll, beacon, .. } => {
-                Message::Beacon { period: number, roll, beacon }
+            Message::Beacon { roll, confirmed, beacon, .. } => {
+                Message::Beacon { period: number, roll, confirmed, beacon }
             }
             _ => unreachable!("it is a beacon"),
         }
