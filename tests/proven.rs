@@ -45,7 +45,7 @@ const CALLS: &[Call] = &[
     ("is_settled", AGREEMENT, AGREEMENT, "self.is_settled(places)"),
     ("is_break_point", AGREEMENT, AGREEMENT, "self.is_break_point(place)"),
     ("break_points", AGREEMENT, ROBOT_PATH, ".break_points(self.mission.path()?.len())"),
-    ("have_arrived", AGREEMENT, ROBOT_FACTS, "agreement.have_arrived(active.places())"),
+    ("have_arrived", AGREEMENT, ROBOT_PATH, "agreement.have_arrived(subgroup.places())"),
     ("new", BULLETIN, BULLETIN, "NoticeId::new(0, 0)"),
     ("next", BULLETIN, ROBOT_MISSION, "self.bulletin.next(self.id, Shared::new(notice))"),
     ("id", BULLETIN, ROBOT_FACTS, "self.bulletin.id()"),

@@ -8,6 +8,7 @@ use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
 use super::super::beacon::Beacon;
 use super::super::duty::Station;
+use super::super::roll::Wreck;
 use super::super::site::Site;
 use super::Robot;
 
@@ -88,6 +89,16 @@ impl Neighbour {
     pub fn is_access_point(&self) -> bool {
         self.beacon.duty.is_none()
     }
+
+    /// Whether it has been silent for so long that it is out of range, or does not run.
+    pub fn is_silent(&self) -> bool {
+        usize::from(self.silent_rounds) == ROUNDS_TO_BE_HEARD
+    }
+
+    /// Where its body was when it was heard last.
+    pub fn wreck(&self) -> Wreck {
+        Wreck { robot: self.id(), place: self.position(), heard_in: self.heard_in }
+    }
 }
 
 impl Robot {
@@ -119,7 +130,8 @@ impl Robot {
 
     #[inline(never)]
     fn hear_news(&mut self, period: u32, confirmed: Option<u32>, beacon: &Arc<Beacon>) {
-        if self.is_new && period > self.period {
+        // Clocks may be a little apart; more than that, it has begun later than others.
+        if period > self.period + u32::from(!self.is_new) {
             self.join_in(period);
         }
         let known = self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id);
@@ -182,7 +194,7 @@ impl Robot {
             *known = known.seen_from(self.position, &self.site);
         }
         known.silent_rounds = silent_rounds;
-        let is_silent = usize::from(silent_rounds) == ROUNDS_TO_BE_HEARD;
+        let is_silent = known.is_silent();
         let is_lost = is_silent && (known.is_access_point() || !self.site.is_near(known.distance));
         let (id, reliability) = (known.id(), known.reliability);
         let is_gone = is_silent && self.is_gone(id);

@@ -106,7 +106,7 @@ impl Robot {
     }
 
     pub(super) fn task_position(&self, task: usize) -> Option<pleach_continuous::Point> {
-        self.tasks.iter().find(|known| known.number == task).map(|known| known.position)
+        self.announcement()?.position_of(task)
     }
 
     // ---- What the guards ask -----------------------------------------------------------------
@@ -138,14 +138,17 @@ impl Robot {
     /// Whether this robot may leave its post to a mover, and go on for it.
     pub(super) fn may_be_relieved(&self) -> bool {
         self.is_parked()
-            && self.knows_task()
+            && self.knows_mission()
             && self.offers().offer().is_none()
             && self.duty.station().is_some()
     }
 
-    /// Whether it goes by the announcement by which the others go: one that has restarted does not.
-    fn knows_task(&self) -> bool {
-        self.current_task().is_some() && self.epoch == self.notice_id().epoch()
+    /// Whether it goes by the announcement by which the others go, and knows Σ where one is announced: one
+    /// that has restarted does not at first.
+    fn knows_mission(&self) -> bool {
+        let announced = self.announced.as_ref();
+        let is_current = announced.is_some_and(|(id, _)| id.epoch() == self.notice_id().epoch());
+        is_current && !self.facts.path_announced
     }
 
     /// Whether an exchange is under way. The robot then stands still, and what it does stays what

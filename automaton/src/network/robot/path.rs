@@ -7,18 +7,14 @@ use pleach_discrete::network::{Agreement, NodeId, NoticeId, Post, PostId, PostKi
 
 use super::super::beacon::Notice;
 use super::super::duty::{Duty, Hop, Path, Shifting, Waiting};
-use super::super::mission::{Advance, PathAgreement, RecruitElection, Shift};
+use super::super::mission::{Advance, PathAgreement, Shift};
 use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
 /// The path Σ is known: its members report whether they are break points.
-pub(super) fn vote(
-    _: &RecruitElection,
-    robot: &Robot,
-    effects: &mut Effects,
-) -> Option<PathAgreement> {
+pub(super) fn vote<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<PathAgreement> {
     let Notice::Path(path) = robot.notice() else { return None };
     let agreement = robot.vote_on(path, robot.notice_id());
     effects.push(MissionEffect::Agree(Some(agreement)));
@@ -104,6 +100,34 @@ impl Robot {
     /// The subgroup that is the active team, while one is.
     pub(super) fn active_subgroup(&self) -> Option<Subgroup> {
         self.mission.shift()?.active()
+    }
+
+    /// Whether the robot at `place` of Σ has reported that it has arrived at the next.
+    pub(super) fn has_reported(&self, place: usize) -> bool {
+        self.agreement.as_ref().is_some_and(|known| known.have_arrived(place..place + 1))
+    }
+
+    /// Whether every member of `subgroup` has reported that it has arrived.
+    pub(super) fn knows_arrived(&self, subgroup: Subgroup) -> bool {
+        self.agreement.as_ref().is_some_and(|agreement| agreement.have_arrived(subgroup.places()))
+    }
+
+    /// Whether the robot that `active` relieves knows that it has arrived, if this robot is the one that
+    /// takes its post. That robot then gives the post up if the mission changes, and not before.
+    pub(super) fn is_expected_at(&self, active: Subgroup) -> bool {
+        let Duty::Shifting(Shifting { place, .. }) = *self.duty else { return true };
+        let relieved = self.next_hop().filter(|_| place + 1 == active.end);
+        relieved.is_none_or(|hop| self.holder(hop.post.id).is_some_and(|it| self.tells_arrival(it, active)))
+    }
+
+    fn tells_arrival(&self, neighbour: &Neighbour, subgroup: Subgroup) -> bool {
+        let beacon = &*neighbour.beacon;
+        let is_engaged = beacon.offer.is_some() || beacon.reply.is_some();
+        let known = beacon.agreement.as_ref().zip(self.agreement.as_ref());
+        !is_engaged
+            && known.is_some_and(|(told, own)| {
+                told.id() == own.id() && told.have_arrived(subgroup.places())
+            })
     }
 
     /// Reports that it has arrived at the next place of Σ.
