@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example storm -- COUNT [FIRST_SEED]` runs as many missions, of all kinds
 //! and on all plans in turn, and tells the first that breaks a promise of safety, shrunk.
-//! `cargo run --release --example storm -- seed SEED` runs the mission of that seed alone.
+//! `cargo run --release --example storm -- seed SEED` tells the mission of that seed.
 //! `cargo run --release --example storm -- table SEEDS [KIND]` prints a table of what becomes of
 //! missions under each kind of storm.
 
@@ -35,7 +35,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match &arguments[..] {
         [word, name, kind, seed] if word == "one" => one(name, kind, seed.parse()?),
-        [word, seed] if word == "seed" => many(seed.parse()?, 1),
+        [word, seed] if word == "seed" => {
+            let seed = seed.parse()?;
+            let (scenario, storm) = mission(seed)?;
+            tell_in_full(&scenario, seed, &storm, MOST_PERIODS)
+        }
         [word, seeds, kind @ ..] if word == "table" => table(seeds.parse()?, kind.first()),
         [count, first @ ..] => {
             let first = first.first().map_or(Ok(0), |first| first.parse())?;
@@ -138,15 +142,25 @@ fn one(name: &str, kind: &str, seed: u64) -> Result<(), Box<dyn Error>> {
     let kind = Kind::ALL.iter().find(named).ok_or("no such kind")?;
     let scenario = allowing_for(*kind, &scenario)?;
     let storm = draw(*kind, seed, &scenario, calm.periods as f64);
-    println!("{storm:#?}");
-    let verdict = ride(&scenario, &storm, MOST_PERIODS.min(3 * calm.periods))?;
+    tell_in_full(&scenario, seed, &storm, MOST_PERIODS.min(3 * calm.periods))
+}
+
+/// Tells a mission, and what led to what it breaks.
+fn tell_in_full(
+    scenario: &ValidScenario,
+    seed: u64,
+    storm: &Storm,
+    periods: usize,
+) -> Result<(), Box<dyn Error>> {
+    println!("{} in {storm:#?}", scenario.name);
+    let verdict = ride(scenario, storm, periods)?;
     for (step, event) in &verdict.events {
         println!("k = {step:<6} {}", story::tell(event));
     }
-    report(&scenario, seed, &verdict);
+    report(scenario, seed, &verdict);
     if let Some(violation) = verdict.violations.first() {
         let concerned = |node: usize| violation.robots.contains(&node);
-        ride_watched(&scenario, &storm, violation.step + 2, |snapshot| {
+        ride_watched(scenario, storm, violation.step + 2, |snapshot| {
             if snapshot.step + 6 < violation.step {
                 return;
             }
