@@ -243,13 +243,10 @@ impl Robot {
         self.label == Label::Alone && self.is_late
     }
 
-    /// Whether it waits on Σ, and the robot behind may hold its post: it knows that the subgroup that
-    /// relieves it has arrived.
+    /// Whether it waits on Σ, and has given its post up to the robot behind.
     pub(super) fn is_superfluous(&self) -> bool {
         let place = self.duty.held().and_then(|_| self.duty.place());
-        let shift = self.mission.shift();
-        let behind = shift.zip(place).and_then(|(shift, place)| shift.subgroup_up_to(place));
-        behind.is_some_and(|behind| self.knows_arrived(behind))
+        place.zip(self.agreement.as_ref()).is_some_and(|(at, known)| known.has_given_up(at))
     }
 
     /// Whether another parent has been found to be better.

@@ -80,7 +80,8 @@ facts! {
         path_announced,
         /// Every place of Σ has voted whether it is a break point.
         points_agreed,
-        /// Every member of the active subgroup has arrived, and the robot that it relieves knows it.
+        /// Every member of the active subgroup has arrived, and the robot that it relieves gives its post
+        /// up.
         subgroup_arrived,
         /// This robot is the last that Σ relieves, and its post is held by another.
         relieved,
@@ -151,7 +152,7 @@ facts! {
             serves: robot.duty.post().is_some_and(|post| post.task.is_some()),
             /// It joins a mission under way, and has no post of its own yet.
             joins_late: robot.joins_late(),
-            /// The subgroup that relieves it has arrived: the robot behind on Σ may hold its post.
+            /// It has given its post up to the subgroup that relieves it.
             superfluous: robot.is_superfluous(),
             /// It holds a fixed post, or robots attached to it find no other parent.
             has_past_duties: robot.has_past_duties(),
@@ -327,7 +328,7 @@ impl Robot {
                 if matches!(duty, Duty::Shifting(_)) && !self.has_arrived() {
                     facts.stalled = f64::from(self.still_periods);
                 }
-                facts.subgroup_arrived = self.knows_arrived(active) && self.is_expected_at(active);
+                facts.subgroup_arrived = self.knows_arrived(active) && self.may_relieve(active);
             }
             (
                 None,

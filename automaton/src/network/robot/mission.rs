@@ -121,7 +121,10 @@ impl Robot {
         }
         match self.phase() {
             Phase::RecruitElection => self.answer_call(),
-            Phase::Shift => self.report_arrival(),
+            Phase::Shift => {
+                self.report_arrival();
+                self.yield_post();
+            }
             _ => {}
         }
         self.review_team();

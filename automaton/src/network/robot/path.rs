@@ -112,22 +112,24 @@ impl Robot {
         self.agreement.as_ref().is_some_and(|agreement| agreement.have_arrived(subgroup.places()))
     }
 
-    /// Whether the robot that `active` relieves knows that it has arrived, if this robot is the one that
-    /// takes its post. That robot then gives the post up if the mission changes, and not before.
-    pub(super) fn is_expected_at(&self, active: Subgroup) -> bool {
-        let Duty::Shifting(Shifting { place, .. }) = *self.duty else { return true };
-        let relieved = self.next_hop().filter(|_| place + 1 == active.end);
-        relieved.is_none_or(|hop| self.holder(hop.post.id).is_some_and(|it| self.tells_arrival(it, active)))
+    /// Whether the robot that `subgroup` relieves has given its post up.
+    pub(super) fn may_relieve(&self, subgroup: Subgroup) -> bool {
+        self.agreement.as_ref().is_some_and(|agreement| agreement.has_given_up(subgroup.end))
     }
 
-    fn tells_arrival(&self, neighbour: &Neighbour, subgroup: Subgroup) -> bool {
-        let beacon = &*neighbour.beacon;
-        let is_engaged = beacon.offer.is_some() || beacon.reply.is_some();
-        let known = beacon.agreement.as_ref().zip(self.agreement.as_ref());
-        !is_engaged
-            && known.is_some_and(|(told, own)| {
-                told.id() == own.id() && told.have_arrived(subgroup.places())
-            })
+    /// Gives its post up to the subgroup that relieves it, once that has arrived: from now on the
+    /// robot behind may hold it.
+    pub(super) fn yield_post(&mut self) {
+        let place = self.duty.held().and_then(|_| self.duty.place());
+        let shift = self.mission.shift();
+        if let Some(place) = place
+            && let Some(behind) = shift.and_then(|shift| shift.subgroup_up_to(place))
+            && self.knows_arrived(behind)
+            && !self.is_engaged()
+            && let Some(agreement) = &mut self.agreement
+        {
+            agreement.give_up(place);
+        }
     }
 
     /// Reports that it has arrived at the next place of Σ.
