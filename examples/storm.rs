@@ -45,7 +45,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             let first = first.first().map_or(Ok(0), |first| first.parse())?;
             many(first, count.parse()?)
         }
-        _ => Err("usage: storm COUNT [FIRST_SEED] | storm seed SEED | storm table SEEDS [KIND]".into()),
+        _ => {
+            Err("usage: storm COUNT [FIRST_SEED] | storm seed SEED | storm table SEEDS [KIND]"
+                .into())
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use pleach_discrete::network::{
 };
 use serde_json::{Value, json};
 
-use super::super::beacon::{Notice, TeamReport};
+use super::super::beacon::{Announcement, Notice, TeamReport};
 use super::super::duty::{
     AwaitingRelease, Bound, Duty, Following, Held, Hop, Junction, Leading, Leaf, Path, PathPlace,
     Relay, Shifting, Standby, Station, Waiting,
@@ -87,6 +87,7 @@ fn silent() -> Beacon {
         sender: 13,
         position: Point::origin(),
         bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
+        announced: None,
         election: None,
         agreement: None,
         route: None,

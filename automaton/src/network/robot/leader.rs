@@ -6,8 +6,8 @@ use pleach_discrete::network::{Bid, Election, NodeId};
 use super::super::beacon::{Announced, Notice};
 use super::super::mission::{Advance, LeaderElection};
 use super::super::record::MissionEvent;
-use super::mission::{Effects, MissionEffect};
 use super::Robot;
+use super::mission::{Effects, MissionEffect};
 
 /// Distances in bids are compared in units of this share of the full range l: finer differences
 /// are ties, which go to the higher index.

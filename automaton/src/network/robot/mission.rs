@@ -9,9 +9,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{
-    Agreement, Bid, Election, MISSION, MissionStep, NoticeId, Phase,
-};
+use pleach_discrete::network::{Agreement, Bid, Election, MISSION, MissionStep, NoticeId, Phase};
 use pleach_guards::network::mission as guards;
 
 use crate::located::{Current, DataOf, Holds, Place as _};
