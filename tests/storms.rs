@@ -157,8 +157,8 @@ fn missions_with_a_robot_that_restarts_come_to_an_end() {
 /// way, and who is gone. The user asks again.
 #[test]
 fn the_mission_goes_on_when_the_first_access_point_restarts() {
-    for (name, time, back) in
-        [("corridor", 100.0, 105.0), ("study-2", 60.0, 90.0), ("corridor", 3.0, 4.0)]
+    for (name, gone, time, back) in
+        [("corridor", 11, 100.0, 105.0), ("study-2", 6, 60.0, 90.0), ("corridor", 0, 3.0, 4.0)]
     {
         let scenario = ValidScenario::new(shipped(name)).expect("it is valid");
         let first = scenario.robot.len();
@@ -166,8 +166,7 @@ fn the_mission_goes_on_when_the_first_access_point_restarts() {
             crash: Some(Crash { time, inputs: 0, back }),
             ..Trouble::default()
         };
-        let gone = (0, crash(30.0, None));
-        let troubles = vec![gone, (first, crash(time, Some(back)))];
+        let troubles = vec![(gone, crash(30.0, None)), (first, crash(time, Some(back)))];
         let storm = Storm { troubles, ..Storm::default() };
         let verdict = ride(&scenario, &storm, 1_500).expect("nodes go on");
         assert_eq!(verdict.violations, [], "{name}, back at {back} s");
