@@ -6,8 +6,9 @@ use crate::floor_plans::{Family, scenario as plan};
 use crate::missions::shipped;
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::network::{Crash, Trouble};
 use pleach::verify::network::Property;
-use pleach::verify::network::storm::{Kind, Verdict, allowing_for, draw, ride};
+use pleach::verify::network::storm::{Kind, Storm, Verdict, allowing_for, draw, ride};
 
 const PERIODS: usize = 600;
 /// Control periods for robots that keep larger clearances and shorter links.
@@ -150,6 +151,28 @@ fn missions_with_a_robot_that_restarts_come_to_an_end() {
     };
     assert_eq!(end(1).outcome, Outcome::Serviced);
     assert_eq!(end(2).outcome, Outcome::Blocked);
+}
+
+/// The first access point restarts, and has forgotten everything: it learns from the robots what is under
+/// way, and who is gone. The user asks again.
+#[test]
+fn the_mission_goes_on_when_the_first_access_point_restarts() {
+    for (name, gone, time, back) in
+        [("corridor", 11, 100.0, 105.0), ("study-2", 6, 60.0, 90.0), ("corridor", 0, 3.0, 4.0)]
+    {
+        let scenario = ValidScenario::new(shipped(name)).expect("it is valid");
+        let first = scenario.robot.len();
+        let crash = |time, back| Trouble {
+            crash: Some(Crash { time, inputs: 0, back }),
+            ..Trouble::default()
+        };
+        let troubles = vec![(gone, crash(30.0, None)), (first, crash(time, Some(back)))];
+        let storm = Storm { troubles, ..Storm::default() };
+        let verdict = ride(&scenario, &storm, 1_500).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{name}, back at {back} s");
+        let end = verdict.end.unwrap_or_else(|| panic!("{name}, back at {back} s: no end"));
+        assert_eq!(end.outcome, Outcome::Serviced, "{name}, back at {back} s: {}", end.reason);
+    }
 }
 
 /// A robot that stops is given up, and nothing breaks. The others go round it and service all tasks, but
