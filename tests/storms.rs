@@ -191,4 +191,5 @@ fn the_mission_goes_on_without_a_robot_that_stops() {
         }
     }
     assert!(blocked.len() < 2, "{blocked:?}");
+    assert!(blocked.iter().all(|(.., reason)| reason.contains("have stopped")), "{blocked:?}");
 }
