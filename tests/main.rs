@@ -11,6 +11,7 @@ mod missions;
 mod oracle;
 mod sources;
 
+mod absurd_numbers;
 mod book;
 mod browser;
 mod command_line;
@@ -28,6 +29,7 @@ mod proven;
 mod public_api;
 mod random_missions;
 mod records;
+mod routes;
 mod scenario_faults;
 mod spaceex;
 mod storms;

@@ -1,0 +1,98 @@
+//! Numbers that nobody means, at every place of a scenario where a number can stand.
+//!
+//! A scenario with one of them is refused with a message that names the key, or it is lawful; then its
+//! mission runs, too. What is lawful is told here, apart from the ranges that the product states.
+
+use crate::missions::{network_over, run_unmonitored};
+use pleach::automaton::network::Radio;
+use pleach::automaton::network::scenario::{CONTROL, Values};
+use pleach::scenario_file::parse_with;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+const ABSURD: [&str; 15] = [
+    "0", "-0.0", "-1", "nan", "-nan", "inf", "-inf", "1e-300", "-1e-300", "9e18", "1e19", "1e300",
+    "-1e300", "9000000000000000000", "-9223372036854775808",
+];
+
+/// The keys at which a number can stand, each with those of [`ABSURD`] that are lawful there.
+const NUMBERS: &[(&str, &[&str])] = &[
+    ("link.full_range", &[]),
+    ("link.max_range", &[]),
+    ("link.steepness", &[]),
+    ("control.clearance", &[]),
+    ("control.service_radius", &[]),
+    ("control.step_radius", &[]),
+    ("control.position_error", NOTHING),
+    ("control.motion_error", NOTHING),
+    ("control.residual_tolerance", NOTHING_OR_LITTLE),
+    ("control.max_steps", &[]),
+    ("control.period", &[]),
+    ("control.rounds_per_period", &[]),
+    ("control.routing_iterations", &[]),
+    ("control.routing_reserve", NOTHING_OR_LITTLE),
+    ("control.slope_aversion", NOTHING_OR_LITTLE),
+    ("control.tree_reliability", &["1e-300"]),
+    ("robot[1].rate", NOTHING_OR_LITTLE),
+    ("robot[1].position[0]", &[]),
+    ("robot[1].position[1]", &[]),
+    ("access_point[0].position[0]", &[]),
+    ("access_point[0].position[1]", &[]),
+    // A task is anywhere: one that no robot can come close to ends the mission.
+    ("task[0].position[0]", NEAR),
+    ("task[0].position[1]", NEAR),
+    ("workspace.boundary[0][0]", NEAR),
+    ("workspace.boundary[2][1]", &[]),
+    ("workspace.holes[0][0][0]", &[]),
+    ("workspace.holes[0][2][1]", &[]),
+];
+
+const NOTHING: &[&str] = &["0", "-0.0"];
+const NOTHING_OR_LITTLE: &[&str] = &["0", "-0.0", "1e-300"];
+const NEAR: &[&str] = &["0", "-0.0", "-1", "1e-300", "-1e-300"];
+
+/// A room for robots with small errors, over links with a steepness.
+fn room() -> String {
+    let room = include_str!("scenarios/room.toml");
+    let link = "max_range = 0.5\nmodel = \"logistic\"\nsteepness = 4.0";
+    room.replace("max_range = 0.5", link)
+}
+
+#[test]
+fn an_absurd_number_is_refused_by_its_key_or_does_no_harm() {
+    let room = room();
+    for &(key, lawful) in NUMBERS {
+        for number in ABSURD {
+            let begin = Instant::now();
+            let setting = format!("{key}={number}");
+            let read = parse_with(&room, Path::new("room.toml"), &[setting.parse().unwrap()]);
+            match read {
+                Ok(scenario) => {
+                    assert!(lawful.contains(&number), "{setting} is read");
+                    let mut network = network_over(&scenario, Radio::new);
+                    run_unmonitored(&mut network, 10);
+                }
+                Err(error) => {
+                    assert!(!lawful.contains(&number), "{setting} is refused: {error}");
+                    let table = key.split_once(['.', '[']).unwrap().0;
+                    let names_key = error.to_string().lines().all(|line| line.contains(table));
+                    assert!(names_key, "{setting}: {error}");
+                    println!("{error}");
+                }
+            }
+            let spent = begin.elapsed();
+            assert!(spent < Duration::from_secs(5), "{setting} takes {spent:?}");
+        }
+    }
+}
+
+/// A key that is new is tried out with the others.
+#[test]
+fn every_number_of_the_control_settings_is_tried_out() {
+    let keys = CONTROL.iter().filter(|key| !matches!(key.values, Values::OneOf(_)));
+    let stated: BTreeSet<String> = keys.map(|key| format!("control.{}", key.name)).collect();
+    let tried = NUMBERS.iter().map(|(key, _)| key.to_string());
+    let tried: BTreeSet<String> = tried.filter(|key| key.starts_with("control.")).collect();
+    assert_eq!(tried, stated);
+}
