@@ -6,14 +6,18 @@
 //! second order only. Σ w T² is strongly convex with modulus 2 w ≥ 2: where it exceeds its least value
 //! by ε, no share is off by more than √ε.
 
-use crate::missions::{Filtered, network_over, run_unmonitored, shipped};
+use crate::floor_plans::Dice;
+use crate::missions::{Filtered, network_over, run_unmonitored, valid};
 use pleach::automaton::network::Site;
 use pleach::automaton::network::record::{Route, Snapshot};
-use pleach::automaton::network::scenario::{RoutingMethod, Scenario};
+use pleach::automaton::network::scenario::{
+    AccessPoint, Control, LinkRanges, RobotStart, RoutingMethod, Scenario, Task, WorkspaceOutline,
+};
 use pleach::continuous::Point;
 use pleach::continuous::network::rates::Receiver;
 use pleach::continuous::network::routing::central::{CentralRouting, solve_central};
 use pleach::continuous::network::routing::problem::{DirectedLink, RoutingProblem};
+use std::f64::consts::TAU;
 
 /// By how much Σ w T² may exceed what clarabel finds.
 const EXCESS: f64 = 1e-6;
@@ -21,8 +25,11 @@ const EXCESS: f64 = 1e-6;
 const ROUNDING: f64 = 1e-9;
 /// Links with less reliability carry nothing, unless they belong to the tree.
 const LEAST_USEFUL_RELIABILITY: f64 = 0.3;
-/// Control periods until routes have converged.
-const PERIODS: usize = 400;
+/// Control periods until routes have converged, with so many iterations each.
+const PERIODS: usize = 300;
+const ITERATIONS: usize = 20;
+const SCENARIOS: u64 = 4;
+const ROBOTS: usize = 10;
 
 /// A mission whose request never arrives: the robots stand where they start, and route.
 fn routes_of(scenario: &Scenario) -> Vec<Snapshot> {
@@ -67,7 +74,10 @@ fn shares(problem: &RoutingProblem, snapshot: &Snapshot) -> Vec<f64> {
 /// Whether rates are carried, and nobody sends for more than all of its time.
 fn assert_feasible(problem: &RoutingProblem, shares: &[f64], k: usize, name: &str) {
     for (robot, residual) in problem.residuals(shares).into_iter().enumerate() {
-        assert!(residual >= -ROUNDING, "{name}, k = {k}: robot {robot} has a residual of {residual}");
+        assert!(
+            residual >= -ROUNDING,
+            "{name}, k = {k}: robot {robot} has a residual of {residual}"
+        );
     }
     for (robot, used) in problem.used_time(shares).into_iter().enumerate() {
         assert!(used <= 1.0, "{name}, k = {k}: robot {robot} sends for {used} of its time");
@@ -84,16 +94,46 @@ fn assert_optimal(problem: &RoutingProblem, shares: &[f64], optimum: &CentralRou
     }
 }
 
+/// Robots that are scattered around an access point, each within reach of one before it.
+fn scattered(seed: u64) -> Scenario {
+    let mut dice = Dice::new(&[seed]);
+    let mut places = vec![[1.2, 0.8]];
+    while places.len() <= ROBOTS {
+        let [x, y] = dice.pick(&places);
+        let (angle, away) = (dice.between(0.0, TAU), dice.between(0.2, 0.36));
+        let place = [x + away * angle.cos(), y + away * angle.sin()];
+        let is_free = |other: &[f64; 2]| (place[0] - other[0]).hypot(place[1] - other[1]) > 0.15;
+        let is_inside = (0.1..2.3).contains(&place[0]) && (0.1..1.5).contains(&place[1]);
+        if is_inside && places.iter().all(is_free) {
+            places.push(place);
+        }
+    }
+    let robots = places[1..].iter().map(|position| RobotStart { position: *position, rate: 0.02 });
+    Scenario {
+        name: format!("scattered-{seed}"),
+        description: None,
+        workspace: WorkspaceOutline {
+            boundary: vec![[0.0, 0.0], [2.4, 0.0], [2.4, 1.6], [0.0, 1.6]],
+            holes: Vec::new(),
+        },
+        link: LinkRanges::new(0.3, 0.6),
+        control: Control::default(),
+        access_point: vec![AccessPoint { position: places[0] }],
+        robot: robots.collect(),
+        task: vec![Task { position: [0.5, 0.5] }],
+    }
+}
+
 #[test]
 fn robots_find_the_routes_that_clarabel_finds_and_always_carry_their_rates() {
     for method in [RoutingMethod::Dual, RoutingMethod::AcceleratedDual, RoutingMethod::Adal] {
-        for name in ["study-1", "study-2", "corridor", "ring", "two-clusters"] {
-            let mut scenario = shipped(name);
+        for seed in 0..SCENARIOS {
+            let mut scenario = valid(scattered(seed)).into_scenario();
             scenario.control.routing_method = Some(method);
-            scenario.robot.iter_mut().for_each(|robot| robot.rate = 0.02);
+            scenario.control.routing_iterations = Some(ITERATIONS);
             let problem = problem(&scenario);
             let optimum = solve_central(&problem).unwrap();
-            let name = format!("{name}, {method:?}");
+            let name = format!("{}, {method:?}", scenario.name);
             let snapshots = routes_of(&scenario);
             for (k, snapshot) in snapshots.iter().enumerate() {
                 assert_feasible(&problem, &shares(&problem, snapshot), k, &name);

@@ -73,7 +73,7 @@ impl Robot {
     /// out is not told by its [`account`](Self::account).
     pub fn leaves_out_nothing(&self) -> bool {
         let (beacon, told) = (self.public_state(), self.last_beacon.get());
-        (self.has_news || self.has_nothing_to_process())
+        (self.has_news || self.overlooked().is_none())
             && (self.has_unsent_news || told.is_none_or(|told| *told == beacon))
             && (self.is_unmeasured || self.facts_stand())
     }

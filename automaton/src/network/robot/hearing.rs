@@ -88,6 +88,11 @@ impl Neighbour {
     pub fn is_access_point(&self) -> bool {
         self.beacon.duty.is_none()
     }
+
+    /// Whether it has been heard in this control period or in the one before.
+    pub const fn is_present(&self, period: u32) -> bool {
+        self.heard_in.saturating_add(1) >= period
+    }
 }
 
 impl Robot {
@@ -108,8 +113,9 @@ impl Robot {
             && Arc::ptr_eq(&known.beacon, beacon)
             && known.measured_at == self.position
         {
+            let is_back = !known.is_present(self.period);
             (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
-            self.has_news |= self.awaits_confirmation && known.confirmed < confirmed;
+            self.has_news |= is_back || self.awaits_confirmation && known.confirmed < confirmed;
             known.confirmed = known.confirmed.max(confirmed);
             self.heard_up_to += 1;
         } else {
@@ -144,6 +150,7 @@ impl Robot {
         if !is_same && beacon.is_older_than(&known.beacon) {
             return;
         }
+        let is_back = !known.is_present(self.period);
         (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
         let is_newer = known.confirmed < confirmed;
         let confirmed = if is_same { known.confirmed.max(confirmed) } else { confirmed };
@@ -153,7 +160,7 @@ impl Robot {
             (known.beacon, known.confirmed) = (Arc::clone(beacon), confirmed);
         } else {
             known.confirmed = confirmed;
-            self.has_news |= self.awaits_confirmation && is_newer;
+            self.has_news |= is_back || self.awaits_confirmation && is_newer;
             return;
         }
         self.receive_news();
