@@ -20,6 +20,7 @@ mod determinism;
 mod documents;
 mod faulty_traces;
 mod found_missions;
+mod harnesses;
 mod import;
 mod layering;
 mod medium;
