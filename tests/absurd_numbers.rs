@@ -8,6 +8,7 @@ use pleach::automaton::network::Radio;
 use pleach::automaton::network::scenario::{CONTROL, Values};
 use pleach::scenario_file::parse_with;
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -38,8 +39,8 @@ const NUMBERS: &[(&str, &[&str], &str)] = &[
     ("control.clearance", &[], "clearance"),
     ("control.service_radius", &[], "control.service_radius"),
     ("control.step_radius", &[], "control.step_radius"),
-    ("control.position_error", NOTHING, "control.position_error"),
-    ("control.motion_error", NOTHING, "control.motion_error"),
+    ("control.position_error", NOTHING_OR_LITTLE, "control.position_error"),
+    ("control.motion_error", NOTHING_OR_LITTLE, "control.motion_error"),
     ("control.residual_tolerance", NOTHING_OR_LITTLE, "control.residual_tolerance"),
     ("control.max_steps", &[], "control.max_steps"),
     ("control.period", &[], "control.period"),
@@ -63,7 +64,6 @@ const NUMBERS: &[(&str, &[&str], &str)] = &[
     ("workspace.holes[0][2][1]", &[], "workspace"),
 ];
 
-const NOTHING: &[&str] = &["0", "-0.0"];
 const NOTHING_OR_LITTLE: &[&str] = &["0", "-0.0", "1e-300"];
 const NEAR: &[&str] = &["0", "-0.0", "-1", "1e-300", "-1e-300"];
 
@@ -103,6 +103,32 @@ fn an_absurd_number_is_refused_by_its_key_or_does_no_harm() {
         }
     }
 }
+
+/// Polygons with many corners are read in a moment: a round hall with a round pillar.
+#[test]
+fn ten_thousand_corners_are_read_in_a_moment() {
+    let round = |radius: f64| -> String {
+        let corner = |at: u32| {
+            let angle = TAU * f64::from(at) / f64::from(CORNERS);
+            format!("[{}, {}],", radius * angle.cos(), radius * angle.sin())
+        };
+        (0..CORNERS).map(corner).collect()
+    };
+    let text = format!(
+        "name = \"rotunda\"\n[workspace]\nboundary = [{}]\nholes = [[{}]]\n\
+         [link]\nfull_range = 0.4\nmax_range = 0.5\n[[access_point]]\nposition = [1.0, 0.0]\n\
+         [[robot]]\nposition = [1.2, 0.0]\n",
+        round(2.0),
+        round(0.5)
+    );
+    let begin = Instant::now();
+    let scenario = parse_with(&text, Path::new("rotunda.toml"), &[]).unwrap();
+    println!("read in {:?}", begin.elapsed());
+    assert_eq!(scenario.workspace.boundary.len(), CORNERS as usize);
+    assert!(begin.elapsed() < Duration::from_secs(10), "{:?}", begin.elapsed());
+}
+
+const CORNERS: u32 = 10_000;
 
 /// A key that is new is tried out with the others.
 #[test]

@@ -40,7 +40,6 @@ const ROBOT_HEARING: &str = "automaton/src/network/robot/hearing.rs";
 const ROBOT_LEADER: &str = "automaton/src/network/robot/leader.rs";
 const ROBOT_MISSION: &str = "automaton/src/network/robot/mission.rs";
 const ROBOT_PATH: &str = "automaton/src/network/robot/path.rs";
-const ROBOT_ROUTING: &str = "automaton/src/network/robot/routing.rs";
 
 /// In the order of the files.
 const PROOFS: &[Proof] = &[

@@ -22,6 +22,7 @@ fn storm(name: &str, kind: Kind, seed: u64) -> Verdict {
 }
 
 fn storm_for(periods: usize, name: &str, kind: Kind, seed: u64) -> Verdict {
+    println!("{name}, {}, seed {seed}", kind.name());
     let scenario = ValidScenario::new(shipped(name)).expect("it is valid");
     let scenario = allowing_for(kind, &scenario).expect("there is room for errors");
     let mut storm = draw(kind, seed, &scenario, DURATION);

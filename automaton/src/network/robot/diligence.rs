@@ -7,44 +7,52 @@
 use super::Robot;
 use crate::located::Place as _;
 
+macro_rules! first_difference {
+    ($($part:literal: $now:expr, $before:expr;)+) => {{
+        $(if $now != $before {
+            return Some(format!("its {} is {:?} and was {:?}", $part, $now, $before));
+        })+
+        None
+    }};
+}
+
 impl Robot {
     /// What would change if it processed what it has received.
-    pub(super) fn overlooked(&self) -> Option<&'static str> {
+    pub(super) fn overlooked(&self) -> Option<String> {
         let mut again = self.clone();
         match again.process_messages() {
             Ok(()) => again.difference_to(self),
-            Err(_) => Some("its automata"),
+            Err(error) => Some(error.to_string()),
         }
     }
 
-    /// In what two robots differ, of what decides on what they say and do.
-    fn difference_to(&self, other: &Robot) -> Option<&'static str> {
-        let (one, two) = (self.public_state(), other.public_state());
-        let same = [
-            (one.bulletin == two.bulletin, "its newest notice"),
-            (one.election == two.election && self.bid == other.bid, "its election"),
-            (one.agreement == two.agreement, "its agreement"),
-            (one.route == two.route, "its way to the caller"),
-            (one.team == two.team, "its report on the team"),
-            (self.followed_post == other.followed_post, "the post that is followed"),
-            (*self.mission == *other.mission, "the phase of its mission"),
-            (one.lineage == two.lineage, "its lineage"),
-            (one.parent == two.parent, "its parent"),
-            (self.desired_parent == other.desired_parent, "the parent that it looks for"),
-            (self.reattaches_to == other.reattaches_to, "the parent that it finds better"),
-            (self.awaits_confirmation == other.awaits_confirmation, "whether it is confirmed"),
-            (self.confirmation == other.confirmation, "its confirmation"),
-            (one.can_detach == two.can_detach, "whether it can detach"),
-            (one.below == two.below, "the robots below it"),
-            (one.strays == two.strays, "the strays that it hears"),
-            (one.serves == two.serves, "the tasks serviced below it"),
-            (one.wrecks == two.wrecks, "the wrecks that it knows"),
-            (*self.exchange == *other.exchange, "its exchange of duties"),
-            (self.answered == other.answered, "the offers that it has answered"),
-            (self.partner == other.partner, "its partner"),
-            (one == two, "its beacon"),
-        ];
-        same.into_iter().find(|(is_same, _)| !is_same).map(|(_, part)| part)
+    /// In what this robot differs from how it was before, of what decides on what it says and does.
+    fn difference_to(&self, before: &Robot) -> Option<String> {
+        let (now, then) = (self.public_state(), before.public_state());
+        first_difference! {
+            "newest notice": now.bulletin, then.bulletin;
+            "election": now.election, then.election;
+            "bid": self.bid, before.bid;
+            "agreement": now.agreement, then.agreement;
+            "way to the caller": now.route, then.route;
+            "report on the team": now.team, then.team;
+            "post that is followed": self.followed_post, before.followed_post;
+            "mission": self.mission, before.mission;
+            "lineage": now.lineage, then.lineage;
+            "parent": now.parent, then.parent;
+            "parent that it looks for": self.desired_parent, before.desired_parent;
+            "parent that it finds better": self.reattaches_to, before.reattaches_to;
+            "wait for a confirmation": self.awaits_confirmation, before.awaits_confirmation;
+            "confirmation": self.confirmation, before.confirmation;
+            "robots below": now.below, then.below;
+            "strays": now.strays, then.strays;
+            "tasks serviced below": now.serves, then.serves;
+            "wrecks": now.wrecks, then.wrecks;
+            "exchange of duties": self.exchange, before.exchange;
+            "offers answered": self.answered, before.answered;
+            "partner": self.partner, before.partner;
+            "beacon": now, then;
+        }
     }
 
     /// Whether its facts are as it has measured them, and no guard holds.
