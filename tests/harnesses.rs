@@ -245,7 +245,13 @@ const PROOFS: &[Proof] = &[
     // That a tree stays one when a leaf is taken away, and when two names are exchanged, is a lemma on
     // trees; the robots' own steps are explored.
     ("a_robot_without_children_may_leave", "leads_to_access_point", TREE, INSTANT, ROOTED),
-    ("an_exchange_of_duties_keeps_the_tree", "leads_to_access_point", TREE, INSTANT, ROOTED),
+    (
+        "an_exchange_of_duties_keeps_the_tree",
+        "is_rooted",
+        TREE,
+        "exploration/src/network/properties.rs",
+        "tree::is_rooted(&parents(protocol, state))",
+    ),
     (
         "edges_give_parents_unless_a_robot_has_two",
         "parents_of",

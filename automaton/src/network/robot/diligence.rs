@@ -1,12 +1,29 @@
 //! What a robot leaves out: it processes messages, tells its state and evaluates its guards only where
 //! something has changed.
 //!
-//! That is right if doing it would change nothing. Builds with debug assertions try it out wherever
-//! something is left out, on a copy of the robot.
+//! That is right if doing it would change nothing. Builds with debug assertions look wherever guards,
+//! facts or a beacon are left out; explorers ask of every state of a robot whether processing messages
+//! again, on a copy, would change anything.
 
 use super::Robot;
 use crate::located::Place as _;
 
+impl Robot {
+    /// Whether its facts are as it has measured them, and no guard holds.
+    pub(super) fn facts_stand(&self) -> bool {
+        self.facts_now() == self.facts && self.is_at_rest()
+    }
+
+    /// Whether no transition of the mission or of its duty can be taken.
+    pub(super) fn is_at_rest(&self) -> bool {
+        let automata = &self.site.automata;
+        let step = automata.mission.enabled(self.phase(), self);
+        let jump = automata.duty.enabled(self.duty.location(), self);
+        matches!((step, jump), (Ok(None), Ok(None)))
+    }
+}
+
+#[cfg(feature = "abstraction")]
 macro_rules! first_difference {
     ($($part:literal: $now:expr, $before:expr;)+) => {{
         $(if $now != $before {
@@ -16,6 +33,7 @@ macro_rules! first_difference {
     }};
 }
 
+#[cfg(feature = "abstraction")]
 impl Robot {
     /// What would change if it processed what it has received.
     pub(super) fn overlooked(&self) -> Option<String> {
@@ -53,18 +71,5 @@ impl Robot {
             "partner": self.partner, before.partner;
             "beacon": now, then;
         }
-    }
-
-    /// Whether its facts are as it has measured them, and no guard holds.
-    pub(super) fn facts_stand(&self) -> bool {
-        self.facts_now() == self.facts && self.is_at_rest()
-    }
-
-    /// Whether no transition of the mission or of its duty can be taken.
-    pub(super) fn is_at_rest(&self) -> bool {
-        let automata = &self.site.automata;
-        let step = automata.mission.enabled(self.phase(), self);
-        let jump = automata.duty.enabled(self.duty.location(), self);
-        matches!((step, jump), (Ok(None), Ok(None)))
     }
 }

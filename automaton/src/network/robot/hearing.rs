@@ -93,6 +93,13 @@ impl Neighbour {
     pub const fn is_present(&self, period: u32) -> bool {
         self.heard_in.saturating_add(1) >= period
     }
+
+    /// It is heard in the control period `heard_in`; returns whether it was not present before.
+    const fn note_heard(&mut self, heard_in: u32, period: u32) -> bool {
+        let was_absent = !self.is_present(period);
+        (self.heard_in, self.is_heard, self.silent_rounds) = (heard_in, true, 0);
+        was_absent
+    }
 }
 
 impl Robot {
@@ -113,8 +120,7 @@ impl Robot {
             && Arc::ptr_eq(&known.beacon, beacon)
             && known.measured_at == self.position
         {
-            let is_back = !known.is_present(self.period);
-            (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
+            let is_back = known.note_heard(period, self.period);
             self.has_news |= is_back || self.awaits_confirmation && known.confirmed < confirmed;
             known.confirmed = known.confirmed.max(confirmed);
             self.heard_up_to += 1;
@@ -150,8 +156,7 @@ impl Robot {
         if !is_same && beacon.is_older_than(&known.beacon) {
             return;
         }
-        let is_back = !known.is_present(self.period);
-        (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
+        let is_back = known.note_heard(period, self.period);
         let is_newer = known.confirmed < confirmed;
         let confirmed = if is_same { known.confirmed.max(confirmed) } else { confirmed };
         if (known.measured_at, known.position()) != (self.position, beacon.position) {
