@@ -271,7 +271,7 @@ mod tests {
     use pleach_discrete::network::{Offer, Phase, Post, PostId};
     use serde_json::json;
 
-    use super::super::super::beacon::{Beacon, Bulletin, Notice};
+    use super::super::super::beacon::{Announcement, Beacon, Bulletin, Notice};
     use super::super::super::duty::{Held, Standby, Station};
     use super::super::super::message::Message;
     use super::super::super::roll::Roll;
@@ -320,6 +320,7 @@ mod tests {
             sender: 1,
             position: reference,
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
+            announced: None,
             election: None,
             agreement: None,
             route: None,
@@ -355,7 +356,9 @@ mod tests {
 
         let all = Arc::new([0, 1].into_iter().collect());
         let (position, eligible) = (Point::new(3.0, 3.0), Arc::new([0].into_iter().collect()));
-        let task = Notice::Task { task: 0, position, roster: all, eligible };
+        let before = Arc::default();
+        let task = Announcement { task: 0, position, before, roster: all, eligible };
+        let task = Notice::Task(Shared::new(task));
         mover.bulletin = mover.bulletin.next(2, Shared::new(task));
         hear(&mut robot, &mover);
         assert_eq!(
