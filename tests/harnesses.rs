@@ -115,8 +115,8 @@ const PROOFS: &[Proof] = &[
         "arrivals_are_known_together_if_each_is_known",
         "have_arrived",
         AGREEMENT,
-        ROBOT_FACTS,
-        "agreement.have_arrived(active.places())",
+        ROBOT_PATH,
+        "agreement.have_arrived(subgroup.places())",
     ),
     (
         "a_view_of_another_path_changes_nothing",
@@ -204,7 +204,7 @@ const PROOFS: &[Proof] = &[
         "is_complete",
         ELECTION,
         ROBOT_FACTS,
-        "election.is_complete(&self.roster)",
+        "election.is_complete(roster)",
     ),
     (
         "an_observer_may_see_what_the_table_allows",
