@@ -4,6 +4,7 @@
 
 use crate::floor_plans::{Family, scenario as plan};
 use crate::missions::shipped;
+use crate::stressed::stressed_scenarios;
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::ValidScenario;
 use pleach::automaton::network::{Crash, Trouble};
@@ -23,6 +24,7 @@ fn storm(name: &str, kind: Kind, seed: u64) -> Verdict {
 }
 
 fn storm_for(periods: usize, name: &str, kind: Kind, seed: u64) -> Verdict {
+    println!("{name}, {}, seed {seed}", kind.name());
     let scenario = ValidScenario::new(shipped(name)).expect("it is valid");
     let scenario = allowing_for(kind, &scenario).expect("there is room for errors");
     let mut storm = draw(kind, seed, &scenario, DURATION);
@@ -61,6 +63,31 @@ fn no_loss_of_messages_brings_robots_into_contact_or_breaks_routes() {
                 let violations = storm(name, kind, seed).violations;
                 if let Some(broken) = violations.iter().find(|it| HOLDS.contains(&it.property)) {
                     panic!("{name}, {}, seed {seed}: {broken}", kind.name());
+                }
+            }
+        }
+    }
+}
+
+/// The same where rates are near what links carry and links of the tree may be weak: there a robot that
+/// moves without the consent of those that rely on it overloads them, or stretches their links.
+#[test]
+fn no_loss_of_messages_overloads_robots_under_stress() {
+    let kinds = [
+        Kind::Loss { rate: 0.3, later: true },
+        Kind::Loss { rate: 0.6, later: true },
+        Kind::Silence,
+    ];
+    for (number, scenario) in stressed_scenarios().enumerate() {
+        let scenario = ValidScenario::new(scenario).expect("it is valid");
+        for kind in kinds {
+            for seed in 0..3 {
+                let storm = draw(kind, seed, &scenario, DURATION);
+                let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
+                if let Some(broken) =
+                    verdict.violations.iter().find(|it| HOLDS.contains(&it.property))
+                {
+                    panic!("stress {number}, {}, seed {seed}: {broken}", kind.name());
                 }
             }
         }
