@@ -106,6 +106,16 @@ impl Piece {
         self
     }
 
+    /// The same span of time and powers, without components.
+    pub(super) fn emptied(&self) -> Self {
+        Piece::new(self.start, self.end, self.origin, self.scale)
+    }
+
+    /// The largest magnitude of what is raised to powers.
+    pub(super) fn farthest(&self) -> f64 {
+        self.place(self.start).abs().max(self.place(self.end).abs())
+    }
+
     /// The highest power with a coefficient.
     pub fn degree(&self) -> usize {
         let components = 0..self.ends.len();

@@ -81,5 +81,5 @@ mod sliding;
 mod until;
 
 pub use formula::{Formula, InvalidWindow, Window, always, eventually, not, within};
-pub use judgement::{Judgement, Robustness, Status, Witness};
+pub use judgement::{Doubt, Judgement, Robustness, Status, Witness};
 pub use samples::{Samples, TemporalError};
