@@ -78,9 +78,9 @@ pub struct Unevaluated {
 /// Into how many parts a span between two samples is divided.
 const PARTS: u32 = 4;
 /// How often spans may be halved in all to see where the predicate holds, beside what each part may.
-const DECIDING: u64 = 1 << 20;
+const DECIDING: u64 = 1 << 18;
 /// How often in all to bound the margin as exactly as rounding allows, beside what each part may.
-const SHARPENING: u64 = 1 << 20;
+const SHARPENING: u64 = 1 << 18;
 /// How often spans of each part may be halved, for either purpose.
 const AT_LEAST: u64 = 32;
 /// How often spans of one part may be halved to bound the margin.
@@ -339,7 +339,12 @@ impl<'a> Follower<'a> {
             stretch.values(t, &mut own);
             states.extend(own.iter().enumerate().map(|(component, value)| {
                 let error = piece.map_or(0.0, |piece| piece.error(component));
-                let range = Interval::new(value - error, value + error).unwrap_or(Interval::WHOLE);
+                let range = if error > 0.0 {
+                    let ends = [(value - error).next_down(), (value + error).next_up()];
+                    Interval::new(ends[0], ends[1]).unwrap_or(Interval::WHOLE)
+                } else {
+                    Interval::point(*value)
+                };
                 Enclosure { middle: range, range, rate: Interval::point(0.0) }
             }));
         }
@@ -495,7 +500,7 @@ struct Open {
     leaf: Leaf,
     middle: f64,
     is_undecided: bool,
-    /// How much it may tell.
+    /// The more of it, the sooner: earlier ones first, or those in which the margin varies more.
     worth: f64,
 }
 
@@ -504,7 +509,7 @@ impl Open {
         let middle = leaf.middle()?;
         match leaf.course {
             Course::Open => {
-                let worth = leaf.to - leaf.from;
+                let worth = -leaf.from;
                 Some(Open { leaf, middle, is_undecided: true, worth })
             }
             Course::Blurred | Course::Opaque => None,

@@ -150,7 +150,9 @@ impl Witness {
         let (Time::Fixed(t) | Time::Moving(t)) = origin.time;
         let at = HybridTime { t, j: origin.jumps };
         let predicate = recording.predicate(origin.literal).clone();
-        Some(Witness { at, predicate, margin: recording.margin(origin.literal, at) })
+        // Adding 0 turns −0 into 0.
+        let margin = recording.margin(origin.literal, at) + 0.0;
+        Some(Witness { at, predicate, margin })
     }
 }
 
