@@ -43,9 +43,13 @@ fn first(trajectory: &Trajectory) -> f64 {
 #[test]
 fn decay_comes_to_levels_far_below_its_start() {
     let [x, ..] = coordinates();
-    for (start, rate, level) in
-        [(1.0, 1.0, 1e-20), (1.0, 1.0, 1e-18), (1e6, 0.1, 1e-12), (1.0, 1.0, 1e-300), (1e-3, 5.0, 1e-9)]
-    {
+    for (start, rate, level) in [
+        (1.0_f64, 1.0, 1e-20),
+        (1.0, 1.0, 1e-18),
+        (1e6, 0.1, 1e-12),
+        (1.0, 1.0, 1e-300),
+        (1e-3, 5.0, 1e-9),
+    ] {
         let exact = (start / level).ln() / rate;
         for horizon in [100.0, 2000.0, 1e4, 1e6] {
             if horizon < exact {
@@ -75,7 +79,8 @@ fn decay_beside_what_lasts_comes_to_its_level() {
     let trajectory = run(spiral, 200.0);
     for step in 1..2000 {
         let t = 0.1 * f64::from(step);
-        let [found, exact] = [trajectory.value("x", t).expect("it lasts"), (-t).exp() * (2.0 * t).cos()];
+        let [found, exact] =
+            [trajectory.value("x", t).expect("it lasts"), (-t).exp() * (2.0 * t).cos()];
         assert!((found - exact).abs() < 1e-12 * (-t).exp(), "{found:e} {exact:e} at {t}");
     }
 }

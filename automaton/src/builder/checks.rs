@@ -108,8 +108,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     /// Intervals between two numbers hold some; of others this is known when they are used.
     pub(super) fn check_intervals(&self) -> Result<(), BuildError> {
         let conditions = self.conditions.iter().map(|(event, _, reset)| (event.name(), reset));
-        let edges =
-            self.edges.iter().map(|(row, _, reset)| (self.rows[*row].event.name(), reset));
+        let edges = self.edges.iter().map(|(row, _, reset)| (self.rows[*row].event.name(), reset));
         for (event, reset) in conditions.chain(edges) {
             for one in reset.assignments().into_iter().flatten() {
                 let NewValue::Within(Expression::Constant(lower), Expression::Constant(upper)) =

@@ -121,11 +121,7 @@ impl Trajectory {
     /// # Errors
     ///
     /// [`Unevaluated`] where the predicate has no verdict.
-    pub fn account(
-        &self,
-        predicate: &Predicate,
-        instants: &[f64],
-    ) -> Result<Account, Unevaluated> {
+    pub fn account(&self, predicate: &Predicate, instants: &[f64]) -> Result<Account, Unevaluated> {
         let unknown = |error| Unevaluated { t: 0.0, error };
         let mut follower = Follower::new(self, predicate).map_err(unknown)?;
         for phase in 0..=self.jumps.len() {

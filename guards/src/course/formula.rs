@@ -132,9 +132,7 @@ impl Operation {
         match *self {
             Operation::Constant(value) => Some(R::number(value)),
             Operation::Variable(place) => variable(place),
-            Operation::Unary(UnaryOperator::Negation, one) => {
-                results[one].times(&R::number(-1.0))
-            }
+            Operation::Unary(UnaryOperator::Negation, one) => results[one].times(&R::number(-1.0)),
             Operation::Power(base, exponent)
                 if exponent % 1.0 == 0.0 && (0.0..=HIGHEST_POWER).contains(&exponent) =>
             {

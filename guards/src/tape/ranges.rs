@@ -55,7 +55,12 @@ impl Tape {
     pub fn is_sharp(&self) -> bool {
         self.instructions.iter().any(|instruction| match instruction.action {
             Action::Unary(operator) => is_sharp(operator),
-            Action::Quotient | Action::Binary(BinaryOperator::Quotient) | Action::Power => true,
+            Action::Quotient => true,
+            Action::Power => {
+                let place = (instruction.operands[1] as usize).checked_sub(self.variables);
+                let exponent = place.and_then(|place| self.constants.get(place));
+                !exponent.is_some_and(|exponent| is_polynomial(*exponent))
+            }
             _ => false,
         })
     }
@@ -74,8 +79,8 @@ impl Tape {
                     (Action::Quotient, _, Some(divisor)) => ratio(divisor) > MOST_GROWTH,
                     (Action::Power, Some(base), Some(exponent)) => {
                         let exponent = exponent.lower();
-                        let is_polynomial = (0.0..=HIGHEST_POWER).contains(&exponent);
-                        !is_polynomial && ratio(base).ln() * exponent.abs() > MOST_GROWTH.ln()
+                        let growth = ratio(base).ln() * exponent.abs();
+                        !is_polynomial(exponent) && growth > MOST_GROWTH.ln()
                     }
                     _ => false,
                 }
@@ -126,6 +131,10 @@ fn power(base: Interval, exponent: Interval) -> Interval {
 const HIGHEST_POWER: f64 = 8.0;
 /// By what factor something may grow within what is looked at.
 const MOST_GROWTH: f64 = 400.0;
+
+fn is_polynomial(exponent: f64) -> bool {
+    exponent % 1.0 == 0.0 && (0.0..=HIGHEST_POWER).contains(&exponent)
+}
 
 fn is_sharp(operator: UnaryOperator) -> bool {
     use UnaryOperator::{Cosine, Exponential, HyperbolicTangent, Sine, Tangent};

@@ -115,7 +115,8 @@ impl Formula {
         plan.collect_ends(&[0.0], &mut instants);
         let recording = Recording::new(&literals, samples, &instants)?;
         let value = |reading, side| plan.signal(&recording, reading, side).knots()[0].value;
-        let (worst, best) = (value(Reading::Margin, Side::Worst), value(Reading::Margin, Side::Best));
+        let (worst, best) =
+            (value(Reading::Margin, Side::Worst), value(Reading::Margin, Side::Best));
         let robustness = Robustness::between(worst.margin, best.margin);
         // The truth of the comparisons decides: on the boundary the margins do not tell.
         let (status, witness) = if value(Reading::Truth, Side::Worst).margin > 0.0 {

@@ -5,9 +5,7 @@ use std::fmt;
 
 use pleach_automaton::trajectory::{Account, Look, Passage, Unevaluated};
 use pleach_automaton::{HybridTime, Trajectory};
-use pleach_guards::{
-    Comparison, EvaluationError, Interval, Predicate, Relation, Truth, Valuation,
-};
+use pleach_guards::{Comparison, EvaluationError, Interval, Predicate, Relation, Truth, Valuation};
 
 use super::pointwise::crossing;
 use super::signal::{Flow, Knot, Origin, Signal, Span, Time, Value};
@@ -209,7 +207,8 @@ impl Recording {
                 None => linear_account(predicate, samples)?,
             };
             let looks = &account.looks;
-            ends = ends.or(looks.first().zip(looks.last()).map(|(first, last)| [first.at, last.at]));
+            ends =
+                ends.or(looks.first().zip(looks.last()).map(|(first, last)| [first.at, last.at]));
             literals.push(Literal { predicate: predicate.clone(), account });
         }
         let [first, last] = match ends {
@@ -317,12 +316,7 @@ fn bound(passage: &Passage, span: Span, margins: [f64; 2], side: Side) -> Vec<(f
     }
 }
 
-fn lower_bound(
-    least: f64,
-    rate: Interval,
-    span: Span,
-    margins: [f64; 2],
-) -> Vec<(f64, [f64; 2])> {
+fn lower_bound(least: f64, rate: Interval, span: Span, margins: [f64; 2]) -> Vec<(f64, [f64; 2])> {
     let [first, last] = margins;
     let (fall, rise, width) = (rate.lower(), rate.upper(), span.1 - span.0);
     if first == last && least >= first || fall == rise {
@@ -350,7 +344,8 @@ fn linear_account(
     predicate: &Predicate,
     samples: &(impl Samples + ?Sized),
 ) -> Result<Account, TemporalError> {
-    let on_the_boundary = if holds_on_the_boundary(predicate) { Truth::Always } else { Truth::Never };
+    let on_the_boundary =
+        if holds_on_the_boundary(predicate) { Truth::Always } else { Truth::Never };
     let mut looks: Vec<Look> = Vec::new();
     let mut clock = Clock::default();
     let mut outcome = Ok(());
@@ -398,7 +393,11 @@ fn linear_account(
         }
     });
     outcome?;
-    if looks.is_empty() { Err(TemporalError::NoSamples) } else { Ok(Account { looks, gaps: vec![] }) }
+    if looks.is_empty() {
+        Err(TemporalError::NoSamples)
+    } else {
+        Ok(Account { looks, gaps: vec![] })
+    }
 }
 
 /// The first instant and the last of a trajectory.

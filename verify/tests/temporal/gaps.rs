@@ -92,7 +92,8 @@ fn instants_at_kinks_are_seen() {
 #[test]
 fn spikes_of_tables_are_seen() {
     for width in [1e-3, 1e-6, 1e-9] {
-        let points = [(0.0, 0.0), (0.7, 0.0), (0.7 + 0.5 * width, 1.0), (0.7 + width, 0.0), (9.0, 0.0)];
+        let points =
+            [(0.0, 0.0), (0.7, 0.0), (0.7 + 0.5 * width, 1.0), (0.7 + width, 0.0), (9.0, 0.0)];
         let spike = Table::linear(points).unwrap().at(x());
         let judgement = ever_after(spike.at_most(0.5), &clock(2.0));
         assert_eq!(judgement.status, Status::Violated, "{width}");

@@ -23,7 +23,9 @@ pub enum CompositionError {
         component: String,
     },
     /// A coordinate of the state in which a component starts is NaN.
-    #[error("`{variable}` of component `{component}` is NaN in the initial state: it must be a number")]
+    #[error(
+        "`{variable}` of component `{component}` is NaN in the initial state: it must be a number"
+    )]
     InitialNotANumber {
         /// The component.
         component: String,

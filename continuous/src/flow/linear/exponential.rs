@@ -179,21 +179,20 @@ fn half_a_turn<'a>(modes: impl Iterator<Item = &'a Mode>) -> f64 {
 /// Variables that move each other have their modes in common. A mode fades beside the slowest of those
 /// that move the same variables, and of the offset, which does not fade: what decays alone is followed
 /// however small it becomes.
-fn modes(
-    matrix: &DMatrix<f64>,
-    offset: &DVector<f64>,
-    reached: &DMatrix<bool>,
-) -> Vec<Mode> {
+fn modes(matrix: &DMatrix<f64>, offset: &DVector<f64>, reached: &DMatrix<bool>) -> Vec<Mode> {
     let blocks = blocks(reached);
     let eigenvalues: Vec<Vec<(f64, f64)>> = blocks
         .iter()
-        .map(|block| eigenvalues(&DMatrix::from_fn(block.len(), block.len(), |row, column| {
-            matrix[(block[row], block[column])]
-        })))
+        .map(|block| {
+            eigenvalues(&DMatrix::from_fn(block.len(), block.len(), |row, column| {
+                matrix[(block[row], block[column])]
+            }))
+        })
         .collect();
     let mut modes = Vec::new();
     for (block, own) in blocks.iter().zip(&eigenvalues) {
-        let movers = blocks.iter().zip(&eigenvalues).filter(|(other, _)| reached[(block[0], other[0])]);
+        let movers =
+            blocks.iter().zip(&eigenvalues).filter(|(other, _)| reached[(block[0], other[0])]);
         let mut slowest = f64::NEG_INFINITY;
         for (other, values) in movers {
             let is_pushed = other.iter().any(|&row| offset[row] != 0.0);

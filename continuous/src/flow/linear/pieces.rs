@@ -61,8 +61,9 @@ impl LinearFlow {
         let mut end = vec![0.0; state.len()];
         let mut length = wanted;
         loop {
-            let piece =
-                Piece::through(start, length, state.len(), |time, state| self.state_at(time, state));
+            let piece = Piece::through(start, length, state.len(), |time, state| {
+                self.state_at(time, state)
+            });
             piece.state_at(start + length, &mut end);
             let is_exact = |component: usize| {
                 let movers = exponential.movers[component].iter();
