@@ -85,7 +85,7 @@ fn instants_at_kinks_are_seen() {
     }
     let away = ever((x() - 0.7).abs().at_most(-1e-9), &clock);
     assert_eq!(away.status, Status::Violated);
-    encloses(away.robustness, -1e-9, 1e-15);
+    encloses(away.robustness, -1e-9, 1e-14);
 }
 
 /// A table rises to 1 and falls within 10⁻⁹ seconds.
