@@ -2,11 +2,13 @@
 //!
 //! `cargo run --release --example storm -- table 4` shows all kinds of storms, and what breaks in them.
 
+use crate::floor_plans::{Family, scenario as plan};
 use crate::missions::shipped;
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::network::{Crash, Trouble};
 use pleach::verify::network::Property;
-use pleach::verify::network::storm::{Kind, Verdict, allowing_for, draw, ride};
+use pleach::verify::network::storm::{Kind, Storm, Verdict, allowing_for, draw, ride};
 
 const PERIODS: usize = 600;
 /// Control periods for robots that keep larger clearances and shorter links.
@@ -80,6 +82,27 @@ fn no_path_up_the_tree_becomes_a_cycle_whoever_is_cut_off() {
     }
 }
 
+/// Random missions in which a promise would be broken without one rule each:
+/// - the robot relieved on Σ gives its post up before the robot behind takes it, whatever is announced;
+/// - places of robots that are suspended are told to those that have not heard them;
+/// - packets flow to an access point that is not heard for a while;
+/// - a robot that restarts takes a new post before anything else.
+#[test]
+fn storms_in_which_one_rule_decides_break_no_promise() {
+    let found = [
+        (Family::ManyTasks, Kind::Partition, 297),
+        (Family::Ring, Kind::Crash, 541),
+        (Family::Settings, Kind::Loss { rate: 0.6, later: true }, 755),
+        (Family::Parked, Kind::Restart, 1114),
+    ];
+    for (family, kind, seed) in found {
+        let scenario = plan(family, seed);
+        let storm = draw(kind, seed, &scenario, DURATION);
+        let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{family:?}, {}", kind.name());
+    }
+}
+
 /// Positions and moves are off by as much as the scenario says that they may be.
 #[test]
 fn errors_of_position_and_motion_that_are_allowed_for_do_no_harm() {
@@ -130,6 +153,28 @@ fn missions_with_a_robot_that_restarts_come_to_an_end() {
     assert_eq!(end(2).outcome, Outcome::Blocked);
 }
 
+/// The first access point restarts, and has forgotten everything: it learns from the robots what is under
+/// way, and who is gone. The user asks again.
+#[test]
+fn the_mission_goes_on_when_the_first_access_point_restarts() {
+    for (name, gone, time, back) in
+        [("corridor", 11, 100.0, 105.0), ("study-2", 6, 60.0, 90.0), ("corridor", 0, 3.0, 4.0)]
+    {
+        let scenario = ValidScenario::new(shipped(name)).expect("it is valid");
+        let first = scenario.robot.len();
+        let crash = |time, back| Trouble {
+            crash: Some(Crash { time, inputs: 0, back }),
+            ..Trouble::default()
+        };
+        let troubles = vec![(gone, crash(30.0, None)), (first, crash(time, Some(back)))];
+        let storm = Storm { troubles, ..Storm::default() };
+        let verdict = ride(&scenario, &storm, 1_500).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{name}, back at {back} s");
+        let end = verdict.end.unwrap_or_else(|| panic!("{name}, back at {back} s: no end"));
+        assert_eq!(end.outcome, Outcome::Serviced, "{name}, back at {back} s: {}", end.reason);
+    }
+}
+
 /// A robot that stops is given up, and nothing breaks. The others go round it and service all tasks, but
 /// where it stands in the only way.
 #[test]
@@ -146,4 +191,5 @@ fn the_mission_goes_on_without_a_robot_that_stops() {
         }
     }
     assert!(blocked.len() < 2, "{blocked:?}");
+    assert!(blocked.iter().all(|(.., reason)| reason.contains("have stopped")), "{blocked:?}");
 }

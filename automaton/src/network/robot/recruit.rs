@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pleach_discrete::network::{Anchor, Bid, Election, IdSet, NoticeId, Phase};
 
-use super::super::beacon::{Beacon, Notice};
+use super::super::beacon::{Announcement, Beacon, Notice};
 use super::super::duty::{Hop, Path, PathPlace};
 use super::super::mission::{Advance, PathAgreement, RecruitElection};
 use super::super::record::{MissionEvent, Outcome};
@@ -70,28 +70,23 @@ pub(super) fn end_unaided(
 ) -> RecruitElection {
     let stranded = robot.election.as_ref().is_some_and(|election| election.best().is_some());
     let own_root = robot.lineage().map(|lineage| lineage.root());
-    let others: IdSet = robot.eligible.iter().filter(|&root| Some(root) != own_root).collect();
-    if let Some(task) = robot.tasks.last() {
+    if let Some(known) = robot.announcement() {
+        let task = known.task;
+        let others: IdSet = known.eligible.iter().filter(|&root| Some(root) != own_root).collect();
         if stranded && !others.is_empty() {
-            let event = MissionEvent::ElectionRepeated { task: task.number };
-            effects.push(MissionEffect::Report(event));
-            effects.push(MissionEffect::Issue(Notice::Task {
-                task: task.number,
-                position: task.position,
-                roster: Arc::clone(&robot.roster),
-                eligible: Arc::new(others),
-            }));
+            effects.push(MissionEffect::Report(MissionEvent::ElectionRepeated { task }));
+            let announcement = Announcement { eligible: Arc::new(others), ..known.clone() };
+            effects.push(MissionEffect::Issue(Notice::Task(Shared::new(announcement))));
         } else {
             let wanted = (robot.remaining() / robot.site.build_length).ceil().max(1.0);
             let reason = format!(
-                "task {} needs another recruit, and no redundant robot is left that can come; \
-                 about {wanted} more robots are needed",
-                task.number
+                "task {task} needs another recruit, and no redundant robot is left that can come; \
+                 about {wanted} more robots are needed"
             );
             effects.push(MissionEffect::Issue(Notice::Ended {
                 outcome: Outcome::InsufficientRobots,
                 reason: reason.into(),
-                task: Some(task.number),
+                task: Some(task),
             }));
         }
     }
@@ -133,7 +128,7 @@ impl Robot {
             self.route = self.find_route(id).map(|route| (id, Shared::new(route)));
         }
         let bid = match &self.route {
-            _ if !self.roster.contains(self.id) => None,
+            _ if !self.takes_part_in_elections() => None,
             _ if !self.duty.is_redundant() || self.children().next().is_some() => None,
             Some((_, route)) => Some(self.recruit_bid(route.len())),
             None if self.waited_rounds < 2 * self.longest_wait() => return,
@@ -145,6 +140,10 @@ impl Robot {
             Arc::make_mut(election).place(self.id, bid);
             self.bid = bid;
         }
+    }
+
+    fn takes_part_in_elections(&self) -> bool {
+        self.announcement().is_some_and(|announcement| announcement.roster.contains(self.id))
     }
 
     /// The larger the residual, the better; ties go to the shorter path.

@@ -1,7 +1,7 @@
 //! The primary team (Sec. V-A): its leader, its order, and when it is stuck.
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Phase, Post, PostId, PostKind};
+use pleach_discrete::network::{NodeId, Phase, Post, PostId, PostKind};
 
 use super::super::beacon::{Beacon, Notice, TeamReport};
 use super::super::mission::{Advance, Ended, Idle};
@@ -34,7 +34,7 @@ pub(super) fn wait(_: &Advance, _: &Robot, _: &mut Effects) -> Idle {
 
 /// The active team cannot go on, and a recruit would not help.
 pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
-    let reason = match (robot.duty.place(), robot.team.and_then(|team| team.slack)) {
+    let mut reason = match (robot.duty.place(), robot.team.and_then(|team| team.slack)) {
         (Some(_), _) => format!(
             "robot {} cannot get to the place of Σ that it should take: something stands in its way",
             robot.id
@@ -48,6 +48,10 @@ pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
             robot.id
         ),
     };
+    let stopped: Vec<NodeId> = robot.wrecks.iter().map(|wreck| wreck.robot).collect();
+    if !stopped.is_empty() {
+        reason.push_str(&format!("; robots {stopped:?} have stopped and stand where they are"));
+    }
     let (outcome, task) = (Outcome::Blocked, robot.current_task());
     effects.push(MissionEffect::Issue(Notice::Ended { outcome, reason: reason.into(), task }));
     Ended
@@ -104,7 +108,7 @@ impl Robot {
     /// ψ of a member of the primary team, eq. (24).
     pub(super) fn team_goal(&self) -> Option<Point> {
         match self.duty.post()?.kind {
-            PostKind::Primary { follows: None } => self.tasks.last().map(|task| task.target),
+            PostKind::Primary { follows: None } => self.target,
             PostKind::Primary { follows: Some(ahead) } => match self.holder(ahead) {
                 Some(neighbour) => Some(neighbour.position()),
                 // Not heard yet: where it stood when it called.
@@ -117,7 +121,8 @@ impl Robot {
     /// The distance from the announced task at which the leader stops.
     pub(super) fn reach(&self) -> f64 {
         let settings = &self.site.settings;
-        let gap = self.tasks.last().map_or(0.0, |task| (task.target - task.position).norm());
+        let task = self.announcement().map(|announcement| announcement.position);
+        let gap = self.target.zip(task).map_or(0.0, |(target, task)| (target - task).norm());
         let stand_off = settings.leash_radius() - STAND_OFF * self.clearance();
         let touch = TOUCH * self.clearance() + self.stray();
         stand_off.max(gap + touch).min(settings.arrival_radius())
@@ -145,7 +150,7 @@ impl Robot {
 
     /// Geodesic distance to the announced task.
     pub(super) fn remaining(&self) -> f64 {
-        self.tasks.last().map_or(0.0, |task| self.site.distance(self.position, task.target))
+        self.target.map_or(0.0, |target| self.site.distance(self.position, target))
     }
 
     /// Whether the robot has room to move: its link is neither at its limit nor is it bunched.
