@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use pleach_automaton::{
-    Automaton, Builder, Coordinate, Reason, Trajectory, Why, coordinates, from,
+    Automaton, Builder, Coordinate, Reason, Settings, Trajectory, Why, coordinates, from,
 };
 use pleach_discrete::vocabulary;
 use pleach_guards::{Expression, Predicate, constant};
@@ -139,4 +139,31 @@ fn spikes_of_rates_are_not_stepped_over() {
     let trajectory = run(body([0.0, 0.0], [spike + 0.0 * x.power(2.0), constant(0.05)]), 100.0);
     let found = trajectory.value("x", 100.0).expect("it lasts");
     assert!((found - 20.0 * PI.sqrt()).abs() < 1e-5, "{found}");
+}
+
+/// On a circle x² + y² stays 1: a guard on it is decided, or within rounding in doubt, by few spans.
+#[test]
+fn guards_on_what_is_conserved_cost_little() {
+    let [x, y, _] = coordinates();
+    for beyond in [1e-9, 1e-12, 1e-13, 1e-14, 1e-15] {
+        let energy = x.power(2.0) + y.power(2.0);
+        let parts = body([1.0, 0.0], [1.0 * &y, -1.0 * &x]).transition(
+            from(Place::Here).on(Cue::Go).to(Place::There).must(energy.more_than(1.0 + beyond)),
+        );
+        let settings = Settings { step_limit: 10_000, ..Settings::default() };
+        let trajectory =
+            parts.build().expect("it is sound").run_with(100.0, &settings).expect("it can be run");
+        let (jumps, doubts) = (trajectory.jumps(), trajectory.doubts());
+        if beyond >= 1e-12 {
+            assert!(jumps.is_empty() && doubts.is_empty(), "{beyond}: {doubts:?}");
+        } else {
+            assert!(doubts.iter().all(|doubt| doubt.why == Why::Touch), "{beyond}: {doubts:?}");
+            assert!(jumps.is_empty() || !doubts.is_empty(), "{beyond}: {jumps:?}");
+        }
+        assert!(
+            !jumps.is_empty() || trajectory.ending().reason == Reason::Horizon,
+            "{beyond}: {:?}",
+            trajectory.ending()
+        );
+    }
 }

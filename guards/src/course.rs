@@ -86,6 +86,12 @@ impl Course {
     }
 }
 
+impl From<bool> for Course {
+    fn from(holds: bool) -> Course {
+        if holds { Course::Always } else { Course::Never }
+    }
+}
+
 impl From<Truth> for Course {
     fn from(truth: Truth) -> Course {
         match truth {
@@ -166,15 +172,15 @@ impl Tracker {
     /// The course during a span of twice `half_width` seconds, where variable *i* is
     /// `states[slots[i]]`.
     ///
-    /// A comparison may fail by up to `slack`, ≥ 0, in the unit of what it compares. What is known
-    /// about the comparison of a number is not computed again.
+    /// A comparison may fail by up to `slack`, ≥ 0, in the unit of what it compares. The course of a
+    /// comparison that is known, by its number, is not computed again.
     pub fn course(
         &self,
         states: &[Enclosure],
         slots: &[usize],
         half_width: f64,
         slack: f64,
-        known: &impl Fn(usize) -> Option<bool>,
+        known: &impl Fn(usize) -> Option<Course>,
     ) -> Course {
         let context = Context { states, slots, half_width, slack };
         let (course, definedness) = self.root.course(&self.comparisons, &context, known);
@@ -312,7 +318,7 @@ impl Node {
         &self,
         comparisons: &[Tracked],
         context: &Context<'_>,
-        known: &impl Fn(usize) -> Option<bool>,
+        known: &impl Fn(usize) -> Option<Course>,
     ) -> (Course, Definedness) {
         let join = |parts: &[Node], first: Course, combine: fn(Course, Course) -> Course| {
             parts.iter().fold((first, Definedness::Everywhere), |(course, definedness), part| {
@@ -322,8 +328,7 @@ impl Node {
         };
         match self {
             Node::Comparison(number) => match known(*number) {
-                Some(true) => (Course::Always, Definedness::Everywhere),
-                Some(false) => (Course::Never, Definedness::Everywhere),
+                Some(course) => (course, Definedness::Everywhere),
                 None => {
                     let (course, definedness, _) = comparisons[*number].course(context);
                     (course, definedness)

@@ -269,19 +269,19 @@ impl<'a> Tension<'a> {
     ) -> Course {
         let known = &self.known[number][condition];
         let (from, to) = self.window;
-        let truth = |comparison: usize| match known.get(comparison)? {
+        let course = |comparison: usize| match known.get(comparison)? {
             Knowledge::Nothing if context.slack == 0.0 => {
                 let place = [number, condition, comparison];
-                self.margins.as_ref()?.truth(tracker, place, self.span?)
+                self.margins.as_ref()?.course(tracker, place, self.span?)
             }
             Knowledge::Nothing => None,
-            Knowledge::Fixed(holds) => Some(*holds),
-            Knowledge::Switch(time, after) if *time <= from => Some(*after),
-            Knowledge::Switch(time, after) if *time >= to => Some(!*after),
+            Knowledge::Fixed(holds) => Some((*holds).into()),
+            Knowledge::Switch(time, after) if *time <= from => Some((*after).into()),
+            Knowledge::Switch(time, after) if *time >= to => Some((!*after).into()),
             Knowledge::Switch(..) => None,
         };
         let slots = self.conditions.standing.slots(component);
-        tracker.course(context.states, slots, context.half_width, context.slack, &truth)
+        tracker.course(context.states, slots, context.half_width, context.slack, &course)
     }
 }
 
@@ -314,16 +314,17 @@ impl Margins {
         Margins { piece: [piece.start(), piece.end()], polynomials }
     }
 
-    /// Whether a comparison holds throughout a span, or nowhere in it.
-    fn truth(&self, tracker: &Tracker, place: [usize; 3], span: [f64; 2]) -> Option<bool> {
+    /// What the polynomial tells of a comparison in a span: that it holds throughout or nowhere, or that
+    /// rounding alone decides, which shorter spans do not change.
+    fn course(&self, tracker: &Tracker, place: [usize; 3], span: [f64; 2]) -> Option<Course> {
         let [number, condition, comparison] = place;
         let margin = self.polynomials[number][condition].get(comparison)?.as_ref()?;
         let mut enclosures = Vec::with_capacity(1);
         margin.enclose(span[0], span[1], &mut enclosures);
         match tracker.comparisons()[comparison].course_of(enclosures.first()?) {
-            Course::Always => Some(true),
-            Course::Never => Some(false),
-            _ => None,
+            course @ (Course::Always | Course::Never | Course::Blurred) => Some(course),
+            Course::FaintlyRising | Course::FaintlyFalling => Some(Course::Blurred),
+            Course::Rising | Course::Falling | Course::Open | Course::Opaque => None,
         }
     }
 }

@@ -108,9 +108,7 @@ fn a_flow_that_fails_after_a_jump_tells_the_time_of_the_run() {
             .initially(Plane { px: 0.0, py: 0.0 })
             .flow(Here, [px.rate(1.0)])
             .flow(There, [px.rate(1.0), py.rate((&px - 1.0).power(-1.0))])
-            .transition(
-                from(Here).on(Go).to(There).must(px.at_least(3.0)).then(px.becomes(0.0)),
-            ),
+            .transition(from(Here).on(Go).to(There).must(px.at_least(3.0)).then(px.becomes(0.0))),
     );
     let trajectory = run(&singular, 10.0);
     let Reason::Finished(failure) = &trajectory.ending().reason else {
