@@ -152,7 +152,7 @@ fn guards_on_what_is_conserved_cost_little() {
         );
         let settings = Settings { step_limit: 10_000, ..Settings::default() };
         let trajectory =
-            parts.build().expect("it is sound").run_with(100.0, &settings).expect("it can be run");
+            parts.build().expect("it is sound").run_with(settings, 100.0).expect("it can be run");
         let (jumps, doubts) = (trajectory.jumps(), trajectory.doubts());
         if beyond >= 1e-12 {
             assert!(jumps.is_empty() && doubts.is_empty(), "{beyond}: {doubts:?}");

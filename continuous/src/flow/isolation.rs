@@ -128,7 +128,7 @@ pub fn isolate<W: Watch + ?Sized>(
     };
     let onset = isolation.run(from, to, budget)?;
     if let Some(Onset { time, .. }) = onset.filter(|onset| onset.time > from)
-        && !isolation.is_passed(from, to)
+        && !isolation.is_passed(from, time, to)
     {
         let from = isolation.doubts.last().map_or(from, |last| last.to.max(from)).min(time);
         isolation.doubts.push(Doubt { from, to: time, why: Uncertainty::Touch });
@@ -199,11 +199,16 @@ impl<W: Watch + ?Sized> Isolation<'_, W> {
         Ok(None)
     }
 
-    /// Whether the condition surely does not hold at the first of two instants, or surely holds at the
-    /// last, whatever the error of the curve. Otherwise it may have come to hold at any time, or never.
-    fn is_passed(&mut self, from: f64, to: f64) -> bool {
-        matches!(self.course_at(from), Course::Never | Course::Opaque)
-            || self.course_at(to) == Course::Always
+    /// Whether, whatever the error of the curve, the condition surely does not hold at an instant before
+    /// `time`, or surely holds at one after it. Otherwise it may have come to hold at any time, or never.
+    fn is_passed(&mut self, from: f64, time: f64, to: f64) -> bool {
+        // Nearer and nearer to where it comes to hold.
+        let toward = |end: f64| {
+            let away = std::iter::successors(Some(end - time), |away| Some(0.5 * away));
+            away.map(move |away| time + away).take_while(move |&at| at != time)
+        };
+        toward(from).any(|at| matches!(self.course_at(at), Course::Never | Course::Opaque))
+            || toward(to).any(|at| self.course_at(at) == Course::Always)
     }
 
     fn course_at(&mut self, time: f64) -> Course {
