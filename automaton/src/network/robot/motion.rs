@@ -160,7 +160,7 @@ impl Robot {
     }
 
     /// Whether the robot measures itself outside of 𝒲_f, as errors of position and motion may have it.
-    fn has_strayed(&self) -> bool {
+    pub(super) fn has_strayed(&self) -> bool {
         !self.site.settings.errors.are_none() && !self.site.free_space.contains(self.position)
     }
 

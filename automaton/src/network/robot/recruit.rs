@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use pleach_discrete::network::{Activity, Anchor, Bid, Election, IdSet, NoticeId, Phase};
 
+use crate::located::Place as _;
+
 use super::super::beacon::{Beacon, Notice};
 use super::super::duty::{Hop, Path, PathPlace};
 use super::super::mission::{Advance, PathAgreement, RecruitElection};
@@ -92,8 +94,8 @@ pub(super) fn end_unaided(
         } else {
             let wanted = (robot.remaining() / robot.site.build_length).ceil().max(1.0);
             let reason = format!(
-                "task {} needs another recruit, and no redundant robot is left that can come; \
-                 about {wanted} more robots are needed",
+                "task {} needs another recruit, and no robot is left that can come; from where the \
+                 team stands about {wanted} more robots are needed",
                 task.number
             );
             effects.push(MissionEffect::Issue(Notice::Ended {
