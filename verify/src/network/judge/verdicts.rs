@@ -10,7 +10,7 @@ use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_discrete::network::Role;
 
-use super::ledger::Ledger;
+use super::ledger::{Ledger, Stage};
 use crate::network::bound::Spans;
 
 /// What has been tried for the task that is pursued.
@@ -41,6 +41,9 @@ impl Tried {
     /// A robot that could have helped where the mission ended because none could, in a clause.
     pub fn overlooked(&self, ledger: &Ledger, snapshot: &Snapshot) -> Option<String> {
         let caller = *ledger.primary_team.first()?;
+        if ledger.stage() != Stage::Calling {
+            return Some(format!("robot {caller}, the first of its team, has not called for one"));
+        }
         let tree = tree_of(caller, snapshot)?;
         let is_free = |robot: &usize| snapshot.roles[*robot] == Role::Redundant;
         let robots = 0..snapshot.roles.len();
@@ -92,4 +95,75 @@ fn tree_of(robot: usize, snapshot: &Snapshot) -> Option<usize> {
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::sample;
+
+    /// Robot 1 leads alone and calls for a recruit; robot 0 services task 0.
+    fn calling() -> Ledger {
+        let mut ledger = Ledger::new(4);
+        ledger.announced = 2;
+        ledger.serviced.insert(0, 0);
+        (ledger.leader, ledger.primary_team, ledger.calls) = (Some(1), vec![1], true);
+        ledger
+    }
+
+    fn overlooked(ledger: &Ledger, change: impl Fn(&mut Snapshot)) -> Option<String> {
+        let mut snapshot = sample::snapshot(3);
+        snapshot.roles[2] = Role::Node;
+        change(&mut snapshot);
+        Tried::default().overlooked(ledger, &snapshot)
+    }
+
+    #[test]
+    fn where_no_robot_could_come_none_is_overlooked() {
+        assert_eq!(overlooked(&calling(), |_| ()), None);
+    }
+
+    #[test]
+    fn an_end_without_a_call_is_refuted() {
+        let advancing = Ledger { calls: false, ..calling() };
+        let found = overlooked(&advancing, |_| ()).unwrap();
+        assert!(found.contains("robot 1, the first of its team, has not called"), "{found}");
+    }
+
+    #[test]
+    fn a_redundant_robot_of_the_same_tree_is_told() {
+        let found = overlooked(&calling(), |now| now.roles[2] = Role::Redundant).unwrap();
+        assert!(found.contains("robot 2 is redundant, and in the tree of robot 1"), "{found}");
+    }
+
+    /// Node 5 is another access point.
+    #[test]
+    fn a_redundant_robot_of_another_tree_is_told_until_that_is_tried() {
+        let mut snapshot = sample::snapshot(3);
+        snapshot.tree.retain(|(child, _)| *child != 2);
+        snapshot.tree.push((2, 5));
+        let found = Tried::default().overlooked(&calling(), &snapshot).unwrap();
+        assert!(found.contains("the tree of access point 1 was not tried"), "{found}");
+        let mut tried = Tried::default();
+        let elsewhere = Ledger { primary_team: vec![2], ..calling() };
+        let repeated = MissionEvent::ElectionRepeated { task: 1 };
+        tried.enter(&repeated, &elsewhere, [None, Some(&snapshot)]);
+        assert_eq!(tried.overlooked(&calling(), &snapshot), None);
+        tried.enter(&MissionEvent::TaskAnnounced { task: 1 }, &calling(), [None, None]);
+        assert!(tried.overlooked(&calling(), &snapshot).is_some());
+    }
+
+    #[test]
+    fn a_node_that_bears_the_caller_alone_is_told() {
+        let bears = |now: &mut Snapshot| now.tree = vec![(0, 4), (1, 3), (2, 4), (3, 4)];
+        let found = overlooked(&calling(), bears).unwrap();
+        assert!(found.contains("robot 3 bears nothing but robot 1"), "{found}");
+        let bound = Ledger { awaits_release: true, ..calling() };
+        assert_eq!(overlooked(&bound, bears), None);
+        let is_junction = |now: &mut Snapshot| {
+            bears(now);
+            now.tree[2] = (2, 3);
+        };
+        assert_eq!(overlooked(&calling(), is_junction), None);
+    }
 }
