@@ -3,6 +3,7 @@
 //!
 //! `cargo run --release --example storm -- COUNT [FIRST_SEED]` runs as many missions, of all kinds
 //! and on all plans in turn, and tells the first that breaks a promise of safety, shrunk.
+//! `cargo run --release --example storm -- seed SEED` tells the mission of that seed.
 //! `cargo run --release --example storm -- table SEEDS [KIND]` prints a table of what becomes of
 //! missions under each kind of storm.
 
@@ -16,6 +17,7 @@ use pleach::verify::network::storm::{
     Kind, Storm, Verdict, allowing_for, draw, ride, ride_watched, shrink,
 };
 use pleach::{scenario_file, story};
+use rayon::prelude::*;
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -33,12 +35,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match &arguments[..] {
         [word, name, kind, seed] if word == "one" => one(name, kind, seed.parse()?),
+        [word, seed] if word == "seed" => {
+            let seed = seed.parse()?;
+            let (scenario, storm) = mission(seed)?;
+            tell_in_full(&scenario, seed, &storm, MOST_PERIODS)
+        }
         [word, seeds, kind @ ..] if word == "table" => table(seeds.parse()?, kind.first()),
         [count, first @ ..] => {
             let first = first.first().map_or(Ok(0), |first| first.parse())?;
             many(first, count.parse()?)
         }
-        _ => Err("usage: storm COUNT [FIRST_SEED] | storm table SEEDS [KIND]".into()),
+        _ => {
+            Err("usage: storm COUNT [FIRST_SEED] | storm seed SEED | storm table SEEDS [KIND]"
+                .into())
+        }
     }
 }
 
@@ -135,15 +145,25 @@ fn one(name: &str, kind: &str, seed: u64) -> Result<(), Box<dyn Error>> {
     let kind = Kind::ALL.iter().find(named).ok_or("no such kind")?;
     let scenario = allowing_for(*kind, &scenario)?;
     let storm = draw(*kind, seed, &scenario, calm.periods as f64);
-    println!("{storm:#?}");
-    let verdict = ride(&scenario, &storm, MOST_PERIODS.min(3 * calm.periods))?;
+    tell_in_full(&scenario, seed, &storm, MOST_PERIODS.min(3 * calm.periods))
+}
+
+/// Tells a mission, and what led to what it breaks.
+fn tell_in_full(
+    scenario: &ValidScenario,
+    seed: u64,
+    storm: &Storm,
+    periods: usize,
+) -> Result<(), Box<dyn Error>> {
+    println!("{} in {storm:#?}", scenario.name);
+    let verdict = ride(scenario, storm, periods)?;
     for (step, event) in &verdict.events {
         println!("k = {step:<6} {}", story::tell(event));
     }
-    report(&scenario, seed, &verdict);
+    report(scenario, seed, &verdict);
     if let Some(violation) = verdict.violations.first() {
         let concerned = |node: usize| violation.robots.contains(&node);
-        ride_watched(&scenario, &storm, violation.step + 2, |snapshot| {
+        ride_watched(scenario, storm, violation.step + 2, |snapshot| {
             if snapshot.step + 6 < violation.step {
                 return;
             }
@@ -195,28 +215,42 @@ fn mission(seed: u64) -> Result<(ValidScenario, Storm), Box<dyn Error>> {
     Ok((scenario, storm))
 }
 
+/// Runs missions on all cores, and tells the first that breaks a promise.
 fn many(first: u64, missions: u64) -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let (mut serviced, mut broken) = (0, Vec::new());
-    for seed in first..first + missions {
-        let (scenario, storm) = mission(seed)?;
-        let verdict = ride(&scenario, &storm, MOST_PERIODS)?;
-        serviced += usize::from(is_serviced(&verdict));
-        if !verdict.violations.is_empty() {
-            if broken.is_empty() {
-                tell(&scenario, &storm, &verdict)?;
+    let seeds: Vec<u64> = (first..first + missions).collect();
+    for batch in seeds.chunks(BATCH) {
+        let run = |&seed: &u64| -> Result<(u64, Verdict), String> {
+            let (scenario, storm) = mission(seed).map_err(|error| error.to_string())?;
+            let verdict = ride(&scenario, &storm, MOST_PERIODS);
+            verdict.map(|verdict| (seed, verdict)).map_err(|error| format!("seed {seed}: {error}"))
+        };
+        for told in batch.par_iter().map(run).collect::<Vec<_>>() {
+            let (seed, verdict) = told?;
+            serviced += u64::from(is_serviced(&verdict));
+            if !verdict.violations.is_empty() {
+                if broken.is_empty() {
+                    let (scenario, storm) = mission(seed)?;
+                    tell(&scenario, &storm, &verdict)?;
+                }
+                broken.push((seed, verdict.violations[0].property.name()));
             }
-            broken.push(seed);
         }
+        let done = batch.last().map_or(0, |last| last + 1 - first);
+        eprint!("\r{done} of {missions} missions, {} broke a promise", broken.len());
     }
+    eprintln!();
     println!(
-        "{missions} missions in {:.0} s: {serviced} serviced, {} broke a promise {:?}",
+        "{missions} missions in {:.0} s: {serviced} serviced, {} broke a promise {broken:?}",
         start.elapsed().as_secs_f64(),
         broken.len(),
-        &broken[..broken.len().min(20)]
     );
     Ok(())
 }
+
+/// Missions that run side by side before progress is told.
+const BATCH: usize = 64;
 
 /// Tells the smallest storm that breaks the same promise.
 fn tell(scenario: &ValidScenario, storm: &Storm, verdict: &Verdict) -> Result<(), Box<dyn Error>> {

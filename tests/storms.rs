@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release --example storm -- table 4` shows all kinds of storms, and what breaks in them.
 
+use crate::floor_plans::{Family, scenario as plan};
 use crate::missions::shipped;
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::ValidScenario;
@@ -77,6 +78,27 @@ fn no_path_up_the_tree_becomes_a_cycle_whoever_is_cut_off() {
         let verdict = ride(&scenario, &storm, 650).expect("nodes go on whatever they receive");
         let cycle = verdict.violations.iter().find(|it| it.property == Property::RootedTree);
         assert_eq!(cycle, None, "{name}, {}", kind.name());
+    }
+}
+
+/// Random missions in which a promise would be broken without one rule each:
+/// - the robot relieved on Σ gives its post up before the robot behind takes it, whatever is announced;
+/// - places of robots that are suspended are told to those that have not heard them;
+/// - packets flow to an access point that is not heard for a while;
+/// - a robot that restarts takes a new post before anything else.
+#[test]
+fn storms_in_which_one_rule_decides_break_no_promise() {
+    let found = [
+        (Family::ManyTasks, Kind::Partition, 297),
+        (Family::Ring, Kind::Crash, 541),
+        (Family::Settings, Kind::Loss { rate: 0.6, later: true }, 755),
+        (Family::Parked, Kind::Restart, 1114),
+    ];
+    for (family, kind, seed) in found {
+        let scenario = plan(family, seed);
+        let storm = draw(kind, seed, &scenario, DURATION);
+        let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{family:?}, {}", kind.name());
     }
 }
 

@@ -26,21 +26,8 @@ use super::wire;
 pub enum Notice {
     /// Nothing is announced.
     Quiet,
-    /// A task is announced; the robots of `roster` elect its leader, and those that are attached to an
-    /// access point of `eligible` compete.
-    Task {
-        /// Its number.
-        task: usize,
-        /// q_v.
-        #[serde(with = "wire")]
-        position: Point,
-        /// The robots that take part.
-        #[serde(with = "wire")]
-        roster: Arc<IdSet>,
-        /// The access points whose robots compete.
-        #[serde(with = "wire")]
-        eligible: Arc<IdSet>,
-    },
+    /// A task is announced.
+    Task(Shared<Announcement>),
     /// The primary team calls for a recruit (Remark 5.4).
     Call {
         /// The caller: p₁, or the leader when it has to be released.
@@ -72,6 +59,36 @@ pub enum Notice {
     },
 }
 
+/// A task with those who elect its leader.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Announcement {
+    /// Its number.
+    pub task: usize,
+    /// q_v.
+    #[serde(with = "wire")]
+    pub position: Point,
+    /// The positions of the tasks that have been serviced before, from the first on.
+    #[serde(with = "wire")]
+    pub before: Arc<[Point]>,
+    /// The robots that take part.
+    #[serde(with = "wire")]
+    pub roster: Arc<IdSet>,
+    /// The access points whose robots compete to lead.
+    #[serde(with = "wire")]
+    pub eligible: Arc<IdSet>,
+}
+
+impl Announcement {
+    /// The position of this task, or of one that has been serviced before.
+    pub fn position_of(&self, task: usize) -> Option<Point> {
+        if task == self.task { Some(self.position) } else { self.before.get(task).copied() }
+    }
+}
+
+/// An announcement with the identity of the notice that made it.
+pub type Announced = (NoticeId, Shared<Announcement>);
+
 /// A notice on the mission with its identity.
 pub type Bulletin = bulletin::Bulletin<Shared<Notice>>;
 
@@ -99,6 +116,8 @@ pub struct Beacon {
     pub position: Point,
     /// The newest notice on the mission that it knows.
     pub bulletin: Bulletin,
+    /// The announcement that it goes by.
+    pub announced: Option<Announced>,
     /// Its view of the current election.
     #[serde(with = "wire")]
     pub election: Option<Arc<Election>>,
@@ -139,7 +158,7 @@ pub struct Beacon {
     pub reply: Option<Reply<Duty>>,
     /// What the primary team knows of itself, for the next member towards p₁.
     pub team: Option<TeamReport>,
-    /// Where robots that are gone were heard last.
+    /// Where robots that do not take part were heard last.
     #[serde(with = "wire")]
     pub wrecks: Arc<Vec<Wreck>>,
 }

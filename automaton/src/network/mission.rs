@@ -75,6 +75,11 @@ impl Shift {
     pub fn active(&self) -> Option<Subgroup> {
         self.subgroups.get(self.arrived).copied()
     }
+
+    /// The subgroup that relieves the robot at `place`.
+    pub fn subgroup_up_to(&self, place: usize) -> Option<Subgroup> {
+        self.subgroups.iter().copied().find(|subgroup| subgroup.end == place)
+    }
 }
 
 impl Mission {

@@ -63,7 +63,7 @@ impl RobotReport {
     pub fn of(robot: RobotView<'_>, body: Point, traffic: Traffic) -> Self {
         let task = match robot.notice() {
             Notice::Quiet | Notice::Serviced { .. } => None,
-            Notice::Task { task, .. } => Some(*task),
+            Notice::Task(announcement) => Some(announcement.task),
             Notice::Ended { task, .. } => *task,
             _ => robot.current_task(),
         };

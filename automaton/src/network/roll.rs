@@ -32,7 +32,7 @@ pub struct Absent {
     pub gone: IdSet,
 }
 
-/// The body of a robot that is gone.
+/// The body of a robot that does not take part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wreck {
@@ -43,6 +43,18 @@ pub struct Wreck {
     pub place: Point,
     /// The control period in which that was.
     pub heard_in: u32,
+}
+
+impl Absent {
+    /// Whether all robots take part.
+    pub fn is_empty(&self) -> bool {
+        self.suspended.is_empty() && self.gone.is_empty()
+    }
+
+    /// Whether `robot` does not take part.
+    pub fn contains(&self, robot: NodeId) -> bool {
+        self.suspended.contains(robot) || self.gone.contains(robot)
+    }
 }
 
 impl Roll {
@@ -62,10 +74,7 @@ impl Roll {
     /// Whether `robot` may move in control period `period` by this roll, if rolls are valid for
     /// `validity` periods.
     pub fn lets_move(&self, robot: NodeId, period: u32, validity: u32) -> bool {
-        let Absent { suspended, gone } = &*self.absent;
-        period <= self.called.saturating_add(validity)
-            && !suspended.contains(robot)
-            && !gone.contains(robot)
+        period <= self.called.saturating_add(validity) && !self.absent.contains(robot)
     }
 
     /// Whether `robot` is called gone.

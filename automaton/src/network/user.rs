@@ -24,7 +24,7 @@ use crate::{Automaton, BuildError, Flow, Transfer};
 /// A user sends its tasks to the first access point and receives notices from it.
 ///
 /// The network is given one control period to connect. The user then repeats its request in every
-/// period until it has heard an answer.
+/// period until the mission ends: an access point that restarts has forgotten it.
 #[derive(Clone, Debug)]
 pub struct User {
     site: Arc<Site>,
@@ -126,7 +126,9 @@ pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
         }))
         .carried_out(row(On::AnswerHeard, answer_heard(), &[], |_: &Asking| Waiting))
         .carried_out(row(On::EndHeard, request_over(), &[], |_: &Asking| Informed))
-        .carried_out(row(On::PeriodOver, another_period(), &[RestartClock], |_: &Waiting| Waiting))
+        .carried_out(row(On::PeriodOver, another_period(), &[RestartClock, Ask], |_: &Waiting| {
+            Waiting
+        }))
         .carried_out(row(On::EndHeard, request_over(), &[], |_: &Waiting| Informed))
         .carried_out(row(On::PeriodOver, another_period(), &[RestartClock], |_: &Informed| {
             Informed

@@ -1,4 +1,5 @@
-//! Consensus along the path Σ: which of its robots are break points, and which have arrived.
+//! Consensus along the path Σ: which of its robots are break points, which have arrived, and which
+//! give their posts up to those that have.
 //!
 //! The vectors r and t of Sec. V-C2, with one entry for each place of Σ, spread by taking
 //! maxima. Entries of r start negative (unknown) and end at 0 or 1; here `voted` and `breaks`
@@ -18,15 +19,22 @@ pub struct Agreement {
     voted: IdSet,
     breaks: IdSet,
     arrived: IdSet,
+    given_up: IdSet,
 }
 
 impl Agreement {
     /// The agreement about the path that the notice `id` announces, of which nothing is known yet.
     pub const fn new(id: NoticeId) -> Self {
-        Agreement { id, voted: IdSet::new(), breaks: IdSet::new(), arrived: IdSet::new() }
+        Agreement {
+            id,
+            voted: IdSet::new(),
+            breaks: IdSet::new(),
+            arrived: IdSet::new(),
+            given_up: IdSet::new(),
+        }
     }
 
-    /// The agreement with these votes and arrivals; none if a place that has not voted is a break
+    /// The agreement with these votes, arrivals and posts given up; none if a place that has not voted is a break
     /// point.
     #[cfg(feature = "serde")]
     pub(super) fn from_parts(
@@ -34,8 +42,10 @@ impl Agreement {
         voted: IdSet,
         breaks: IdSet,
         arrived: IdSet,
+        given_up: IdSet,
     ) -> Option<Self> {
-        voted.includes(&breaks).then_some(Agreement { id, voted, breaks, arrived })
+        let is_sound = voted.includes(&breaks);
+        is_sound.then_some(Agreement { id, voted, breaks, arrived, given_up })
     }
 
     /// The notice that announced the path, which tells paths apart.
@@ -55,12 +65,18 @@ impl Agreement {
         self.arrived.insert(place);
     }
 
+    /// The robot at `place` gives its post up: it knows that the subgroup that relieves it has arrived.
+    pub fn give_up(&mut self, place: usize) {
+        self.given_up.insert(place);
+    }
+
     /// Takes the maximum with what a neighbour sent.
     pub fn merge(&mut self, heard: &Agreement) {
         if heard.id == self.id {
             self.voted.merge(&heard.voted);
             self.breaks.merge(&heard.breaks);
             self.arrived.merge(&heard.arrived);
+            self.given_up.merge(&heard.given_up);
         }
     }
 
@@ -83,6 +99,11 @@ impl Agreement {
     /// Whether every place in `places` has reached its destination.
     pub fn have_arrived(&self, mut places: std::ops::Range<usize>) -> bool {
         places.all(|place| self.arrived.contains(place))
+    }
+
+    /// Whether the robot at `place` has given its post up.
+    pub fn has_given_up(&self, place: usize) -> bool {
+        self.given_up.contains(place)
     }
 }
 
@@ -109,6 +130,7 @@ mod tests {
         assert_eq!((mine.id(), other.id()), (mine_id, other_id));
         other.vote(0, true);
         other.arrive(0);
+        other.give_up(1);
         mine.merge(&other);
         assert_eq!(mine, Agreement::new(mine_id));
     }

@@ -127,14 +127,16 @@ pub(super) struct AgreementParts {
     voted: IdSet,
     breaks: IdSet,
     arrived: IdSet,
+    given_up: IdSet,
 }
 
 impl TryFrom<AgreementParts> for Agreement {
     type Error = &'static str;
 
     fn try_from(parts: AgreementParts) -> Result<Self, Self::Error> {
-        let AgreementParts { id, voted, breaks, arrived } = parts;
-        Agreement::from_parts(id, voted, breaks, arrived).ok_or("a break point has not voted")
+        let AgreementParts { id, voted, breaks, arrived, given_up } = parts;
+        let agreement = Agreement::from_parts(id, voted, breaks, arrived, given_up);
+        agreement.ok_or("a break point has not voted")
     }
 }
 
@@ -191,6 +193,7 @@ mod tests {
         agreement.vote(0, true);
         agreement.vote(3, false);
         agreement.arrive(1);
+        agreement.give_up(2);
         comes_back(&agreement);
         let lineage = Lineage::of_access_point(1);
         comes_back(&lineage);

@@ -129,7 +129,7 @@ fn serviced(protocol: &Protocol, state: &State) -> usize {
     protocol
         .locals(state)
         .map(|local| match local.notice() {
-            Notice::Task { task, .. } => *task,
+            Notice::Task(announcement) => announcement.task,
             Notice::Serviced { task } => task + 1,
             _ => local.robot().and_then(RobotView::current_task).unwrap_or_default(),
         })

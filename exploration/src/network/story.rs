@@ -101,7 +101,7 @@ fn duty_text(duty: &Duty) -> String {
 fn word(notice: &Notice) -> String {
     match notice {
         Notice::Quiet => "quiet".into(),
-        Notice::Task { task, .. } => format!("task {task} announced"),
+        Notice::Task(announcement) => format!("task {} announced", announcement.task),
         Notice::Call { caller, .. } => format!("{caller} calls"),
         Notice::Path(path) => {
             format!("path {:?}", path.hops.iter().map(|hop| hop.robot).collect::<Vec<_>>())

@@ -42,7 +42,7 @@ impl Word {
     fn of(notice: &Notice) -> Self {
         match notice {
             Notice::Quiet => Word::Quiet,
-            Notice::Task { .. } => Word::Task,
+            Notice::Task(_) => Word::Task,
             Notice::Call { .. } => Word::Call,
             Notice::Path(_) => Word::Path,
             Notice::Advance { .. } => Word::Advance,
@@ -184,10 +184,10 @@ impl Mission {
     /// Counts the tasks; returns whether it is time for this notice.
     fn count(&mut self, notice: &Notice, before: Word) -> bool {
         match notice {
-            Notice::Task { task, .. } => {
+            Notice::Task(announcement) => {
                 // After a call in vain the same task is announced to robots of another tree.
                 self.announced += usize::from(before != Word::Call);
-                *task == self.serviced && self.announced == self.serviced + 1
+                announcement.task == self.serviced && self.announced == self.serviced + 1
             }
             Notice::Serviced { task } => {
                 self.serviced += 1;
@@ -210,7 +210,7 @@ impl Mission {
             if first != winner {
                 return Err(format!("election {number} is won by {first:?}, then by {winner:?}"));
             }
-            if !matches!(self.words.get(&number), Some(Notice::Task { .. } | Notice::Call { .. })) {
+            if !matches!(self.words.get(&number), Some(Notice::Task(_) | Notice::Call { .. })) {
                 return Err(format!("no notice has called for election {number}"));
             }
         }

@@ -40,6 +40,11 @@ pub mod mission {
         disengaged("overtaken", proposition("overtaken"))
     }
 
+    /// The robots that it hears go by an announcement that it has not received.
+    pub fn informed() -> Guard {
+        disengaged("informed", proposition("announcement_heard"))
+    }
+
     /// Every token is known: line 1 of Algorithm 1.
     pub fn elected() -> Guard {
         disengaged("elected", proposition("election_over"))

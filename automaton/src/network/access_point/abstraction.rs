@@ -46,6 +46,7 @@ impl AccessPoint {
             // Told.
             number,
             bulletin,
+            announced,
             election,
             election_rounds,
             agreement,
@@ -86,7 +87,7 @@ impl AccessPoint {
         format!(
             "{:?}",
             (
-                (number, bulletin, &**service, election, rounds),
+                (number, bulletin, announced, &**service, election, rounds),
                 (agreement, route, crossing, (attached, roster), settled),
             )
         )

@@ -108,6 +108,15 @@ impl Attendee {
         }
     }
 
+    /// A robot that does not take part by the roll that an access point hears when it begins.
+    fn absent(standing: Standing, validity: u32) -> Self {
+        Attendee {
+            standing: Current::new(standing),
+            silence: Some(PATIENCE),
+            ..Attendee::new(validity)
+        }
+    }
+
     /// The robot is heard of.
     pub(super) fn attend(&mut self) {
         self.silence = Some(0);
@@ -159,6 +168,20 @@ impl AccessPoint {
             self.roll = Roll { called: self.period, absent };
         }
         Ok(())
+    }
+
+    /// It has begun, or begun again, while others went by this roll: who does not take part by it does
+    /// not from now on.
+    pub(super) fn recall(&mut self, roll: &Roll) {
+        let Absent { suspended, gone } = &*roll.absent;
+        let validity = self.site.roll_validity();
+        for (robot, attendee) in self.attendees.iter_mut().enumerate() {
+            if gone.contains(robot) {
+                *attendee = Attendee::absent(Standing::Gone(Gone), validity);
+            } else if suspended.contains(robot) {
+                *attendee = Attendee::absent(Standing::Suspended(Suspended), validity);
+            }
+        }
     }
 
     /// The first task that has been serviced, and has not been for as long as it takes to give a robot

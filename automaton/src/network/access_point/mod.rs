@@ -16,7 +16,7 @@ mod attendance;
 mod rounds;
 mod service;
 
-use super::beacon::{Beacon, Bulletin, LastBeacon, Notice, Reports};
+use super::beacon::{Announced, Beacon, Bulletin, LastBeacon, Notice, Reports};
 use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
@@ -56,6 +56,8 @@ pub struct AccessPoint {
     bulletin: Bulletin,
     /// The newest bulletin that it has heard and not taken up.
     newest: Option<Bulletin>,
+    /// The newest announcement that it knows.
+    announced: Option<Announced>,
     election: Option<Arc<Election>>,
     election_rounds: usize,
     agreement: Option<Agreement>,
@@ -104,6 +106,7 @@ impl AccessPoint {
             silent: BTreeSet::new(),
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             newest: None,
+            announced: None,
             election: None,
             election_rounds: 0,
             agreement: None,
@@ -148,6 +151,7 @@ impl AccessPoint {
             sender: self.id(),
             position: self.position,
             bulletin: self.bulletin.clone(),
+            announced: self.announced.clone(),
             election: self.election.clone(),
             agreement: self.agreement.clone(),
             route: self.route.clone(),
@@ -183,7 +187,9 @@ impl AccessPoint {
     /// Takes in a beacon. One that arrives after a newer one of its sender is ignored, and so is one
     /// that has been late since an earlier control period.
     fn hear(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
-        self.roll.merge(roll);
+        if self.roll.merge(roll) && self.is_new {
+            self.recall(roll);
+        }
         if period < self.period {
             return;
         }
@@ -228,6 +234,7 @@ impl AccessPoint {
     }
 
     fn hear_notices(&mut self) -> Result<(), TransitionError> {
+        self.hear_announcements();
         let mut newest = self.bulletin.clone();
         let hear = |has_news, beacon: &Arc<Beacon>| newest.merge(&beacon.bulletin) || has_news;
         if self.heard.iter().fold(false, hear) {
@@ -246,6 +253,14 @@ impl AccessPoint {
         Ok(())
     }
 
+    fn hear_announcements(&mut self) {
+        for announced in self.heard.iter().filter_map(|beacon| beacon.announced.as_ref()) {
+            if self.announced.as_ref().is_none_or(|(known, _)| announced.0.is_newer_than(*known)) {
+                self.announced = Some(announced.clone());
+            }
+        }
+    }
+
     /// Takes a row of the service, if one is enabled.
     fn jump(&mut self) -> Result<(), TransitionError> {
         let site = Arc::clone(&self.site);
@@ -255,8 +270,11 @@ impl AccessPoint {
 
     fn take_up(&mut self, bulletin: Bulletin) {
         let id = bulletin.id();
+        if let Notice::Task(announcement) = &**bulletin.notice() {
+            self.announced = Some((id, announcement.clone()));
+        }
         match **bulletin.notice() {
-            Notice::Task { .. } | Notice::Call { .. } => {
+            Notice::Task(_) | Notice::Call { .. } => {
                 self.election = Some(Arc::new(Election::new(id)));
                 self.election_rounds = 0;
                 self.route = None;

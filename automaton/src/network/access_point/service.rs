@@ -8,7 +8,7 @@ use pleach_guards::{Guard, network::service as guards};
 use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Transfer};
 
-use super::super::beacon::{Bulletin, Notice};
+use super::super::beacon::{Announcement, Bulletin, Notice};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::service::{Announced, Electing, Gathering, Over, Serviced, Serving, UnderWay};
 use super::super::shared::Shared;
@@ -56,7 +56,7 @@ crate::observed! {
         /// A robot that takes part in the elections for its task has not been heard of.
         expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
         /// The newest notice received announces a task, or calls for a recruit.
-        hears_election: matches!(point.heard_notice(), Some(Notice::Task { .. } | Notice::Call { .. })),
+        hears_election: matches!(point.heard_notice(), Some(Notice::Task(_) | Notice::Call { .. })),
         /// The newest notice received announces a path Σ, or that the team advances.
         hears_progress: matches!(point.heard_notice(), Some(Notice::Path(_) | Notice::Advance { .. })),
         /// The newest notice received says that the task is serviced.
@@ -72,7 +72,7 @@ crate::observed! {
         /// The token of every robot that takes part is known.
         election_over: point.is_election_over(),
         /// The election is that of a leader.
-        leader_wanted: matches!(point.notice(), Notice::Task { .. }),
+        leader_wanted: matches!(point.notice(), Notice::Task(_)),
         /// A robot has bid in the election.
         has_bid: point.election.as_ref().is_some_and(|election| election.best().is_some()),
     }
@@ -158,9 +158,15 @@ impl AccessPoint {
 
     /// The notice by which a task is announced to the robots that take part now.
     fn task_notice(&self, task: usize) -> Option<Notice> {
-        let position = *self.requested.as_ref()?.get(task)?;
-        let eligible = Arc::new((0..self.site.access_points.len()).collect());
-        Some(Notice::Task { task, position, roster: Arc::clone(&self.roster), eligible })
+        let requested = self.requested.as_ref()?;
+        let serviced = requested.get(..self.tasks_serviced.len()).unwrap_or(requested);
+        Some(Notice::Task(Shared::new(Announcement {
+            task,
+            position: *requested.get(task)?,
+            before: Arc::from(serviced),
+            roster: Arc::clone(&self.roster),
+            eligible: Arc::new((0..self.site.access_points.len()).collect()),
+        })))
     }
 
     fn electing(&self, task: usize, unanswered: u32) -> Electing {
@@ -168,11 +174,24 @@ impl AccessPoint {
         Electing { announced: Some(Announced { task, roster, unanswered }) }
     }
 
+    /// The task that is pursued with its electors, as robots tell it: an access point that restarts
+    /// learns of it so.
+    fn current_electors(&self) -> Option<Announced> {
+        let epoch = self.newest.as_ref().map(|newest| newest.id().epoch());
+        let current = self.announced.as_ref().filter(|(id, _)| Some(id.epoch()) == epoch);
+        current.map(|(_, announcement)| electors_of(announcement))
+    }
+
     fn is_election_over(&self) -> bool {
         self.announced().is_some_and(|announced| {
             self.election.as_ref().is_some_and(|known| known.is_complete(&announced.roster))
         })
     }
+}
+
+fn electors_of(announcement: &Announcement) -> Announced {
+    let Announcement { task, ref roster, .. } = *announcement;
+    Announced { task, roster: Arc::clone(roster), unanswered: 0 }
 }
 
 // ---- The resets ------------------------------------------------------------------------------
@@ -213,8 +232,8 @@ fn hear_election<A: Knows>(
     effects: &mut Effects,
 ) -> Option<Electing> {
     let announced = match take_up(point, effects)? {
-        Notice::Task { task, roster, .. } => Some(Announced { task, roster, unanswered: 0 }),
-        _ => place.announced(),
+        Notice::Task(announcement) => Some(electors_of(&announcement)),
+        _ => place.announced().or_else(|| point.current_electors()),
     };
     Some(Electing { announced })
 }
@@ -225,7 +244,7 @@ fn hear_progress<A: Knows>(
     effects: &mut Effects,
 ) -> Option<UnderWay> {
     take_up(point, effects)?;
-    Some(UnderWay { announced: place.announced() })
+    Some(UnderWay { announced: place.announced().or_else(|| point.current_electors()) })
 }
 
 fn hear_service<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Serviced> {

@@ -9,7 +9,7 @@ use pleach_discrete::network::{
 };
 use serde_json::{Value, json};
 
-use super::super::beacon::{Notice, TeamReport};
+use super::super::beacon::{Announcement, Notice, TeamReport};
 use super::super::duty::{
     AwaitingRelease, Bound, Duty, Following, Held, Hop, Junction, Leading, Leaf, Path, PathPlace,
     Relay, Shifting, Standby, Station, Waiting,
@@ -64,12 +64,13 @@ fn notices() -> Vec<Notice> {
     let set = |ids: &[usize]| Arc::new(ids.iter().copied().collect::<IdSet>());
     vec![
         Notice::Quiet,
-        Notice::Task {
+        Notice::Task(Shared::new(Announcement {
             task: 1,
             position: Point::new(2.5, 0.0),
+            before: Arc::from([Point::new(0.1 + 0.2, 1.0)]),
             roster: set(&[0, 1, 63, 64, 300]),
             eligible: set(&[]),
-        },
+        })),
         Notice::Call { caller: 8, releases_leader: true },
         Notice::Path(Arc::new(Path { hops: hops(), releases_leader: false })),
         Notice::Advance { joined: None },
@@ -86,6 +87,7 @@ fn silent() -> Beacon {
         sender: 13,
         position: Point::origin(),
         bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
+        announced: None,
         election: None,
         agreement: None,
         route: None,
@@ -196,7 +198,7 @@ fn kind(message: &Message) -> &'static str {
 fn kind_of_notice(notice: &Notice) -> &'static str {
     match notice {
         Notice::Quiet => "quiet",
-        Notice::Task { .. } => "task",
+        Notice::Task(_) => "task",
         Notice::Call { .. } => "call",
         Notice::Path(_) => "path",
         Notice::Advance { .. } => "advance",

@@ -1,9 +1,10 @@
 //! Robots that do not take part: the roll that lets this robot move, and the bodies of those that are
-//! gone.
+//! suspended or gone.
 //!
 //! A robot that is gone is not expected to be heard. Others go round the place where any of them heard
 //! it last. From there it has moved at most the two steps that it had the right to before it fell
-//! silent: one in the control period in which it was heard, and one in the next.
+//! silent: one in the control period in which it was heard, and one in the next. Others learn of this
+//! place when the robot is suspended, and so before they can come near without having heard it.
 
 use std::cmp::Reverse;
 use std::sync::Arc;
@@ -45,22 +46,25 @@ impl Robot {
         if lost.is_access_point() {
             return;
         }
-        let seen = Wreck { robot: lost.id(), place: lost.position(), heard_in: lost.heard_in };
+        let seen = lost.wreck();
         match self.out_of_sight.binary_search_by_key(&seen.robot, |known| known.robot) {
             Ok(at) => self.out_of_sight[at] = seen,
             Err(at) => self.out_of_sight.insert(at, seen),
         }
     }
 
-    /// Where robots that are gone were heard last, by this robot or by those that it hears.
+    /// Where robots that do not take part were heard last, by this robot or by those that it hears.
     pub(super) fn locate_wrecks(&mut self) {
-        let gone = &self.roll.absent.gone;
-        if gone.is_empty() && self.wrecks.is_empty() {
+        let absent = &self.roll.absent;
+        if absent.is_empty() && self.wrecks.is_empty() {
             return;
         }
+        let silent = self.neighbours.iter().filter(|known| known.is_silent());
+        let silent: Vec<Wreck> = silent.map(Neighbour::wreck).collect();
         let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter());
-        let seen = self.out_of_sight.iter().chain(self.wrecks.iter()).chain(told);
-        let mut wrecks: Vec<Wreck> = seen.filter(|it| gone.contains(it.robot)).copied().collect();
+        let seen = self.out_of_sight.iter().chain(self.wrecks.iter()).chain(told).chain(&silent);
+        let mut wrecks: Vec<Wreck> =
+            seen.filter(|seen| absent.contains(seen.robot)).copied().collect();
         wrecks.sort_by_key(|wreck| (wreck.robot, Reverse(wreck.heard_in)));
         wrecks.dedup_by_key(|wreck| wreck.robot);
         if *self.wrecks != wrecks {

@@ -116,9 +116,7 @@ impl Robot {
             unused_periods,
             bulletin,
             epoch,
-            tasks,
-            roster,
-            eligible,
+            announced,
             election,
             bid,
             waited_rounds,
@@ -178,11 +176,13 @@ impl Robot {
             last_request: _,
             has_flow_news: _,
             has_swept: _,
+            demands_passed_on: _,
             has_no_reserve: _,
             has_shortage_news: _,
             has_untold_flows: _,
             is_unsettled: _,
             destination: _,
+            target: _, // by the announcement
             waypoint: _,
             proposal: _,
             told_move: _,
@@ -205,7 +205,7 @@ impl Robot {
             (
                 (id, position, still_periods, &**duty, &**mission, unused_periods,),
                 (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
-                ((bulletin, epoch), tasks, roster, eligible, election, bid, waited, route),
+                ((bulletin, epoch, announced), election, bid, waited, route),
                 (agreement, team, followed_post, silences),
             )
         )

@@ -206,30 +206,26 @@ impl Robot {
     }
 
     /// The post that a robot on its way along Σ takes next: the one ahead or, where its task is announced
-    /// again before its subgroup has arrived, the one that it left.
+    /// again before all of its subgroup have arrived, the one that it left.
+    ///
+    /// The robot behind takes the post that this one left only if this one has reported that it has
+    /// arrived. Until then it may come back to it, and from then on it may not.
     pub(super) fn coming_post(&self) -> Option<Post> {
         let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
-        if !self.turns_back() {
+        if !self.is_superseded() {
             return self.next_hop().map(|hop| hop.post);
         }
-        let hop = self.mission.path()?.hops.get(place)?;
-        // The robot behind holds the post of the first of a subgroup; others may have gone on.
-        let is_first = || self.active_subgroup().is_none_or(|it| it.first == place);
-        let is_held = left.is_some() && is_first() || self.takes_step(MissionStep::Overtaken);
-        Some(if is_held { self.new_post() } else { hop.post })
-    }
-
-    /// Whether it stops on its way along Σ: the task that it moves for is announced again, to the robots
-    /// that are left, and its subgroup has not arrived.
-    fn turns_back(&self) -> bool {
-        let is_same = matches!(*self.notice(),
-            Notice::Task { task, .. } if Some(task) == self.current_task());
-        let have_arrived = || {
-            let agreement = self.agreement.as_ref().zip(self.active_subgroup());
-            agreement.is_some_and(|(known, active)| known.have_arrived(active.places()))
-        };
-        self.takes_step(MissionStep::Overtaken)
-            || self.takes_step(MissionStep::Announced) && is_same && !have_arrived()
+        let hops = &self.mission.path()?.hops;
+        let active = self.active_subgroup();
+        let is_taken = left.is_some() && active.is_none_or(|active| active.first == place);
+        let leads_on = active.is_some_and(|active| active.places().contains(&(place + 1)));
+        match self.has_reported(place) {
+            false if !is_taken => hops.get(place).map(|hop| hop.post),
+            true if leads_on && self.has_reported(place + 1) => {
+                hops.get(place + 1).map(|hop| hop.post)
+            }
+            _ => Some(self.new_post()),
+        }
     }
 
     /// Whether its turn on Σ has come: its subgroup is the active team, and its post is held by
@@ -247,10 +243,10 @@ impl Robot {
         self.label == Label::Alone && self.is_late
     }
 
-    /// Whether it waits on Σ, and the robot behind holds its post.
+    /// Whether it waits on Σ, and has given its post up to the robot behind.
     pub(super) fn is_superfluous(&self) -> bool {
-        let held = self.duty.held().filter(|_| self.duty.place().is_some());
-        held.is_some_and(|held| self.holder(held.station.post.id).is_some())
+        let place = self.duty.held().and_then(|_| self.duty.place());
+        place.zip(self.agreement.as_ref()).is_some_and(|(at, known)| known.has_given_up(at))
     }
 
     /// Whether another parent has been found to be better.
@@ -345,7 +341,7 @@ fn take_post_ahead<B: From<Held>>(
     }
     let place = robot.next_hop()?.place.reference;
     let queues = (robot.position - place).norm() > robot.site.settings.arrival_radius();
-    let reference = if queues || robot.turns_back() { robot.free_place() } else { place };
+    let reference = if queues || robot.is_superseded() { robot.free_place() } else { place };
     Some(B::from(Held { station: Station { post, reference }, left: None }))
 }
 

@@ -80,7 +80,8 @@ facts! {
         path_announced,
         /// Every place of Σ has voted whether it is a break point.
         points_agreed,
-        /// Every member of the active subgroup has arrived.
+        /// Every member of the active subgroup has arrived, and the robot that it relieves gives its post
+        /// up.
         subgroup_arrived,
         /// This robot is the last that Σ relieves, and its post is held by another.
         relieved,
@@ -90,8 +91,10 @@ facts! {
         service_announced,
         /// The newest notice says that the mission has ended.
         end_announced,
-        /// The newest notice follows from an announcement that it has not received.
+        /// The newest notice follows from an announcement that it has not received, of another epoch.
         overtaken,
+        /// Robots that it hears go by an announcement that it has not received.
+        announcement_heard,
         /// This robot is p₁.
         first,
         /// A member of the team has room to move.
@@ -149,7 +152,7 @@ facts! {
             serves: robot.duty.post().is_some_and(|post| post.task.is_some()),
             /// It joins a mission under way, and has no post of its own yet.
             joins_late: robot.joins_late(),
-            /// The robot behind on Σ holds its post.
+            /// It has given its post up to the subgroup that relieves it.
             superfluous: robot.is_superfluous(),
             /// It holds a fixed post, or robots attached to it find no other parent.
             has_past_duties: robot.has_past_duties(),
@@ -295,8 +298,9 @@ impl Robot {
         let is_overtaken = id.epoch() > self.epoch;
         match self.notice() {
             Notice::Ended { .. } => facts.end_announced = true,
-            Notice::Task { .. } if election != Some(id) => facts.announced = true,
+            Notice::Task(_) if election != Some(id) => facts.announced = true,
             _ if is_overtaken => facts.overtaken = true,
+            _ if self.newer_announcement().is_some() => facts.announcement_heard = true,
             Notice::Call { .. } if election != Some(id) => facts.called = true,
             Notice::Path(_) if path != Some(id) => facts.path_announced = true,
             Notice::Advance { .. } => facts.resumed = true,
@@ -306,10 +310,11 @@ impl Robot {
     }
 
     /// Whether the token of every robot of the roster is known. A robot that has joined since the task
-    /// was announced does not know the roster, and cannot tell.
+    /// was announced cannot tell before it knows the roster.
     pub(super) fn election_is_over(&self) -> bool {
-        let election = self.election.as_ref().filter(|_| !self.roster.is_empty());
-        election.is_some_and(|election| election.is_complete(&self.roster))
+        let roster = self.announcement().map(|announcement| &announcement.roster);
+        let known = self.election.as_ref().zip(roster.filter(|roster| !roster.is_empty()));
+        known.is_some_and(|(election, roster)| election.is_complete(roster))
     }
 
     fn is_caller(&self) -> bool {
@@ -323,10 +328,7 @@ impl Robot {
                 if matches!(duty, Duty::Shifting(_)) && !self.has_arrived() {
                     facts.stalled = f64::from(self.still_periods);
                 }
-                facts.subgroup_arrived = self
-                    .agreement
-                    .as_ref()
-                    .is_some_and(|agreement| agreement.have_arrived(active.places()));
+                facts.subgroup_arrived = self.knows_arrived(active) && self.may_relieve(active);
             }
             (
                 None,
@@ -356,9 +358,9 @@ impl Robot {
             };
         }
         if self.duty.post().is_some_and(|post| post.is_leading())
-            && let Some(task) = self.tasks.last()
+            && let Some(announcement) = self.announcement()
         {
-            facts.distance = (task.position - self.position).norm();
+            facts.distance = (announcement.position - self.position).norm();
         }
     }
 

@@ -8,6 +8,7 @@ use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
 use super::super::beacon::Beacon;
 use super::super::duty::Station;
+use super::super::roll::Wreck;
 use super::super::site::Site;
 use super::Robot;
 
@@ -35,6 +36,9 @@ pub(super) struct Neighbour {
 /// changed, so that all of these messages but one may be lost. A neighbour that is silent in as many
 /// of the rounds in which all robots send is out of range.
 pub(in super::super) const ROUNDS_TO_BE_HEARD: usize = 3;
+
+/// Control periods for which a robot counts as attached that is not heard.
+const PATIENCE_WITH_CHILDREN: u32 = 8;
 
 impl Neighbour {
     /// A node as heard from `own`.
@@ -88,6 +92,16 @@ impl Neighbour {
     pub fn is_access_point(&self) -> bool {
         self.beacon.duty.is_none()
     }
+
+    /// Whether it has been silent for so long that it is out of range, or does not run.
+    pub fn is_silent(&self) -> bool {
+        usize::from(self.silent_rounds) == ROUNDS_TO_BE_HEARD
+    }
+
+    /// Where its body was when it was heard last.
+    pub fn wreck(&self) -> Wreck {
+        Wreck { robot: self.id(), place: self.position(), heard_in: self.heard_in }
+    }
 }
 
 impl Robot {
@@ -119,7 +133,8 @@ impl Robot {
 
     #[inline(never)]
     fn hear_news(&mut self, period: u32, confirmed: Option<u32>, beacon: &Arc<Beacon>) {
-        if self.is_new && period > self.period {
+        // Clocks may be a little apart; more than that, it has begun later than others.
+        if period > self.period + u32::from(!self.is_new) {
             self.join_in(period);
         }
         let known = self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id);
@@ -174,19 +189,23 @@ impl Robot {
     /// A neighbour that the robot knows is not heard; returns the index of the next one. One that was
     /// near when it was heard last is not out of range: it stays where it is taken to be, and this
     /// robot does not leave its place meanwhile. Nor is one to which packets flow, as long as it has
-    /// granted them. A robot that is gone is not waited for.
+    /// granted them, nor, for a while, one that is attached to this robot's post: a branch is not cut off
+    /// because its messages are lost. A robot that is gone is not waited for.
     fn miss(&mut self, at: usize) -> usize {
+        let (own, period) = (self.duty.post().map(|post| post.id), self.period);
         let known = &mut self.neighbours[at];
         let silent_rounds = known.silent_rounds.saturating_add(1).min(ROUNDS_TO_BE_HEARD as u8);
         if known.measured_at != self.position {
             *known = known.seen_from(self.position, &self.site);
         }
         known.silent_rounds = silent_rounds;
-        let is_silent = usize::from(silent_rounds) == ROUNDS_TO_BE_HEARD;
+        let is_silent = known.is_silent();
+        let is_child = own.is_some_and(|own| known.post().is_some_and(|it| it.is_child_of(own)));
+        let is_kept = is_child && period <= known.heard_in.saturating_add(PATIENCE_WITH_CHILDREN);
         let is_lost = is_silent && (known.is_access_point() || !self.site.is_near(known.distance));
         let (id, reliability) = (known.id(), known.reliability);
         let is_gone = is_silent && self.is_gone(id);
-        if is_lost && !self.sends_to(id) || is_gone || reliability <= 0.0 {
+        if is_lost && !is_kept && !self.sends_to(id) || is_gone || reliability <= 0.0 {
             let lost = self.neighbours.remove(at);
             self.lose_sight_of(&lost);
             self.receive_news();

@@ -1,14 +1,13 @@
 //! The election of a leader (Algorithm 1, Remark 5.3).
 
-use std::sync::Arc;
-
+use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Election, NodeId};
 
-use super::super::beacon::Notice;
+use super::super::beacon::{Announced, Notice};
 use super::super::mission::{Advance, LeaderElection};
 use super::super::record::MissionEvent;
+use super::Robot;
 use super::mission::{Effects, MissionEffect};
-use super::{Robot, TaskNotice};
 
 /// Distances in bids are compared in units of this share of the full range l: finer differences
 /// are ties, which go to the higher index.
@@ -18,23 +17,26 @@ const BESIDE: f64 = 2.1;
 
 /// A task is announced: the robot places a bid for it (Remark 5.3).
 pub(super) fn place_bid<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<LeaderElection> {
-    let Notice::Task { task, position, roster, eligible } = robot.notice() else {
-        return None;
-    };
-    let target = robot.site.free_space.nearest(*position);
-    let task = TaskNotice { number: *task, position: *position, target };
-    let competes = roster.contains(robot.id)
-        && robot.lineage().is_some_and(|lineage| eligible.contains(lineage.root()));
-    let bid = competes.then(|| robot.leader_bid(&task)).flatten();
+    let Notice::Task(announcement) = robot.notice() else { return None };
+    let competes = announcement.roster.contains(robot.id)
+        && robot.lineage().is_some_and(|way| announcement.eligible.contains(way.root()));
+    let bid = competes.then(|| robot.leader_bid(announcement.position)).flatten();
     let mut election = Election::new(robot.notice_id());
     election.place(robot.id, bid);
     effects.extend([
         MissionEffect::Restart,
-        MissionEffect::Learn(task, Arc::clone(roster), Arc::clone(eligible)),
+        MissionEffect::Learn((robot.notice_id(), announcement.clone())),
         MissionEffect::Elect(election, bid, None),
         MissionEffect::Agree(None),
     ]);
     Some(LeaderElection)
+}
+
+/// The robots that it hears go by an announcement that it has not received, because it has begun
+/// or restarted since.
+pub(super) fn learn<A: Clone>(phase: &A, robot: &Robot, effects: &mut Effects) -> Option<A> {
+    effects.push(MissionEffect::Learn(robot.newer_announcement()?.clone()));
+    Some(phase.clone())
 }
 
 /// Every token is known: the winner leads, at once or after it has been released.
@@ -54,9 +56,10 @@ pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects)
 
 impl Robot {
     /// The nearer to the task along the geodesic, the better; none if the task is out of reach.
-    fn leader_bid(&self, task: &TaskNotice) -> Option<Bid> {
-        let gap = (task.target - task.position).norm();
-        let distance = self.site.distance(self.position, task.target);
+    fn leader_bid(&self, task: Point) -> Option<Bid> {
+        let target = self.site.free_space.nearest(task);
+        let gap = (target - task).norm();
+        let distance = self.site.distance(self.position, target);
         let unit = BID_RESOLUTION * self.site.build_length;
         let within_reach = gap <= self.site.settings.leash_radius() && distance.is_finite();
         within_reach.then(|| Bid {
@@ -74,6 +77,14 @@ impl Robot {
             let away = (self.position - place).norm();
             away.hypot(BESIDE * self.clearance()) <= self.site.settings.arrival_radius()
         })
+    }
+
+    /// The newest announcement by which robots go that it hears, if it does not go by it yet.
+    pub(super) fn newer_announcement(&self) -> Option<&Announced> {
+        let heard = self.neighbours.iter().filter_map(|known| known.beacon.announced.as_ref());
+        let own = self.announced.as_ref().map(|(id, _)| *id);
+        let is_newer = |(id, _): &&Announced| Some(*id) > own && id.epoch() == self.epoch;
+        heard.filter(is_newer).max_by_key(|(id, _)| *id)
     }
 
     /// The winner of the election that this robot takes part in, as far as it knows.

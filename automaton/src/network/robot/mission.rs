@@ -9,15 +9,13 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{
-    Agreement, Bid, Election, IdSet, MISSION, MissionStep, NoticeId, Phase,
-};
+use pleach_discrete::network::{Agreement, Bid, Election, MISSION, MissionStep, NoticeId, Phase};
 use pleach_guards::network::mission as guards;
 
 use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
-use super::super::beacon::Notice;
+use super::super::beacon::{Announced, Notice};
 use super::super::duty::Hop;
 use super::super::mission::{
     Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
@@ -25,7 +23,7 @@ use super::super::mission::{
 use super::super::record::MissionEvent;
 use super::super::shared::{Shared, merge_election};
 use super::duties::Label;
-use super::{Robot, TaskNotice, leader, path, recruit, team};
+use super::{Robot, leader, path, recruit, team};
 
 /// The automaton of the mission as one robot sees it.
 pub type MissionAutomaton = Automaton<Phase, MissionStep, Robot>;
@@ -38,9 +36,8 @@ pub enum MissionEffect {
     Report(MissionEvent),
     /// It issues the next notice.
     Issue(Notice),
-    /// It stores the task announced, the electors of its leader, and the access points whose robots
-    /// compete.
-    Learn(TaskNotice, Arc<IdSet>, Arc<IdSet>),
+    /// It goes by this announcement.
+    Learn(Announced),
     /// It takes part in this election, with its own bid, from the way to the caller that it knows.
     Elect(Election, Option<Bid>, Option<(NoticeId, Shared<Vec<Hop>>)>),
     /// It forgets the way to the caller.
@@ -71,12 +68,10 @@ impl Holds<Mission> for Robot {
             match effect {
                 MissionEffect::Report(event) => self.report(event),
                 MissionEffect::Issue(notice) => self.issue(notice),
-                MissionEffect::Learn(task, roster, eligible) => {
-                    (self.roster, self.eligible) = (roster, eligible);
-                    self.epoch = self.notice_id().epoch();
-                    if self.tasks.last().is_none_or(|known| known.number != task.number) {
-                        self.tasks.push(task);
-                    }
+                MissionEffect::Learn(announced) => {
+                    self.epoch = announced.0.epoch();
+                    self.target = Some(self.site.free_space.nearest(announced.1.position));
+                    self.announced = Some(announced);
                 }
                 MissionEffect::Elect(election, bid, route) => {
                     (self.election, self.bid, self.route) = (Some(Arc::new(election)), bid, route);
@@ -124,7 +119,10 @@ impl Robot {
         }
         match self.phase() {
             Phase::RecruitElection => self.answer_call(),
-            Phase::Shift => self.report_arrival(),
+            Phase::Shift => {
+                self.report_arrival();
+                self.yield_post();
+            }
             _ => {}
         }
         self.review_team();
@@ -165,8 +163,18 @@ fn keep_up<A>(_: &A, _: &Robot, effects: &mut Effects) -> Idle {
     Idle
 }
 
+fn informed<A: DataOf<Mission> + Clone>() -> Row {
+    let name = "go by the announcement";
+    Transfer::where_known(MissionStep::Informed, guards::informed(), name, leader::learn::<A>)
+}
+
 fn called<A: DataOf<Mission>>() -> Row {
     Transfer::new(MissionStep::Called, guards::called(), "answer the call", recruit::answer::<A>)
+}
+
+fn path_heard<A: DataOf<Mission>>() -> Row {
+    let (guard, name) = (guards::path_heard(), "vote on break points");
+    Transfer::where_known(MissionStep::PathHeard, guard, name, path::vote::<A>)
 }
 
 fn resumed<A: DataOf<Mission>>() -> Row {
@@ -188,6 +196,7 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         "service_announced",
         "end_announced",
         "overtaken",
+        "announcement_heard",
     ];
     Automaton::builder(MISSION, Phase::Idle)
         .observing()
@@ -211,6 +220,12 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         .carried_out(overtaken::<RecruitElection>())
         .carried_out(overtaken::<PathAgreement>())
         .carried_out(overtaken::<Shift>())
+        .carried_out(informed::<Idle>())
+        .carried_out(informed::<LeaderElection>())
+        .carried_out(informed::<Advance>())
+        .carried_out(informed::<RecruitElection>())
+        .carried_out(informed::<PathAgreement>())
+        .carried_out(informed::<Shift>())
         .carried_out(called::<Idle>())
         .carried_out(called::<LeaderElection>())
         .carried_out(called::<Advance>())
@@ -261,12 +276,10 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
             "ask other trees, or report why",
             recruit::end_unaided,
         ))
-        .carried_out(Transfer::where_known(
-            Step::PathHeard,
-            guards::path_heard(),
-            "vote on break points",
-            path::vote,
-        ))
+        .carried_out(path_heard::<Idle>())
+        .carried_out(path_heard::<LeaderElection>())
+        .carried_out(path_heard::<Advance>())
+        .carried_out(path_heard::<RecruitElection>())
         .carried_out(Transfer::where_known(
             Step::PointsAgreed,
             guards::points_agreed(),

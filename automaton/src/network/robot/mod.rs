@@ -68,7 +68,7 @@ use crate::automaton::TransitionError;
 use crate::located::Current;
 use crate::node::Outputs;
 
-use super::beacon::{Beacon, Bulletin, LastBeacon, Notice, TeamReport};
+use super::beacon::{Announced, Announcement, Beacon, Bulletin, LastBeacon, Notice, TeamReport};
 use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::message::Message;
@@ -179,11 +179,11 @@ pub struct Robot {
 
     // What it knows of the mission.
     bulletin: Bulletin,
-    /// That of the announcement that it goes by.
+    /// The epoch of the notices that it goes by.
     epoch: u32,
-    tasks: Vec<TaskNotice>,
-    roster: Arc<IdSet>,
-    eligible: Arc<IdSet>,
+    announced: Option<Announced>,
+    /// The point of 𝒲_f nearest to the task announced, where the leader goes.
+    target: Option<Point>,
     election: Option<Arc<Election>>,
     /// What it has bid in this election itself.
     bid: Option<Bid>,
@@ -205,6 +205,8 @@ pub struct Robot {
     last_request: RequestNumber,
     has_flow_news: bool,
     has_swept: bool,
+    /// In this sweep.
+    demands_passed_on: usize,
     has_no_reserve: bool,
     has_shortage_news: bool,
     has_untold_flows: bool,
@@ -232,17 +234,6 @@ pub struct Robot {
 
     // What it reports to observers; no robot reads it.
     log: Vec<MissionEvent>,
-}
-
-/// A task that this robot has heard of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TaskNotice {
-    /// Its number.
-    pub number: usize,
-    /// q_v.
-    pub position: Point,
-    /// The point of 𝒲_f nearest to it, where the leader goes.
-    pub target: Point,
 }
 
 impl Robot {
@@ -298,9 +289,8 @@ impl Robot {
             orphaned_periods: 0,
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             epoch: 0,
-            tasks: Vec::new(),
-            roster: Arc::default(),
-            eligible: Arc::default(),
+            announced: None,
+            target: None,
             election: None,
             bid: None,
             waited_rounds: 0,
@@ -320,6 +310,7 @@ impl Robot {
             last_request: RequestNumber::default(),
             has_flow_news: false,
             has_swept: false,
+            demands_passed_on: 0,
             has_no_reserve: false,
             has_shortage_news: false,
             has_untold_flows: false,
@@ -394,6 +385,7 @@ impl Robot {
             sender: self.id,
             position: self.position,
             bulletin: self.bulletin.clone(),
+            announced: self.announced.clone(),
             election: self.election.clone(),
             agreement: self.agreement.clone(),
             route: self.route.clone(),
@@ -430,9 +422,14 @@ impl Robot {
         self.bulletin.id()
     }
 
+    /// The announcement that it goes by.
+    pub(super) fn announcement(&self) -> Option<&Announcement> {
+        self.announced.as_ref().map(|(_, announcement)| &**announcement)
+    }
+
     /// The task announced last, as far as it knows.
     pub(super) fn current_task(&self) -> Option<usize> {
-        self.tasks.last().map(|task| task.number)
+        self.announcement().map(|announcement| announcement.task)
     }
 
     /// A control period begins: what is looked at once a period.
@@ -471,9 +468,12 @@ impl Robot {
 
     /// Takes at most one transition of the mission automaton, together with the duty automaton if
     /// that has a transition for it, or else one of the duty automaton alone; returns whether it did.
+    /// One that joins a mission under way takes a new post before anything else.
     fn jump_once(&mut self) -> Result<bool, TransitionError> {
         let role = self.role();
-        let jumped = self.jump_mission()? || self.jump_duty(Label::Alone)?.is_some();
+        let jumped = self.is_late && self.jump_duty(Label::Alone)?.is_some()
+            || self.jump_mission()?
+            || self.jump_duty(Label::Alone)?.is_some();
         if jumped {
             self.is_quiet = false;
             self.note_change();

@@ -97,7 +97,7 @@ impl Robot {
         };
         let ahead = place + 1;
         ahead < active.end
-            && self.agreement.as_ref().is_some_and(|known| known.have_arrived(ahead..ahead + 1))
+            && self.has_reported(ahead)
             && self
                 .neighbours
                 .iter()

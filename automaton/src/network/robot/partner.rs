@@ -10,8 +10,9 @@
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
 
-use pleach_discrete::network::{NodeId, Offer, Phase, PostKind, Reply};
+use pleach_discrete::network::{Agreement, NodeId, Offer, Phase, PostKind, Reply};
 
+use super::super::beacon::Announced;
 use super::super::duty::{Duty, Shifting};
 use super::Robot;
 use super::hearing::Neighbour;
@@ -106,7 +107,7 @@ impl Robot {
     }
 
     pub(super) fn task_position(&self, task: usize) -> Option<pleach_continuous::Point> {
-        self.tasks.iter().find(|known| known.number == task).map(|known| known.position)
+        self.announcement()?.position_of(task)
     }
 
     // ---- What the guards ask -----------------------------------------------------------------
@@ -138,14 +139,31 @@ impl Robot {
     /// Whether this robot may leave its post to a mover, and go on for it.
     pub(super) fn may_be_relieved(&self) -> bool {
         self.is_parked()
-            && self.knows_task()
+            && self.knows_mission()
             && self.offers().offer().is_none()
             && self.duty.station().is_some()
+            && self
+                .offer_to_answer()
+                .is_none_or(|(mover, offer)| self.pursues_the_same(mover, offer))
     }
 
-    /// Whether it goes by the announcement by which the others go: one that has restarted does not.
-    fn knows_task(&self) -> bool {
-        self.current_task().is_some() && self.epoch == self.notice_id().epoch()
+    /// Whether the mover goes by the same announcement, and the same Σ if one of the duties that they
+    /// would exchange is on it: places on another path are other places.
+    fn pursues_the_same(&self, mover: NodeId, offer: &Offer<Duty>) -> bool {
+        let Some(mover) = self.neighbour(mover) else { return false };
+        let task = |announced: &Option<Announced>| announced.as_ref().map(|(id, _)| *id);
+        let path = |agreement: &Option<Agreement>| agreement.as_ref().map(Agreement::id);
+        let is_on_path = offer.duty.place().is_some() || self.duty.place().is_some();
+        task(&mover.beacon.announced) == task(&self.announced)
+            && (!is_on_path || path(&mover.beacon.agreement) == path(&self.agreement))
+    }
+
+    /// Whether it goes by the announcement by which the others go, and knows Σ where one is announced: one
+    /// that has restarted does not at first.
+    fn knows_mission(&self) -> bool {
+        let announced = self.announced.as_ref();
+        let is_current = announced.is_some_and(|(id, _)| id.epoch() == self.notice_id().epoch());
+        is_current && !self.facts.path_announced
     }
 
     /// Whether an exchange is under way. The robot then stands still, and what it does stays what

@@ -7,18 +7,14 @@ use pleach_discrete::network::{Agreement, NodeId, NoticeId, Post, PostId, PostKi
 
 use super::super::beacon::Notice;
 use super::super::duty::{Duty, Hop, Path, Shifting, Waiting};
-use super::super::mission::{Advance, PathAgreement, RecruitElection, Shift};
+use super::super::mission::{Advance, PathAgreement, Shift};
 use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
 /// The path Σ is known: its members report whether they are break points.
-pub(super) fn vote(
-    _: &RecruitElection,
-    robot: &Robot,
-    effects: &mut Effects,
-) -> Option<PathAgreement> {
+pub(super) fn vote<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<PathAgreement> {
     let Notice::Path(path) = robot.notice() else { return None };
     let agreement = robot.vote_on(path, robot.notice_id());
     effects.push(MissionEffect::Agree(Some(agreement)));
@@ -104,6 +100,36 @@ impl Robot {
     /// The subgroup that is the active team, while one is.
     pub(super) fn active_subgroup(&self) -> Option<Subgroup> {
         self.mission.shift()?.active()
+    }
+
+    /// Whether the robot at `place` of Σ has reported that it has arrived at the next.
+    pub(super) fn has_reported(&self, place: usize) -> bool {
+        self.agreement.as_ref().is_some_and(|known| known.have_arrived(place..place + 1))
+    }
+
+    /// Whether every member of `subgroup` has reported that it has arrived.
+    pub(super) fn knows_arrived(&self, subgroup: Subgroup) -> bool {
+        self.agreement.as_ref().is_some_and(|agreement| agreement.have_arrived(subgroup.places()))
+    }
+
+    /// Whether the robot that `subgroup` relieves has given its post up.
+    pub(super) fn may_relieve(&self, subgroup: Subgroup) -> bool {
+        self.agreement.as_ref().is_some_and(|agreement| agreement.has_given_up(subgroup.end))
+    }
+
+    /// Gives its post up to the subgroup that relieves it, once that has arrived: from now on the
+    /// robot behind may hold it.
+    pub(super) fn yield_post(&mut self) {
+        let place = self.duty.held().and_then(|_| self.duty.place());
+        let shift = self.mission.shift();
+        if let Some(place) = place
+            && let Some(behind) = shift.and_then(|shift| shift.subgroup_up_to(place))
+            && self.knows_arrived(behind)
+            && !self.is_engaged()
+            && let Some(agreement) = &mut self.agreement
+        {
+            agreement.give_up(place);
+        }
     }
 
     /// Reports that it has arrived at the next place of Σ.

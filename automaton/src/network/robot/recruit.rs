@@ -6,7 +6,7 @@ use pleach_discrete::network::{Activity, Anchor, Bid, Election, IdSet, NoticeId,
 
 use crate::located::Place as _;
 
-use super::super::beacon::{Beacon, Notice};
+use super::super::beacon::{Announcement, Beacon, Notice};
 use super::super::duty::{Hop, Path, PathPlace};
 use super::super::mission::{Advance, PathAgreement, RecruitElection};
 use super::super::record::{MissionEvent, Outcome};
@@ -80,28 +80,23 @@ pub(super) fn end_unaided(
 ) -> RecruitElection {
     let stranded = robot.election.as_ref().is_some_and(|election| election.best().is_some());
     let own_root = robot.lineage().map(|lineage| lineage.root());
-    let others: IdSet = robot.eligible.iter().filter(|&root| Some(root) != own_root).collect();
-    if let Some(task) = robot.tasks.last() {
+    if let Some(known) = robot.announcement() {
+        let task = known.task;
+        let others: IdSet = known.eligible.iter().filter(|&root| Some(root) != own_root).collect();
         if stranded && !others.is_empty() {
-            let event = MissionEvent::ElectionRepeated { task: task.number };
-            effects.push(MissionEffect::Report(event));
-            effects.push(MissionEffect::Issue(Notice::Task {
-                task: task.number,
-                position: task.position,
-                roster: Arc::clone(&robot.roster),
-                eligible: Arc::new(others),
-            }));
+            effects.push(MissionEffect::Report(MissionEvent::ElectionRepeated { task }));
+            let announcement = Announcement { eligible: Arc::new(others), ..known.clone() };
+            effects.push(MissionEffect::Issue(Notice::Task(Shared::new(announcement))));
         } else {
             let wanted = (robot.remaining() / robot.site.build_length).ceil().max(1.0);
             let reason = format!(
-                "task {} needs another recruit, and no robot is left that can come; from where the \
-                 team stands about {wanted} more robots are needed",
-                task.number
+                "task {task} needs another recruit, and no robot is left that can come; from where the \
+                 team stands about {wanted} more robots are needed"
             );
             effects.push(MissionEffect::Issue(Notice::Ended {
                 outcome: Outcome::InsufficientRobots,
                 reason: reason.into(),
-                task: Some(task.number),
+                task: Some(task),
             }));
         }
     }
@@ -156,9 +151,13 @@ impl Robot {
         }
     }
 
+    fn takes_part_in_elections(&self) -> bool {
+        self.announcement().is_some_and(|announcement| announcement.roster.contains(self.id))
+    }
+
     /// In which class this robot may be recruited, if it may: where nothing depends on it but the caller.
     fn recruit_class(&self) -> Option<u8> {
-        if !self.roster.contains(self.id) {
+        if !self.takes_part_in_elections() {
             return None;
         }
         match self.duty.is_redundant() {

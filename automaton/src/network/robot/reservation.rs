@@ -27,6 +27,9 @@ use crate::node::Outputs;
 
 /// Control periods for which a grant holds. Every flow is asked for again in each of them.
 const LEASE: u32 = 8;
+/// Control periods for which packets flow to an access point that is not heard: it promises nothing, so
+/// that nothing ends but its service.
+const PATIENCE_WITH_ACCESS_POINTS: u32 = 4 * LEASE;
 /// Flows that differ by less are the same.
 const SAME_FLOW: f64 = 1e-12;
 /// Passes in which some flows are raised and others lowered to make room for them.
@@ -143,8 +146,9 @@ impl Robot {
             let held = &mut link.held;
             held.wanted = if link.is_retiring { 0.0 } else { planned };
             if link.to >= robots {
-                // An access point takes everything.
-                (held.granted, held.until) = (f64::INFINITY, heard_in.saturating_add(LEASE));
+                // An access point takes everything, as long as it is there.
+                let until = heard_in.saturating_add(PATIENCE_WITH_ACCESS_POINTS);
+                (held.granted, held.until) = (f64::INFINITY, until);
             }
             if held.until < period {
                 (held.flow, held.granted) = (0.0, 0.0);

@@ -332,7 +332,7 @@ impl Robot {
 
     /// The sweep begins at the robots that no other sends its demand to.
     pub(super) fn begin_sweep(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
-        self.has_swept = false;
+        (self.has_swept, self.demands_passed_on) = (false, 0);
         if self.demands.is_empty() {
             self.pass_demand_on(true, outputs);
         }
@@ -366,13 +366,18 @@ impl Robot {
         self.demands.iter().filter_map(|&(_, more)| more).for_each(|more| self.inflow += more);
     }
 
+    /// Passes on what it does not carry itself. In a tree that takes no more messages than there are
+    /// robots; where robots on Σ stand in for others, each as it last heard, their demands can go round
+    /// in a cycle, and end there.
     fn pass_demand_on(&mut self, is_first: bool, outputs: &mut Outputs<Message, MissionEvent>) {
         self.has_swept = true;
         let more = self.meet_demand(is_first);
         if let Some(parent) = self.upstream
             && parent < self.site.robots
             && (is_first || more != 0.0)
+            && self.demands_passed_on < self.site.robots
         {
+            self.demands_passed_on += 1;
             outputs.send(parent, Message::Demand(more));
         }
     }
@@ -387,6 +392,7 @@ impl Robot {
 
     /// A further sweep begins where shortages have changed something.
     pub(super) fn sweep_again(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
+        self.demands_passed_on = 0;
         if !self.has_shortage_news && !self.is_unsettled {
             return;
         }

@@ -104,7 +104,7 @@ impl Robot {
     /// ψ of a member of the primary team, eq. (24).
     pub(super) fn team_goal(&self) -> Option<Point> {
         match self.duty.post()?.kind {
-            PostKind::Primary { follows: None } => self.tasks.last().map(|task| task.target),
+            PostKind::Primary { follows: None } => self.target,
             PostKind::Primary { follows: Some(ahead) } => match self.holder(ahead) {
                 Some(neighbour) => Some(neighbour.position()),
                 // Not heard yet: where it stood when it called.
@@ -117,7 +117,8 @@ impl Robot {
     /// The distance from the announced task at which the leader stops.
     pub(super) fn reach(&self) -> f64 {
         let settings = &self.site.settings;
-        let gap = self.tasks.last().map_or(0.0, |task| (task.target - task.position).norm());
+        let task = self.announcement().map(|announcement| announcement.position);
+        let gap = self.target.zip(task).map_or(0.0, |(target, task)| (target - task).norm());
         let stand_off = settings.leash_radius() - STAND_OFF * self.clearance();
         let touch = TOUCH * self.clearance() + self.stray();
         stand_off.max(gap + touch).min(settings.arrival_radius())
@@ -145,7 +146,7 @@ impl Robot {
 
     /// Geodesic distance to the announced task.
     pub(super) fn remaining(&self) -> f64 {
-        self.tasks.last().map_or(0.0, |task| self.site.distance(self.position, task.target))
+        self.target.map_or(0.0, |target| self.site.distance(self.position, target))
     }
 
     /// Whether the robot has room to move: its link is neither at its limit nor is it bunched.

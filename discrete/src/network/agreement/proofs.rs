@@ -62,7 +62,7 @@ fn a_vote_stands() {
 }
 
 /// Arrivals are never forgotten, and those of a range of places are known together exactly if
-/// each is known.
+/// each is known; nor is it that a robot has given its post up.
 #[kani::proof]
 #[kani::unwind(6)]
 fn arrivals_are_known_together_if_each_is_known() {
@@ -76,7 +76,12 @@ fn arrivals_are_known_together_if_each_is_known() {
             other.arrive(place);
         }
     }
+    let (yielding, place): (bool, u8) = (kani::any(), kani::any_where(|place| *place < 4));
+    if yielding {
+        other.give_up(usize::from(place));
+    }
     view.merge(&other);
+    assert!(view.has_given_up(usize::from(place)) == yielding);
     let (first, end): (u8, u8) =
         (kani::any_where(|first| *first < 4), kani::any_where(|end| *end <= 4));
     let places = usize::from(first)..usize::from(end);

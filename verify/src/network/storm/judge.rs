@@ -23,6 +23,8 @@ pub struct Judge {
     /// Whether nodes stop in this storm, or are cut off: what flowed there is lost.
     loses_nodes: bool,
     previous: Option<Snapshot>,
+    /// The nodes that had begun when this control period did.
+    begun: Vec<usize>,
     violations: Vec<Violation>,
     unheard: Option<Violation>,
     last_motion: usize,
@@ -35,6 +37,7 @@ impl Judge {
             limits: Limits::of(scenario),
             loses_nodes: storm.faults().nodes,
             previous: None,
+            begun: Vec::new(),
             violations: Vec::new(),
             unheard: None,
             last_motion: 0,
@@ -61,8 +64,9 @@ impl Judge {
             if before.positions != snapshot.positions {
                 self.last_motion = before.step;
             }
-            self.look_at_period(&period, nodes);
+            self.look_at_period(&period, nodes.len());
         }
+        self.begun = (0..nodes.len()).filter(|&node| nodes[node].has_begun()).collect();
         self.previous = Some(snapshot.clone());
     }
 
@@ -74,11 +78,11 @@ impl Judge {
         }
     }
 
-    fn look_at_period(&mut self, period: &Period, nodes: &[Frail]) {
+    fn look_at_period(&mut self, period: &Period, nodes: usize) {
         let limits = self.limits.clone();
-        let begun: Vec<usize> = (0..nodes.len()).filter(|&it| nodes[it].has_begun()).collect();
+        let begun = std::mem::take(&mut self.begun);
         self.find(period::separation_among(&begun, period, &limits).map(drop));
-        if self.unheard.is_none() && nodes.iter().any(|node| !node.has_begun()) {
+        if self.unheard.is_none() && begun.len() < nodes {
             let found = period::separation(period, &limits).err();
             self.unheard = found.filter(|pair| pair.robots.iter().any(|it| !begun.contains(it)));
         }
