@@ -1,14 +1,17 @@
-//! Which rows of their tables the nodes take: in the shipped scenarios, in random missions, and where
-//! everything that can happen to a few robots is explored.
+//! Which rows of their tables the nodes take, and what they say to each other: in the shipped scenarios,
+//! in other missions, in storms, and where everything that can happen to a few robots is explored.
 //!
 //! `PLEACH_UPDATE_DOCS=1 cargo test --test it coverage` writes the page anew.
 
 use crate::floor_plans::{Family, scenario};
 use crate::generated::keep_up_to_date;
-use crate::missions::{shipped, shipped_names, valid};
+use crate::missions::{Noted, shipped, shipped_names, valid};
+use crate::stressed::stressed_scenarios;
+use pleach::automaton::Executor;
 use pleach::automaton::network::scenario::{RoutingMethod, ValidScenario};
-use pleach::automaton::network::{NamedRow, Network, Radio, Site};
+use pleach::automaton::network::{NamedRow, Network, Site};
 use pleach::mission;
+use pleach::verify::network::storm::{Kind, draw, network_on};
 use pleach_exploration::network::{Findings, QUICK};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -40,18 +43,15 @@ const REASONS: &[([&str; 4], &str)] = &[
         ["exchange", "offering and refusing", "", ""],
         "a mover that is itself in the way of another has refused its offer",
     ),
-    (["attendance", "", "", ""], "robots do not answer any more, or come back; taken in storms"),
-    (["service", "", "announces again", ""], "robots do not answer any more; taken in storms"),
+    (["attendance", "returning", "missed", ""], "a robot comes back and falls silent at once"),
     (
         ["duty", "", "attached", ""],
-        "no robot holds the post of its parent any more; taken in storms",
+        "no robot holds the post of its parent any more: a robot stops on the way along Σ",
     ),
-    (["duty", "standby", "joined", ""], "a robot joins a mission under way; taken in storms"),
     (
         ["duty", "awaiting release", "standby kept", ""],
         "robots do not answer any more while the leader is relieved",
     ),
-    (["mission", "advance", "blocked", ""], "the team stands still although no link holds it back"),
     (
         ["mission", "recruit election", "resumed", ""],
         "the notice between is not heard; taken by `explore -- thorough`",
@@ -73,34 +73,81 @@ const REASONS: &[([&str; 4], &str)] = &[
 /// How often each row is taken.
 type Rows = BTreeMap<NamedRow, usize>;
 
-/// In which missions each row is taken, and how many missions these are.
-fn sum(missions: impl Iterator<Item = ValidScenario>) -> (usize, Rows) {
-    let (mut count, mut sums) = (0, Rows::new());
-    for scenario in missions {
-        count += 1;
-        for (row, times) in taken(&scenario) {
-            *sums.entry(row).or_default() += usize::from(times > 0);
-        }
-    }
-    (count, sums)
+/// What acts in missions: how many they are, and in how many of them each row is taken and each kind of
+/// message heard.
+#[derive(Default)]
+struct Acts {
+    missions: usize,
+    rows: Rows,
+    heard: BTreeMap<&'static str, usize>,
 }
 
-/// How often each row is taken in a mission.
-fn taken(scenario: &ValidScenario) -> Vec<(NamedRow, u64)> {
+impl Acts {
+    fn of(scenarios: impl Iterator<Item = ValidScenario>) -> Self {
+        scenarios.fold(Acts::default(), |mut acts, scenario| {
+            let site = counted(&scenario);
+            let medium = Noted::new(&site);
+            let mut network = Network::with_medium(&scenario, Arc::clone(&site), medium).unwrap();
+            mission::run_network(&scenario, &mut network, &mut []).unwrap();
+            acts.add(&site, network.medium().counts());
+            acts
+        })
+    }
+
+    fn in_storms() -> Self {
+        STORMS.iter().fold(Acts::default(), |mut acts, &(name, kind, seed)| {
+            let scenario = valid(shipped(name));
+            let site = counted(&scenario);
+            let storm = draw(kind, seed, &scenario, DURATION_OF_STORMS);
+            let mut network = network_on(Arc::clone(&site), &scenario, &storm).unwrap();
+            let executor = Executor::new(HORIZON_OF_STORMS, 1_000_000).unwrap();
+            executor.run(&mut network, &mut ()).unwrap();
+            acts.add(&site, &BTreeMap::new());
+            acts
+        })
+    }
+
+    /// Adds what has acted in one mission.
+    fn add(&mut self, site: &Site, heard: &BTreeMap<&'static str, u64>) {
+        self.missions += 1;
+        for (row, times) in site.automata.taken() {
+            *self.rows.entry(row).or_default() += usize::from(times > 0);
+        }
+        heard.keys().for_each(|kind| *self.heard.entry(kind).or_default() += 1);
+    }
+}
+
+/// The site of a scenario, with automata that count.
+fn counted(scenario: &ValidScenario) -> Arc<Site> {
     let mut site = Site::new(scenario).unwrap();
     site.automata = site.automata.counted();
-    let (radio, site) = (Radio::new(&site), Arc::new(site));
-    let mut network = Network::with_medium(scenario, Arc::clone(&site), radio).unwrap();
-    mission::run_network(scenario, &mut network, &mut []).unwrap();
-    site.automata.taken()
+    Arc::new(site)
 }
+
+/// Storms in which robots stop, come back, join late and lose what they say.
+const STORMS: &[(&str, Kind, u64)] = &[
+    ("corridor", Kind::Crash, 0),
+    ("corridor", Kind::Crash, 1),
+    ("corridor", Kind::Restart, 1),
+    ("corridor", Kind::Restart, 2),
+    ("corridor", Kind::Partition, 3),
+    ("study-2", Kind::Crash, 0),
+    ("study-2", Kind::Restart, 0),
+    ("study-2", Kind::Late, 0),
+    ("study-2", Kind::Late, 1),
+    ("study-2", Kind::Everything, 0),
+    ("study-2", Kind::Everything, 1),
+    ("corridor", Kind::Everything, 2),
+];
+const DURATION_OF_STORMS: f64 = 300.0;
+const HORIZON_OF_STORMS: f64 = 900.0;
 
 fn shipped_scenarios() -> impl Iterator<Item = ValidScenario> {
     shipped_names().into_iter().map(|name| valid(shipped(&name)))
 }
 
-/// Random missions, one with routes by ADAL, one with rates that links cannot carry, and one without
-/// a task.
+/// Random missions, some under stress, one with routes by ADAL, one with rates that links cannot carry,
+/// and one without a task.
 fn drawn_scenarios() -> impl Iterator<Item = ValidScenario> {
     let random = Family::of_every_day()
         .flat_map(|family| (1..=SEEDS).map(move |seed| scenario(family, seed)));
@@ -110,7 +157,7 @@ fn drawn_scenarios() -> impl Iterator<Item = ValidScenario> {
     laden.robot.iter_mut().for_each(|robot| robot.rate = 0.2);
     let mut idle = shipped("study-2");
     idle.task.clear();
-    random.chain([by_adal, laden, idle].into_iter().map(valid))
+    random.chain(stressed_scenarios().chain([by_adal, laden, idle]).map(valid))
 }
 
 fn explored() -> (usize, Rows) {
@@ -128,38 +175,51 @@ fn reason(row: &NamedRow) -> Option<&'static str> {
 
 #[test]
 fn every_row_is_taken_or_has_a_reason() {
-    let (scenarios, in_scenarios) = sum(shipped_scenarios());
-    let (drawn, in_drawn) = sum(drawn_scenarios());
+    let in_scenarios = Acts::of(shipped_scenarios());
+    let (in_others, in_storms) = (Acts::of(drawn_scenarios()), Acts::in_storms());
     let (configurations, in_explored) = explored();
     let mut page = format!(
         "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it coverage -->\n\n\
-         # Which rows nodes take\n\n\
-         In how many of the {scenarios} shipped scenarios, of {drawn} random missions, and of \
-         {configurations} configurations that are explored exhaustively some node takes each row of \
-         its tables. The explorer stands for routes and motion: rows of the control period are not \
-         taken there. For a row that none of them takes, the last column says why it is there.\n"
+         # What acts in the tests\n\n\
+         In how many of the {} shipped scenarios, of {} other missions (random, under stress, at their \
+         limits), of {} storms, and of {configurations} configurations that are explored exhaustively some \
+         node takes each row of its tables. The explorer stands for routes and motion: rows of the control \
+         period are not taken there. For a row that none of them takes, the last column says why it is \
+         there.\n",
+        in_scenarios.missions, in_others.missions, in_storms.missions,
     );
     let (mut unexplained, mut used, mut title) = (Vec::new(), BTreeSet::new(), "");
-    for (row, times) in &in_scenarios {
+    for (row, times) in &in_scenarios.rows {
         if row.table != title {
             title = row.table;
             page += &format!(
                 "\n## Table: {title}\n\n\
-                 | source | event | target | scenarios | random | explored | otherwise |\n\
-                 | --- | --- | --- | --: | --: | --: | --- |\n"
+                 | source | event | target | scenarios | others | storms | explored | otherwise |\n\
+                 | --- | --- | --- | --: | --: | --: | --: | --- |\n"
             );
         }
-        let others = [&in_drawn, &in_explored].map(|taken| taken.get(row).copied().unwrap_or(0));
-        let (NamedRow { source, event, target, .. }, [random, explored]) = (row, others);
-        let is_taken = times + random + explored > 0;
+        let others = [&in_others.rows, &in_storms.rows, &in_explored]
+            .map(|taken| taken.get(row).copied().unwrap_or(0));
+        let (NamedRow { source, event, target, .. }, [other, storms, explored]) = (row, others);
+        let is_taken = times + other + storms + explored > 0;
         let why = if is_taken { None } else { reason(row) };
         page += &format!(
-            "| {source} | {event} | {target} | {times} | {random} | {explored} | {} |\n",
+            "| {source} | {event} | {target} | {times} | {other} | {storms} | {explored} | {} |\n",
             why.unwrap_or_default()
         );
         used.extend(why);
         if !is_taken && why.is_none() {
             unexplained.push(row.to_string());
+        }
+    }
+    page += "\n## What is said\n\nIn how many missions each kind of message is heard.\n\n\
+             | message | scenarios | others | otherwise |\n| --- | --: | --: | --- |\n";
+    for &(kind, why) in SAID {
+        let [here, there] =
+            [&in_scenarios, &in_others].map(|acts| acts.heard.get(kind).copied().unwrap_or(0));
+        page += &format!("| {kind} | {here} | {there} | {why} |\n");
+        if (here + there == 0) == why.is_empty() {
+            unexplained.push(format!("{kind} is heard in {} missions", here + there));
         }
     }
     let needless = REASONS.iter().filter(|(_, reason)| !used.contains(reason));
@@ -171,3 +231,24 @@ fn every_row_is_taken_or_has_a_reason() {
         unexplained.join("\n")
     );
 }
+
+/// What nodes say to each other, by what comes of it, and why it is said where none of these missions
+/// shows it.
+const SAID: &[(&str, &str)] = &[
+    ("proposal", ""),
+    ("proposal of a move that has been halved", ""),
+    ("objection", ""),
+    ("consent", ""),
+    ("request for a flow", ""),
+    ("grant", ""),
+    ("grant of less than is asked for", ""),
+    ("demand", ""),
+    ("shortage", ""),
+    ("offer to exchange duties", ""),
+    ("acceptance of an offer", ""),
+    (
+        "refusal of an offer",
+        "a robot that has restarted does not know the task; a test of the robot",
+    ),
+    ("request to make way", ""),
+];

@@ -2,7 +2,7 @@
 //! steps, links of the tree that may be weak. With the settings of the shipped scenarios loads stay
 //! far below 1, and hardly a robot ever objects to a move.
 
-use crate::missions::{Mission, run, shipped};
+use crate::missions::{run, shipped};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::Scenario;
 
@@ -20,7 +20,12 @@ const STRESSES: [Stress; 3] = [
     Stress { rate: 0.0767, tree_reliability: 0.3, slope_aversion: 0.0, step_radius: 0.06 },
 ];
 
-fn stressed(name: &str, stress: &Stress) -> Mission {
+/// Missions under stress, for whoever counts what acts in them.
+pub fn stressed_scenarios() -> impl Iterator<Item = Scenario> {
+    STRESSES.iter().map(|stress| stressed("leaf-leader", stress))
+}
+
+fn stressed(name: &str, stress: &Stress) -> Scenario {
     // More robots than those of leaf-leader bring more traffic to the access point.
     let share = if name == "leaf-leader" { 1.0 } else { 0.9 };
     let mut scenario = shipped(name);
@@ -28,7 +33,7 @@ fn stressed(name: &str, stress: &Stress) -> Mission {
     scenario.control.tree_reliability = Some(stress.tree_reliability);
     scenario.control.slope_aversion = Some(stress.slope_aversion);
     scenario.control.step_radius = Some(stress.step_radius);
-    run(scenario)
+    scenario
 }
 
 /// Tasks are serviced, and loads come close to all the time of a sender.
@@ -37,7 +42,7 @@ fn missions_under_stress_keep_what_is_promised() {
     let mut largest: f64 = 0.0;
     for name in ["leaf-leader", "study-1", "corridor", "two-clusters", "ring"] {
         for stress in &STRESSES {
-            let mission = stressed(name, stress);
+            let mission = run(stressed(name, stress));
             mission.assert_serviced();
             largest = largest.max(mission.extremes.load.as_ref().unwrap().value);
         }

@@ -14,7 +14,7 @@ mod places;
 
 pub use families::Family;
 
-use dice::Dice;
+pub use dice::Dice;
 use pleach::automaton::network::scenario::ValidScenario;
 
 /// Drafts that may fail (a crowd that finds no room, walls that meet) before a family is at fault.

@@ -8,8 +8,10 @@
 #![allow(clippy::unwrap_used)] // texts of the project itself are read to begin with
 
 mod alter;
+mod ear;
 
 use alter::alter;
+use ear::{Ear, Listeners};
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::guards::{Expression, Predicate};
 use pleach::judge::judge;
@@ -18,7 +20,7 @@ use pleach::scenario_file;
 use pleach::trace::{TraceReader, TraceWriter};
 use std::fmt;
 use std::io;
-use std::panic::catch_unwind;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// What reads a text.
@@ -32,15 +34,18 @@ pub enum Reader {
     Expression,
     /// [`TraceReader`] and the judge.
     Trace,
+    /// Messages, and the nodes that hear them.
+    Message,
 }
 
 impl Reader {
-    pub const ALL: [Reader; 4] =
-        [Reader::Scenario, Reader::Predicate, Reader::Expression, Reader::Trace];
+    pub const ALL: [Reader; 5] =
+        [Reader::Scenario, Reader::Predicate, Reader::Expression, Reader::Trace, Reader::Message];
 
     /// Whether the text can be read.
-    fn accepts(self, text: &str) -> bool {
+    fn accepts(self, text: &str, listeners: &Listeners) -> bool {
         match self {
+            Reader::Message => listeners.hear(text),
             Reader::Scenario => scenario_file::parse(text, Path::new("fuzz.toml")).is_ok(),
             Reader::Predicate => text.parse::<Predicate>().is_ok(),
             Reader::Expression => text.parse::<Expression>().is_ok(),
@@ -51,7 +56,7 @@ impl Reader {
     }
 
     /// Texts that it can read.
-    fn samples(self) -> Vec<String> {
+    fn samples(self, overheard: &[String]) -> Vec<String> {
         let owned = |texts: &[&str]| texts.iter().map(|&text| text.to_owned()).collect();
         match self {
             Reader::Scenario => ["scenarios/too-few.toml", "tests/scenarios/room.toml"]
@@ -68,6 +73,7 @@ impl Reader {
                 "sin(x) * cos(y) - exp(-t)",
             ]),
             Reader::Trace => vec![short_trace()],
+            Reader::Message => overheard.to_vec(),
         }
     }
 }
@@ -97,11 +103,12 @@ impl fmt::Display for Panic {
 /// # Errors
 /// The first input on which it panics.
 pub fn read(reader: Reader, seed: u64, count: u64) -> Result<Tally, Panic> {
-    let samples = reader.samples();
+    let (listeners, overheard) = Ear::listen();
+    let samples = reader.samples(&overheard);
     let mut tally = Tally::default();
     for number in 0..count {
         let text = alter(&samples, &[reader as u64, seed, number]);
-        match catch_unwind(|| reader.accepts(&text)) {
+        match catch_unwind(AssertUnwindSafe(|| reader.accepts(&text, &listeners))) {
             Ok(true) => tally.read += 1,
             Ok(false) => tally.refused += 1,
             Err(_) => return Err(Panic { reader, text }),

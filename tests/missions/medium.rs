@@ -5,6 +5,7 @@ use pleach::automaton::network::{Message, Radio, Site};
 use pleach::automaton::node::{Delivery, Envelope, Medium};
 use pleach::continuous::Point;
 use pleach::discrete::network::NodeId;
+use std::collections::BTreeMap;
 use std::ops::Deref;
 
 /// A message that would arrive.
@@ -152,6 +153,71 @@ impl Passage for AskedTwice {
             Message::Request(_) => hand_over(Delivery { from, to: self.second, message }),
             _ => Ok(()),
         }
+    }
+}
+
+/// Counts what is said, by what it does: requests that are cut and moves that are halved, too.
+#[derive(Debug, Default)]
+pub struct Noted {
+    counts: BTreeMap<&'static str, u64>,
+    /// The flow that each sender has asked of each receiver, and the move that each robot has proposed.
+    asked: BTreeMap<(NodeId, NodeId), f64>,
+    proposed: BTreeMap<NodeId, (u32, f64)>,
+}
+
+impl Noted {
+    pub fn new(site: &Site) -> Through<Self> {
+        Through::new(site, Noted::default())
+    }
+
+    /// How often each kind of message has arrived.
+    pub const fn counts(&self) -> &BTreeMap<&'static str, u64> {
+        &self.counts
+    }
+
+    fn kind(&mut self, from: NodeId, to: NodeId, message: &Message) -> &'static str {
+        match message {
+            Message::Proposal { period, segment } => {
+                let now = (*period, segment.length());
+                let before = self.proposed.insert(from, now);
+                match before.is_some_and(|(at, length)| at == *period && now.1 < length) {
+                    true => "proposal of a move that has been halved",
+                    false => "proposal",
+                }
+            }
+            Message::Objection { .. } => "objection",
+            Message::Consent { .. } => "consent",
+            Message::AskFlow(request) => {
+                self.asked.insert((from, to), request.wanted);
+                "request for a flow"
+            }
+            Message::GrantFlow(grant) => {
+                let asked = self.asked.get(&(to, from)).copied().unwrap_or_default();
+                if grant.flow < asked { "grant of less than is asked for" } else { "grant" }
+            }
+            Message::Demand(_) => "demand",
+            Message::Shortage => "shortage",
+            Message::Beacon { beacon, .. } => match (&beacon.offer, &beacon.reply) {
+                (_, Some(reply)) if reply.accepted.is_none() => "refusal of an offer",
+                (_, Some(_)) => "acceptance of an offer",
+                (Some(_), None) => "offer to exchange duties",
+                _ if beacon.way.is_some() => "request to make way",
+                _ => "beacon",
+            },
+            _ => "other messages",
+        }
+    }
+}
+
+impl Passage for Noted {
+    fn pass<E>(
+        &mut self,
+        delivery: Delivery<'_, Message>,
+        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let kind = self.kind(delivery.from, delivery.to, delivery.message);
+        *self.counts.entry(kind).or_default() += 1;
+        hand_over(delivery)
     }
 }
 

@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use medium::{Arrival, AskedTwice, Filtered, Written};
+pub use medium::{Arrival, AskedTwice, Filtered, Noted, Written};
 
 /// What a control period showed.
 #[derive(Clone, Debug, PartialEq)]

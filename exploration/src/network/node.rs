@@ -152,7 +152,10 @@ impl Nodes {
     /// Takes up a node that has heard the beacons given.
     pub fn take_up(&mut self, node: Node, heard: Vec<BeaconId>) -> LocalId {
         let (account, beacon) = match &node {
-            Node::Robot(robot) => (robot.account(), robot.view().beacon()),
+            Node::Robot(robot) => {
+                debug_assert!(robot.leaves_out_nothing(), "{}", robot.account());
+                (robot.account(), robot.view().beacon())
+            }
             Node::AccessPoint(access_point) => (access_point.account(), access_point.beacon()),
         };
         let key = (account, heard);

@@ -65,10 +65,17 @@ impl Robot {
     /// When a guard cannot be evaluated, or transitions do not come to an end.
     pub fn deliberate_now(&mut self) -> Result<(), RobotError> {
         self.end_round();
-        self.process_messages()?;
-        self.note_change();
-        self.is_quiet = false;
+        self.process_news(false)?;
         self.jump()
+    }
+
+    /// Whether what the robot would leave out if nothing new came would change nothing. What it leaves
+    /// out is not told by its [`account`](Self::account).
+    pub fn leaves_out_nothing(&self) -> bool {
+        let (beacon, told) = (self.public_state(), self.last_beacon.get());
+        (self.has_news || self.overlooked().is_none())
+            && (self.has_unsent_news || told.is_none_or(|told| *told == beacon))
+            && (self.is_unmeasured || self.facts_stand())
     }
 
     /// The next round counts as the first one of a control period, in which all robots send, and

@@ -244,7 +244,7 @@ impl Robot {
             serves: self.duty.post().and_then(|post| post.task).into_iter().collect(),
             ..Reports::default()
         };
-        for neighbour in self.neighbours.iter().filter(|it| it.heard_in + 1 >= self.period) {
+        for neighbour in self.neighbours.iter().filter(|it| it.is_present(self.period)) {
             let is_child =
                 neighbour.post().is_some_and(|post| own.is_some_and(|own| post.is_child_of(own)));
             reports.take_in(&neighbour.beacon, is_child, self.id, self.lineage().is_some());

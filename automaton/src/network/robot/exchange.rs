@@ -262,3 +262,113 @@ pub fn exchange_automaton() -> Result<ExchangeAutomaton, BuildError> {
         ))
         .build()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use pleach_continuous::Point;
+    use pleach_discrete::network::{Offer, Phase, Post, PostId};
+    use serde_json::json;
+
+    use super::super::super::beacon::{Announcement, Beacon, Bulletin, Notice};
+    use super::super::super::duty::{Held, Standby, Station};
+    use super::super::super::message::Message;
+    use super::super::super::roll::Roll;
+    use super::super::super::scenario::Scenario;
+    use super::super::super::shared::Shared;
+    use super::super::super::site::Site;
+    use super::*;
+    use crate::located::Place as _;
+    use crate::node::{Input, Node, Outputs};
+
+    /// A robot beside another one, in its first control period.
+    fn robot() -> Robot {
+        let scenario: Scenario = serde_json::from_value(json!({
+            "name": "two robots",
+            "workspace": {"boundary": [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]},
+            "link": {"full_range": 1.0, "max_range": 2.0},
+            "access_point": [{"position": [1.0, 1.0]}],
+            "robot": [{"position": [2.0, 2.0]}, {"position": [2.2, 2.0]}],
+            "task": [{"position": [3.0, 3.0]}],
+        }))
+        .expect("it is a scenario");
+        let site = Arc::new(Site::new(&scenario).expect("its numbers make sense"));
+        let mut robot = Robot::new(0, Point::new(2.0, 2.0), 0.1, site);
+        tick(&mut robot);
+        robot
+    }
+
+    fn tick(robot: &mut Robot) {
+        let mut outputs = Outputs::of(0);
+        robot.step(Input::Tick { passed: 0 }, &mut outputs).expect("it goes on");
+    }
+
+    fn hear(robot: &mut Robot, beacon: &Beacon) {
+        let beacon = Arc::new(beacon.clone());
+        let message = Message::Beacon { period: 1, roll: Roll::default(), confirmed: None, beacon };
+        let mut outputs = Outputs::of(0);
+        robot.step(Input::Heard { from: 1, message: &message }, &mut outputs).expect("it goes on");
+        tick(robot);
+    }
+
+    /// The beacon of the other robot.
+    fn other() -> Beacon {
+        let reference = Point::new(2.2, 2.0);
+        let station = Station { post: Post::redundant(PostId(1)), reference };
+        Beacon {
+            sender: 1,
+            position: reference,
+            bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
+            announced: None,
+            election: None,
+            agreement: None,
+            route: None,
+            crossing: Vec::new(),
+            lineage: None,
+            parent: None,
+            below: Arc::default(),
+            strays: Arc::default(),
+            serves: Arc::default(),
+            duty: Some(Duty::Standby(Standby(Held { station, left: None }))),
+            parked: true,
+            way: None,
+            can_detach: false,
+            offer: None,
+            offers_made: 0,
+            reply: None,
+            team: None,
+            wrecks: Arc::default(),
+        }
+    }
+
+    /// A robot that knows no task refuses an offer. A task that is announced meanwhile it takes up as soon
+    /// as its refusal is heard, although it has learnt nothing else by then.
+    #[test]
+    fn a_robot_that_has_refused_an_offer_goes_on() {
+        let mut robot = robot();
+        let mut mover = other();
+        mover.offers_made = 1;
+        mover.offer = mover.duty.map(|duty| Offer { to: 0, number: 1, duty });
+        hear(&mut robot, &mover);
+        assert_eq!(robot.exchange.location(), ExchangeStage::Refusing);
+        assert_eq!(robot.offers().reply().map(|reply| reply.accepted), Some(None));
+
+        let all = Arc::new([0, 1].into_iter().collect());
+        let (position, eligible) = (Point::new(3.0, 3.0), Arc::new([0].into_iter().collect()));
+        let before = Arc::default();
+        let task = Announcement { task: 0, position, before, roster: all, eligible };
+        let task = Notice::Task(Shared::new(task));
+        mover.bulletin = mover.bulletin.next(2, Shared::new(task));
+        hear(&mut robot, &mover);
+        assert_eq!(
+            (robot.exchange.location(), robot.phase()),
+            (ExchangeStage::Refusing, Phase::Idle)
+        );
+
+        mover.offer = None;
+        hear(&mut robot, &mover);
+        assert_eq!(robot.exchange.location(), ExchangeStage::Free);
+        assert_eq!(robot.phase(), Phase::LeaderElection);
+    }
+}

@@ -93,6 +93,18 @@ impl Neighbour {
         self.beacon.duty.is_none()
     }
 
+    /// Whether it has been heard in this control period or in the one before.
+    pub const fn is_present(&self, period: u32) -> bool {
+        self.heard_in.saturating_add(1) >= period
+    }
+
+    /// It is heard in the control period `heard_in`; returns whether it was not present before.
+    const fn note_heard(&mut self, heard_in: u32, period: u32) -> bool {
+        let was_absent = !self.is_present(period);
+        (self.heard_in, self.is_heard, self.silent_rounds) = (heard_in, true, 0);
+        was_absent
+    }
+
     /// Whether it has been silent for so long that it is out of range, or does not run.
     pub fn is_silent(&self) -> bool {
         usize::from(self.silent_rounds) == ROUNDS_TO_BE_HEARD
@@ -122,8 +134,8 @@ impl Robot {
             && Arc::ptr_eq(&known.beacon, beacon)
             && known.measured_at == self.position
         {
-            (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
-            self.has_news |= self.awaits_confirmation && known.confirmed < confirmed;
+            let is_back = known.note_heard(period, self.period);
+            self.has_news |= is_back || self.awaits_confirmation && known.confirmed < confirmed;
             known.confirmed = known.confirmed.max(confirmed);
             self.heard_up_to += 1;
         } else {
@@ -159,7 +171,7 @@ impl Robot {
         if !is_same && beacon.is_older_than(&known.beacon) {
             return;
         }
-        (known.heard_in, known.is_heard, known.silent_rounds) = (period, true, 0);
+        let is_back = known.note_heard(period, self.period);
         let is_newer = known.confirmed < confirmed;
         let confirmed = if is_same { known.confirmed.max(confirmed) } else { confirmed };
         if (known.measured_at, known.position()) != (self.position, beacon.position) {
@@ -168,7 +180,7 @@ impl Robot {
             (known.beacon, known.confirmed) = (Arc::clone(beacon), confirmed);
         } else {
             known.confirmed = confirmed;
-            self.has_news |= self.awaits_confirmation && is_newer;
+            self.has_news |= is_back || self.awaits_confirmation && is_newer;
             return;
         }
         self.receive_news();

@@ -16,6 +16,7 @@ mod abstraction;
 mod attachment;
 mod confirmation;
 mod control;
+mod diligence;
 mod duties;
 mod exchange;
 mod facts;
@@ -371,6 +372,7 @@ impl Robot {
         if !std::mem::take(&mut self.has_unsent_news)
             && let Some(beacon) = self.last_beacon.get()
         {
+            debug_assert!(*beacon == self.public_state(), "robot {} tells old news", self.id);
             return beacon;
         }
         let (beacon, is_new) = self.last_beacon.replace_by(self.public_state());
@@ -448,6 +450,11 @@ impl Robot {
     /// neither has changed, and no wait is over, there is nothing to do.
     fn deliberate(&mut self) -> Result<(), TransitionError> {
         let is_due = self.count_round();
+        self.process_news(is_due)
+    }
+
+    /// Processes what it has received if that contains news, or if it is due anyway.
+    fn process_news(&mut self, is_due: bool) -> Result<(), TransitionError> {
         if !std::mem::take(&mut self.has_news) && !is_due {
             return Ok(());
         }

@@ -170,7 +170,10 @@ impl Robot {
     /// calls for a recruit: the team can have its robot, and the post with it.
     fn bears_caller_alone(&self) -> bool {
         let Notice::Call { caller, releases_leader: false } = *self.notice() else { return false };
-        self.duty.location() == Activity::Relay && self.children().map(Neighbour::id).eq([caller])
+        // One that is not heard may have attached to another robot since.
+        let is_heard = self.neighbour(caller).is_some_and(|caller| !caller.is_silent());
+        let bears = || self.children().map(Neighbour::id).eq([caller]);
+        self.duty.location() == Activity::Relay && is_heard && bears()
     }
 
     /// The larger the residual, the better; ties go to the shorter path.

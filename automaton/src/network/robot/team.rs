@@ -1,7 +1,7 @@
 //! The primary team (Sec. V-A): its leader, its order, and when it is stuck.
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Phase, Post, PostId, PostKind};
+use pleach_discrete::network::{NodeId, Phase, Post, PostId, PostKind};
 
 use super::super::beacon::{Beacon, Notice, TeamReport};
 use super::super::mission::{Advance, Ended, Idle};
@@ -34,7 +34,7 @@ pub(super) fn wait(_: &Advance, _: &Robot, _: &mut Effects) -> Idle {
 
 /// The active team cannot go on, and a recruit would not help.
 pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
-    let reason = match (robot.duty.place(), robot.team.and_then(|team| team.slack)) {
+    let mut reason = match (robot.duty.place(), robot.team.and_then(|team| team.slack)) {
         (Some(_), _) => format!(
             "robot {} cannot get to the place of Σ that it should take: something stands in its way",
             robot.id
@@ -48,6 +48,10 @@ pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
             robot.id
         ),
     };
+    let stopped: Vec<NodeId> = robot.wrecks.iter().map(|wreck| wreck.robot).collect();
+    if !stopped.is_empty() {
+        reason.push_str(&format!("; robots {stopped:?} have stopped and stand where they are"));
+    }
     let (outcome, task) = (Outcome::Blocked, robot.current_task());
     effects.push(MissionEffect::Issue(Notice::Ended { outcome, reason: reason.into(), task }));
     Ended

@@ -131,6 +131,11 @@ const fn key(name: &'static str, values: Values) -> ControlKey {
 }
 
 impl Values {
+    /// Whether it is held against the range of the links.
+    pub(super) const fn is_against_range(&self) -> bool {
+        matches!(self, Values::Length(_) | Values::Error(_))
+    }
+
     /// The number that `control` states at this key, unless it is a count or a word.
     pub fn number(&self, control: &Control) -> Option<f64> {
         match self {

@@ -52,39 +52,47 @@ pub enum Problem {
     #[error("{value} is not a finite number: write one, such as 0.5")]
     NotFinite { value: f64 },
     /// A length or time that must be above 0.
-    #[error("{value} is not positive: it must be above 0")]
+    #[error("{} is not positive: it must be above 0", short(*value))]
     NotPositive { value: f64 },
     /// A setting that may be 0 but not below.
-    #[error("{value} is negative: it must be 0 or above")]
+    #[error("{} is negative: it must be 0 or above", short(*value))]
     Negative { value: f64 },
     /// A number of times that must be at least one.
     #[error("0 leaves nothing to do: it must be at least 1")]
     Zero,
     /// A number that is too small or too large to be meant.
-    #[error("{value} is out of range: it must lie from {least} to {most}")]
+    #[error(
+        "{} is out of range: it must lie from {} to {}", short(*value), short(*least), short(*most)
+    )]
     OutOfRange { value: f64, least: f64, most: f64 },
+    /// A length that is too small or too large to be meant.
+    #[error(
+        "{} is out of range: it must lie from {} to max_range = {}",
+        short(*value), short(*least), short(*max_range)
+    )]
+    LengthOutOfRange { value: f64, least: f64, max_range: f64 },
     /// More of something than can be meant.
     #[error("{count} is too many: it must be at most {most}")]
     TooMany { count: usize, most: usize },
     /// A coordinate that is too large for distances to be exact.
     #[error(
-        "{value} is too far away: coordinates are at most 1000000 times max_range = {most}; move \
-         the workspace to the origin, or choose another unit"
+        "{} is too far away: coordinates are at most 1000000 times max_range = {}; move the \
+         workspace to the origin, or choose another unit", short(*value), short(*most)
     )]
     TooFarAway { value: f64, most: f64 },
     /// A rate or reserve outside [0, 1].
-    #[error("{value} is not a share of the radio's rate: it must lie from 0 to 1")]
+    #[error("{} is not a share of the radio's rate: it must lie from 0 to 1", short(*value))]
     NotAShare { value: f64 },
     /// A reliability that makes no sense as a limit for links of the tree.
     #[error(
-        "{value} does not lie between 0 and 1: a link of the tree needs a reliability above \
-         0 and, to have a longest one, below 1"
+        "{} does not lie between 0 and 1: a link of the tree needs a reliability above 0 and, to \
+         have a longest one, below 1", short(*value)
     )]
     NotAReliability { value: f64 },
     /// l ≥ u in eq. (27).
     #[error(
-        "{full_range} is not below max_range = {max_range}: reliability falls from 1 at \
-         full_range to 0 at max_range, so full_range < max_range"
+        "{} is not below max_range = {}: reliability falls from 1 at full_range to 0 at max_range, \
+         so full_range < max_range", short(*full_range), short(*max_range)
     )]
     RangesReversed { full_range: f64, max_range: f64 },
     /// A link model that is none.
@@ -177,6 +185,12 @@ pub enum Problem {
          the robots closer together"
     )]
     RatesTooHigh { missing: f64 },
+}
+
+/// A number as people write it: with an exponent where it would be long.
+fn short(value: f64) -> String {
+    let is_long = value.is_finite() && value != 0.0 && !(1e-6..1e15).contains(&value.abs());
+    if is_long { format!("{value:e}") } else { value.to_string() }
 }
 
 /// What a length allows for `position_error` and `motion_error`.

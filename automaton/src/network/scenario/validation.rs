@@ -108,7 +108,10 @@ fn values_are_in_range(scenario: &Scenario) -> Vec<Fault> {
         Some(length_problem(value, LARGEST_RANGE.recip(), LARGEST_RANGE)?.at(link_key(name)))
     });
     let steepness = steepness_problem(&scenario.link).map(|p| p.at(link_key("steepness")));
-    let control = CONTROL.iter().filter_map(|key| {
+    // Lengths are held against a range that is right.
+    let has_range = length_problem(range, LARGEST_RANGE.recip(), LARGEST_RANGE).is_none();
+    let is_judged = |values: &Values| has_range || !values.is_against_range();
+    let control = CONTROL.iter().filter(|key| is_judged(&key.values)).filter_map(|key| {
         Some(control_problem(key.values, scenario, range)?.at(control_key(key.name)))
     });
     let rates = (scenario.robot.iter().enumerate()).filter_map(|(row, robot)| {
@@ -123,8 +126,13 @@ fn values_are_in_range(scenario: &Scenario) -> Vec<Fault> {
 fn control_problem(values: Values, scenario: &Scenario, range: f64) -> Option<Problem> {
     let control = &scenario.control;
     match values {
-        Values::Length(stated) => length_problem(stated(control)?, SHORTEST * range, range),
-        Values::Error(stated) => zero_or_more_problem(stated(control)?, range),
+        Values::Length(stated) => {
+            let problem = length_problem(stated(control)?, SHORTEST * range, range)?;
+            Some(against_range(problem, range))
+        }
+        Values::Error(stated) => {
+            Some(against_range(zero_or_more_problem(stated(control)?, range)?, range))
+        }
         Values::Time(least, most, stated) => length_problem(stated(control)?, least, most),
         Values::UpTo(most, stated) => zero_or_more_problem(stated(control)?, most),
         Values::Share(stated) => share_problem(stated(control)?),
@@ -149,6 +157,16 @@ fn length_problem(value: f64, least: f64, most: f64) -> Option<Problem> {
         Some(Problem::OutOfRange { value, least, most })
     } else {
         None
+    }
+}
+
+/// A length out of range is so because of the range of the links.
+fn against_range(problem: Problem, max_range: f64) -> Problem {
+    match problem {
+        Problem::OutOfRange { value, least, .. } => {
+            Problem::LengthOutOfRange { value, least, max_range }
+        }
+        problem => problem,
     }
 }
 

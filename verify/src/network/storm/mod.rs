@@ -94,7 +94,19 @@ pub type Stormy = Network<Unreliable<Message, Radio>, Frail>;
 /// # Errors
 /// When the network cannot be set up.
 pub fn network(scenario: &ValidScenario, storm: &Storm) -> Result<Stormy, NetworkError> {
-    let site = Arc::clone(scenario.site());
+    network_on(Arc::clone(scenario.site()), scenario, storm)
+}
+
+/// The same, where the nodes know this site: that of the scenario with automata that
+/// [count](pleach_automaton::network::Automata::counted), say.
+///
+/// # Errors
+/// When the network cannot be set up.
+pub fn network_on(
+    site: Arc<Site>,
+    scenario: &ValidScenario,
+    storm: &Storm,
+) -> Result<Stormy, NetworkError> {
     let (robots, access_points) = (scenario.robot.len(), site.access_points.len());
     let of = |id: usize, place: Point, make: fn(usize, Point, f64, &Arc<Site>) -> Member| {
         let known = storm.troubles.iter().find(|(node, _)| *node == id);

@@ -1,0 +1,75 @@
+//! What a robot leaves out: it processes messages, tells its state and evaluates its guards only where
+//! something has changed.
+//!
+//! That is right if doing it would change nothing. Builds with debug assertions look wherever guards,
+//! facts or a beacon are left out; explorers ask of every state of a robot whether processing messages
+//! again, on a copy, would change anything.
+
+use super::Robot;
+use crate::located::Place as _;
+
+impl Robot {
+    /// Whether its facts are as it has measured them, and no guard holds.
+    pub(super) fn facts_stand(&self) -> bool {
+        self.facts_now() == self.facts && self.is_at_rest()
+    }
+
+    /// Whether no transition of the mission or of its duty can be taken.
+    pub(super) fn is_at_rest(&self) -> bool {
+        let automata = &self.site.automata;
+        let step = automata.mission.enabled(self.phase(), self);
+        let jump = automata.duty.enabled(self.duty.location(), self);
+        matches!((step, jump), (Ok(None), Ok(None)))
+    }
+}
+
+#[cfg(feature = "abstraction")]
+macro_rules! first_difference {
+    ($($part:literal: $now:expr, $before:expr;)+) => {{
+        $(if $now != $before {
+            return Some(format!("its {} is {:?} and was {:?}", $part, $now, $before));
+        })+
+        None
+    }};
+}
+
+#[cfg(feature = "abstraction")]
+impl Robot {
+    /// What would change if it processed what it has received.
+    pub(super) fn overlooked(&self) -> Option<String> {
+        let mut again = self.clone();
+        match again.process_messages() {
+            Ok(()) => again.difference_to(self),
+            Err(error) => Some(error.to_string()),
+        }
+    }
+
+    /// In what this robot differs from how it was before, of what decides on what it says and does.
+    fn difference_to(&self, before: &Robot) -> Option<String> {
+        let (now, then) = (self.public_state(), before.public_state());
+        first_difference! {
+            "newest notice": now.bulletin, then.bulletin;
+            "election": now.election, then.election;
+            "bid": self.bid, before.bid;
+            "agreement": now.agreement, then.agreement;
+            "way to the caller": now.route, then.route;
+            "report on the team": now.team, then.team;
+            "post that is followed": self.followed_post, before.followed_post;
+            "mission": self.mission, before.mission;
+            "lineage": now.lineage, then.lineage;
+            "parent": now.parent, then.parent;
+            "parent that it looks for": self.desired_parent, before.desired_parent;
+            "parent that it finds better": self.reattaches_to, before.reattaches_to;
+            "wait for a confirmation": self.awaits_confirmation, before.awaits_confirmation;
+            "confirmation": self.confirmation, before.confirmation;
+            "robots below": now.below, then.below;
+            "strays": now.strays, then.strays;
+            "tasks serviced below": now.serves, then.serves;
+            "wrecks": now.wrecks, then.wrecks;
+            "exchange of duties": self.exchange, before.exchange;
+            "offers answered": self.answered, before.answered;
+            "partner": self.partner, before.partner;
+            "beacon": now, then;
+        }
+    }
+}
