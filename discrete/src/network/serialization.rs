@@ -216,7 +216,8 @@ mod tests {
         let bid = r#"[{"rank":1,"merit":0,"economy":0},5]"#;
         let election = format!(r#"{{{id},"tokens":[4],"best":{bid}}}"#);
         assert!(refusal::<Election>(&election).contains("has placed no token"));
-        let agreement = format!(r#"{{{id},"voted":[0],"breaks":[0,1],"arrived":[]}}"#);
+        let agreement =
+            format!(r#"{{{id},"voted":[0],"breaks":[0,1],"arrived":[],"given_up":[]}}"#);
         assert!(refusal::<Agreement>(&agreement).contains("a break point has not voted"));
         let cycle = r#"{"posts":[4,1,4],"root":0}"#;
         assert!(refusal::<Lineage>(cycle).contains("leads through a post twice"));
