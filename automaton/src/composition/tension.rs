@@ -1,7 +1,7 @@
 //! What makes time stop in a group: a transition that is due, or an invariant that ends.
 
 use pleach_continuous::flow::{Curve, Piece, Watch};
-use pleach_guards::{Affine, Course, Enclosure, Tracker, Verdict};
+use pleach_guards::{Affine, Course, Enclosure, Tracked, Tracker, Verdict};
 
 use super::blueprint::{Condition, Leaving};
 use super::field::{Field, Row};
@@ -10,6 +10,10 @@ use super::jumps::Standing;
 use super::settings::Policy;
 use super::simulation::Failure;
 use crate::moment::Moment;
+
+/// By how much more than at an instant a margin may be unknown as a polynomial in time, so that shorter
+/// spans are not worth looking at.
+const COARSER: f64 = 64.0;
 
 /// Which transitions count.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -269,10 +273,12 @@ impl<'a> Tension<'a> {
     ) -> Course {
         let known = &self.known[number][condition];
         let (from, to) = self.window;
+        let slots = self.conditions.standing.slots(component);
         let course = |comparison: usize| match known.get(comparison)? {
             Knowledge::Nothing if context.slack == 0.0 => {
-                let place = [number, condition, comparison];
-                self.margins.as_ref()?.course(tracker, place, self.span?)
+                let comparisons = &self.margins.as_ref()?.polynomials[number][condition];
+                let margin = comparisons.get(comparison)?.as_ref()?;
+                context.course_of(&tracker.comparisons()[comparison], slots, margin, self.span?)
             }
             Knowledge::Nothing => None,
             Knowledge::Fixed(holds) => Some((*holds).into()),
@@ -280,7 +286,6 @@ impl<'a> Tension<'a> {
             Knowledge::Switch(time, after) if *time >= to => Some((!*after).into()),
             Knowledge::Switch(..) => None,
         };
-        let slots = self.conditions.standing.slots(component);
         tracker.course(context.states, slots, context.half_width, context.slack, &course)
     }
 }
@@ -313,17 +318,29 @@ impl Margins {
         let polynomials = polynomials.collect();
         Margins { piece: [piece.start(), piece.end()], polynomials }
     }
+}
 
-    /// What the polynomial tells of a comparison in a span: that it holds throughout or nowhere, or that
-    /// rounding alone decides, which shorter spans do not change.
-    fn course(&self, tracker: &Tracker, place: [usize; 3], span: [f64; 2]) -> Option<Course> {
-        let [number, condition, comparison] = place;
-        let margin = self.polynomials[number][condition].get(comparison)?.as_ref()?;
+impl Follow<'_> {
+    /// What its margin as a polynomial tells of a comparison in a span: that it holds throughout or
+    /// nowhere, or that rounding alone decides, which shorter spans do not change.
+    fn course_of(
+        &self,
+        comparison: &Tracked,
+        slots: &[usize],
+        margin: &Piece,
+        span: [f64; 2],
+    ) -> Option<Course> {
         let mut enclosures = Vec::with_capacity(1);
         margin.enclose(span[0], span[1], &mut enclosures);
-        match tracker.comparisons()[comparison].course_of(enclosures.first()?) {
-            course @ (Course::Always | Course::Never | Course::Blurred) => Some(course),
-            Course::FaintlyRising | Course::FaintlyFalling => Some(Course::Blurred),
+        let as_whole = enclosures.first()?;
+        match comparison.course_of(as_whole) {
+            course @ (Course::Always | Course::Never) => Some(course),
+            Course::Blurred | Course::FaintlyRising | Course::FaintlyFalling => {
+                // Powers of time may be blurred by more than the values at an instant are.
+                let (_, margin) = comparison.follow(self.states, slots, self.half_width);
+                let is_blurred = as_whole.middle.width() <= COARSER * margin.middle.width();
+                is_blurred.then_some(Course::Blurred)
+            }
             Course::Rising | Course::Falling | Course::Open | Course::Opaque => None,
         }
     }

@@ -128,7 +128,7 @@ pub fn isolate<W: Watch + ?Sized>(
     };
     let onset = isolation.run(from, to, budget)?;
     if let Some(Onset { time, .. }) = onset.filter(|onset| onset.time > from)
-        && !isolation.is_passed(from, time, to)
+        && !isolation.is_passed(time)
     {
         let from = isolation.doubts.last().map_or(from, |last| last.to.max(from)).min(time);
         isolation.doubts.push(Doubt { from, to: time, why: Uncertainty::Touch });
@@ -199,16 +199,18 @@ impl<W: Watch + ?Sized> Isolation<'_, W> {
         Ok(None)
     }
 
-    /// Whether, whatever the error of the curve, the condition surely does not hold at an instant before
-    /// `time`, or surely holds at one after it. Otherwise it may have come to hold at any time, or never.
-    fn is_passed(&mut self, from: f64, time: f64, to: f64) -> bool {
+    /// Whether, whatever the error of the curve, the condition surely does not hold at an instant of the
+    /// piece before `time`, or surely holds at one after it. Otherwise it may have come to hold at any time,
+    /// or never.
+    fn is_passed(&mut self, time: f64) -> bool {
+        let (first, last) = (self.piece.start(), self.piece.end());
         // Nearer and nearer to where it comes to hold.
         let toward = |end: f64| {
             let away = std::iter::successors(Some(end - time), |away| Some(0.5 * away));
             away.map(move |away| time + away).take_while(move |&at| at != time)
         };
-        toward(from).any(|at| matches!(self.course_at(at), Course::Never | Course::Opaque))
-            || toward(to).any(|at| self.course_at(at) == Course::Always)
+        toward(first).any(|at| matches!(self.course_at(at), Course::Never | Course::Opaque))
+            || toward(last).any(|at| self.course_at(at) == Course::Always)
     }
 
     fn course_at(&mut self, time: f64) -> Course {
