@@ -10,8 +10,7 @@ use super::Place::{Here, There};
 use super::{assert_near, instants, moving, run, x};
 
 /// E. Torricelli 1644: ḣ = −k √h empties a tank in 2 √h₀ ÷ k. The rate has no slope where it is empty:
-/// ten times the tolerance of h, 10⁻¹², are 6·10⁻⁷ s at a level of 10⁻⁹, and a level as low as the tolerance
-/// is met within it, maybe in doubt.
+/// at a level of 10⁻⁶ the tolerance of h, 10⁻⁹, is 2·10⁻⁶ s, and a level below the tolerance is met in doubt.
 #[test]
 fn torricellis_tank_runs_dry() {
     let [h] = x();
@@ -20,11 +19,11 @@ fn torricellis_tank_runs_dry() {
         let machine = tank.transition(from(Here).on(Go).to(There).must(h.at_most(level)));
         machine.build().expect("it is sound").run(100.0).expect("it can be run")
     };
-    let trajectory = dry(1e-9);
+    let trajectory = dry(1e-6);
     assert!(trajectory.doubts().is_empty(), "{:?}", trajectory.doubts());
-    assert_near(trajectory.jumps()[0].at.t, 8.0 - 4.0 * 1e-9_f64.sqrt(), 6e-7);
+    assert_near(trajectory.jumps()[0].at.t, 8.0 - 4e-3, 2e-6);
     let trajectory = dry(1e-12);
-    assert!(trajectory.doubts().iter().all(|doubt| doubt.why == Why::Touch));
+    assert!(trajectory.doubts().iter().any(|doubt| doubt.why == Why::Touch));
     assert_near(trajectory.jumps()[0].at.t, 8.0 - 4e-6, 2e-6);
 }
 
