@@ -272,13 +272,13 @@ impl Robot {
         };
         self.measure_notice(&mut facts);
         let best = self.election.as_ref().and_then(|election| election.best());
-        let won = best.is_some_and(|(bid, robot)| robot == self.id && bid.rank > 0);
+        let won = best.is_some_and(|(bid, robot)| robot == self.id && Robot::can_come(bid));
         let over = self.election_is_over();
         facts.election_over = over;
         match self.phase() {
             Phase::RecruitElection => {
                 facts.won = over && won;
-                let aided = best.is_some_and(|(bid, _)| bid.rank > 0);
+                let aided = best.is_some_and(|(bid, _)| Robot::can_come(bid));
                 facts.unaided = over && !aided && self.is_caller();
             }
             Phase::PathAgreement => facts.points_agreed = self.break_points().is_some(),

@@ -7,7 +7,7 @@
 //! does not take part (`absence`), keeps its place
 //! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
-//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`motion`, `negotiation`);
+//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`);
 //! what its guards see of all this are `facts`.
 
 mod absence;
@@ -37,6 +37,7 @@ mod step;
 mod target;
 mod team;
 mod view;
+mod way;
 mod yielding;
 
 use std::collections::{BTreeMap, VecDeque};
