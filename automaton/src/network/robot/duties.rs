@@ -245,8 +245,7 @@ impl Robot {
 
     /// Whether it waits on Σ, and has given its post up to the robot behind.
     pub(super) fn is_superfluous(&self) -> bool {
-        let place = self.duty.held().and_then(|_| self.duty.place());
-        place.zip(self.agreement.as_ref()).is_some_and(|(at, known)| known.has_given_up(at))
+        self.waiting_place().is_some_and(|place| self.has_given_up(place))
     }
 
     /// Whether another parent has been found to be better.

@@ -330,7 +330,8 @@ impl Robot {
                 if matches!(duty, Duty::Shifting(_)) && !self.has_arrived() {
                     facts.stalled = f64::from(self.still_periods);
                 }
-                facts.subgroup_arrived = self.knows_arrived(active) && self.may_relieve(active);
+                facts.subgroup_arrived =
+                    self.knows_arrived(active) && self.has_given_up(active.end);
             }
             (
                 None,

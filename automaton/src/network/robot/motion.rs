@@ -50,8 +50,7 @@ impl Robot {
         self.duty.left().is_some_and(|left| {
             self.holder(left).is_some()
                 && self.neighbours.iter().any(|neighbour| {
-                    neighbour.beacon.parent == Some(self.id)
-                        && neighbour.post().is_some_and(|post| post.is_child_of(left))
+                    neighbour.beacon.parent == Some(self.id) && neighbour.is_attached_to(Some(left))
                 })
         })
     }
