@@ -55,11 +55,15 @@ impl FreeSpace {
         let lies_in = |from: Point, to: Point, point: Point| {
             lies_left(from, to, point) >= -self.tolerance() * (to - from).norm()
         };
+        // Where the triangle is a line, all that lies in line with it is to the left of all its sides. No
+        // way over a point of the triangle is longer than the one over `corner`.
+        let longest = length(&[from, corner, to]) + self.tolerance();
         let mut within: Vec<Point> = (self.corners().iter().map(|corner| corner.at))
             .filter(|&at| {
                 lies_in(from, corner, at)
                     && lies_in(corner, to, at)
                     && lies_in(to, from, at)
+                    && length(&[from, at, to]) <= longest
                     && apart(at, from)
                     && apart(at, to)
                     && apart(at, corner)

@@ -39,6 +39,20 @@ fn a_way_there_and_back_comes_to_nothing() {
     assert!(space.taut(from, &waypoints).length < 1e-9);
 }
 
+/// There and back from the corner of one hole straight towards that of the other.
+#[test]
+fn a_way_there_and_back_in_line_with_corners_comes_to_nothing() {
+    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (0.0, 4.0)]);
+    let square = |y| ring(&[(1.0, y), (2.0, y), (2.0, y + 1.0), (1.0, y + 1.0)]);
+    let workspace = Workspace::new(boundary, vec![square(0.5), square(2.5)]).unwrap();
+    let space = FreeSpace::new(&workspace, 0.125).unwrap();
+    let (from, to) = (Point::new(0.5, 0.25), Point::new(0.5, 2.0));
+    let corner = Point::new(0.875, 1.625);
+    let beyond = corner + (Point::new(0.875, 2.375) - corner) * 0.25;
+    let taut = space.taut(from, &[corner, beyond, corner, to]);
+    assert!((taut.length - (to - from).norm()).abs() < 1e-9, "{taut:?}");
+}
+
 proptest! {
     /// Without holes there is one way only, and a path over any place is the shortest once it is taut.
     #[test]

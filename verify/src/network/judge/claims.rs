@@ -279,8 +279,9 @@ pub(super) fn teams_are_those(
         else {
             continue;
         };
-        let given_up = snapshot.phase == Phase::Ended && team.is_empty();
-        if *team != ledger.primary_team && !given_up {
+        // With the mission the team ends, and its members leave it one by one.
+        let is_dissolving = snapshot.phase == Phase::Ended && is_part(team, &ledger.primary_team);
+        if *team != ledger.primary_team && !is_dissolving {
             let sentence = format!(
                 "an event names the primary team {team:?}, which is {:?}",
                 ledger.primary_team
@@ -289,6 +290,12 @@ pub(super) fn teams_are_those(
         }
     }
     Ok(())
+}
+
+/// Whether the robots stand in `whole` in this order.
+pub(super) fn is_part(robots: &[usize], whole: &[usize]) -> bool {
+    let mut rest = whole.iter();
+    robots.iter().all(|robot| rest.any(|it| it == robot))
 }
 
 fn at_most(
