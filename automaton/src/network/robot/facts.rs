@@ -297,7 +297,8 @@ impl Robot {
         let id = self.bulletin.id();
         let election = self.election.as_ref().map(|election| election.id());
         let path = self.agreement.as_ref().map(|agreement| agreement.id());
-        let is_overtaken = id.epoch() > self.epoch;
+        // One that pursues no task has none to give up.
+        let is_overtaken = id.epoch() > self.epoch && self.phase() != Phase::Idle;
         match self.notice() {
             Notice::Ended { .. } => facts.end_announced = true,
             Notice::Task(_) if election != Some(id) => facts.announced = true,

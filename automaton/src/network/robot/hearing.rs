@@ -258,7 +258,7 @@ impl Robot {
     }
 
     /// What the robot hears has changed.
-    fn receive_news(&mut self) {
+    pub(super) fn receive_news(&mut self) {
         (self.has_news, self.is_unmeasured) = (true, true);
     }
 

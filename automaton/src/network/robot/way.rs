@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
+use pleach_continuous::geometry::segment::Segment;
 use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic};
 
 use super::Robot;
@@ -30,9 +31,6 @@ impl Robot {
             self.destination = Some(free_space.destination(goal));
         }
         let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
-        if let Some(path) = self.way_of_link(&direct) {
-            return Some(self.next_corner(&path).unwrap_or(goal));
-        }
         let parked: Vec<Disc> = self
             .neighbours
             .iter()
@@ -46,6 +44,9 @@ impl Robot {
             _ => direct,
         };
         let path = around(self.position, direct);
+        if let Some(path) = self.way_of_link(&path, &parked) {
+            return Some(self.next_corner(&path).unwrap_or(goal));
+        }
         let corner = self.next_corner(&path).unwrap_or(goal);
         match self.waypoint.filter(|&kept| kept != corner && self.may_keep(kept)) {
             Some(kept) => {
@@ -58,11 +59,12 @@ impl Robot {
         }
     }
 
-    /// Another way to the goal, on which its link leads farther: that by its parent, pulled taut, if the
-    /// parent rests and the geodesics from the robot and from the parent pass an obstacle on different
-    /// sides. On each side a robot gets as far as its link is long; where the parent is nearer to the goal
-    /// on its own side, the robot goes back round the obstacle.
-    fn way_of_link(&self, direct: &Geodesic) -> Option<Geodesic> {
+    /// Another way to the goal than `path`, on which its link leads farther: that by its parent, pulled
+    /// taut, if the parent rests and the two ways pass an obstacle on different sides. On each side a robot
+    /// gets as far as its link is long; where that is nearer to the goal on the parent's side, the robot
+    /// goes back round the obstacle; where robots are `parked` in that way, only if it gains more than a
+    /// detour may cost.
+    fn way_of_link(&self, path: &Geodesic, parked: &[Disc]) -> Option<Geodesic> {
         let link = self.parent_link()?;
         let parent =
             self.neighbour(link.to).filter(|it| it.is_access_point() || it.beacon.parked)?;
@@ -70,20 +72,28 @@ impl Robot {
         let back = space.geodesic(self.position, parent)?;
         // What is left of a way that the link does not cover.
         let left = |length: f64| (length - link.limit).max(0.0);
-        if left(back.length + direct.length) == 0.0 {
+        if left(back.length + path.length) == 0.0 {
             return None;
         }
         let onward = space.geodesic_to(parent, self.destination.as_ref()?)?;
         let least = left(onward.length) + CONSTANCY * self.clearance();
-        if left(back.length + direct.length) <= least {
+        if left(back.length + path.length) <= least {
             return None;
         }
         let corners = back.waypoints.iter().rev().skip(1).copied().chain([self.position]);
-        let around: Vec<Point> = corners.chain(direct.waypoints.iter().copied()).collect();
-        if left(space.taut(parent, &around).length) <= least {
+        let around: Vec<Point> = corners.chain(path.waypoints.iter().copied()).collect();
+        let by_path = left(space.taut(parent, &around).length);
+        if by_path <= least {
             return None;
         }
-        Some(space.taut(self.position, &[back.waypoints, onward.waypoints].concat()))
+        let way = space.taut(self.position, &[back.waypoints, onward.waypoints].concat());
+        let is_obstructed =
+            |piece: Segment| parked.iter().any(|disc| piece.distance(disc.center) < disc.radius);
+        let allowance = match way.segments(self.position).any(is_obstructed) {
+            true => DETOUR_ALLOWANCE,
+            false => CONSTANCY,
+        };
+        (by_path > left(onward.length) + allowance * self.clearance()).then_some(way)
     }
 
     /// Whether the waypoint of the period before can still be used. One that it has almost
