@@ -123,6 +123,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         self.check_table()?;
         self.match_transfers()?;
         self.check_parts()?;
+        self.check_intervals()?;
         self.spread_rates()?;
         if let Some(names) = &self.known {
             let is_parameter = |name: &str| self.parameters.iter().any(|(known, _)| known == name);

@@ -1,8 +1,8 @@
 //! Trajectories: what a run went through, in full.
 
+mod account;
 mod doubt;
 mod strand;
-mod telling;
 
 use std::fmt;
 use std::io;
@@ -11,6 +11,7 @@ use pleach_guards::Valuation;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+pub use account::{Account, Gap, Look, Passage, Unevaluated};
 pub use doubt::{Doubt, Why};
 pub(crate) use strand::{Strand, Stretch};
 

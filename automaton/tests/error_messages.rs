@@ -61,7 +61,7 @@ fn automata_say_what_does_not_fit() {
     let [off_push, off_hold] =
         [Press::Push, Press::Hold].map(|event| row(Lamp::Off, event, Lamp::Lit));
     let known = "which the state does not have";
-    let expected: [(Parts, String); 14] = [
+    let expected: [(Parts, String); 15] = [
         (
             table(&[off_push], Lamp::Broken).on(Press::Push, light(), Reset::identity()),
             "the initial location `broken` occurs in no row of the table".into(),
@@ -135,6 +135,18 @@ fn automata_say_what_does_not_fit() {
             "the range of `q` runs from 1 to 0: the first must be at most the second".into(),
         ),
         (
+            lamp().transition(
+                from(Lamp::Lit)
+                    .on(Press::Hold)
+                    .to(Lamp::Off)
+                    .must(always())
+                    .then(heat.becomes_within(2.0, 1.0)),
+            ),
+            "the reset of `hold` gives `q` a number between 2 and 1: both must be finite, and the \
+             first at most the second"
+                .into(),
+        ),
+        (
             lamp().initially(Light { power: f64::NAN, heat: 0.0 }),
             "`p` is NaN in the initial state: it must be a finite number".into(),
         ),
@@ -181,6 +193,10 @@ fn compositions_say_what_does_not_fit() {
             "component `lamp` has no initial state: give its automaton one with `initially`, or \
              add it with `add_in`"
                 .into(),
+        ),
+        (
+            lamp_of("left").add_in("right", &built(lamp()), Light { power: 0.0, heat: f64::NAN }),
+            "`q` of component `right` is NaN in the initial state: it must be a number".into(),
         ),
         (pair().label("knock"), "label `knock` is an event of no component".into()),
         (pair().rename("knock", "push"), "the component added last has no event `knock`".into()),

@@ -17,6 +17,7 @@ mod guarantees;
 mod kinks;
 mod literature;
 mod machines;
+mod magnitudes;
 mod many_components;
 mod messages;
 mod models;

@@ -12,6 +12,7 @@ use crate::enclosure::{Definedness, Enclosure};
 use crate::interval::Interval;
 use crate::predicate::{Comparison, Predicate, Relation};
 use crate::range::Truth;
+use crate::ring::Ring;
 use crate::valuation::EvaluationError;
 
 use formula::{Context, Formula};
@@ -82,6 +83,12 @@ impl Course {
             Course::FaintlyFalling => Course::FaintlyRising,
             Course::Open | Course::Blurred | Course::Opaque => self,
         }
+    }
+}
+
+impl From<bool> for Course {
+    fn from(holds: bool) -> Course {
+        if holds { Course::Always } else { Course::Never }
     }
 }
 
@@ -165,23 +172,19 @@ impl Tracker {
     /// The course during a span of twice `half_width` seconds, where variable *i* is
     /// `states[slots[i]]`.
     ///
-    /// A comparison may fail by up to `slack`, ≥ 0, in the unit of what it compares. What is known
-    /// about the comparison of a number is not computed again.
+    /// A comparison may fail by up to `slack`, ≥ 0, in the unit of what it compares. The course of a
+    /// comparison that is known, by its number, is not computed again.
     pub fn course(
         &self,
         states: &[Enclosure],
         slots: &[usize],
         half_width: f64,
         slack: f64,
-        known: &impl Fn(usize) -> Option<bool>,
+        known: &impl Fn(usize) -> Option<Course>,
     ) -> Course {
         let context = Context { states, slots, half_width, slack };
         let (course, definedness) = self.root.course(&self.comparisons, &context, known);
-        match definedness {
-            Definedness::Everywhere | Definedness::Steep => course,
-            Definedness::Blurred => Course::Blurred,
-            Definedness::Open => Course::Open,
-        }
+        definedness.limit(course)
     }
 
     /// The comparisons by their numbers; those under a negation are turned.
@@ -213,35 +216,78 @@ impl Tracked {
         upper.minus(&lower).sharpened(half_width)
     }
 
-    fn course(&self, context: &Context<'_>) -> (Course, Definedness) {
+    /// What becomes of it during a span, and its margin; see [`Tracker::course`].
+    pub fn follow(
+        &self,
+        states: &[Enclosure],
+        slots: &[usize],
+        half_width: f64,
+    ) -> (Course, Enclosure) {
+        let context = Context { states, slots, half_width, slack: 0.0 };
+        let (course, definedness, margin) = self.course(&context);
+        (definedness.limit(course), margin)
+    }
+
+    /// The margin in a ring, given that of each variable by its place; `None` if it is no polynomial of
+    /// them, or if an operation of the ring gives up.
+    pub fn in_ring<R: Ring>(&self, variable: &mut impl FnMut(usize) -> Option<R>) -> Option<R> {
+        self.upper.in_ring(variable)?.minus(&self.lower.in_ring(variable)?)
+    }
+
+    /// What becomes of the comparison where its margin has a value everywhere and is enclosed by this.
+    pub fn course_of(&self, margin: &Enclosure) -> Course {
+        course_of(margin, self.is_strict, false)
+    }
+
+    fn course(&self, context: &Context<'_>) -> (Course, Definedness, Enclosure) {
         let (upper, is_upper) = self.upper.run(context);
         let (lower, is_lower) = self.lower.run(context);
         let definedness = is_upper.and(is_lower);
         let is_strict = self.is_strict && context.slack == 0.0;
-        let slack = Interval::point(context.slack);
         let margin = upper.minus(&lower).sharpened(context.half_width);
-        let (least, most) = ((margin.range + slack).lower(), (margin.range + slack).upper());
         let is_exact = context.slack == 0.0;
-        let course = if least > 0.0 || !is_strict && least >= 0.0 {
+        let is_apart = |one: Interval, other: Interval| is_exact && one.upper() <= other.lower();
+        let course = if !is_strict && is_apart(lower.range, upper.range) {
             Course::Always
-        } else if most < 0.0 || is_strict && most <= 0.0 {
-            Course::Never
-        } else if is_exact && !is_strict && lower.range.upper() <= upper.range.lower() {
-            Course::Always
-        } else if is_exact && is_strict && upper.range.upper() <= lower.range.lower() {
+        } else if is_strict && is_apart(upper.range, lower.range) {
             Course::Never
         } else {
-            let is_blurred = margin.is_blurred() || definedness == Definedness::Steep;
-            match (margin.rate.lower() >= 0.0, margin.rate.upper() <= 0.0) {
-                (true, _) if is_blurred => Course::FaintlyRising,
-                (true, _) => Course::Rising,
-                (_, true) if is_blurred => Course::FaintlyFalling,
-                (_, true) => Course::Falling,
-                _ if is_blurred => Course::Blurred,
-                _ => Course::Open,
-            }
+            let slack = Interval::point(context.slack);
+            let margin = Enclosure { range: margin.range + slack, ..margin };
+            course_of(&margin, is_strict, definedness == Definedness::Steep)
         };
-        (course, definedness)
+        (course, definedness, margin)
+    }
+}
+
+impl Definedness {
+    /// What is known of a course if this is known of what it is the course of.
+    fn limit(self, course: Course) -> Course {
+        match self {
+            Definedness::Everywhere | Definedness::Steep => course,
+            Definedness::Blurred => Course::Blurred,
+            Definedness::Open => Course::Open,
+        }
+    }
+}
+
+/// What becomes of a comparison with this margin.
+fn course_of(margin: &Enclosure, is_strict: bool, is_steep: bool) -> Course {
+    let (least, most) = (margin.range.lower(), margin.range.upper());
+    if least > 0.0 || !is_strict && least >= 0.0 {
+        return Course::Always;
+    }
+    if most < 0.0 || is_strict && most <= 0.0 {
+        return Course::Never;
+    }
+    let is_blurred = is_steep || margin.is_blurred();
+    match (margin.rate.lower() >= 0.0, margin.rate.upper() <= 0.0) {
+        (true, _) if is_blurred => Course::FaintlyRising,
+        (true, _) => Course::Rising,
+        (_, true) if is_blurred => Course::FaintlyFalling,
+        (_, true) => Course::Falling,
+        _ if is_blurred => Course::Blurred,
+        _ => Course::Open,
     }
 }
 
@@ -272,7 +318,7 @@ impl Node {
         &self,
         comparisons: &[Tracked],
         context: &Context<'_>,
-        known: &impl Fn(usize) -> Option<bool>,
+        known: &impl Fn(usize) -> Option<Course>,
     ) -> (Course, Definedness) {
         let join = |parts: &[Node], first: Course, combine: fn(Course, Course) -> Course| {
             parts.iter().fold((first, Definedness::Everywhere), |(course, definedness), part| {
@@ -282,9 +328,11 @@ impl Node {
         };
         match self {
             Node::Comparison(number) => match known(*number) {
-                Some(true) => (Course::Always, Definedness::Everywhere),
-                Some(false) => (Course::Never, Definedness::Everywhere),
-                None => comparisons[*number].course(context),
+                Some(course) => (course, Definedness::Everywhere),
+                None => {
+                    let (course, definedness, _) = comparisons[*number].course(context);
+                    (course, definedness)
+                }
             },
             Node::All(parts) => join(parts, Course::Always, Course::and),
             Node::Any(parts) => join(parts, Course::Never, Course::or),

@@ -98,6 +98,17 @@ impl Enclosure {
         Enclosure { range: self.range.intersection(by_rate).unwrap_or(self.range), ..self }
     }
 
+    /// What both say of the same quantity during the same span.
+    #[must_use]
+    pub fn intersection(&self, other: &Enclosure) -> Self {
+        let both = |one: Interval, another: Interval| one.intersection(another).unwrap_or(one);
+        Enclosure {
+            middle: both(self.middle, other.middle),
+            range: both(self.range, other.range),
+            rate: both(self.rate, other.rate),
+        }
+    }
+
     /// self + other
     #[must_use]
     pub fn plus(&self, other: &Enclosure) -> Self {

@@ -98,6 +98,7 @@ pub mod predicate;
 pub mod print;
 pub mod program;
 pub mod range;
+pub mod ring;
 #[cfg(feature = "serde")]
 pub mod serialization;
 pub mod sides;
@@ -119,6 +120,7 @@ pub use parse::ParseError;
 pub use predicate::{Comparison, Predicate, Relation, Verdict, always, never, not, proposition};
 pub use program::{CompiledPredicate, Program};
 pub use range::{Ranges, Truth};
+pub use ring::Ring;
 pub use sides::Sides;
 pub use substitution::Substitution;
 pub use table::{Interpolation, InvalidTable, Table};

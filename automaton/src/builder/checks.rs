@@ -4,6 +4,7 @@ use pleach_discrete::{Event, Location, Row};
 use pleach_guards::{Expression, Predicate, Valuation};
 
 use super::{BuildError, Builder, listed};
+use crate::reset::NewValue;
 
 impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     pub(super) fn check_parameters(&self, names: &[&'static str]) -> Result<(), BuildError> {
@@ -99,6 +100,26 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             let in_order = lower <= upper;
             if !in_order {
                 return Err(BuildError::EmptyRange { variable, lower, upper });
+            }
+        }
+        Ok(())
+    }
+
+    /// Intervals between two numbers hold some; of others this is known when they are used.
+    pub(super) fn check_intervals(&self) -> Result<(), BuildError> {
+        let conditions = self.conditions.iter().map(|(event, _, reset)| (event.name(), reset));
+        let edges = self.edges.iter().map(|(row, _, reset)| (self.rows[*row].event.name(), reset));
+        for (event, reset) in conditions.chain(edges) {
+            for one in reset.assignments().into_iter().flatten() {
+                let NewValue::Within(Expression::Constant(lower), Expression::Constant(upper)) =
+                    one.value()
+                else {
+                    continue;
+                };
+                let (lower, upper, coordinate) = (*lower, *upper, one.coordinate());
+                if !(lower <= upper && lower.is_finite() && upper.is_finite()) {
+                    return Err(BuildError::EmptyInterval { event, coordinate, lower, upper });
+                }
             }
         }
         Ok(())

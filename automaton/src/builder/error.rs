@@ -139,6 +139,21 @@ pub enum BuildError {
         /// The upper end given.
         upper: f64,
     },
+    /// A reset gives a coordinate any number of an interval that holds none, or that does not end.
+    #[error(
+        "the reset of `{event}` gives `{coordinate}` a number between {lower} and {upper}: both must be \
+         finite, and the first at most the second"
+    )]
+    EmptyInterval {
+        /// The event.
+        event: &'static str,
+        /// The coordinate.
+        coordinate: &'static str,
+        /// The lower end given.
+        lower: f64,
+        /// The upper end given.
+        upper: f64,
+    },
     /// A coordinate of the initial state is NaN or infinite.
     #[error("`{variable}` is {value} in the initial state: it must be a finite number")]
     InitialNotFinite {

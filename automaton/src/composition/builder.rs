@@ -78,6 +78,13 @@ impl CompositionBuilder {
             Ok((blueprint, values))
         };
         match Blueprint::of(automaton).and_then(initial) {
+            Ok((blueprint, initial)) if initial.iter().any(|value| value.is_nan()) => {
+                let named = blueprint.coordinates.iter().zip(&initial);
+                for (variable, _) in named.filter(|(_, value)| value.is_nan()) {
+                    let component = name.to_owned();
+                    self.fault(CompositionError::InitialNotANumber { component, variable });
+                }
+            }
             Ok((blueprint, initial)) => self.parts.push(Part {
                 name: name.to_owned(),
                 blueprint: Arc::new(blueprint),

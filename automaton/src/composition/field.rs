@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
-use pleach_continuous::flow::{InvalidFlow, LinearField, Piece, VectorField};
+use pleach_continuous::flow::{InvalidFlow, LinearField, Piece, Tolerances, VectorField};
 use pleach_guards::Interval;
 
 use super::blueprint::{Mode, ModeMotion, RateProgram, Solution};
@@ -45,6 +45,15 @@ pub(super) struct Field<'a> {
     ranges: RefCell<[Vec<Interval>; 3]>,
     /// Where rates have kinks that are not known beforehand.
     hold: Option<Box<Hold<'a>>>,
+}
+
+/// How rates vary over a span of time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strain {
+    /// Whether they may vary by more than an integrator sees.
+    pub(super) is_strained: bool,
+    /// By how much this moves variables at most, in units of what the tolerances allow.
+    pub(super) shift: f64,
 }
 
 /// A coefficient of a linear rate: its row, its column and its value.
@@ -235,6 +244,33 @@ impl<'a> Field<'a> {
                 .zip(results.iter())
                 .all(|(rate, range)| rate.tracker.is_none() || is_bounded(range))
         })
+    }
+
+    /// Whether rates may act too briefly for an integrator to see, anywhere at all.
+    pub(super) fn is_sharp(&self) -> bool {
+        self.moving.iter().any(|(_, mode)| mode.rates.is_sharp())
+    }
+
+    /// How rates vary from one time of a piece to another.
+    pub(super) fn strain(&self, piece: &Piece, span: [f64; 2], tolerances: Tolerances) -> Strain {
+        let [own, places, results] = &mut *self.ranges.borrow_mut();
+        let mut enclosures = Vec::new();
+        piece.enclose(span[0], span[1], &mut enclosures);
+        let mut strain = Strain { is_strained: false, shift: 0.0 };
+        for (component, mode) in &self.moving {
+            let ModeMotion::Rates(rates) = &mode.motion else { continue };
+            own.clear();
+            own.extend(component.places.iter().map(|&place| enclosures[place].range));
+            mode.rates.ranges(own, places, results);
+            strain.is_strained |= mode.rates.is_strained(places);
+            for (rate, range) in rates.iter().zip(results.iter()) {
+                let variable = enclosures[component.places[rate.coordinate]].range.abs();
+                let allowed = tolerances.absolute() + tolerances.relative() * variable.upper();
+                let shift = range.width() * (span[1] - span[0]) / allowed;
+                strain.shift = strain.shift.max(shift);
+            }
+        }
+        strain
     }
 
     /// The first time after `after` at which a rate is known to have a kink or a jump.

@@ -207,19 +207,23 @@ impl Component {
         match change {
             Change::Assignments(assignments) => {
                 for (coordinate, assigned) in assignments {
-                    let new = match assigned {
-                        Assigned::Value(value) => value.evaluate_at(before, &self.slots),
+                    let (new, source) = match assigned {
+                        Assigned::Value(value) => {
+                            (value.evaluate_at(before, &self.slots), String::new())
+                        }
                         Assigned::Interval(ends) => {
                             let [lower, upper] =
                                 ends.each_ref().map(|end| end.evaluate_at(before, &self.slots));
-                            within([lower, upper], share())
+                            let source = || format!(" between {lower} and {upper}");
+                            let number = within([lower, upper], share());
+                            (number, if number.is_nan() { source() } else { String::new() })
                         }
                     };
                     // Infinite values come from infinite ones only.
                     let overflows = || self.slots.iter().all(|&slot| before[slot].is_finite());
                     if new.is_nan() || new.is_infinite() && overflows() {
                         let expression =
-                            format!("the new {}", self.blueprint.coordinates[*coordinate]);
+                            format!("the new {}{source}", self.blueprint.coordinates[*coordinate]);
                         return Err(EvaluationError::NotANumber { expression });
                     }
                     changes.push((self.slots[*coordinate], new));

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pleach_continuous::flow::{
-    Curve, Doubt, IntegrationFailure, Integrator, InvalidFlow, LinearFlow, Onset, Piece,
+    Curve, Doubt, IntegrationFailure, Integrator, InvalidFlow, LinearFlow, Onset, Piece, Tolerances,
 };
 use pleach_guards::{Enclosure, Expression};
 
@@ -22,6 +22,8 @@ const MOST_CRAWLING: u32 = 100;
 const BESIDE: f64 = 0.01;
 /// The largest error, relative to its size, with which the polynomial of a function stands for it.
 const FITTING: f64 = 1e-12;
+/// How many parts of a step are looked at for what it does not see.
+const MOST_GLANCES: u32 = 200;
 /// How often the time of a function is halved for such a polynomial.
 const HALVINGS: u32 = 20;
 
@@ -40,6 +42,8 @@ pub(super) struct Solver<'a> {
     /// Where the solution touches a jump of its rates, for all that is known.
     grazes: Vec<Doubt>,
     enclosures: Vec<Enclosure>,
+    /// What steps must not pass over unseen, where rates are such that they could.
+    seen_to: Option<Tolerances>,
 }
 
 enum Method<'a> {
@@ -73,7 +77,19 @@ impl<'a> Solver<'a> {
         };
         let (pieces, grazes, enclosures) = (Vec::new(), Vec::new(), Vec::new());
         let (size, reached, crawled, kink) = (0, 0.0, 0, None);
-        Ok(Solver { field, method, pieces, size, reached, crawled, kink, grazes, enclosures })
+        let seen_to = field.is_sharp().then(|| settings.tolerances());
+        Ok(Solver {
+            field,
+            method,
+            pieces,
+            size,
+            reached,
+            crawled,
+            kink,
+            grazes,
+            enclosures,
+            seen_to,
+        })
     }
 
     /// Whether all variables move along lines, so that nothing needs to be solved.
@@ -192,13 +208,49 @@ impl<'a> Solver<'a> {
             }
             Method::Steps(integrator) => {
                 let kink = self.field.next_kink(start).unwrap_or(limit);
-                let step =
-                    integrator.step(limit.min(kink)).map_err(|fault| without_time(&fault))?;
+                let limit = limit.min(kink);
+                let step = integrator.step(limit).map_err(|fault| without_time(&fault))?;
                 step.piece(start).ok_or("the flow has no solution")?
             }
         };
         let piece = self.complete(curved);
+        let piece = match self.unseen(&piece) {
+            Some(time) => self.shortened(time)?,
+            None => piece,
+        };
         Ok(if self.field.has_solutions() { self.fitted(&piece) } else { piece })
+    }
+
+    /// A time in a step, after which, or up to which if the step begins with it, a rate may act so briefly
+    /// that the step does not see it.
+    fn unseen(&self, piece: &Piece) -> Option<f64> {
+        let tolerances = self.seen_to.filter(|_| matches!(self.method, Method::Steps(_)))?;
+        let mut spans = vec![[piece.start(), piece.end()]];
+        for number in 0..MOST_GLANCES {
+            let Some([from, to]) = spans.pop() else { break };
+            let strain = self.field.strain(piece, [from, to], tolerances);
+            let is_strained = strain.is_strained && strain.shift > 1.0;
+            let middle = from + 0.5 * (to - from);
+            let is_last = number + 1 == MOST_GLANCES || middle <= from || middle >= to;
+            if is_strained && !is_last {
+                spans.extend([[middle, to], [from, middle]]);
+            } else if number > 0 && strain.shift > 1.0 {
+                return Some(if from > piece.start() { from } else { to });
+            } else if number == 0 {
+                break;
+            }
+        }
+        None
+    }
+
+    /// The last step once more, up to this time.
+    fn shortened(&mut self, time: f64) -> Result<Piece, String> {
+        let start = self.reached;
+        let Some(integrator) = self.integrator() else { return Err("no step to undo".to_owned()) };
+        integrator.undo();
+        let step = integrator.step(time).map_err(|fault| without_time(&fault))?;
+        let curved = step.piece(start).ok_or("the flow has no solution")?;
+        Ok(self.complete(curved))
     }
 
     /// The same with rates that have kinks: on one side of each, and up to where the state passes one.

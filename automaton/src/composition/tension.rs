@@ -1,7 +1,7 @@
 //! What makes time stop in a group: a transition that is due, or an invariant that ends.
 
-use pleach_continuous::flow::Watch;
-use pleach_guards::{Affine, Course, Enclosure, Tracker, Verdict};
+use pleach_continuous::flow::{Curve, Piece, Watch};
+use pleach_guards::{Affine, Course, Enclosure, Tracked, Tracker, Verdict};
 
 use super::blueprint::{Condition, Leaving};
 use super::field::{Field, Row};
@@ -10,6 +10,10 @@ use super::jumps::Standing;
 use super::settings::Policy;
 use super::simulation::Failure;
 use crate::moment::Moment;
+
+/// By how much more than at an instant a margin may be unknown as a polynomial in time, so that shorter
+/// spans are not worth looking at.
+const COARSER: f64 = 64.0;
 
 /// Which transitions count.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -122,6 +126,17 @@ pub(super) struct Tension<'a> {
     known: Vec<Vec<Box<[Knowledge]>>>,
     /// The open span of time, in seconds since the start of the flow, that is looked at.
     window: (Moment, Moment),
+    /// The margins that are polynomials, on the piece of the flow that was looked at last.
+    margins: Option<Margins>,
+    /// The span of time of that piece in which they are looked at now.
+    span: Option<[f64; 2]>,
+}
+
+/// Margins as polynomials in time, on a piece of a flow.
+struct Margins {
+    piece: [f64; 2],
+    /// By component and condition as what is known: of each comparison its margin, if it is one.
+    polynomials: Vec<Vec<Box<[Option<Piece>]>>>,
 }
 
 /// What is known of a comparison during a flow.
@@ -158,7 +173,7 @@ impl<'a> Tension<'a> {
             std::iter::once(first).chain(others).collect()
         });
         let window = (Moment::default(), Moment::default());
-        Tension { conditions, known: known.collect(), window }
+        Tension { conditions, known: known.collect(), window, margins: None, span: None }
     }
 
     /// The times in order at which something changes that depends on lines alone.
@@ -258,15 +273,20 @@ impl<'a> Tension<'a> {
     ) -> Course {
         let known = &self.known[number][condition];
         let (from, to) = self.window;
-        let truth = |comparison: usize| match known.get(comparison)? {
+        let slots = self.conditions.standing.slots(component);
+        let course = |comparison: usize| match known.get(comparison)? {
+            Knowledge::Nothing if context.slack == 0.0 => {
+                let comparisons = &self.margins.as_ref()?.polynomials[number][condition];
+                let margin = comparisons.get(comparison)?.as_ref()?;
+                context.course_of(&tracker.comparisons()[comparison], slots, margin, self.span?)
+            }
             Knowledge::Nothing => None,
-            Knowledge::Fixed(holds) => Some(*holds),
-            Knowledge::Switch(time, after) if *time <= from => Some(*after),
-            Knowledge::Switch(time, after) if *time >= to => Some(!*after),
+            Knowledge::Fixed(holds) => Some((*holds).into()),
+            Knowledge::Switch(time, after) if *time <= from => Some((*after).into()),
+            Knowledge::Switch(time, after) if *time >= to => Some((!*after).into()),
             Knowledge::Switch(..) => None,
         };
-        let slots = self.conditions.standing.slots(component);
-        tracker.course(context.states, slots, context.half_width, context.slack, &truth)
+        tracker.course(context.states, slots, context.half_width, context.slack, &course)
     }
 }
 
@@ -275,6 +295,55 @@ struct Follow<'a> {
     states: &'a [Enclosure],
     half_width: f64,
     slack: f64,
+}
+
+impl Margins {
+    /// The margins of all conditions of a group that are polynomials on a piece.
+    fn on(conditions: &Conditions<'_>, piece: &Piece) -> Margins {
+        let polynomials = conditions.group.components.iter().map(|&index| {
+            let places = conditions.standing.slots(index);
+            let of = |condition: &Condition| {
+                let comparisons = condition.tracker.comparisons().iter();
+                let margins = comparisons.map(|comparison| {
+                    let margin = comparison
+                        .in_ring(&mut |place| Some(piece.polynomial(*places.get(place)?)))?;
+                    Some(piece.composed(&margin))
+                });
+                margins.collect()
+            };
+            let first = conditions.invariant(index).map_or_else(Box::default, of);
+            let leaving = conditions.standing.leaving(index).iter();
+            std::iter::once(first).chain(leaving.map(|leaving| of(&leaving.guard))).collect()
+        });
+        let polynomials = polynomials.collect();
+        Margins { piece: [piece.start(), piece.end()], polynomials }
+    }
+}
+
+impl Follow<'_> {
+    /// What its margin as a polynomial tells of a comparison in a span: that it holds throughout or
+    /// nowhere, or that rounding alone decides, which shorter spans do not change.
+    fn course_of(
+        &self,
+        comparison: &Tracked,
+        slots: &[usize],
+        margin: &Piece,
+        span: [f64; 2],
+    ) -> Option<Course> {
+        let mut enclosures = Vec::with_capacity(1);
+        margin.enclose(span[0], span[1], &mut enclosures);
+        let as_whole = enclosures.first()?;
+        match comparison.course_of(as_whole) {
+            course @ (Course::Always | Course::Never) => Some(course),
+            Course::Blurred | Course::FaintlyRising | Course::FaintlyFalling => {
+                // Powers of time may be blurred by more than the values at an instant are.
+                let (_, margin) = comparison.follow(self.states, slots, self.half_width);
+                let is_blurred = as_whole.middle.width() <= COARSER * margin.middle.width();
+                is_blurred.then_some(Course::Blurred)
+            }
+            Course::Rising | Course::Falling | Course::Open | Course::Opaque => None,
+        }
+    }
 }
 
 impl Watch for Tension<'_> {
@@ -286,6 +355,23 @@ impl Watch for Tension<'_> {
 
     fn course(&mut self, states: &[Enclosure], half_width: f64) -> Course {
         self.course_of(states, half_width)
+    }
+
+    fn course_on(
+        &mut self,
+        piece: &Piece,
+        span: [f64; 2],
+        states: &[Enclosure],
+        half_width: f64,
+    ) -> Course {
+        let ends = [piece.start(), piece.end()];
+        if self.margins.as_ref().is_none_or(|known| known.piece != ends) {
+            self.margins = Some(Margins::on(&self.conditions, piece));
+        }
+        self.span = Some(span);
+        let course = self.course_of(states, half_width);
+        self.span = None;
+        course
     }
 }
 

@@ -84,3 +84,39 @@ fn limits_end_a_run_with_instant_and_reason() {
     let at = trajectory.ending().at.t;
     assert!(at < 1e6 && trajectory.value("x", at).is_some_and(|x| (x - at).abs() < 1e-9));
 }
+
+/// Where no time can pass from the start on, the ending says which invariant is in the way.
+#[test]
+fn a_start_outside_an_invariant_is_told() {
+    let trajectory = run(&built(ramp().invariant(Here, x().at_least(1.0))), 10.0);
+    let Reason::Finished(failure) = &trajectory.ending().reason else {
+        panic!("{:?}", trajectory.ending())
+    };
+    assert_eq!(
+        failure.to_string(),
+        "component `automaton` begins in location `here` outside its invariant `x ≥ 1`, and no \
+         transition can be taken"
+    );
+}
+
+/// Flows count their time from their start, and runs from theirs: messages have that of the run.
+#[test]
+fn a_flow_that_fails_after_a_jump_tells_the_time_of_the_run() {
+    let Plane { px, py } = Plane::coordinates();
+    let singular: Machine<Plane> = built(
+        Automaton::starting_in(Here)
+            .initially(Plane { px: 0.0, py: 0.0 })
+            .flow(Here, [px.rate(1.0)])
+            .flow(There, [px.rate(1.0), py.rate((&px - 1.0).power(-1.0))])
+            .transition(from(Here).on(Go).to(There).must(px.at_least(3.0)).then(px.becomes(0.0))),
+    );
+    let trajectory = run(&singular, 10.0);
+    let Reason::Finished(failure) = &trajectory.ending().reason else {
+        panic!("{:?}", trajectory.ending())
+    };
+    assert!((trajectory.ending().at.t - 4.0).abs() < 1e-9);
+    let message = failure.to_string();
+    let time = message.split(" at ").last().and_then(|rest| rest.split(' ').next());
+    let time = time.and_then(|time| time.parse::<f64>().ok());
+    assert!(time.is_some_and(|time| (time - 4.0).abs() < 1e-9), "{message}");
+}

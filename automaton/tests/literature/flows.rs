@@ -2,22 +2,29 @@
 
 use std::f64::consts::TAU;
 
-use pleach_automaton::{Settings, from};
+use pleach_automaton::{Settings, Why, from};
 use pleach_guards::Expression;
 
 use super::Cue::Go;
 use super::Place::{Here, There};
 use super::{assert_near, instants, moving, run, x};
 
-/// E. Torricelli 1644: ḣ = −k √h empties a tank in 2 √h₀ ÷ k. The rate has no slope where it is empty,
-/// and there the tolerance of h, 10⁻¹², is 2·10⁻⁶ s.
+/// E. Torricelli 1644: ḣ = −k √h empties a tank in 2 √h₀ ÷ k. The rate has no slope where it is empty:
+/// at a level of 10⁻⁶ the tolerance of h, 10⁻⁹, is 2·10⁻⁶ s, and a level below the tolerance is met in doubt.
 #[test]
 fn torricellis_tank_runs_dry() {
     let [h] = x();
-    let tank = moving([4.0], [-0.5 * h.square_root()]);
-    let dry = tank.transition(from(Here).on(Go).to(There).must(h.at_most(1e-12)));
-    let found = run(dry, 100.0).jumps()[0].at.t;
-    assert_near(found, 8.0 - 4e-6, 2e-6);
+    let dry = |level: f64| {
+        let tank = moving([4.0], [-0.5 * h.square_root()]);
+        let machine = tank.transition(from(Here).on(Go).to(There).must(h.at_most(level)));
+        machine.build().expect("it is sound").run(100.0).expect("it can be run")
+    };
+    let trajectory = dry(1e-6);
+    assert!(trajectory.doubts().is_empty(), "{:?}", trajectory.doubts());
+    assert_near(trajectory.jumps()[0].at.t, 8.0 - 4e-3, 2e-6);
+    let trajectory = dry(1e-12);
+    assert!(trajectory.doubts().iter().any(|doubt| doubt.why == Why::Touch));
+    assert_near(trajectory.jumps()[0].at.t, 8.0 - 4e-6, 2e-6);
 }
 
 /// A quarter of a pendulum's swing from 1 rad: K(sin² ½), the complete elliptic integral, by mpmath.

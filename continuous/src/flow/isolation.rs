@@ -37,6 +37,18 @@ pub trait Watch {
     /// What is known of it during a span of twice `half_width` seconds, with every component of
     /// the state enclosed.
     fn course(&mut self, states: &[Enclosure], half_width: f64) -> Course;
+
+    /// The same with the piece at hand on which the span goes from one time to another: what can be
+    /// known of it where the enclosures of the components alone leave it open.
+    fn course_on(
+        &mut self,
+        _piece: &Piece,
+        _span: [f64; 2],
+        states: &[Enclosure],
+        half_width: f64,
+    ) -> Course {
+        self.course(states, half_width)
+    }
 }
 
 /// What was found on a piece.
@@ -115,9 +127,17 @@ pub fn isolate<W: Watch + ?Sized>(
         doubts: Vec::new(),
     };
     let onset = isolation.run(from, to, budget)?;
+    if let Some(Onset { time, .. }) = onset.filter(|onset| onset.time > from)
+        && !isolation.is_passed(time)
+    {
+        let from = isolation.doubts.last().map_or(from, |last| last.to.max(from)).min(time);
+        isolation.doubts.push(Doubt { from, to: time, why: Uncertainty::Touch });
+    }
     Ok(Finding { onset, doubts: isolation.doubts })
 }
 
+/// Spans of this part of what is searched that are still open are looked at more closely.
+const NARROW: f64 = 0.1;
 /// How often to halve the surroundings of a peak.
 const HALVINGS: u32 = 26;
 
@@ -143,11 +163,18 @@ impl<W: Watch + ?Sized> Isolation<'_, W> {
         }
         let mut enclosures = Vec::with_capacity(self.state.len());
         let mut spans = vec![(from, to)];
+        let narrow = NARROW * (to - from);
         while let Some((from, to)) = spans.pop() {
             *budget = budget.checked_sub(1).ok_or(Lost::Endless { at: from })?;
             self.piece.enclose(from, to, &mut enclosures);
             let half = 0.5 * (to - from) * (1.0 + 4.0 * f64::EPSILON);
-            let found = match self.watch.course(&enclosures, half) {
+            let course = match self.watch.course(&enclosures, half) {
+                Course::Open if to - from <= narrow => {
+                    self.watch.course_on(self.piece, [from, to], &enclosures, half)
+                }
+                course => course,
+            };
+            let found = match course {
                 Course::Never => None,
                 Course::Falling | Course::FaintlyFalling => self.first_of(&[from])?,
                 Course::Rising | Course::FaintlyRising | Course::Always => {
@@ -170,6 +197,26 @@ impl<W: Watch + ?Sized> Isolation<'_, W> {
             }
         }
         Ok(None)
+    }
+
+    /// Whether, whatever the error of the curve, the condition surely does not hold at an instant of the
+    /// piece before `time`, or surely holds at one after it. Otherwise it may have come to hold at any time,
+    /// or never.
+    fn is_passed(&mut self, time: f64) -> bool {
+        let (first, last) = (self.piece.start(), self.piece.end());
+        // Nearer and nearer to where it comes to hold.
+        let toward = |end: f64| {
+            let away = std::iter::successors(Some(end - time), |away| Some(0.5 * away));
+            away.map(move |away| time + away).take_while(move |&at| at != time)
+        };
+        toward(first).any(|at| matches!(self.course_at(at), Course::Never | Course::Opaque))
+            || toward(last).any(|at| self.course_at(at) == Course::Always)
+    }
+
+    fn course_at(&mut self, time: f64) -> Course {
+        let mut enclosures = Vec::with_capacity(self.state.len());
+        self.piece.enclose(time, time, &mut enclosures);
+        self.watch.course(&enclosures, 0.0)
     }
 
     fn look(&mut self, time: f64) -> Result<Sample, Lost<W::Error>> {

@@ -35,6 +35,7 @@
 
 mod bend;
 mod chebyshev;
+mod composed;
 mod constant;
 mod controller;
 mod dormand_prince;
@@ -53,6 +54,7 @@ mod step;
 mod suspicion;
 mod tolerances;
 
+pub use composed::Polynomial;
 pub use constant::ConstantFlow;
 pub use event::{EventSearch, InvalidSearch, Onset, first_instant};
 pub use integrator::{IntegrationFailure, Integrator, Method};

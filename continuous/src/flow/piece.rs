@@ -1,5 +1,7 @@
 //! Pieces of curves as polynomials in time.
 
+use std::cmp::Ordering;
+
 use pleach_guards::{Enclosure, Interval};
 use serde::{Deserialize, Serialize};
 
@@ -104,6 +106,16 @@ impl Piece {
     pub fn without_errors(mut self) -> Self {
         self.errors.clear();
         self
+    }
+
+    /// The same span of time and powers, without components.
+    pub(super) fn emptied(&self) -> Self {
+        Piece::new(self.start, self.end, self.origin, self.scale)
+    }
+
+    /// The largest magnitude of what is raised to powers.
+    pub(super) fn farthest(&self) -> f64 {
+        self.place(self.start).abs().max(self.place(self.end).abs())
     }
 
     /// The highest power with a coefficient.
@@ -302,12 +314,42 @@ impl Span {
             value.add(*c, near, far);
         }
         let noise = noise_of_powers(coefficients.len());
-        Some((value.interval(noise, error), self.per_second(slope.interval(noise, 0.0))))
+        let (range, rate) = (value.interval(noise, error), slope.interval(noise, 0.0));
+        let (mut above, mut rising) = (Interval::WHOLE, Interval::WHOLE);
+        if self.first == 0.0 {
+            match direction_from_origin(coefficients, self.last) {
+                Some(Ordering::Greater) => {
+                    above = ordered(coefficients[0] - error, f64::INFINITY);
+                    rising = ordered(0.0, f64::INFINITY);
+                }
+                Some(Ordering::Less) => {
+                    above = ordered(f64::NEG_INFINITY, coefficients[0] + error);
+                    rising = ordered(f64::NEG_INFINITY, 0.0);
+                }
+                _ => {}
+            }
+        }
+        let range = range.intersection(above).unwrap_or(range);
+        Some((range, self.per_second(rate.intersection(rising).unwrap_or(rate))))
     }
 
     fn per_second(&self, rate: Interval) -> Interval {
         if self.scale == 1.0 { rate } else { rate / Interval::point(self.scale) }
     }
+}
+
+/// Whether a polynomial rises or falls from the origin to a place, if its first power says so: that
+/// outweighs all higher ones together.
+fn direction_from_origin(coefficients: &[f64], place: f64) -> Option<Ordering> {
+    let mut powers = (1..).map(f64::from).zip(coefficients.iter().skip(1));
+    let (first, leading) = powers.find(|(_, c)| **c != 0.0)?;
+    let (mut rest, mut power) = (0.0, place);
+    for (k, c) in powers {
+        rest += k * c.abs() * power;
+        power *= place;
+    }
+    let outweighs = first * leading.abs() > rest * (1.0 + 1e-12);
+    outweighs.then(|| leading.total_cmp(&0.0))
 }
 
 /// By how much, as a fraction of their magnitudes, a sum of this many powers is off for rounding.

@@ -227,7 +227,35 @@ fn stiff_exponentials_come_in_few_pieces() {
         }
         (from, pieces) = (piece.end(), pieces + 1);
     }
-    assert!(pieces < 200, "{pieces}");
+    // Two e-foldings each, until nothing is left of the fast one, which decays alone.
+    assert!(pieces < 800, "{pieces}");
+}
+
+/// What decays is as exact beside what it is as at the start, also where it is driven by less.
+#[test]
+fn decay_is_exact_beside_the_present_state() {
+    for horizon in [100.0, 700.0, 1e4] {
+        let flow = LinearFlow::new(&dmatrix![-1.0], &[0.0], &[1.0], horizon).unwrap();
+        let mut time = 0.0;
+        while time < 700.0_f64.min(horizon) {
+            let piece = flow.piece(time).expect("pieces");
+            time = piece.end().min(700.0);
+            let (found, exact) = (piece.value(0, time), (-time).exp());
+            assert!((found - exact).abs() <= 1e-12 * exact, "{found:e} {exact:e} at {time} s");
+        }
+    }
+    // x follows y, which begins far below it: e⁻¹⁰⁰⁰ᵗ is what x is for long.
+    let matrix = dmatrix![-1000.0, 1000.0; 0.0, -1.0];
+    let flow = LinearFlow::new(&matrix, &[0.0; 2], &[1.0, 1e-30], 10.0).unwrap();
+    let mut time = 0.0;
+    while time < 10.0 {
+        let piece = flow.piece(time).expect("pieces");
+        time = piece.end();
+        let share = 1000.0 / 999.0 * 1e-30;
+        let exact = share * (-time).exp() + (1.0 - share) * (-1000.0 * time).exp();
+        let found = piece.value(0, time);
+        assert!((found - exact).abs() <= 1e-10 * exact, "{found:e} {exact:e} at {time} s");
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ use crate::expression::{BinaryOperator, Expression, UnaryOperator};
 use crate::fold::Operands;
 use crate::predicate::Relation;
 use crate::range::Truth;
+use crate::ring::Ring;
 use crate::table::Table;
 use crate::valuation::EvaluationError;
 
@@ -33,6 +34,9 @@ pub(super) struct Context<'a> {
     pub(super) slack: f64,
 }
 
+/// The highest power that counts as repeated multiplication.
+const HIGHEST_POWER: f64 = 16.0;
+
 /// Results that fit on the stack of the thread; longer expressions allocate.
 const SHORT: usize = 16;
 
@@ -60,6 +64,18 @@ impl Formula {
         } else {
             self.run_on(context, &mut vec![UNKNOWN; self.0.len()])
         }
+    }
+
+    pub(super) fn in_ring<R: Ring>(
+        &self,
+        variable: &mut impl FnMut(usize) -> Option<R>,
+    ) -> Option<R> {
+        let mut results: Vec<R> = Vec::with_capacity(self.0.len());
+        for operation in &self.0 {
+            let result = operation.in_ring(&results, variable)?;
+            results.push(result);
+        }
+        results.pop()
     }
 
     fn run_on(&self, context: &Context<'_>, results: &mut [Known]) -> Known {
@@ -106,6 +122,30 @@ impl Operation {
             }
             _ => Operation::Constant(f64::NAN),
         })
+    }
+
+    fn in_ring<R: Ring>(
+        &self,
+        results: &[R],
+        variable: &mut impl FnMut(usize) -> Option<R>,
+    ) -> Option<R> {
+        match *self {
+            Operation::Constant(value) => Some(R::number(value)),
+            Operation::Variable(place) => variable(place),
+            Operation::Unary(UnaryOperator::Negation, one) => results[one].times(&R::number(-1.0)),
+            Operation::Power(base, exponent)
+                if exponent % 1.0 == 0.0 && (0.0..=HIGHEST_POWER).contains(&exponent) =>
+            {
+                results[base].power(exponent as u32)
+            }
+            Operation::Binary(operator, one, other) => match operator {
+                BinaryOperator::Sum => results[one].plus(&results[other]),
+                BinaryOperator::Difference => results[one].minus(&results[other]),
+                BinaryOperator::Product => results[one].times(&results[other]),
+                _ => None,
+            },
+            _ => None,
+        }
     }
 
     fn run(&self, context: &Context<'_>, results: &[Known]) -> Known {

@@ -1,7 +1,9 @@
 //! What the expressions of a tape can be where their variables are in intervals.
 
+use std::f64::consts::PI;
+
 use super::{Action, Places, Tape};
-use crate::expression::BinaryOperator;
+use crate::expression::{BinaryOperator, UnaryOperator};
 use crate::interval::Interval;
 use crate::range::Truth;
 
@@ -48,6 +50,44 @@ impl Tape {
         }
     }
 
+    /// Whether a function is among the instructions that may change by much where its operand changes by
+    /// little: an exponential, a quotient or a periodic function, but no polynomial.
+    pub fn is_sharp(&self) -> bool {
+        self.instructions.iter().any(|instruction| match instruction.action {
+            Action::Unary(operator) => is_sharp(operator),
+            Action::Quotient => true,
+            Action::Power => {
+                let place = (instruction.operands[1] as usize).checked_sub(self.variables);
+                let exponent = place.and_then(|place| self.constants.get(place));
+                !exponent.is_some_and(|exponent| is_polynomial(*exponent))
+            }
+            _ => false,
+        })
+    }
+
+    /// Whether the operand of such a function varies by more than the values of the function at the ends
+    /// could tell, with the `places` of the last [`ranges`](Self::ranges): an exponential then changes by
+    /// a factor of hundreds, and a wave by half a turn.
+    pub fn is_strained(&self, places: &[Interval]) -> bool {
+        let ranges = |place: u32, number: u32| places.get((place + number) as usize).copied();
+        self.instructions.iter().any(|instruction| {
+            let [first, second, ..] = instruction.operands;
+            (0..instruction.width).any(|number| {
+                let (one, other) = (ranges(first, number), ranges(second, number));
+                match (instruction.action, one, other) {
+                    (Action::Unary(operator), Some(range), _) => strains(operator, range),
+                    (Action::Quotient, _, Some(divisor)) => ratio(divisor) > MOST_GROWTH,
+                    (Action::Power, Some(base), Some(exponent)) => {
+                        let exponent = exponent.lower();
+                        let growth = ratio(base).ln() * exponent.abs();
+                        !is_polynomial(exponent) && growth > MOST_GROWTH.ln()
+                    }
+                    _ => false,
+                }
+            })
+        })
+    }
+
     /// What the result of an instruction can be.
     fn range(&self, action: Action, operands: [u32; 4], places: &[Interval]) -> Interval {
         let at = |number: usize| places[operands[number] as usize];
@@ -85,4 +125,38 @@ fn power(base: Interval, exponent: Interval) -> Interval {
     let is_number = exponent.lower() == exponent.upper();
     let power = is_number.then(|| base.power(exponent.lower())).flatten();
     power.unwrap_or(Interval::WHOLE)
+}
+
+/// Powers up to this one are seen by an integrator as other polynomials are.
+const HIGHEST_POWER: f64 = 8.0;
+/// By what factor something may grow within what is looked at.
+const MOST_GROWTH: f64 = 400.0;
+
+fn is_polynomial(exponent: f64) -> bool {
+    exponent % 1.0 == 0.0 && (0.0..=HIGHEST_POWER).contains(&exponent)
+}
+
+fn is_sharp(operator: UnaryOperator) -> bool {
+    use UnaryOperator::{Cosine, Exponential, HyperbolicTangent, Sine, Tangent};
+    matches!(operator, Exponential | HyperbolicTangent | Sine | Cosine | Tangent)
+}
+
+fn strains(operator: UnaryOperator, operand: Interval) -> bool {
+    use UnaryOperator::{Cosine, Exponential, HyperbolicTangent, Sine, Tangent};
+    match operator {
+        Exponential => operand.width() > MOST_GROWTH.ln(),
+        // Beyond 20 it is 1 to rounding.
+        HyperbolicTangent => {
+            let bent = Interval::new(-20.0, 20.0).ok().and_then(|bent| bent.intersection(operand));
+            bent.is_some_and(|bent| bent.width() > MOST_GROWTH.ln())
+        }
+        Sine | Cosine | Tangent => operand.width() > PI,
+        _ => false,
+    }
+}
+
+/// The largest magnitude by the smallest.
+fn ratio(range: Interval) -> f64 {
+    let sizes = range.abs();
+    sizes.upper() / sizes.lower()
 }

@@ -3,10 +3,11 @@
 use std::fmt;
 
 use pleach_automaton::HybridTime;
+use pleach_automaton::trajectory::Gap;
 use pleach_guards::Predicate;
 
 use super::formula::{Formula, Window};
-use super::samples::{Reading, Recording, Samples, TemporalError};
+use super::samples::{Reading, Recording, Samples, Side, TemporalError};
 use super::signal::{Signal, Time, Value};
 use super::sliding::{Reach, infimum};
 use super::until::{supremum, until};
@@ -18,9 +19,21 @@ pub struct Judgement {
     pub status: Status,
     /// By how much.
     pub robustness: Robustness,
-    /// The instant that decides; `None` if the judgement is inconclusive, or if the formula is
-    /// true or false whatever the states are.
+    /// The instant that decides; `None` if nothing is decided, or if the formula is true or false
+    /// whatever the states are.
     pub witness: Option<Witness>,
+    /// What is not known of the predicates: always where one is a function, and otherwise where the
+    /// judgement is not decided.
+    pub doubts: Vec<Doubt>,
+}
+
+/// A span of time in which it is not known whether a predicate holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// The predicate, one without connectives.
+    pub predicate: Predicate,
+    /// When and why.
+    pub gap: Gap,
 }
 
 /// Whether a trajectory satisfies a formula.
@@ -32,16 +45,24 @@ pub enum Status {
     Violated,
     /// The trajectory is too short: whether it does depends on how it goes on.
     Inconclusive,
+    /// It is long enough, and still this cannot be said: a margin that decides is zero within rounding
+    /// or the error of the solution, as that of x ≤ 1 where x = cos t comes to 1.
+    Undecided,
 }
 
 /// The robustness of a formula: how far the trajectory is from the other verdict, in the unit of
 /// what is compared. Positive robustness means satisfied and negative violated; at 0 strictness
 /// decides.
+///
+/// It is between two numbers, which are far apart where the trajectory is too short. Where it is long
+/// enough they differ by what is not known of the margins: where extrema decide by rounding and the
+/// error of the solution, and where a window that begins or ends at no instant known beforehand cuts a
+/// margin, by as much as this bends between two looks. Of samples both are the same number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Robustness {
     /// The least that it can be, however the trajectory goes on.
     pub lower: f64,
-    /// The most that it can be. Equal to `lower` where the trajectory is long enough.
+    /// The most that it can be.
     pub upper: f64,
 }
 
@@ -60,15 +81,14 @@ pub struct Witness {
 impl Formula {
     /// Judges a trajectory from its first instant.
     ///
-    /// The margin of each comparison is taken to be linear between samples, so they must be as
+    /// Of samples the margin of each comparison is taken to be linear between them, so they must be as
     /// close as that is true. The judgement is then exact, but for rounding: it takes account of all
     /// instants and not only of the samples.
     ///
-    /// Of a [`Trajectory`](pleach_automaton::Trajectory) the samples are chosen such that between
-    /// two of them no comparison of the formula turns or changes
-    /// ([`samples_for`](pleach_automaton::Trajectory::samples_for)). The status rests on these
-    /// changes and is exact; the robustness is where an extremum decides, and elsewhere differs by as
-    /// much as the margins bend between two samples.
+    /// On a [`Trajectory`](pleach_automaton::Trajectory) margins are enclosed at all instants
+    /// ([`account`](pleach_automaton::Trajectory::account)), with the same means as guards: where a
+    /// comparison changes, and how far its margin goes. What cannot be decided in this way is
+    /// [`Status::Undecided`], and [`Judgement::doubts`] says where. The work is bounded.
     ///
     /// ```
     /// use pleach_guards::variable;
@@ -91,24 +111,30 @@ impl Formula {
     pub fn judge(&self, samples: &(impl Samples + ?Sized)) -> Result<Judgement, TemporalError> {
         let mut literals = Vec::new();
         let plan = Plan::of(self, &mut literals);
-        let recording = Recording::new(&literals, samples)?;
-        let bounds = |reading| {
-            let lower = plan.value(&recording, reading, f64::NEG_INFINITY);
-            let long_enough = self.horizon() <= recording.duration();
-            let upper =
-                if long_enough { lower } else { plan.value(&recording, reading, f64::INFINITY) };
-            (lower, upper)
-        };
-        let margins = bounds(Reading::Margin);
-        let robustness = Robustness::between(margins.0.margin, margins.1.margin);
+        let mut instants = Vec::new();
+        plan.collect_ends(&[0.0], &mut instants);
+        let recording = Recording::new(&literals, samples, &instants)?;
+        let value = |reading, side| plan.signal(&recording, reading, side).knots()[0].value;
+        let (worst, best) =
+            (value(Reading::Margin, Side::Worst), value(Reading::Margin, Side::Best));
+        let robustness = Robustness::between(worst.margin, best.margin);
         // The truth of the comparisons decides: on the boundary the margins do not tell.
-        let (status, value) = match bounds(Reading::Truth) {
-            (lower, _) if lower.margin > 0.0 => (Status::Satisfied, Some(margins.0)),
-            (_, upper) if upper.margin < 0.0 => (Status::Violated, Some(margins.1)),
-            _ => (Status::Inconclusive, None),
+        let (status, witness) = if value(Reading::Truth, Side::Worst).margin > 0.0 {
+            (Status::Satisfied, Witness::of(worst, &recording))
+        } else if value(Reading::Truth, Side::Best).margin < 0.0 {
+            (Status::Violated, Witness::of(best, &recording))
+        } else if self.horizon() <= recording.duration() {
+            (Status::Undecided, None)
+        } else {
+            (Status::Inconclusive, None)
         };
-        let witness = value.and_then(|value| Witness::of(value, &recording));
-        Ok(Judgement { status, robustness, witness })
+        let is_open = matches!(status, Status::Undecided | Status::Inconclusive);
+        let doubts = recording.accounts().flat_map(|(predicate, account)| {
+            let told = account.gaps.iter().filter(|gap| is_open || gap.is_function);
+            told.map(|gap| Doubt { predicate: predicate.clone(), gap: *gap })
+        });
+        let doubts = doubts.collect();
+        Ok(Judgement { status, robustness, witness, doubts })
     }
 }
 
@@ -125,7 +151,9 @@ impl Witness {
         let (Time::Fixed(t) | Time::Moving(t)) = origin.time;
         let at = HybridTime { t, j: origin.jumps };
         let predicate = recording.predicate(origin.literal).clone();
-        Some(Witness { at, predicate, margin: recording.margin(origin.literal, at) })
+        // Adding 0 turns −0 into 0.
+        let margin = recording.margin(origin.literal, at) + 0.0;
+        Some(Witness { at, predicate, margin })
     }
 }
 
@@ -176,17 +204,32 @@ impl Plan {
         }
     }
 
-    /// The value at the first instant, if all that lies beyond the end makes the formula as bad
-    /// (`beyond` = −∞) or as good (`beyond` = ∞) as it can.
-    fn value(&self, recording: &Recording, reading: Reading, beyond: f64) -> Value {
-        self.signal(recording, reading, beyond).knots()[0].value
+    /// Adds to `instants` those at which windows begin and end, seen from each of some instants.
+    fn collect_ends(&self, seen_from: &[f64], instants: &mut Vec<f64>) {
+        instants.extend(seen_from);
+        let (window, parts): (&Window, Vec<&Plan>) = match self {
+            Plan::Literal(_) => return,
+            Plan::Not(inner) => return inner.collect_ends(seen_from, instants),
+            Plan::All(parts) | Plan::Any(parts) => {
+                return parts.iter().for_each(|part| part.collect_ends(seen_from, instants));
+            }
+            Plan::Always(window, inner) | Plan::Eventually(window, inner) => (window, vec![inner]),
+            Plan::Until(window, first, second) => (window, vec![first, second]),
+        };
+        let ends = [0.0, window.start(), window.end()].into_iter().filter(|end| end.is_finite());
+        let mut ends: Vec<f64> =
+            ends.flat_map(|end| seen_from.iter().map(move |from| from + end)).collect();
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        ends.truncate(MOST_ENDS);
+        parts.into_iter().for_each(|part| part.collect_ends(&ends, instants));
     }
 
-    fn signal(&self, recording: &Recording, reading: Reading, beyond: f64) -> Signal {
-        let signal = |plan: &Plan| plan.signal(recording, reading, beyond);
+    fn signal(&self, recording: &Recording, reading: Reading, side: Side) -> Signal {
+        let signal = |plan: &Plan| plan.signal(recording, reading, side);
         match self {
-            Plan::Literal(literal) => recording.signal(*literal, reading, beyond),
-            Plan::Not(inner) => inner.signal(recording, reading, -beyond).opposite(),
+            Plan::Literal(literal) => recording.signal(*literal, reading, side),
+            Plan::Not(inner) => inner.signal(recording, reading, side.opposite()).opposite(),
             Plan::All(parts) => {
                 let combined = parts.iter().map(signal).reduce(|one, other| one.minimum(&other));
                 combined.unwrap_or_else(|| recording.constant(f64::INFINITY))
@@ -205,12 +248,27 @@ impl Plan {
     }
 }
 
+/// More instants at which windows begin or end are not looked at beforehand.
+const MOST_ENDS: usize = 256;
+
 impl fmt::Display for Judgement {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}, robustness {}", self.status, self.robustness)?;
-        match &self.witness {
-            Some(witness) => write!(formatter, ": {witness}"),
-            None => Ok(()),
+        if let Some(witness) = &self.witness {
+            write!(formatter, ": {witness}")?;
+        }
+        self.doubts.first().map_or(Ok(()), |first| write!(formatter, "; {first}"))
+    }
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Doubt { predicate, gap: Gap { from, to, is_function } } = self;
+        write!(formatter, "from {from} s to {to} s ")?;
+        if *is_function {
+            write!(formatter, "`{predicate}` is a function and was looked at only here and there")
+        } else {
+            write!(formatter, "it is not known whether `{predicate}` holds")
         }
     }
 }
@@ -221,6 +279,7 @@ impl fmt::Display for Status {
             Status::Satisfied => "satisfied",
             Status::Violated => "violated",
             Status::Inconclusive => "inconclusive",
+            Status::Undecided => "undecided",
         })
     }
 }

@@ -65,6 +65,9 @@
 //! bounds can be violated but never satisfied, and of a trajectory that is too short nothing is
 //! claimed. [`Formula::horizon`] tells how long is long enough.
 //!
+//! On a trajectory of a model it may also be beyond rounding whether a comparison holds: it is then
+//! taken for true and for false, and where these differ, the judgement is [`Status::Undecided`].
+//!
 //! # Cost
 //!
 //! Every operator takes time linear in the number of pieces of its operands, and returns a few
@@ -81,5 +84,5 @@ mod sliding;
 mod until;
 
 pub use formula::{Formula, InvalidWindow, Window, always, eventually, not, within};
-pub use judgement::{Judgement, Robustness, Status, Witness};
+pub use judgement::{Doubt, Judgement, Robustness, Status, Witness};
 pub use samples::{Samples, TemporalError};

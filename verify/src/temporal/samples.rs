@@ -3,8 +3,9 @@
 use std::error::Error;
 use std::fmt;
 
+use pleach_automaton::trajectory::{Account, Look, Passage, Unevaluated};
 use pleach_automaton::{HybridTime, Trajectory};
-use pleach_guards::{Comparison, EvaluationError, Predicate, Relation, Valuation, Verdict};
+use pleach_guards::{Comparison, EvaluationError, Interval, Predicate, Relation, Truth, Valuation};
 
 use super::pointwise::crossing;
 use super::signal::{Flow, Knot, Origin, Signal, Span, Time, Value};
@@ -28,19 +29,18 @@ pub trait Samples {
     /// Calls `visit` with the time and the state of every sample, in order.
     fn for_each(&self, visit: &mut dyn FnMut(f64, &dyn Valuation));
 
-    /// The same with the samples that tell about these predicates, where a choice can be made: all
-    /// instants at which one of them may change.
+    /// What a predicate does along the trajectory, with a look also at `instants`, where more is known
+    /// of it than at samples; otherwise its margin is taken to be linear between them.
     ///
     /// # Errors
     ///
-    /// [`EvaluationError`] if a predicate names a variable that no state has.
-    fn for_each_that_tells(
+    /// [`Unevaluated`] where the predicate has no verdict.
+    fn account(
         &self,
-        _predicates: &[Predicate],
-        visit: &mut dyn FnMut(f64, &dyn Valuation),
-    ) -> Result<(), EvaluationError> {
-        self.for_each(visit);
-        Ok(())
+        _predicate: &Predicate,
+        _instants: &[f64],
+    ) -> Result<Option<Account>, Unevaluated> {
+        Ok(None)
     }
 }
 
@@ -62,22 +62,18 @@ impl<V: Valuation> Samples for Vec<(f64, V)> {
     }
 }
 
-/// The samples of every phase; for a formula, also those at which the margins of its predicates turn
-/// or pass zero, so that none of them changes between two samples.
+/// The samples of every phase. Formulas are judged by what is known of all instants.
 impl Samples for Trajectory {
     fn for_each(&self, visit: &mut dyn FnMut(f64, &dyn Valuation)) {
         self.samples().for_each(|(at, sample)| visit(at.t, &self.state(&sample)));
     }
 
-    fn for_each_that_tells(
+    fn account(
         &self,
-        predicates: &[Predicate],
-        visit: &mut dyn FnMut(f64, &dyn Valuation),
-    ) -> Result<(), EvaluationError> {
-        for (at, sample) in self.samples_for(predicates)? {
-            visit(at.t, &self.state(&sample));
-        }
-        Ok(())
+        predicate: &Predicate,
+        instants: &[f64],
+    ) -> Result<Option<Account>, Unevaluated> {
+        Trajectory::account(self, predicate, instants).map(Some)
     }
 }
 
@@ -113,6 +109,12 @@ pub enum TemporalError {
     },
 }
 
+impl From<Unevaluated> for TemporalError {
+    fn from(fault: Unevaluated) -> Self {
+        TemporalError::Evaluation { time: fault.t, error: fault.error }
+    }
+}
+
 impl fmt::Display for TemporalError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -141,16 +143,17 @@ impl Error for TemporalError {
     }
 }
 
-/// The verdicts of some predicates without connectives at the samples of a trajectory.
+/// What some predicates without connectives do along a trajectory.
 pub(super) struct Recording {
-    instants: Vec<HybridTime>,
+    first: HybridTime,
+    last: HybridTime,
     literals: Vec<Literal>,
 }
 
-/// A predicate and its verdicts, one for each instant.
+/// A predicate, and what it does.
 struct Literal {
     predicate: Predicate,
-    verdicts: Vec<Verdict>,
+    account: Account,
 }
 
 /// What the values of a signal are.
@@ -162,59 +165,67 @@ pub(super) enum Reading {
     Truth,
 }
 
+/// What is not known of a predicate: the one that makes its margin least, or that which makes it most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// It holds nowhere, and after the end its margin is −∞.
+    Worst,
+    /// It holds everywhere, and after the end its margin is ∞.
+    Best,
+}
+
+impl Side {
+    /// That which is worst for a formula is best for its negation.
+    pub fn opposite(self) -> Side {
+        match self {
+            Side::Worst => Side::Best,
+            Side::Best => Side::Worst,
+        }
+    }
+
+    fn beyond(self) -> f64 {
+        match self {
+            Side::Worst => f64::NEG_INFINITY,
+            Side::Best => f64::INFINITY,
+        }
+    }
+}
+
 impl Recording {
-    /// Evaluates `predicates` at every sample.
+    /// Follows `predicates` along a trajectory, looking also at `instants`.
     pub fn new(
         predicates: &[Predicate],
         samples: &(impl Samples + ?Sized),
+        instants: &[f64],
     ) -> Result<Recording, TemporalError> {
-        let literal =
-            |predicate: &Predicate| Literal { predicate: predicate.clone(), verdicts: vec![] };
-        let literals = predicates.iter().map(literal).collect();
-        let mut recording = Recording { instants: Vec::new(), literals };
-        let mut outcome = Ok(());
-        let told = samples.for_each_that_tells(predicates, &mut |t, state| {
-            if outcome.is_ok() {
-                outcome = recording.record(t, state);
-            }
-        });
-        told.map_err(|error| TemporalError::Evaluation { time: 0.0, error })?;
-        outcome?;
-        if recording.instants.is_empty() { Err(TemporalError::NoSamples) } else { Ok(recording) }
-    }
-
-    fn record(&mut self, t: f64, state: &dyn Valuation) -> Result<(), TemporalError> {
-        let instant = match self.instants.last() {
-            _ if !t.is_finite() => None,
-            None => Some(HybridTime { t, j: 0 }),
-            Some(last) if t > last.t => Some(HybridTime { t, j: last.j }),
-            Some(last) if t == last.t => Some(last.after_jump()),
-            Some(_) => None,
-        };
-        let sample = self.instants.len();
-        let instant = instant.ok_or(TemporalError::TimeOutOfOrder { sample, time: t })?;
-        for literal in &mut self.literals {
-            let verdict = literal
-                .predicate
-                .evaluate(state)
-                .map_err(|error| TemporalError::Evaluation { time: t, error })?;
-            let before = self.instants.last().zip(literal.verdicts.last());
-            if let Some((from, before)) = before.filter(|(from, _)| from.t < t) {
-                let unbounded = before.margin.is_infinite() || verdict.margin.is_infinite();
-                if unbounded && before.margin != verdict.margin {
-                    let predicate = literal.predicate.clone();
-                    return Err(TemporalError::UnboundedFlow { predicate, from: from.t, to: t });
-                }
-            }
-            literal.verdicts.push(verdict);
+        let mut literals = Vec::with_capacity(predicates.len());
+        let mut ends: Option<[HybridTime; 2]> = None;
+        for predicate in predicates {
+            let known = samples.account(predicate, instants);
+            let account = match known? {
+                Some(account) => account,
+                None => linear_account(predicate, samples)?,
+            };
+            let looks = &account.looks;
+            ends =
+                ends.or(looks.first().zip(looks.last()).map(|(first, last)| [first.at, last.at]));
+            literals.push(Literal { predicate: predicate.clone(), account });
         }
-        self.instants.push(instant);
-        Ok(())
+        let [first, last] = match ends {
+            Some(ends) => ends,
+            None => ends_of(samples)?,
+        };
+        Ok(Recording { first, last, literals })
     }
 
-    /// The seconds from the first sample to the last.
+    /// The seconds from the first instant to the last.
     pub fn duration(&self) -> f64 {
-        self.end().t - self.instants[0].t
+        self.last.t - self.first.t
+    }
+
+    /// The predicates with what they do.
+    pub fn accounts(&self) -> impl Iterator<Item = (&Predicate, &Account)> {
+        self.literals.iter().map(|literal| (&literal.predicate, &literal.account))
     }
 
     /// The predicate at place `literal`.
@@ -224,13 +235,11 @@ impl Recording {
 
     /// The margin of the predicate at place `literal` at the instant `at`.
     pub fn margin(&self, literal: usize, at: HybridTime) -> f64 {
-        let verdicts = &self.literals[literal].verdicts;
-        let last = self.instants.partition_point(|instant| *instant <= at).saturating_sub(1);
-        let (from, to) =
-            (self.instants[last], self.instants.get(last + 1).map_or(at, |next| *next));
-        let start = verdicts[last].margin;
-        let end = verdicts.get(last + 1).map_or(start, |verdict| verdict.margin);
-        Flow { start, end, origin: None }.at((from.t, to.t), at.t).margin
+        let looks = &self.literals[literal].account.looks;
+        let last = looks.partition_point(|look| look.at <= at).saturating_sub(1);
+        let (from, to) = (looks[last], looks.get(last + 1).map_or(looks[last], |next| *next));
+        let flow = Flow { start: from.margin, end: to.margin, origin: None };
+        flow.at((from.at.t, to.at.t), at.t).margin
     }
 
     /// The value `margin` at all times.
@@ -238,52 +247,197 @@ impl Recording {
         let mut signal = Signal::new();
         let value = Value::given(margin);
         let flow = Some(Flow::constant(value));
-        signal.push(Knot { t: self.instants[0].t, value, flow });
+        signal.push(Knot { t: self.first.t, value, flow });
         signal
     }
 
-    /// The predicate at place `literal` over time, which is `beyond` after the last sample.
-    pub fn signal(&self, literal: usize, reading: Reading, beyond: f64) -> Signal {
-        let on_the_boundary = holds_on_the_boundary(&self.literals[literal].predicate);
-        let verdicts = &self.literals[literal].verdicts;
+    /// The predicate at place `literal` over time.
+    pub fn signal(&self, literal: usize, reading: Reading, side: Side) -> Signal {
+        let looks = &self.literals[literal].account.looks;
         let mut signal = Signal::new();
-        for (position, (instant, verdict)) in self.instants.iter().zip(verdicts).enumerate() {
-            let origin = |time| Some(Origin { literal, jumps: instant.j, time });
+        for (position, look) in looks.iter().enumerate() {
+            let origin = |time| Some(Origin { literal, jumps: look.at.j, time });
             let margin = match reading {
-                Reading::Margin => verdict.margin,
-                Reading::Truth => truth(verdict.holds),
+                Reading::Margin => look.margin,
+                Reading::Truth => truth(look.truth, side),
             };
-            let value = Value { margin, origin: origin(Time::Fixed(instant.t)) };
-            let Some((next, after)) =
-                self.instants.get(position + 1).zip(verdicts.get(position + 1))
-            else {
-                let flow = Some(Flow::constant(Value::given(beyond)));
-                signal.push(Knot { t: instant.t, value, flow });
+            let t = look.at.t;
+            let value = Value { margin, origin: origin(Time::Fixed(t)) };
+            let Some(next) = looks.get(position + 1) else {
+                let flow = Some(Flow::constant(Value::given(side.beyond())));
+                signal.push(Knot { t, value, flow });
                 break;
             };
-            if next.t == instant.t {
-                signal.push(Knot { t: instant.t, value, flow: None });
+            let Some(passage) = &look.then else {
+                signal.push(Knot { t, value, flow: None });
                 continue;
-            }
+            };
             let origin = origin(Time::Moving(0.0));
-            let flow = Flow { start: verdict.margin, end: after.margin, origin };
             match reading {
-                Reading::Margin => signal.push(Knot { t: instant.t, value, flow: Some(flow) }),
+                Reading::Margin => {
+                    let margins = [look.margin, next.margin];
+                    let bound = bound(passage, (t, next.at.t), margins, side);
+                    let mut value = Some(value);
+                    for (t, [start, end]) in bound {
+                        let flow = Flow { start, end, origin };
+                        let value = value.take().unwrap_or_else(|| flow.first(t));
+                        signal.push(Knot { t, value, flow: Some(flow) });
+                    }
+                }
                 Reading::Truth => {
-                    push_truth(&mut signal, value, (instant.t, next.t), flow, on_the_boundary);
+                    let truth = truth(passage.truth, side);
+                    let flow = Some(Flow { start: truth, end: truth, origin });
+                    signal.push(Knot { t, value, flow });
                 }
             }
         }
         signal
     }
+}
 
-    fn end(&self) -> HybridTime {
-        self.instants[self.instants.len() - 1]
+fn truth(truth: Truth, side: Side) -> f64 {
+    match (truth, side) {
+        (Truth::Always, _) | (Truth::Undecided, Side::Best) => 1.0,
+        (Truth::Never, _) | (Truth::Undecided, Side::Worst) => -1.0,
     }
 }
 
-fn truth(holds: bool) -> f64 {
-    if holds { 1.0 } else { -1.0 }
+/// The highest or lowest lines below or above a margin, of which values at the ends of a span, a range
+/// and a range of its rate are known: in order, when each begins and its values at its ends.
+fn bound(passage: &Passage, span: Span, margins: [f64; 2], side: Side) -> Vec<(f64, [f64; 2])> {
+    match side {
+        Side::Worst => lower_bound(passage.range.lower(), passage.rate, span, margins),
+        Side::Best => {
+            let margins = margins.map(|margin| -margin);
+            let mut lines = lower_bound(-passage.range.upper(), -passage.rate, span, margins);
+            lines.iter_mut().for_each(|(_, ends)| *ends = ends.map(|end| -end));
+            lines
+        }
+    }
+}
+
+fn lower_bound(least: f64, rate: Interval, span: Span, margins: [f64; 2]) -> Vec<(f64, [f64; 2])> {
+    let [first, last] = margins;
+    let (fall, rise, width) = (rate.lower(), rate.upper(), span.1 - span.0);
+    if first == last && least >= first || fall == rise {
+        return vec![(span.0, margins)];
+    }
+    if ![first, last, fall, rise].iter().all(|number| number.is_finite()) {
+        return vec![(span.0, [least; 2])];
+    }
+    // Down from the first margin as fast as can be, and up to the last.
+    let turn = (first - last + rise * width) / (rise - fall);
+    let bottom = first + fall * turn;
+    let mut lines = vec![(0.0, first)];
+    if bottom >= least {
+        lines.push((turn, bottom.min(first.max(last))));
+    } else {
+        lines.extend([((least - first) / fall, least), (width - (last - least) / rise, least)]);
+    }
+    lines.retain(|(after, _)| *after == 0.0 || span.0 < span.0 + after && span.0 + after < span.1);
+    let ends = lines.iter().skip(1).map(|(_, value)| *value).chain([last]);
+    lines.iter().zip(ends).map(|((after, start), end)| (span.0 + after, [*start, end])).collect()
+}
+
+/// The account of a predicate whose margin is linear between samples.
+fn linear_account(
+    predicate: &Predicate,
+    samples: &(impl Samples + ?Sized),
+) -> Result<Account, TemporalError> {
+    let on_the_boundary =
+        if holds_on_the_boundary(predicate) { Truth::Always } else { Truth::Never };
+    let mut looks: Vec<Look> = Vec::new();
+    let mut clock = Clock::default();
+    let mut outcome = Ok(());
+    let mut record = |t: f64, state: &dyn Valuation| {
+        let at = clock.tick(t)?;
+        let verdict = predicate
+            .evaluate(state)
+            .map_err(|error| TemporalError::Evaluation { time: t, error })?;
+        let look = Look { at, margin: verdict.margin, truth: known(verdict.holds), then: None };
+        if let Some(from) = looks.last().copied().filter(|last| last.at.t < t) {
+            let unbounded = from.margin.is_infinite() || look.margin.is_infinite();
+            if unbounded && from.margin != look.margin {
+                let predicate = predicate.clone();
+                return Err(TemporalError::UnboundedFlow { predicate, from: from.at.t, to: t });
+            }
+            let flow = Flow { start: from.margin, end: look.margin, origin: None };
+            let course = |sum: f64| if sum == 0.0 { on_the_boundary } else { known(sum > 0.0) };
+            let change = if unbounded { 0.0 } else { look.margin - from.margin };
+            let passage = |sum: f64| Passage {
+                truth: course(sum),
+                range: Interval::point(from.margin).hull(Interval::point(look.margin)),
+                rate: Interval::point(change / (t - from.at.t)),
+            };
+            let zero = Flow::constant(Value::given(0.0));
+            let then = match crossing((from.at.t, t), &flow, &zero) {
+                None => passage(flow.start + flow.end),
+                Some(zero) => {
+                    let then = Some(passage(flow.end));
+                    let at = HybridTime { t: zero, ..from.at };
+                    looks.push(Look { at, margin: 0.0, truth: on_the_boundary, then });
+                    passage(flow.start)
+                }
+            };
+            let place = looks.iter().rposition(|one| one.at == from.at);
+            if let Some(place) = place {
+                looks[place].then = Some(then);
+            }
+        }
+        looks.push(look);
+        Ok(())
+    };
+    samples.for_each(&mut |t, state| {
+        if outcome.is_ok() {
+            outcome = record(t, state);
+        }
+    });
+    outcome?;
+    if looks.is_empty() {
+        Err(TemporalError::NoSamples)
+    } else {
+        Ok(Account { looks, gaps: vec![] })
+    }
+}
+
+/// The first instant and the last of a trajectory.
+fn ends_of(samples: &(impl Samples + ?Sized)) -> Result<[HybridTime; 2], TemporalError> {
+    let (mut clock, mut first, mut outcome) = (Clock::default(), None, Ok(()));
+    samples.for_each(&mut |t, _| {
+        if outcome.is_ok() {
+            outcome = clock.tick(t).map(|at| {
+                first.get_or_insert(at);
+            });
+        }
+    });
+    outcome?;
+    first.zip(clock.last).map(|(first, last)| [first, last]).ok_or(TemporalError::NoSamples)
+}
+
+/// Gives samples their hybrid times.
+#[derive(Default)]
+struct Clock {
+    last: Option<HybridTime>,
+    count: usize,
+}
+
+impl Clock {
+    fn tick(&mut self, t: f64) -> Result<HybridTime, TemporalError> {
+        let at = match self.last {
+            _ if !t.is_finite() => None,
+            None => Some(HybridTime { t, j: 0 }),
+            Some(last) if t > last.t => Some(HybridTime { t, j: last.j }),
+            Some(last) if t == last.t => Some(last.after_jump()),
+            Some(_) => None,
+        };
+        let at = at.ok_or(TemporalError::TimeOutOfOrder { sample: self.count, time: t })?;
+        (self.last, self.count) = (Some(at), self.count + 1);
+        Ok(at)
+    }
+}
+
+fn known(holds: bool) -> Truth {
+    if holds { Truth::Always } else { Truth::Never }
 }
 
 /// Whether the predicate holds where its margin is 0.
@@ -293,23 +447,5 @@ fn holds_on_the_boundary(predicate: &Predicate) -> bool {
             matches!(relation, Relation::AtMost | Relation::AtLeast)
         }
         _ => true,
-    }
-}
-
-/// Adds an instant and the truth of a predicate whose margin is `flow` over `span` after it.
-fn push_truth(signal: &mut Signal, value: Value, span: Span, flow: Flow, on_the_boundary: bool) {
-    let course = |sum: f64| {
-        let holds = if sum == 0.0 { on_the_boundary } else { sum > 0.0 };
-        Some(Flow { start: truth(holds), end: truth(holds), origin: flow.origin })
-    };
-    let zero = Flow::constant(Value::given(0.0));
-    match crossing(span, &flow, &zero) {
-        None => signal.push(Knot { t: span.0, value, flow: course(flow.start + flow.end) }),
-        Some(t) => {
-            signal.push(Knot { t: span.0, value, flow: course(flow.start) });
-            let origin = flow.at(span, t).origin;
-            let value = Value { margin: truth(on_the_boundary), origin };
-            signal.push(Knot { t, value, flow: course(flow.end) });
-        }
     }
 }

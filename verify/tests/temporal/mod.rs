@@ -3,6 +3,7 @@
 
 mod by_definition;
 mod examples;
+mod gaps;
 mod random;
 mod trajectories;
 
@@ -55,6 +56,7 @@ proptest! {
                 prop_assert!(judgement.robustness.lower <= 0.0);
                 prop_assert!(judgement.robustness.upper >= 0.0);
             }
+            Status::Undecided => prop_assert!(false, "samples leave nothing open"),
         }
         if formula.horizon() <= trajectory.duration() {
             prop_assert!(judgement.status != Status::Inconclusive);

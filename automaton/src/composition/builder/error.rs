@@ -22,6 +22,16 @@ pub enum CompositionError {
         /// The component.
         component: String,
     },
+    /// A coordinate of the state in which a component starts is NaN.
+    #[error(
+        "`{variable}` of component `{component}` is NaN in the initial state: it must be a number"
+    )]
+    InitialNotANumber {
+        /// The component.
+        component: String,
+        /// The coordinate.
+        variable: &'static str,
+    },
     /// A formula names a variable that the state does not have.
     #[error("component `{component}`: {source}")]
     Formula {

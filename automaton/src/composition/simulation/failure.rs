@@ -38,6 +38,20 @@ pub enum Failure {
         /// Why.
         reason: String,
     },
+    /// A component begins outside the invariant of its location, where no time can pass, and no
+    /// transition leads out.
+    #[error(
+        "component `{component}` begins in location `{location}` outside its invariant `{invariant}`, and \
+         no transition can be taken"
+    )]
+    BeginsOutside {
+        /// The component.
+        component: String,
+        /// Its location.
+        location: String,
+        /// The invariant.
+        invariant: String,
+    },
     /// The flow cannot be followed any farther.
     #[error("the flow in {locations} fails: {reason}")]
     Flow {

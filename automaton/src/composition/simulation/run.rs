@@ -2,12 +2,13 @@
 
 use pleach_discrete::{Event, Location};
 
-use super::{Simulation, SimulationError};
+use super::{Failure, Simulation, SimulationError};
 use crate::automaton::Automaton;
 use crate::composition::record::Record;
 use crate::composition::{Composition, Settings};
 use crate::coordinates::Coordinates;
 use crate::executor::{Ending, Executor, Reason};
+use crate::time::HybridTime;
 use crate::trajectory::Trajectory;
 
 impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
@@ -69,14 +70,35 @@ impl Composition {
         simulation.record = Some(Record::of(self));
         let ending = match executor.run(&mut simulation, &mut ()) {
             Ok(Ending { at, reason }) => {
-                let reason = match (reason.without_finish(), simulation.sliding()) {
-                    (Reason::JumpLimit, Some(sliding)) => Reason::Sliding(sliding),
-                    (reason, _) => reason,
+                let reason = match reason.without_finish() {
+                    Reason::JumpLimit => {
+                        simulation.sliding().map_or(Reason::JumpLimit, Reason::Sliding)
+                    }
+                    Reason::Blocked if at == HybridTime::START => {
+                        simulation.begins_outside().map_or(Reason::Blocked, Reason::Finished)
+                    }
+                    reason => reason,
                 };
                 Ending { at, reason }
             }
             Err(halt) => Ending { at: simulation.hybrid_time(), reason: halt.into() },
         };
         Ok(simulation.into_trajectory(ending))
+    }
+}
+
+impl Simulation<'_> {
+    /// The first component that is outside the invariant of its location, as the reason why nothing goes on.
+    fn begins_outside(&self) -> Option<Failure> {
+        self.composition.components.iter().zip(&self.locations).find_map(|(component, location)| {
+            let mode = component.mode(*location);
+            let invariant = mode.invariant.as_ref()?;
+            let verdict = invariant.evaluate_at(&self.values, &component.slots).ok()?;
+            (!verdict.holds).then(|| Failure::BeginsOutside {
+                component: component.name.clone(),
+                location: mode.name.to_owned(),
+                invariant: invariant.to_string(),
+            })
+        })
     }
 }

@@ -19,6 +19,8 @@ pub(super) struct Exponential {
     /// exp(M τ), and what follows it.
     power: Power,
     modes: Vec<Mode>,
+    /// By variable: the others that move it, also by way of others.
+    pub(super) movers: Vec<Vec<usize>>,
 }
 
 /// exp(M d) for a duration d; exp(2 M d), exp(4 M d), … are computed when they are first needed.
@@ -36,16 +38,21 @@ struct Power {
 struct Mode {
     /// |λ|, per second.
     speed: f64,
-    /// When it has faded, in seconds; never if it does not decay.
+    /// When it has faded, in seconds, beside what else moves the same variables; never where nothing
+    /// lasts longer.
     faded: f64,
+    /// When nothing can be left of it.
+    gone: f64,
 }
 
 /// ‖M τ‖ at most: small enough for a short series, large enough for few powers.
 const LARGEST_NORM: f64 = 0.5;
 /// Terms of the Taylor series: the next one, (1/2)¹⁵/15! ≈ 2·10⁻¹⁷, is below rounding.
 const TERMS: usize = 15;
-/// A mode has faded when it has shrunk by e⁻⁴⁰ ≈ 4·10⁻¹⁸, which is below rounding.
+/// A mode has faded beside another when it has shrunk by e⁻⁴⁰ ≈ 4·10⁻¹⁸ more, which is below rounding.
 const FADED: f64 = 40.0;
+/// A mode has faded altogether when even the largest number has shrunk by it to less than the smallest.
+const NOTHING: f64 = 1500.0;
 /// More iterations than the eigenvalues of any ordinary matrix take; where it takes more, the norm
 /// of A stands in for them.
 const EIGENVALUE_ITERATIONS: usize = 10_000;
@@ -62,12 +69,17 @@ impl Exponential {
         generator.view_mut((0, dimension), (dimension, 1)).copy_from(&(offset / constant));
         let span = 0.5 * power_of_two_above(LARGEST_NORM / one_norm(&generator));
         let power = Power::of(&(&generator * span));
+        let reached = reached(matrix);
+        let movers = (0..dimension).map(|row| {
+            (0..dimension).filter(|&column| column != row && reached[(row, column)]).collect()
+        });
         Exponential {
+            movers: movers.collect(),
             generator: super::entries(&generator),
             constant,
             span,
             power,
-            modes: modes(matrix),
+            modes: modes(matrix, offset, &reached),
         }
     }
 
@@ -92,7 +104,12 @@ impl Exponential {
     /// Half a turn of the fastest mode that has not faded `time` seconds after the start.
     pub(super) fn time_scale(&self, time: f64) -> f64 {
         let lasting = self.modes.iter().filter(|mode| time < mode.faded);
-        std::f64::consts::PI / lasting.map(|mode| mode.speed).fold(0.0, f64::max)
+        half_a_turn(lasting)
+    }
+
+    /// The same of those of which something may be left.
+    pub(super) fn least_time_scale(&self, time: f64) -> f64 {
+        half_a_turn(self.modes.iter().filter(|mode| time < mode.gone))
     }
 }
 
@@ -152,17 +169,75 @@ impl Power {
     }
 }
 
-fn modes(matrix: &DMatrix<f64>) -> Vec<Mode> {
+/// Half a turn of the fastest.
+fn half_a_turn<'a>(modes: impl Iterator<Item = &'a Mode>) -> f64 {
+    std::f64::consts::PI / modes.map(|mode| mode.speed).fold(0.0, f64::max)
+}
+
+/// The modes of ẋ = A x + b.
+///
+/// Variables that move each other have their modes in common. A mode fades beside the slowest of those
+/// that move the same variables, and of the offset, which does not fade: what decays alone is followed
+/// however small it becomes.
+fn modes(matrix: &DMatrix<f64>, offset: &DVector<f64>, reached: &DMatrix<bool>) -> Vec<Mode> {
+    let blocks = blocks(reached);
+    let eigenvalues: Vec<Vec<(f64, f64)>> = blocks
+        .iter()
+        .map(|block| {
+            eigenvalues(&DMatrix::from_fn(block.len(), block.len(), |row, column| {
+                matrix[(block[row], block[column])]
+            }))
+        })
+        .collect();
+    let mut modes = Vec::new();
+    for (block, own) in blocks.iter().zip(&eigenvalues) {
+        let movers =
+            blocks.iter().zip(&eigenvalues).filter(|(other, _)| reached[(block[0], other[0])]);
+        let mut slowest = f64::NEG_INFINITY;
+        for (other, values) in movers {
+            let is_pushed = other.iter().any(|&row| offset[row] != 0.0);
+            let lasting = if is_pushed { 0.0 } else { f64::NEG_INFINITY };
+            slowest = values.iter().map(|(re, _)| *re).fold(slowest.max(lasting), f64::max);
+        }
+        modes.extend(own.iter().map(|&(re, speed)| {
+            let gone = if re < 0.0 { NOTHING / -re } else { f64::INFINITY };
+            let beside = if re < slowest { FADED / (slowest - re) } else { f64::INFINITY };
+            Mode { speed, faded: gone.min(beside), gone }
+        }));
+    }
+    modes
+}
+
+/// Whether the variable of a row is moved by that of a column, also by way of others.
+fn reached(matrix: &DMatrix<f64>) -> DMatrix<bool> {
+    let count = matrix.nrows();
+    let mut reached =
+        DMatrix::from_fn(count, count, |row, column| row == column || matrix[(row, column)] != 0.0);
+    for by in 0..count {
+        for row in 0..count {
+            if reached[(row, by)] {
+                (0..count).for_each(|column| reached[(row, column)] |= reached[(by, column)]);
+            }
+        }
+    }
+    reached
+}
+
+/// The variables, those together that move each other.
+fn blocks(reached: &DMatrix<bool>) -> Vec<Vec<usize>> {
+    let together = |one: usize, other: usize| reached[(one, other)] && reached[(other, one)];
+    let count = reached.nrows();
+    let firsts = (0..count).filter(|&one| !(0..one).any(|other| together(one, other)));
+    firsts.map(|first| (first..count).filter(|&other| together(first, other)).collect()).collect()
+}
+
+/// The real parts and the magnitudes of the eigenvalues.
+fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<(f64, f64)> {
     match Schur::try_new(matrix.clone(), f64::EPSILON, EIGENVALUE_ITERATIONS) {
         Some(schur) => {
-            let eigenvalues = schur.complex_eigenvalues();
-            let mode = |re: f64, speed: f64| Mode {
-                speed,
-                faded: if re < 0.0 { FADED / -re } else { f64::INFINITY },
-            };
-            eigenvalues.iter().map(|value| mode(value.re, value.norm())).collect()
+            schur.complex_eigenvalues().iter().map(|value| (value.re, value.norm())).collect()
         }
-        None => vec![Mode { speed: one_norm(matrix), faded: f64::INFINITY }],
+        None => vec![(f64::INFINITY, one_norm(matrix))],
     }
 }
 

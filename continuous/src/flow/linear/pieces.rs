@@ -20,6 +20,10 @@ const MOST_TERMS: usize = 32;
 const NEGLIGIBLE: f64 = 1e-17;
 /// How often a piece may be halved before interpolation is tried.
 const HALVINGS: u32 = 4;
+/// By what part of a variable at the end of a piece its polynomial may be wrong.
+const EXACT: f64 = 1e-12;
+/// By what part of the variables that move it a variable is wrong for rounding.
+const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 impl LinearFlow {
     pub(super) fn piece_from(&self, time: f64) -> Piece {
@@ -46,7 +50,31 @@ impl LinearFlow {
             }
             length *= 0.5;
         }
-        Piece::through(start, wanted, self.dimension(), |time, state| self.state_at(time, state))
+        self.interpolated(start, wanted, &state)
+    }
+
+    /// The longest of a few polynomials through the solution that is exact beside the present state: what
+    /// has faded at the start of a piece may be all that is left at its end.
+    fn interpolated(&self, start: f64, wanted: f64, state: &[f64]) -> Piece {
+        let exponential = self.field.exponential();
+        let least = LENGTH / std::f64::consts::PI * exponential.least_time_scale(start);
+        let mut end = vec![0.0; state.len()];
+        let mut length = wanted;
+        loop {
+            let piece = Piece::through(start, length, state.len(), |time, state| {
+                self.state_at(time, state)
+            });
+            piece.state_at(start + length, &mut end);
+            let is_exact = |component: usize| {
+                let movers = exponential.movers[component].iter();
+                let noise = ROUNDING * movers.map(|&one| state[one].abs()).fold(0.0, f64::max);
+                piece.error(component) <= (EXACT * end[component].abs()).max(noise)
+            };
+            if length <= least || (0..state.len()).all(is_exact) {
+                return piece;
+            }
+            length *= 0.5;
+        }
     }
 }
 
