@@ -161,14 +161,6 @@ fn tell_in_full(
         println!("k = {step:<6} {}", story::tell(event));
     }
     report(scenario, seed, &verdict);
-    ride_watched(scenario, storm, periods, |snapshot| {
-        if std::env::var("SHOW").is_ok_and(|at| at.parse() == Ok(snapshot.step)) {
-            println!("k = {} {:?} team {:?}", snapshot.step, snapshot.phase, snapshot.primary_team);
-            for robot in 0..snapshot.positions.len() {
-                println!("  {robot} at {:.4?}, {:?} {:?} target {:?} {:?}", snapshot.positions[robot], snapshot.robots[robot].activity, snapshot.robots[robot].exchange, snapshot.robots[robot].target, snapshot.tree.iter().find(|e| e.0 == robot));
-            }
-        }
-    })?;
     if let Some(violation) = verdict.violations.first() {
         let concerned = |node: usize| violation.robots.contains(&node);
         ride_watched(scenario, storm, violation.step + 2, |snapshot| {
