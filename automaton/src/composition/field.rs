@@ -251,6 +251,17 @@ impl<'a> Field<'a> {
         self.moving.iter().any(|(_, mode)| mode.rates.is_sharp())
     }
 
+    /// Whether rates may vary by more than an integrator sees on a piece of the solution, by ranges alone.
+    pub(super) fn is_strained(&self, piece: &Piece) -> bool {
+        let [own, places, results] = &mut *self.ranges.borrow_mut();
+        self.moving.iter().any(|(component, mode)| {
+            own.clear();
+            own.extend(component.places.iter().map(|&place| piece.range(place)));
+            mode.rates.ranges(own, places, results);
+            mode.rates.is_strained(places)
+        })
+    }
+
     /// How rates vary from one time of a piece to another.
     pub(super) fn strain(&self, piece: &Piece, span: [f64; 2], tolerances: Tolerances) -> Strain {
         let [own, places, results] = &mut *self.ranges.borrow_mut();

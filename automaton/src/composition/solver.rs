@@ -225,6 +225,9 @@ impl<'a> Solver<'a> {
     /// that the step does not see it.
     fn unseen(&self, piece: &Piece) -> Option<f64> {
         let tolerances = self.seen_to.filter(|_| matches!(self.method, Method::Steps(_)))?;
+        if !self.field.is_strained(piece) {
+            return None;
+        }
         let mut spans = vec![[piece.start(), piece.end()]];
         for number in 0..MOST_GLANCES {
             let Some([from, to]) = spans.pop() else { break };
