@@ -18,6 +18,7 @@ use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use crate::continuous::Point;
 use crate::discrete::network::activity::may_follow;
+use crate::verify::network::judge::missing;
 use crate::verify::network::storm::{self, Storm};
 use crate::verify::network::{Extremes, Referee, Violation};
 
@@ -159,6 +160,7 @@ const SATURATED: f64 = 0.999;
 /// The judge and the watchers of a mission: they look on while the executor runs it, or while it goes
 /// on elsewhere and its snapshots come from there.
 pub struct Gallery<'a, 'w> {
+    scenario: ValidScenario,
     judge: Referee<'a>,
     watchers: &'a mut [&'w mut dyn Watcher],
     failure: Option<io::Error>,
@@ -190,7 +192,8 @@ impl<'a, 'w> Gallery<'a, 'w> {
         watchers: &'a mut [&'w mut dyn Watcher],
     ) -> Self {
         let judge = Referee::new(scenario, faults, may_follow);
-        Gallery { judge, watchers, failure: None, saturated: Vec::new() }
+        let scenario = scenario.clone();
+        Gallery { scenario, judge, watchers, failure: None, saturated: Vec::new() }
     }
 
     /// Shows a control period, and says how the mission ends if it has to: a property is violated, a
@@ -231,25 +234,43 @@ impl<'a, 'w> Gallery<'a, 'w> {
         Ok(())
     }
 
+    /// An end with what observers add to its reason.
+    fn explain(&self, end: End) -> End {
+        let reason = match end.outcome {
+            Outcome::Blocked | Outcome::StepLimit => self.overload(&end),
+            Outcome::InsufficientRobots => self.shortage(&end),
+            _ => None,
+        };
+        End { reason: reason.unwrap_or(end.reason), ..end }
+    }
+
     /// A mission that gets stuck while robots send all the time is stuck because of their links:
     /// the reason names them.
-    fn explain(&self, end: End) -> End {
-        let is_stuck = matches!(end.outcome, Outcome::Blocked | Outcome::StepLimit);
-        if !is_stuck || self.saturated.is_empty() {
-            return end;
-        }
+    fn overload(&self, end: &End) -> Option<String> {
         let loads =
             self.saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
         let loads: Vec<String> = loads.collect();
+        if loads.is_empty() {
+            return None;
+        }
         let loads = loads.join(", ");
         let remedy = "lower the rates, place robots closer together or add some";
-        let reason = match end.outcome {
+        Some(match end.outcome {
             Outcome::Blocked => format!(
                 "robots cannot go on because their links carry no more: the load is {loads}; {remedy}"
             ),
             _ => format!("{}; the load is {loads}, and links carry no more: {remedy}", end.reason),
-        };
-        End { reason, ..end }
+        })
+    }
+
+    /// Where robots are too few wherever they stand, the reason says so.
+    fn shortage(&self, end: &End) -> Option<String> {
+        let least = missing(&self.scenario, end.task? + 1)?;
+        let robots = self.scenario.robot.len();
+        Some(format!(
+            "{}; wherever robots stand, the tasks so far take {least} of them, and there are {robots}",
+            end.reason
+        ))
     }
 
     /// The end that a watcher asks for.

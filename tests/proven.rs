@@ -42,7 +42,7 @@ const CALLS: &[Call] = &[
     ("vote", AGREEMENT, ROBOT_PATH, "agreement.vote(place,"),
     ("arrive", AGREEMENT, ROBOT_PATH, "agreement.arrive(place)"),
     ("give_up", AGREEMENT, ROBOT_PATH, "agreement.give_up(place)"),
-    ("has_given_up", AGREEMENT, ROBOT_PATH, "agreement.has_given_up(subgroup.end)"),
+    ("has_given_up", AGREEMENT, ROBOT_PATH, "agreement.has_given_up(place)"),
     ("merge", AGREEMENT, ROBOT_MISSION, "(&mut self.agreement, &neighbour.beacon.agreement)"),
     ("is_settled", AGREEMENT, AGREEMENT, "self.is_settled(places)"),
     ("is_break_point", AGREEMENT, AGREEMENT, "self.is_break_point(place)"),

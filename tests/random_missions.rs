@@ -90,9 +90,19 @@ fn nearly_all_missions_are_serviced() {
     assert!(complaints.len() <= most, "{}", complaints.join("\n"));
 }
 
+/// Where ways wind, there are many of them, and the robots have to find one.
+#[test]
+fn missions_on_winding_floors_are_serviced() {
+    for family in Family::WINDING {
+        for seed in 1..=DAILY {
+            assert_eq!(complaint(family, seed), None);
+        }
+    }
+}
+
 #[test]
 fn a_family_and_a_seed_are_one_scenario() {
-    for family in Family::ALL {
+    for family in Family::ALL.into_iter().chain(Family::WINDING) {
         assert_eq!(scenario(family, 3), scenario(family, 3));
         assert_ne!(scenario(family, 3).robot, scenario(family, 4).robot);
     }
@@ -102,7 +112,7 @@ fn a_family_and_a_seed_are_one_scenario() {
 #[ignore = "takes minutes: cargo test --release --test it random_missions -- --ignored --nocapture"]
 fn many_missions_of_every_family() {
     let mut complaints = Vec::new();
-    for family in Family::ALL {
+    for family in Family::ALL.into_iter().chain(Family::WINDING) {
         let count = if family == Family::Hall { MANY_HALLS } else { MANY };
         let before = complaints.len();
         complaints.extend((1..=count).filter_map(|seed| complaint(family, seed)));

@@ -25,7 +25,7 @@ const EXCESS: f64 = 1e-6;
 const ROUNDING: f64 = 1e-9;
 /// Links with less reliability carry nothing, unless they belong to the tree.
 const LEAST_USEFUL_RELIABILITY: f64 = 0.3;
-/// Control periods until routes have converged, with so many iterations each.
+/// The control periods in which routes converge at the number of iterations below.
 const PERIODS: usize = 300;
 const ITERATIONS: usize = 20;
 const SCENARIOS: u64 = 4;

@@ -20,7 +20,7 @@ const STRESSES: [Stress; 3] = [
     Stress { rate: 0.0767, tree_reliability: 0.3, slope_aversion: 0.0, step_radius: 0.06 },
 ];
 
-/// Missions under stress, for whoever counts what acts in them.
+/// Missions under stress, for tests that count what acts in them.
 pub fn stressed_scenarios() -> impl Iterator<Item = Scenario> {
     STRESSES.iter().map(|stress| stressed("leaf-leader", stress))
 }

@@ -41,6 +41,16 @@ pub enum Family {
     Settings,
     /// The rate of the studies, which a single gateway hardly carries.
     Rates,
+    /// Corridors between the cells of a grid, with few loops.
+    Maze,
+    /// A corridor that winds inwards, with the access point at either end.
+    Spiral,
+    /// Chambers of all sizes that open into each other.
+    Caves,
+    /// Jagged obstacles in the open: many ways, none of them straight.
+    Islands,
+    /// Three access points among obstacles, with a cluster of robots each.
+    Clusters,
 }
 
 impl Family {
@@ -48,6 +58,10 @@ impl Family {
     pub fn of_every_day() -> impl Iterator<Item = Family> {
         Family::ALL.into_iter().filter(|&family| family != Family::Hall)
     }
+
+    /// Floors on which ways are long and wind round many corners, or on which there are many.
+    pub const WINDING: [Family; 5] =
+        [Family::Maze, Family::Spiral, Family::Caves, Family::Islands, Family::Clusters];
 
     pub const ALL: [Family; 14] = [
         Family::Office,
@@ -82,6 +96,11 @@ impl Family {
             Family::Chains => "chains",
             Family::Settings => "settings",
             Family::Rates => "rates",
+            Family::Maze => "maze",
+            Family::Spiral => "spiral",
+            Family::Caves => "caves",
+            Family::Islands => "islands",
+            Family::Clusters => "clusters",
         }
     }
 
@@ -99,6 +118,11 @@ impl Family {
             Family::Parked => parked(dice),
             Family::Settings => settings(dice),
             Family::Rates => Brief { rates: Rates::Default, spare: 2, ..any_plan(dice) },
+            Family::Maze => maze(dice),
+            Family::Spiral => spiral(dice),
+            Family::Caves => caves(dice),
+            Family::Islands => islands(dice),
+            Family::Clusters => clusters(dice),
         };
         match self {
             Family::Corners => {
@@ -306,6 +330,141 @@ fn clutter(dice: &mut Dice) -> Brief {
     let home = [dice.between(0.3, wide - 0.3), dice.between(0.3, high - 0.3)];
     let mut brief = Brief::new(floor, home);
     brief.targets = vec![Target::Anywhere; dice.count(1, 4)];
+    brief
+}
+
+/// A random spanning tree of the cells of a grid, each a square, with passages between them.
+fn maze(dice: &mut Dice) -> Brief {
+    let (columns, rows) = (dice.count(3, 5), dice.count(2, 4));
+    let width = dice.between(0.25, 0.7);
+    let pitch = width + WALL;
+    let corner = |cell: usize| ((cell % columns) as f64 * pitch, (cell / columns) as f64 * pitch);
+    let cell_at = |cell: usize| {
+        let (left, bottom) = corner(cell);
+        Rectangle::new(left, bottom, left + width, bottom + width)
+    };
+    let cells = columns * rows;
+    let mut floor = Floor::of((0..cells).map(cell_at).collect());
+    let mut passages: Vec<(usize, usize)> = (0..cells)
+        .flat_map(|cell| {
+            let right = (cell % columns + 1 < columns).then_some((cell, cell + 1));
+            right.into_iter().chain((cell + columns < cells).then_some((cell, cell + columns)))
+        })
+        .collect();
+    let mut piece: Vec<usize> = (0..cells).collect();
+    while !passages.is_empty() {
+        let (one, other) = passages.swap_remove(dice.count(0, passages.len() - 1));
+        let (joined, apart) = (piece[one], piece[other]);
+        if joined != apart || dice.chance(0.1) {
+            piece.iter_mut().filter(|it| **it == apart).for_each(|it| *it = joined);
+            let (left, bottom) = corner(one);
+            let (right, top) = (cell_at(other).right, cell_at(other).top);
+            floor.rooms.push(Rectangle::new(left, bottom, right, top));
+        }
+    }
+    let home = floor.rooms[dice.count(0, cells - 1)].center();
+    let mut brief = Brief::new(floor, home);
+    brief.targets.truncate(dice.count(1, 2));
+    brief
+}
+
+/// Each arm of the corridor is laid round those before it.
+fn spiral(dice: &mut Dice) -> Brief {
+    let width = dice.between(0.25, 0.6);
+    let pitch = width + WALL;
+    let arms = dice.count(4, 8);
+    let mut rooms = Vec::new();
+    let mut at = [0.0, 0.0];
+    for arm in 0..arms {
+        let long = pitch * (1 + arm / 2) as f64 + if arm < 2 { pitch } else { 0.0 };
+        let [dx, dy] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]][arm % 4];
+        let to = [at[0] + dx * long, at[1] + dy * long];
+        rooms.push(Rectangle::new(
+            at[0].min(to[0]),
+            at[1].min(to[1]),
+            at[0].max(to[0]) + width,
+            at[1].max(to[1]) + width,
+        ));
+        at = to;
+    }
+    let middle = |[left, bottom]: [f64; 2]| [left + width / 2.0, bottom + width / 2.0];
+    let ends = [middle([0.0, 0.0]), middle(at)];
+    let from_inside = dice.chance(0.5);
+    let (home, goal) = if from_inside { (ends[0], ends[1]) } else { (ends[1], ends[0]) };
+    let mut brief = Brief::new(Floor::of(rooms), home);
+    brief.targets = vec![Target::At(goal)];
+    if dice.chance(0.5) {
+        brief.targets.insert(dice.count(0, 1), Target::Anywhere);
+    }
+    brief
+}
+
+fn caves(dice: &mut Dice) -> Brief {
+    let mut rooms: Vec<Rectangle> = Vec::new();
+    let mut at = [0.0, 0.0];
+    for _ in 0..dice.count(6, 14) {
+        let (wide, high) = (dice.scale(0.25, 1.2), dice.scale(0.25, 1.2));
+        let (left, bottom) = (at[0] - wide / 2.0, at[1] - high / 2.0);
+        rooms.push(Rectangle::new(left, bottom, left + wide, bottom + high));
+        let base = rooms[dice.count(rooms.len().saturating_sub(3), rooms.len() - 1)];
+        at = [dice.between(base.left, base.right), dice.between(base.bottom, base.top)];
+        // The next chamber opens from a side of this one.
+        match dice.count(0, 3) {
+            0 => at[0] = base.left,
+            1 => at[0] = base.right,
+            2 => at[1] = base.bottom,
+            _ => at[1] = base.top,
+        }
+    }
+    let home = rooms[0].center();
+    let mut brief = Brief::new(Floor::of(rooms), home);
+    brief.targets = vec![Target::Anywhere; dice.count(1, 3)];
+    brief
+}
+
+fn islands(dice: &mut Dice) -> Brief {
+    let (wide, high) = (dice.between(2.5, 7.0), dice.between(2.0, 5.0));
+    let mut floor = Floor::of(vec![Rectangle::new(0.0, 0.0, wide, high)]);
+    let count = dice.count(3, 12);
+    stars(&mut floor, count, dice);
+    let home = [dice.between(0.3, wide - 0.3), dice.between(0.3, high - 0.3)];
+    let mut brief = Brief::new(floor, home);
+    brief.targets = vec![Target::Anywhere; dice.count(1, 3)];
+    brief
+}
+
+/// Star-shaped polygons that are far from convex.
+fn stars(floor: &mut Floor, count: usize, dice: &mut Dice) {
+    let hull = floor.hull();
+    for _ in 0..count {
+        let center = [
+            dice.between(hull.left + 0.5, hull.right - 0.5),
+            dice.between(hull.bottom + 0.5, hull.top - 0.5),
+        ];
+        let corners = dice.count(6, 12);
+        let size = dice.between(0.2, 0.6);
+        floor.pillars.push(
+            (0..corners)
+                .map(|corner| {
+                    let angle = std::f64::consts::TAU * corner as f64 / corners as f64;
+                    let radius = size * dice.between(0.25, 1.0);
+                    [center[0] + radius * angle.cos(), center[1] + radius * angle.sin()]
+                })
+                .collect(),
+        );
+    }
+}
+
+fn clusters(dice: &mut Dice) -> Brief {
+    let (wide, high) = (dice.between(5.0, 8.0), dice.between(1.5, 4.0));
+    let mut floor = Floor::of(vec![Rectangle::new(0.0, 0.0, wide, high)]);
+    let count = dice.count(2, 6);
+    stars(&mut floor, count, dice);
+    let mut brief = Brief::new(floor, [0.5, dice.between(0.4, high - 0.4)]);
+    brief.access_points.push([wide / 2.0, dice.between(0.4, high - 0.4)]);
+    brief.access_points.push([wide - 0.5, dice.between(0.4, high - 0.4)]);
+    brief.targets.truncate(dice.count(1, 3));
+    brief.spare = 6;
     brief
 }
 

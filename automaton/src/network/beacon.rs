@@ -164,6 +164,35 @@ pub struct Beacon {
 }
 
 impl Beacon {
+    /// A beacon that tells nothing but who and where its sender is.
+    #[cfg(test)]
+    pub(super) fn silent(sender: NodeId, position: Point) -> Self {
+        Self {
+            sender,
+            position,
+            bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
+            announced: None,
+            election: None,
+            agreement: None,
+            route: None,
+            crossing: Vec::new(),
+            lineage: None,
+            parent: None,
+            below: Arc::default(),
+            strays: Arc::default(),
+            serves: Arc::default(),
+            duty: None,
+            parked: false,
+            way: None,
+            can_detach: false,
+            offer: None,
+            offers_made: 0,
+            reply: None,
+            team: None,
+            wrecks: Arc::default(),
+        }
+    }
+
     /// The task that is serviced from the post of the sender.
     pub fn task(&self) -> Option<usize> {
         self.duty.as_ref()?.post()?.task

@@ -7,6 +7,7 @@
 //! | [`repair`] | workspaces from maps whose polygons touch |
 //! | [`free_space`] | W_f, the points that keep a clearance ρ from ∂W (Algorithm 6, repaired) |
 //! | [`geodesic`] | shortest paths in W_f (Definition 4.1), and the way to a fixed destination |
+//! | [`taut`] | paths pulled taut, each on its own side of the obstacles |
 //! | [`reentry`] | robots slightly outside W_f, and how they come back |
 //! | [`detour`] | shortest paths that also keep out of discs |
 //! | [`cell`] | convex collision-free cells (Definition 4.2, (17) and (18)) |
@@ -54,6 +55,7 @@ pub mod repair;
 mod search;
 pub mod segment;
 pub mod shape;
+pub mod taut;
 mod triangulation;
 mod visibility;
 pub mod workspace;

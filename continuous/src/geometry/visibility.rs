@@ -100,6 +100,15 @@ impl VisibilityGraph {
 }
 
 impl Corner {
+    /// Whether the obstacle lies on the inner side of a path that bends here: where it comes from and
+    /// where it goes to lie outside of the obstacle, which then lies wholly on one side.
+    pub(super) fn lies_between(&self, from: Point, to: Point) -> bool {
+        let along = |place: Point| (place - self.at).normalize();
+        let into = self.at + along(self.before) + along(self.after);
+        let turn = side(from, self.at, to);
+        turn * side(from, self.at, into) > 0.0 && turn * side(self.at, to, into) > 0.0
+    }
+
     /// Whether the line of `path`, which ends at this corner, leaves the obstacle here on one
     /// side, or enters it by no more than `tolerance`.
     fn is_touched_by(&self, path: &Segment, tolerance: f64) -> bool {

@@ -11,4 +11,5 @@ mod parry;
 mod plain;
 mod reentry;
 mod repair;
+mod taut;
 mod workspace;

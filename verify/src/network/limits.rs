@@ -94,6 +94,11 @@ impl Limits {
         self.site.radio.range()
     }
 
+    /// d_hard: along geodesics no link of the tree is longer, where robots stand.
+    pub fn longest_tree_link(&self) -> f64 {
+        self.site.radio.distance_at(self.settings().tree_reliability)
+    }
+
     /// r_i of every robot.
     pub fn rates(&self) -> &[f64] {
         &self.rates

@@ -90,6 +90,7 @@ pub mod storm;
 pub mod team;
 pub mod tree;
 
+mod bound;
 mod extremes;
 mod limits;
 mod monitor;
@@ -102,6 +103,7 @@ mod sample;
 mod tests;
 mod violation;
 
+pub use bound::Spans;
 pub use extremes::{Extreme, Extremes};
 pub use judge::{Judge, Referee, Safety};
 pub use limits::{Limits, SLACK};

@@ -83,30 +83,7 @@ fn notices() -> Vec<Notice> {
 }
 
 fn silent() -> Beacon {
-    Beacon {
-        sender: 13,
-        position: Point::origin(),
-        bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
-        announced: None,
-        election: None,
-        agreement: None,
-        route: None,
-        crossing: Vec::new(),
-        lineage: None,
-        parent: None,
-        below: Arc::default(),
-        strays: Arc::default(),
-        serves: Arc::default(),
-        duty: None,
-        parked: false,
-        way: None,
-        can_detach: false,
-        offer: None,
-        offers_made: 0,
-        reply: None,
-        team: None,
-        wrecks: Arc::default(),
-    }
+    Beacon::silent(13, Point::origin())
 }
 
 /// A beacon in which every field has a value.

@@ -93,7 +93,7 @@ impl Robot {
     pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
         self.stand_at(self.position, still_periods);
         self.begin_period()?;
-        self.orphaned_periods = 0;
+        (self.orphaned_periods, self.unfollowed_periods) = (0, 0);
         self.deliberate()?;
         self.jump()
     }
@@ -165,6 +165,7 @@ impl Robot {
             strays: _,
             serves: _,
             orphaned_periods: _,
+            unfollowed_periods: _,
             roll: _,
             out_of_sight: _,
             wrecks: _,

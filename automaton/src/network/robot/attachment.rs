@@ -245,8 +245,7 @@ impl Robot {
             ..Reports::default()
         };
         for neighbour in self.neighbours.iter().filter(|it| it.is_present(self.period)) {
-            let is_child =
-                neighbour.post().is_some_and(|post| own.is_some_and(|own| post.is_child_of(own)));
+            let is_child = neighbour.is_attached_to(own);
             reports.take_in(&neighbour.beacon, is_child, self.id, self.lineage().is_some());
         }
         renew(&mut self.below, reports.below);

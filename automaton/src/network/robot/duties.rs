@@ -245,8 +245,7 @@ impl Robot {
 
     /// Whether it waits on Σ, and has given its post up to the robot behind.
     pub(super) fn is_superfluous(&self) -> bool {
-        let place = self.duty.held().and_then(|_| self.duty.place());
-        place.zip(self.agreement.as_ref()).is_some_and(|(at, known)| known.has_given_up(at))
+        self.waiting_place().is_some_and(|place| self.has_given_up(place))
     }
 
     /// Whether another parent has been found to be better.
@@ -345,12 +344,16 @@ fn take_post_ahead<B: From<Held>>(
     Some(B::from(Held { station: Station { post, reference }, left: None }))
 }
 
-/// The post that the last robot of Σ gets in the primary team.
+/// The post that the last robot of Σ gets in the primary team. Where the robot ahead is attached to the
+/// post before, and no other robot takes that, the post itself joins the team.
 fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
     let joins_at_once = robot.mission.shift().is_none_or(|shift| shift.subgroups.is_empty());
     let before = held.station.post;
     let parent = if joins_at_once { before.parent } else { Some(Anchor::Post(before.id)) };
-    let id = PostId((robot.site.robots as u32) + robot.bulletin.number());
+    let id = match joins_at_once && before.is_fixed() {
+        true => before.id,
+        false => PostId((robot.site.robots as u32) + robot.bulletin.number()),
+    };
     let post = Post { id, kind: PostKind::Primary { follows }, parent, task: None };
     let station = Station { post, reference: robot.free_place() };
     Held { station, left: (!joins_at_once).then_some(before.id) }

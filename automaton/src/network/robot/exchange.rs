@@ -271,7 +271,7 @@ mod tests {
     use pleach_discrete::network::{Offer, Phase, Post, PostId};
     use serde_json::json;
 
-    use super::super::super::beacon::{Announcement, Beacon, Bulletin, Notice};
+    use super::super::super::beacon::{Announcement, Beacon, Notice};
     use super::super::super::duty::{Held, Standby, Station};
     use super::super::super::message::Message;
     use super::super::super::roll::Roll;
@@ -317,28 +317,9 @@ mod tests {
         let reference = Point::new(2.2, 2.0);
         let station = Station { post: Post::redundant(PostId(1)), reference };
         Beacon {
-            sender: 1,
-            position: reference,
-            bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
-            announced: None,
-            election: None,
-            agreement: None,
-            route: None,
-            crossing: Vec::new(),
-            lineage: None,
-            parent: None,
-            below: Arc::default(),
-            strays: Arc::default(),
-            serves: Arc::default(),
             duty: Some(Duty::Standby(Standby(Held { station, left: None }))),
             parked: true,
-            way: None,
-            can_detach: false,
-            offer: None,
-            offers_made: 0,
-            reply: None,
-            team: None,
-            wrecks: Arc::default(),
+            ..Beacon::silent(1, reference)
         }
     }
 

@@ -272,13 +272,13 @@ impl Robot {
         };
         self.measure_notice(&mut facts);
         let best = self.election.as_ref().and_then(|election| election.best());
-        let won = best.is_some_and(|(bid, robot)| robot == self.id && bid.rank > 0);
+        let won = best.is_some_and(|(bid, robot)| robot == self.id && Robot::can_come(bid));
         let over = self.election_is_over();
         facts.election_over = over;
         match self.phase() {
             Phase::RecruitElection => {
                 facts.won = over && won;
-                let aided = best.is_some_and(|(bid, _)| bid.rank > 0);
+                let aided = best.is_some_and(|(bid, _)| Robot::can_come(bid));
                 facts.unaided = over && !aided && self.is_caller();
             }
             Phase::PathAgreement => facts.points_agreed = self.break_points().is_some(),
@@ -297,7 +297,8 @@ impl Robot {
         let id = self.bulletin.id();
         let election = self.election.as_ref().map(|election| election.id());
         let path = self.agreement.as_ref().map(|agreement| agreement.id());
-        let is_overtaken = id.epoch() > self.epoch;
+        // One that pursues no task has none to give up.
+        let is_overtaken = id.epoch() > self.epoch && self.phase() != Phase::Idle;
         match self.notice() {
             Notice::Ended { .. } => facts.end_announced = true,
             Notice::Task(_) if election != Some(id) => facts.announced = true,
@@ -330,7 +331,8 @@ impl Robot {
                 if matches!(duty, Duty::Shifting(_)) && !self.has_arrived() {
                     facts.stalled = f64::from(self.still_periods);
                 }
-                facts.subgroup_arrived = self.knows_arrived(active) && self.may_relieve(active);
+                facts.subgroup_arrived =
+                    self.knows_arrived(active) && self.has_given_up(active.end);
             }
             (
                 None,

@@ -89,6 +89,11 @@ impl Neighbour {
         self.beacon.duty.as_ref()?.post()
     }
 
+    /// Whether its post is attached to `post`, if there is one.
+    pub fn is_attached_to(&self, post: Option<PostId>) -> bool {
+        post.is_some_and(|post| self.post().is_some_and(|held| held.is_child_of(post)))
+    }
+
     pub fn is_access_point(&self) -> bool {
         self.beacon.duty.is_none()
     }
@@ -212,8 +217,8 @@ impl Robot {
         }
         known.silent_rounds = silent_rounds;
         let is_silent = known.is_silent();
-        let is_child = own.is_some_and(|own| known.post().is_some_and(|it| it.is_child_of(own)));
-        let is_kept = is_child && period <= known.heard_in.saturating_add(PATIENCE_WITH_CHILDREN);
+        let is_kept = known.is_attached_to(own)
+            && period <= known.heard_in.saturating_add(PATIENCE_WITH_CHILDREN);
         let is_lost = is_silent && (known.is_access_point() || !self.site.is_near(known.distance));
         let (id, reliability) = (known.id(), known.reliability);
         let is_gone = is_silent && self.is_gone(id);
@@ -253,7 +258,7 @@ impl Robot {
     }
 
     /// What the robot hears has changed.
-    fn receive_news(&mut self) {
+    pub(super) fn receive_news(&mut self) {
         (self.has_news, self.is_unmeasured) = (true, true);
     }
 
@@ -293,7 +298,6 @@ impl Robot {
 
     /// The neighbours whose posts are attached to `post`.
     pub(super) fn children_of(&self, post: PostId) -> impl Iterator<Item = &Neighbour> {
-        let is_child = move |held: &Post| held.is_child_of(post);
-        self.neighbours.iter().filter(move |neighbour| neighbour.post().is_some_and(is_child))
+        self.neighbours.iter().filter(move |neighbour| neighbour.is_attached_to(Some(post)))
     }
 }

@@ -83,7 +83,7 @@ impl Robot {
     pub(super) fn newer_announcement(&self) -> Option<&Announced> {
         let heard = self.neighbours.iter().filter_map(|known| known.beacon.announced.as_ref());
         let own = self.announced.as_ref().map(|(id, _)| *id);
-        let is_newer = |(id, _): &&Announced| Some(*id) > own && id.epoch() == self.epoch;
+        let is_newer = |(id, _): &&Announced| Some(*id) > own && id.epoch() >= self.epoch;
         heard.filter(is_newer).max_by_key(|(id, _)| *id)
     }
 

@@ -7,7 +7,7 @@
 //! does not take part (`absence`), keeps its place
 //! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
-//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`motion`, `negotiation`);
+//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`);
 //! what its guards see of all this are `facts`.
 
 mod absence;
@@ -37,6 +37,7 @@ mod step;
 mod target;
 mod team;
 mod view;
+mod way;
 mod yielding;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -193,6 +194,7 @@ pub struct Robot {
     team: Option<TeamReport>,
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
+    unfollowed_periods: u32,
 
     // Communication variables.
     routing: routing::RoutingState,
@@ -298,6 +300,7 @@ impl Robot {
             agreement: None,
             team: None,
             followed_post: None,
+            unfollowed_periods: 0,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
             upstream: None,
@@ -439,6 +442,7 @@ impl Robot {
         self.note_change();
         self.count_unused_periods();
         self.count_orphaned_periods();
+        self.count_unfollowed_periods();
         self.consider_exchange();
         self.advance_exchange()
     }

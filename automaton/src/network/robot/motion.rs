@@ -3,9 +3,7 @@
 //! The robot solves the motion problem (21)–(22) with all other robots fixed, and proposes the
 //! solution. What becomes of the proposal is told in `negotiation`.
 
-use std::sync::Arc;
-
-use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic, HalfPlane, cell};
+use pleach_continuous::geometry::{Disc, HalfPlane, cell};
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::{Motion, MotionProblem};
 use pleach_continuous::{Point, Vector};
@@ -22,19 +20,8 @@ use crate::automaton::TransitionError;
 const SETTLED: f64 = 0.02;
 /// Distances kept are larger than required by this share, so that rounding has no effect.
 pub(super) const MARGIN: f64 = 1e-4;
-/// Parked robots are kept at this many ρ when there is a way round.
-const KEEP_OUT: f64 = 2.1;
-/// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
-/// goes straight on and exchanges duties with the robot in its way.
-const DETOUR_ALLOWANCE: f64 = 8.0;
 /// A robot this many ρ behind another stands in a queue.
 const QUEUE: f64 = 2.2;
-/// A way as good as another but for this many ρ is kept: robots do not alternate between two sides.
-const CONSTANCY: f64 = 1.0;
-/// A waypoint this many ρ away is as good as reached: no reason to keep to it.
-const NEARBY: f64 = 0.1;
-/// Control periods without progress after which a robot does not keep to its way any more.
-const OBSTINACY: u32 = 3;
 /// A robot that stays within this share of ρ or σ, the smaller one, stands still.
 const STILL: f64 = 0.3;
 /// Control periods without progress after which a robot measures its position anew.
@@ -63,8 +50,7 @@ impl Robot {
         self.duty.left().is_some_and(|left| {
             self.holder(left).is_some()
                 && self.neighbours.iter().any(|neighbour| {
-                    neighbour.beacon.parent == Some(self.id)
-                        && neighbour.post().is_some_and(|post| post.is_child_of(left))
+                    neighbour.beacon.parent == Some(self.id) && neighbour.is_attached_to(Some(left))
                 })
         })
     }
@@ -173,7 +159,7 @@ impl Robot {
     }
 
     /// Whether the robot measures itself outside of 𝒲_f, as errors of position and motion may have it.
-    fn has_strayed(&self) -> bool {
+    pub(super) fn has_strayed(&self) -> bool {
         !self.site.settings.errors.are_none() && !self.site.free_space.contains(self.position)
     }
 
@@ -190,56 +176,6 @@ impl Robot {
             true => self.site.free_space.nearest(self.position),
             false => self.position,
         }
-    }
-
-    /// a₁ of the geodesic to the goal, round parked robots where that is a short way round.
-    fn first_waypoint(&mut self, goal: Point) -> Option<Point> {
-        let site = Arc::clone(&self.site);
-        let free_space: &FreeSpace = &site.free_space;
-        if self.destination.as_ref().is_none_or(|known| known.goal() != goal) {
-            self.destination = Some(free_space.destination(goal));
-        }
-        let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
-        let parked: Vec<Disc> = self
-            .neighbours
-            .iter()
-            .filter(|neighbour| !neighbour.is_access_point() && neighbour.beacon.parked)
-            .map(|n| Disc { center: n.position(), radius: KEEP_OUT * self.clearance() })
-            .chain(self.keep_out_discs(KEEP_OUT * self.clearance()))
-            .collect();
-        let allowance = DETOUR_ALLOWANCE * self.clearance();
-        let around = |from: Point, direct: Geodesic| match free_space.detour(from, goal, &parked) {
-            Some(round) if round.length <= direct.length + allowance => round,
-            _ => direct,
-        };
-        let path = around(self.position, direct);
-        let corner = self.next_corner(&path).unwrap_or(goal);
-        match self.waypoint.filter(|&kept| kept != corner && self.may_keep(kept)) {
-            Some(kept) => {
-                let onward = free_space.geodesic_to(kept, self.destination.as_ref()?)?;
-                let length = (kept - self.position).norm() + around(kept, onward).length;
-                let constancy = CONSTANCY * self.clearance();
-                Some(if length <= path.length + constancy { kept } else { corner })
-            }
-            None => Some(corner),
-        }
-    }
-
-    /// Whether the waypoint of the period before can still be used. One that it has almost
-    /// reached would stop it: solvers end slightly short of a waypoint.
-    fn may_keep(&self, waypoint: Point) -> bool {
-        self.still_periods < OBSTINACY
-            && (waypoint - self.position).norm() > NEARBY * self.clearance()
-            && self.site.free_space.sees(self.position, waypoint)
-    }
-
-    /// The first waypoint that the robot has not reached. One that has strayed goes where the path leads
-    /// once it has re-entered: what keeps it off walls lets it do both at once.
-    fn next_corner(&self, path: &Geodesic) -> Option<Point> {
-        let reached = ROUNDING * self.site.workspace.extent();
-        let is_entry = self.has_strayed() && path.waypoints.len() > 1;
-        let ahead = path.waypoints.iter().copied().skip(usize::from(is_entry));
-        ahead.into_iter().find(|w| (w - self.position).norm() > reached)
     }
 
     /// Problem (21): cell (18), linearised residual (22), trust region, links of the tree.

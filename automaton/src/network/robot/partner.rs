@@ -84,9 +84,7 @@ impl Robot {
             .and_then(|anchor| self.neighbour_at(anchor))
             .is_some_and(|parent| self.walk_to(parent) <= self.site.hard_length);
         let children_hold = self
-            .neighbours
-            .iter()
-            .filter(|n| n.post().is_some_and(|post| post.is_child_of(station.post.id)))
+            .children_of(station.post.id)
             .all(|child| self.walk_to(child) <= self.site.hard_length);
         parked.beacon.parked
             && parked.beacon.offer.is_none()

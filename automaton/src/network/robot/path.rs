@@ -112,17 +112,21 @@ impl Robot {
         self.agreement.as_ref().is_some_and(|agreement| agreement.have_arrived(subgroup.places()))
     }
 
-    /// Whether the robot that `subgroup` relieves has given its post up.
-    pub(super) fn may_relieve(&self, subgroup: Subgroup) -> bool {
-        self.agreement.as_ref().is_some_and(|agreement| agreement.has_given_up(subgroup.end))
+    /// Whether the robot at `place` of Σ has given its post up to the robot behind.
+    pub(super) fn has_given_up(&self, place: usize) -> bool {
+        self.agreement.as_ref().is_some_and(|agreement| agreement.has_given_up(place))
+    }
+
+    /// The place of Σ whose post it holds and leaves to another.
+    pub(super) fn waiting_place(&self) -> Option<usize> {
+        self.duty.held().and_then(|_| self.duty.place())
     }
 
     /// Gives its post up to the subgroup that relieves it, once that has arrived: from now on the
     /// robot behind may hold it.
     pub(super) fn yield_post(&mut self) {
-        let place = self.duty.held().and_then(|_| self.duty.place());
         let shift = self.mission.shift();
-        if let Some(place) = place
+        if let Some(place) = self.waiting_place()
             && let Some(behind) = shift.and_then(|shift| shift.subgroup_up_to(place))
             && self.knows_arrived(behind)
             && !self.is_engaged()

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Anchor, Bid, Election, IdSet, NoticeId, Phase};
+use pleach_discrete::network::{Activity, Anchor, Bid, Election, IdSet, NoticeId, Phase};
+
+use crate::located::Place as _;
 
 use super::super::beacon::{Announcement, Beacon, Notice};
 use super::super::duty::{Hop, Path, PathPlace};
@@ -12,6 +14,14 @@ use super::super::shared::Shared;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
+
+/// The classes of bids. A robot that no tree connects to the caller bids only to show where it could help.
+const STRANDED: u8 = 0;
+/// The robot whose post bears the caller and nothing else joins the team where it stands, if no other
+/// robot can come.
+const BEARER: u8 = 1;
+/// A redundant robot.
+const AT_HAND: u8 = 2;
 
 /// Residuals in bids are compared in units of this: routes aim at the same reserve everywhere,
 /// and remaining differences are the dual iteration's noise.
@@ -80,8 +90,8 @@ pub(super) fn end_unaided(
         } else {
             let wanted = (robot.remaining() / robot.site.build_length).ceil().max(1.0);
             let reason = format!(
-                "task {task} needs another recruit, and no redundant robot is left that can come; \
-                 about {wanted} more robots are needed"
+                "task {task} needs another recruit, and no robot is left that can come; from where the \
+                 team stands about {wanted} more robots are needed"
             );
             effects.push(MissionEffect::Issue(Notice::Ended {
                 outcome: Outcome::InsufficientRobots,
@@ -116,8 +126,8 @@ impl Robot {
             || self.waited_rounds == 2 * self.longest_wait()
     }
 
-    /// Finds the way over the tree to the caller (footnote 10) and places a token: redundant
-    /// robots without children with a bid, once they know the way.
+    /// Finds the way over the tree to the caller (footnote 10) and places a token: robots that may be
+    /// recruited with a bid, once they know the way.
     pub(super) fn answer_call(&mut self) {
         let id = self.notice_id();
         let Some(election) = &self.election else { return };
@@ -127,12 +137,11 @@ impl Robot {
         if self.route.as_ref().is_none_or(|&(known, _)| known != id) {
             self.route = self.find_route(id).map(|route| (id, Shared::new(route)));
         }
-        let bid = match &self.route {
-            _ if !self.takes_part_in_elections() => None,
-            _ if !self.duty.is_redundant() || self.children().next().is_some() => None,
-            Some((_, route)) => Some(self.recruit_bid(route.len())),
-            None if self.waited_rounds < 2 * self.longest_wait() => return,
-            None => self.stranded_bid(),
+        let bid = match (&self.route, self.recruit_class()) {
+            (_, None) => None,
+            (Some((_, route)), Some(class)) => Some(self.recruit_bid(class, route.len())),
+            (None, _) if self.waited_rounds < 2 * self.longest_wait() => return,
+            (None, _) => self.stranded_bid(),
         };
         if let Some(election) = &mut self.election
             && !election.has_token(self.id)
@@ -146,16 +155,42 @@ impl Robot {
         self.announcement().is_some_and(|announcement| announcement.roster.contains(self.id))
     }
 
-    /// The larger the residual, the better; ties go to the shorter path.
-    fn recruit_bid(&self, hops: usize) -> Bid {
-        let merit = (self.residual / RESIDUAL_RESOLUTION).round() as i64;
-        Bid { rank: 1, merit, economy: -(hops as i64) }
+    /// In which class this robot may be recruited, if it may: where nothing depends on it but the caller.
+    fn recruit_class(&self) -> Option<u8> {
+        if !self.takes_part_in_elections() {
+            return None;
+        }
+        match self.duty.is_redundant() {
+            true => self.children().next().is_none().then_some(AT_HAND),
+            false => self.bears_caller_alone().then_some(BEARER),
+        }
     }
 
-    /// A redundant robot that no tree connects to the caller only bids to show where it could help.
+    /// Whether this robot holds a plain post of the tree that bears nothing but the primary team, which
+    /// calls for a recruit: the team can have its robot, and the post with it.
+    fn bears_caller_alone(&self) -> bool {
+        let Notice::Call { caller, releases_leader: false } = *self.notice() else { return false };
+        // One that is not heard may have attached to another robot since.
+        let is_heard = self.neighbour(caller).is_some_and(|caller| !caller.is_silent());
+        let bears = || self.children().map(Neighbour::id).eq([caller]);
+        self.duty.location() == Activity::Relay && is_heard && bears()
+    }
+
+    /// The larger the residual, the better; ties go to the shorter path.
+    fn recruit_bid(&self, class: u8, hops: usize) -> Bid {
+        let merit = (self.residual / RESIDUAL_RESOLUTION).round() as i64;
+        Bid { rank: class, merit, economy: -(hops as i64) }
+    }
+
+    /// The bid of a redundant robot that no tree connects to the caller.
     fn stranded_bid(&self) -> Option<Bid> {
         let root = self.lineage()?.root();
-        Some(Bid { rank: 0, merit: -(root as i64), economy: 0 })
+        Some(Bid { rank: STRANDED, merit: -(root as i64), economy: 0 })
+    }
+
+    /// Whether a bid of this class is that of a robot that can come.
+    pub(super) const fn can_come(bid: Bid) -> bool {
+        bid.rank > STRANDED
     }
 
     /// A message travels for at most as many rounds as there are nodes.

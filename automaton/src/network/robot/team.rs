@@ -69,27 +69,61 @@ impl Robot {
     /// the parked robot still holds its own: the duty of the mover has no holder. A robot that hears
     /// of an exchange does not take itself for p₁.
     pub(super) fn is_first(&self) -> bool {
-        let Some(post) = self.duty.post().filter(|post| post.is_primary()) else { return false };
-        let follower = PostKind::Primary { follows: Some(post.id) };
-        let told = matches!(*self.notice(),
-            Notice::Advance { joined: Some((_, followed)) } if followed == post.id);
         let gives =
             |beacon: &Beacon| beacon.reply.as_ref().is_some_and(|reply| reply.accepted.is_some());
-        self.followed_post != Some(post.id)
-            && !told
-            && !self.neighbours.iter().any(|neighbour| {
-                neighbour.post().is_some_and(|post| post.kind == follower)
-                    || gives(&neighbour.beacon)
-            })
+        self.primary_post().is_some_and(|own| {
+            !self.hears_follower(own)
+                && (self.has_lost_follower() || !self.expects_follower(own))
+                && !self.neighbours.iter().any(|neighbour| gives(&neighbour.beacon))
+        })
+    }
+
+    /// Its post, if that is one of the primary team.
+    fn primary_post(&self) -> Option<PostId> {
+        self.duty.post().filter(|post| post.is_primary()).map(|post| post.id)
+    }
+
+    /// Whether a neighbour holds the post that follows `own`.
+    fn hears_follower(&self, own: PostId) -> bool {
+        let follows = |post: &Post| post.kind == PostKind::Primary { follows: Some(own) };
+        self.neighbours.iter().filter_map(Neighbour::post).any(follows)
+    }
+
+    /// Whether a robot has followed it on this post, or has joined the team to do so.
+    fn expects_follower(&self, own: PostId) -> bool {
+        let has_joined = matches!(*self.notice(),
+            Notice::Advance { joined: Some((_, followed)) } if followed == own);
+        has_joined || self.followed_post == Some(own)
+    }
+
+    /// Whether the robot that follows it has not been heard for so long that it would be gone by the roll
+    /// if it did not take part: it has restarted, and holds another post now.
+    fn has_lost_follower(&self) -> bool {
+        self.unfollowed_periods > self.patience_with_followers()
+    }
+
+    fn patience_with_followers(&self) -> u32 {
+        2 * self.site.roll_validity()
     }
 
     /// Remembers that a robot follows it: one that falls silent follows all the same.
     pub(super) fn note_follower(&mut self) {
-        let own = self.duty.post().filter(|post| post.is_primary()).map(|post| post.id);
-        let follows = |post: &Post| post.kind == PostKind::Primary { follows: own };
-        let is_followed = self.followed_post == own
-            || self.neighbours.iter().filter_map(Neighbour::post).any(follows);
-        self.followed_post = own.filter(|_| is_followed);
+        let follows = |own: &PostId| {
+            self.hears_follower(*own)
+                || self.followed_post == Some(*own) && !self.has_lost_follower()
+        };
+        self.followed_post = self.primary_post().filter(follows);
+    }
+
+    /// Once a period: for how long the robot that follows it has not been heard.
+    pub(super) fn count_unfollowed_periods(&mut self) {
+        let is_missed = |own: PostId| self.expects_follower(own) && !self.hears_follower(own);
+        let longer = (self.unfollowed_periods + 1).min(self.patience_with_followers() + 1);
+        self.unfollowed_periods =
+            if self.primary_post().is_some_and(is_missed) { longer } else { 0 };
+        if self.has_lost_follower() {
+            self.receive_news();
+        }
     }
 
     /// The post of a newcomer that this robot should attach to but does not yet reach.

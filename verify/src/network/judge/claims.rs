@@ -86,7 +86,7 @@ pub(super) fn is_true(event: &MissionEvent, ledger: &Ledger, scene: &Scene) -> R
         }
         MissionEvent::Stationary { .. } => stands_still(&ledger.primary_team, scene),
         MissionEvent::RecruitElected { robot, path, break_points } => {
-            is_free(*robot, scene)?;
+            is_free(*robot, path, scene)?;
             divides(path, break_points, ledger, scene)
         }
         MissionEvent::SubgroupArrived { subgroup, .. } => {
@@ -128,11 +128,16 @@ fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
     Ok(())
 }
 
-/// A recruit is redundant until it is elected.
-fn is_free(robot: usize, scene: &Scene) -> Result<(), Dispute> {
+/// A recruit is redundant until it is elected, or a node that bears nothing but the robot that calls.
+fn is_free(robot: usize, path: &[usize], scene: &Scene) -> Result<(), Dispute> {
     let Some(previous) = scene.previous else { return Ok(()) };
+    let bears_caller_alone = || {
+        let children = previous.tree.iter().filter(|(_, parent)| *parent == robot);
+        children.map(|(child, _)| child).eq(path.last())
+    };
     match previous.roles[robot] {
         Role::Redundant | Role::Recruit => Ok(()),
+        Role::Node if path.len() == 2 && bears_caller_alone() => Ok(()),
         role => {
             let sentence = format!("robot {robot}, a {}, is elected recruit", role.name());
             Err(Dispute::of(Property::Events, &[robot], sentence))
@@ -274,8 +279,9 @@ pub(super) fn teams_are_those(
         else {
             continue;
         };
-        let given_up = snapshot.phase == Phase::Ended && team.is_empty();
-        if *team != ledger.primary_team && !given_up {
+        // With the mission the team ends, and its members leave it one by one.
+        let is_dissolving = snapshot.phase == Phase::Ended && is_part(team, &ledger.primary_team);
+        if *team != ledger.primary_team && !is_dissolving {
             let sentence = format!(
                 "an event names the primary team {team:?}, which is {:?}",
                 ledger.primary_team
@@ -284,6 +290,12 @@ pub(super) fn teams_are_those(
         }
     }
     Ok(())
+}
+
+/// Whether the robots stand in `whole` in this order.
+pub(super) fn is_part(robots: &[usize], whole: &[usize]) -> bool {
+    let mut rest = whole.iter();
+    robots.iter().all(|robot| rest.any(|it| it == robot))
 }
 
 fn at_most(

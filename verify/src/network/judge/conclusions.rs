@@ -4,6 +4,7 @@ use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_discrete::Location as _;
 use pleach_discrete::network::{Phase, Role};
 
+use super::claims::is_part;
 use super::lately::Lately;
 use super::ledger::{Ledger, Stage};
 use super::walk::Walk;
@@ -366,12 +367,6 @@ impl Conclusions {
         }
         Ok(())
     }
-}
-
-/// Whether the robots stand in `whole` in this order.
-fn is_part(robots: &[usize], whole: &[usize]) -> bool {
-    let mut rest = whole.iter();
-    robots.iter().all(|robot| rest.any(|it| it == robot))
 }
 
 const fn is_phase_of(stage: Stage, phase: Phase) -> bool {

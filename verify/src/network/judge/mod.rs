@@ -26,6 +26,7 @@ mod posts;
 mod referee;
 mod safety;
 mod states;
+mod verdicts;
 mod walk;
 
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
@@ -43,6 +44,8 @@ pub use ledger::{Ledger, Stage};
 use places::Places;
 pub use referee::Referee;
 pub use safety::{Safety, relayed};
+use verdicts::Tried;
+pub use verdicts::missing;
 pub use walk::Walk;
 
 /// What is wrong with an entry of the record; the instant is added where it is known.
@@ -93,6 +96,8 @@ pub struct Judge<'a> {
     ledger: Ledger,
     conclusions: Conclusions,
     places: Places,
+    tried: Tried,
+    scenario: ValidScenario,
     previous: Option<Snapshot>,
 }
 
@@ -107,6 +112,8 @@ impl<'a> Judge<'a> {
             ledger: Ledger::new(robots),
             conclusions: Conclusions::new(nodes),
             places: Places::new(robots),
+            tried: Tried::default(),
+            scenario: scenario.clone(),
             previous: None,
             monitor,
         }
@@ -191,6 +198,7 @@ impl<'a> Judge<'a> {
         ledger: Ledger,
         snapshot: &Snapshot,
     ) -> Result<(), Dispute> {
+        self.tried.enter(event, &self.ledger, [self.previous.as_ref(), Some(snapshot)]);
         self.ledger = ledger;
         self.places.enter(event, snapshot);
         self.conclusions.enter(event, &self.ledger, snapshot.step)
@@ -244,11 +252,22 @@ impl<'a> Judge<'a> {
             _ if serviced == tasks && tasks > 0 => {
                 Some(format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
             }
+            Outcome::InsufficientRobots => self.refutation(),
             _ => None,
         });
         match complaint {
             None => Ok(()),
             Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),
+        }
+    }
+
+    /// Why robots are not too few although the mission ended for that reason, as a clause.
+    fn refutation(&self) -> Option<String> {
+        let overlooked = self.tried.overlooked(&self.ledger, self.previous.as_ref()?)?;
+        let announced = self.ledger.task().map_or(0, |task| task + 1);
+        match verdicts::missing(&self.scenario, announced) {
+            Some(_) => None,
+            None => Some(format!("the mission ends for want of a robot, but {overlooked}")),
         }
     }
 

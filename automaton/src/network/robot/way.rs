@@ -1,0 +1,115 @@
+//! Which way a robot goes: round obstacles, parked robots, and with its link (Definition 4.1).
+
+use std::sync::Arc;
+
+use pleach_continuous::Point;
+use pleach_continuous::geometry::segment::Segment;
+use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic};
+
+use super::Robot;
+use super::motion::ROUNDING;
+
+/// Parked robots are kept at this many ρ when there is a way round.
+const KEEP_OUT: f64 = 2.1;
+/// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
+/// goes straight on and exchanges duties with the robot in its way.
+const DETOUR_ALLOWANCE: f64 = 8.0;
+/// A way as good as another but for this many ρ is kept: robots do not alternate between two sides.
+const CONSTANCY: f64 = 1.0;
+/// A waypoint this many ρ away is as good as reached: no reason to keep to it.
+const NEARBY: f64 = 0.1;
+/// Control periods without progress after which a robot does not keep to its way any more.
+const OBSTINACY: u32 = 3;
+
+impl Robot {
+    /// a₁ of the way to the goal: of the geodesic, round parked robots where that is a short way round,
+    /// unless its link holds it back on that side of an obstacle.
+    pub(super) fn first_waypoint(&mut self, goal: Point) -> Option<Point> {
+        let site = Arc::clone(&self.site);
+        let free_space: &FreeSpace = &site.free_space;
+        if self.destination.as_ref().is_none_or(|known| known.goal() != goal) {
+            self.destination = Some(free_space.destination(goal));
+        }
+        let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
+        let parked: Vec<Disc> = self
+            .neighbours
+            .iter()
+            .filter(|neighbour| !neighbour.is_access_point() && neighbour.beacon.parked)
+            .map(|n| Disc { center: n.position(), radius: KEEP_OUT * self.clearance() })
+            .chain(self.keep_out_discs(KEEP_OUT * self.clearance()))
+            .collect();
+        let allowance = DETOUR_ALLOWANCE * self.clearance();
+        let around = |from: Point, direct: Geodesic| match free_space.detour(from, goal, &parked) {
+            Some(round) if round.length <= direct.length + allowance => round,
+            _ => direct,
+        };
+        let path = around(self.position, direct);
+        if let Some(path) = self.way_of_link(&path, &parked) {
+            return Some(self.next_corner(&path).unwrap_or(goal));
+        }
+        let corner = self.next_corner(&path).unwrap_or(goal);
+        match self.waypoint.filter(|&kept| kept != corner && self.may_keep(kept)) {
+            Some(kept) => {
+                let onward = free_space.geodesic_to(kept, self.destination.as_ref()?)?;
+                let length = (kept - self.position).norm() + around(kept, onward).length;
+                let constancy = CONSTANCY * self.clearance();
+                Some(if length <= path.length + constancy { kept } else { corner })
+            }
+            None => Some(corner),
+        }
+    }
+
+    /// Another way to the goal than `path`, on which its link leads farther: that by its parent, pulled
+    /// taut, if the parent rests and the two ways pass an obstacle on different sides. On each side a robot
+    /// gets as far as its link is long; where that is nearer to the goal on the parent's side, the robot
+    /// goes back round the obstacle; where robots are `parked` in that way, only if it gains more than a
+    /// detour may cost.
+    fn way_of_link(&self, path: &Geodesic, parked: &[Disc]) -> Option<Geodesic> {
+        let link = self.parent_link()?;
+        let parent =
+            self.neighbour(link.to).filter(|it| it.is_access_point() || it.beacon.parked)?;
+        let (space, parent) = (&self.site.free_space, parent.position());
+        let back = space.geodesic(self.position, parent)?;
+        // What is left of a way that the link does not cover.
+        let left = |length: f64| (length - link.limit).max(0.0);
+        if left(back.length + path.length) == 0.0 {
+            return None;
+        }
+        let onward = space.geodesic_to(parent, self.destination.as_ref()?)?;
+        let least = left(onward.length) + CONSTANCY * self.clearance();
+        if left(back.length + path.length) <= least {
+            return None;
+        }
+        let corners = back.waypoints.iter().rev().skip(1).copied().chain([self.position]);
+        let around: Vec<Point> = corners.chain(path.waypoints.iter().copied()).collect();
+        let by_path = left(space.taut(parent, &around).length);
+        if by_path <= least {
+            return None;
+        }
+        let way = space.taut(self.position, &[back.waypoints, onward.waypoints].concat());
+        let is_obstructed =
+            |piece: Segment| parked.iter().any(|disc| piece.distance(disc.center) < disc.radius);
+        let allowance = match way.segments(self.position).any(is_obstructed) {
+            true => DETOUR_ALLOWANCE,
+            false => CONSTANCY,
+        };
+        (by_path > left(onward.length) + allowance * self.clearance()).then_some(way)
+    }
+
+    /// Whether the waypoint of the period before can still be used. One that it has almost
+    /// reached would stop it: solvers end slightly short of a waypoint.
+    fn may_keep(&self, waypoint: Point) -> bool {
+        self.still_periods < OBSTINACY
+            && (waypoint - self.position).norm() > NEARBY * self.clearance()
+            && self.site.free_space.sees(self.position, waypoint)
+    }
+
+    /// The first waypoint that the robot has not reached. One that has strayed goes where the path leads
+    /// once it has re-entered: what keeps it off walls lets it do both at once.
+    pub(super) fn next_corner(&self, path: &Geodesic) -> Option<Point> {
+        let reached = ROUNDING * self.site.workspace.extent();
+        let is_entry = self.has_strayed() && path.waypoints.len() > 1;
+        let ahead = path.waypoints.iter().copied().skip(usize::from(is_entry));
+        ahead.into_iter().find(|w| (w - self.position).norm() > reached)
+    }
+}
