@@ -172,13 +172,17 @@ impl Tape {
         if given < self.variables {
             places[given..self.variables].fill(f64::NAN);
         }
-        for instruction in &self.instructions {
-            match instruction.width {
-                8 => self.abreast::<8>(instruction, places),
-                4 => self.abreast::<4>(instruction, places),
-                2 => self.abreast::<2>(instruction, places),
-                _ => self.once(instruction, places),
+        let mut ahead = &self.instructions[..];
+        while let Some(next) = ahead.first() {
+            let run = ahead.iter().take_while(|other| other.width == next.width).count();
+            let (instructions, rest) = ahead.split_at(run);
+            match next.width {
+                8 => self.abreast::<8>(instructions, places),
+                4 => self.abreast::<4>(instructions, places),
+                2 => self.abreast::<2>(instructions, places),
+                _ => self.once(instructions, places),
             }
+            ahead = rest;
         }
         let mut rest = results;
         for Places { first, count } in &self.results {
@@ -188,55 +192,72 @@ impl Tape {
         }
     }
 
+    /// Computes results one by one. As below, an operand that has just been computed is not read back from
+    /// its place: that would take longer than the arithmetic.
     #[inline]
-    fn once(&self, instruction: &Instruction, places: &mut [f64]) {
-        let at = |number: usize| places[instruction.operands[number] as usize];
-        let result = match instruction.action {
-            Action::Sum => at(0) + at(1),
-            Action::Difference => at(0) - at(1),
-            Action::Product => at(0) * at(1),
-            Action::Quotient => at(0) / at(1),
-            Action::ProductSum => at(0) * at(1) + at(2),
-            Action::ProductLess => at(0) * at(1) - at(2),
-            Action::LessProduct => at(2) - at(0) * at(1),
-            Action::Gather => places[self.gathered[instruction.operands[0] as usize] as usize],
-            Action::Root => at(0).sqrt(),
-            Action::Opposite => -at(0),
-            Action::Unary(operator) => operator.apply(at(0)),
-            Action::Binary(operator) => operator.apply(at(0), at(1)),
-            Action::Power => raise(at(0), at(1)),
-            Action::Lookup(table) => self.tables[table as usize].value(at(0)),
-            Action::Choice(relation) => Choice::select(relation, (at(0), at(1)), (at(2), at(3))),
-        };
-        places[instruction.target as usize] = result;
+    fn once(&self, instructions: &[Instruction], places: &mut [f64]) {
+        let (mut latest, mut result) = (u32::MAX, 0.0);
+        for Instruction { action, target, operands, .. } in instructions {
+            let at = |number: usize| match operands[number] {
+                place if place == latest => result,
+                place => places[place as usize],
+            };
+            result = match *action {
+                Action::Sum => at(0) + at(1),
+                Action::Difference => at(0) - at(1),
+                Action::Product => at(0) * at(1),
+                Action::Quotient => at(0) / at(1),
+                Action::ProductSum => at(0) * at(1) + at(2),
+                Action::ProductLess => at(0) * at(1) - at(2),
+                Action::LessProduct => at(2) - at(0) * at(1),
+                Action::Gather => places[self.gathered[operands[0] as usize] as usize],
+                Action::Root => at(0).sqrt(),
+                Action::Opposite => -at(0),
+                Action::Unary(operator) => operator.apply(at(0)),
+                Action::Binary(operator) => operator.apply(at(0), at(1)),
+                Action::Power => raise(at(0), at(1)),
+                Action::Lookup(table) => self.tables[table as usize].value(at(0)),
+                Action::Choice(relation) => {
+                    Choice::select(relation, (at(0), at(1)), (at(2), at(3)))
+                }
+            };
+            places[*target as usize] = result;
+            latest = *target;
+        }
     }
 
     /// Computes results abreast; the writer makes such instructions of arithmetic only.
     #[inline]
-    fn abreast<const WIDTH: usize>(&self, instruction: &Instruction, places: &mut [f64]) {
-        let at = |number: usize| -> [f64; WIDTH] {
-            let first = instruction.operands[number] as usize;
-            let row = &places[first..first + WIDTH];
-            from_fn(|lane| row[lane])
-        };
-        let results: [f64; WIDTH] = match instruction.action {
-            Action::Sum => two(at(0), at(1), |a, b| a + b),
-            Action::Difference => two(at(0), at(1), |a, b| a - b),
-            Action::Product => two(at(0), at(1), |a, b| a * b),
-            Action::Quotient => two(at(0), at(1), |a, b| a / b),
-            Action::ProductSum => three(at(0), at(1), at(2), |a, b, c| a * b + c),
-            Action::ProductLess => three(at(0), at(1), at(2), |a, b, c| a * b - c),
-            Action::LessProduct => three(at(0), at(1), at(2), |a, b, c| c - a * b),
-            Action::Opposite => at(0).map(|a| -a),
-            Action::Gather => {
-                let first = instruction.operands[0] as usize;
-                let sources = &self.gathered[first..first + WIDTH];
-                from_fn(|lane| places[sources[lane] as usize])
-            }
-            _ => return,
-        };
-        let target = instruction.target as usize;
-        places[target..target + WIDTH].copy_from_slice(&results);
+    fn abreast<const WIDTH: usize>(&self, instructions: &[Instruction], places: &mut [f64]) {
+        let (mut latest, mut results) = (u32::MAX, [0.0; WIDTH]);
+        for Instruction { action, target, operands, .. } in instructions {
+            let at = |number: usize| -> [f64; WIDTH] {
+                if operands[number] == latest {
+                    return results;
+                }
+                let first = operands[number] as usize;
+                let row = &places[first..first + WIDTH];
+                from_fn(|lane| row[lane])
+            };
+            results = match action {
+                Action::Sum => two(at(0), at(1), |a, b| a + b),
+                Action::Difference => two(at(0), at(1), |a, b| a - b),
+                Action::Product => two(at(0), at(1), |a, b| a * b),
+                Action::Quotient => two(at(0), at(1), |a, b| a / b),
+                Action::ProductSum => three(at(0), at(1), at(2), |a, b, c| a * b + c),
+                Action::ProductLess => three(at(0), at(1), at(2), |a, b, c| a * b - c),
+                Action::LessProduct => three(at(0), at(1), at(2), |a, b, c| c - a * b),
+                Action::Opposite => at(0).map(|a| -a),
+                Action::Gather => {
+                    let first = operands[0] as usize;
+                    let sources = &self.gathered[first..first + WIDTH];
+                    from_fn(|lane| places[sources[lane] as usize])
+                }
+                _ => return,
+            };
+            places[*target as usize..][..WIDTH].copy_from_slice(&results);
+            latest = *target;
+        }
     }
 }
 

@@ -221,9 +221,8 @@ pub(super) fn combine<const N: usize>(
     stages: [&[f64]; N],
 ) {
     let weights = weights.map(|weight| step * weight);
-    // Slices of one known length spare the loop its bounds checks.
     let dimension = target.len();
-    let (base, stages) = (&base[..dimension], stages.map(|stage| &stage[..dimension]));
+    let (base, stages) = (&base[..dimension], cut(stages, dimension));
     for i in 0..dimension {
         let mut sum = 0.0;
         for stage in 0..N {
@@ -243,7 +242,7 @@ pub(super) fn combine_differences<const N: usize>(
     stages: [&[f64]; N],
 ) {
     let dimension = target.len();
-    let stages = stages.map(|stage| &stage[..dimension]);
+    let stages = cut(stages, dimension);
     for i in 0..dimension {
         let mut sum = 0.0;
         for stage in 0..N {
@@ -251,6 +250,15 @@ pub(super) fn combine_differences<const N: usize>(
         }
         target[i] = step * sum;
     }
+}
+
+/// Slices of one known length: a loop over them has no bounds to check.
+#[inline]
+pub(super) fn cut<const N: usize>(mut stages: [&[f64]; N], dimension: usize) -> [&[f64]; N] {
+    for stage in &mut stages {
+        *stage = &stage[..dimension];
+    }
+    stages
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::dormand_prince::{
     EIGHTH, ELEVENTH, EXTENSION, FIFTEENTH, FIFTH, FIFTH_ORDER_ERROR, FOURTEENTH, FOURTH, NINTH,
     NODES, NODES_INSIDE, SECOND, SEVENTH, SIXTEENTH, SIXTH, SOLUTION, TENTH, THIRD, THIRD_ORDER,
-    TWELFTH, combine, combine_differences,
+    TWELFTH, combine, combine_differences, cut,
 };
 use super::integrator::{Origin, Trial};
 use super::{Tolerances, VectorField};
@@ -148,7 +148,7 @@ fn estimate(
     let dimension = after.len();
     let before = &before[..dimension];
     let fractions = &mut fractions[..dimension];
-    let stages = stages.map(|stage| &stage[..dimension]);
+    let stages = cut(stages, dimension);
     let [first, _, _, _, ninth, _, _, twelfth] = stages;
     for i in 0..dimension {
         let (mut solution, mut fifth) = (0.0, 0.0);
