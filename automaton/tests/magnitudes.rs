@@ -111,6 +111,24 @@ fn a_level_that_is_only_approached_is_said() {
     assert!(trajectory.doubts().iter().any(|doubt| doubt.why == Why::Touch), "{trajectory:?}");
 }
 
+/// ẋ = x ln x has the solution exp(−eᵗ ln 2), which never is 0; but soon the error hides whether it is, and
+/// ln 0 has no value.
+#[test]
+fn a_rate_without_a_value_within_the_error_ends_the_run() {
+    let [x, ..] = coordinates();
+    let trajectory = run(body([0.5, 0.0], [&x * x.ln(), constant(0.0)]), 100.0);
+    let Reason::Finished(failure) = &trajectory.ending().reason else {
+        panic!("{:?}", trajectory.ending())
+    };
+    let message = failure.to_string();
+    let reason = "the rate of `x` may grow without bound or have no value, at ";
+    assert!(message.contains(reason), "{message}");
+    let end = trajectory.ending().at.t;
+    assert!(trajectory.value("x", end).is_some_and(|x| x < 1e-6), "{end}");
+    let [early, exact] = [1.0, (-1f64.exp() * 2f64.ln()).exp()];
+    assert!(trajectory.value("x", early).is_some_and(|x| (x - exact).abs() < 1e-8));
+}
+
 /// A rate that acts for a thousandth of a second at 50 s: its integral is the width times √π.
 #[test]
 fn spikes_of_rates_are_not_stepped_over() {

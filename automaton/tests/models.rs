@@ -2,15 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::io::{self, Write};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nalgebra::DMatrix;
 use pleach_automaton::check::Kind;
 use pleach_automaton::diagram::{latex, mermaid};
 use pleach_automaton::{
-    Automaton, BuildError, Coordinates, Flow, Name, Record, Trajectory, Vector, coordinates, from,
-    sweep,
+    Automaton, BuildError, Coordinates, Flow, Name, Record, Vector, coordinates, from, sweep,
 };
 use pleach_discrete::vocabulary;
 use pleach_guards::{Expression, Table, piecewise, variable};
@@ -242,31 +240,4 @@ fn records_reach_functions_with_their_names() {
         .unwrap();
     let trajectory = turning.run(1.0).unwrap();
     assert!((trajectory.value("x", 1.0).unwrap() - 1f64.cos()).abs() < 1e-8);
-}
-
-/// Counts how often it is asked to write.
-#[derive(Default)]
-struct Counted {
-    calls: usize,
-    bytes: Vec<u8>,
-}
-
-impl Write for &mut Counted {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.calls += 1;
-        self.bytes.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-#[test]
-fn trajectories_are_written_in_large_pieces() {
-    let trajectory = ball().run(12.0).unwrap();
-    let mut file = Counted::default();
-    trajectory.write(&mut file).unwrap();
-    assert!(file.calls <= file.bytes.len() / 4096 + 1, "{} calls", file.calls);
-    assert_eq!(Trajectory::read(&file.bytes[..]).unwrap(), trajectory);
 }

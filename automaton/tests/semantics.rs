@@ -133,6 +133,26 @@ fn simultaneous_transitions_go_by_priority_and_then_by_declaration() {
     assert_eq!([order(0, 1), order(1, 0), order(0, 0)], ["go", "stay", "go"]);
 }
 
+/// Of two transitions with one event the one is taken whose guard holds first; of both, that which comes first.
+#[test]
+fn one_event_may_lead_from_one_location_to_several() {
+    let reached = |[there, beyond]: [f64; 2], [first, second]: [u8; 2]| {
+        let machine = built(
+            clock()
+                .transition(from(Here).on(Go).to(There).must(after(there)).priority(first))
+                .transition(from(Here).on(Go).to(Beyond).must(after(beyond)).priority(second)),
+        );
+        let trajectory = run(&machine, 5.0);
+        assert_eq!(trajectory.jumps().len(), 1);
+        let place = trajectory.jumps()[0].moves[0].target;
+        (trajectory.jumps()[0].at.t, trajectory.components()[0].locations[place].to_string())
+    };
+    assert_eq!(reached([1.0, 2.0], [1, 0]), (1.0, "there".to_owned()));
+    assert_eq!(reached([2.0, 1.0], [0, 1]), (1.0, "beyond".to_owned()));
+    assert_eq!(reached([1.0, 1.0], [1, 0]), (1.0, "beyond".to_owned()));
+    assert_eq!(reached([1.0, 1.0], [0, 0]), (1.0, "there".to_owned()));
+}
+
 #[test]
 fn what_may_happen_happens_as_late_or_as_early_as_it_can() {
     let machine = built(

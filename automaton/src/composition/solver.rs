@@ -426,7 +426,10 @@ impl<'a> Solver<'a> {
                 let middle = from + 0.5 * (to - from);
                 if to - from <= CRAWLING * to.abs() || middle <= from || middle >= to {
                     let name = component.blueprint.coordinates[rate.coordinate];
-                    let reason = format!("the rate of `{name}` grows without bound");
+                    let reason = format!(
+                        "within the error of the solution, the rate of `{name}` may grow without bound \
+                         or have no value,"
+                    );
                     return Err((from, reason));
                 }
                 spans.extend([(middle, to), (from, middle)]);

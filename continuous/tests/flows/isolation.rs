@@ -473,3 +473,24 @@ fn enclosures_hold_the_error_of_a_piece() {
         );
     }
 }
+
+/// x = 1 + 10⁻³ (t − ½) comes to 1 at ½. Unless its error is smaller than the way that it goes, it may as
+/// well do so at any other instant, or never.
+#[test]
+fn what_begins_within_the_error_of_the_whole_piece_is_doubted() {
+    let mut formula = Formula::new(&variable("x").at_least(1.0), &["x"]);
+    let mut found = |error: f64| {
+        let mut piece = Piece::new(0.0, 1.0, 0.0, 1.0);
+        piece.push([1.0 - 0.5e-3, 1e-3], error);
+        let found =
+            isolate(&piece, 0.0, 1.0, &EventSearch::default(), &mut formula, &mut { BUDGET });
+        let Finding { onset, doubts } = found.expect("a line has a value");
+        let time = onset.expect("it is met").time;
+        assert!((time - 0.5).abs() < 1e-9, "{time}");
+        (time, doubts)
+    };
+    assert_eq!(found(1e-6).1, []);
+    assert_eq!(found(4e-4).1, []);
+    let (time, doubts) = found(6e-4);
+    assert_eq!(doubts, [Doubt { from: 0.0, to: time, why: Uncertainty::Touch }]);
+}
