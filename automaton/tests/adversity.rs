@@ -167,6 +167,31 @@ fn poles_and_domains_of_guards_are_met_or_said() {
     assert!((late.ending().at.t - 1.0).abs() < 1e-12, "{:?}", late.ending());
 }
 
+/// What holds at the last instant at which the formula has a value, and at no number before it.
+#[test]
+fn what_holds_where_a_domain_ends_is_taken() {
+    for bound in [0.0, 1e-9, 1e-8, 1e-7] {
+        let root = (1.0 - x()).square_root().at_most(bound);
+        assert_event(&go(line(0.0, 1.0), root, 5.0), 1.0, 1e-13);
+    }
+    // Time stops there, but before it, where the invariant holds.
+    let parts = line(0.0, 1.0).invariant(Here, (1.0 - x()).square_root().more_than(0.0));
+    let trajectory = run(parts, 5.0);
+    assert_eq!(trajectory.ending().reason, Reason::Blocked);
+    assert!((trajectory.ending().at.t - 1.0).abs() < 1e-15, "{:?}", trajectory.ending());
+}
+
+/// What was in doubt before is not forgotten.
+#[test]
+fn doubts_before_the_end_of_a_domain_are_kept() {
+    let touching = (x().sin() + x().cos()).at_least(2f64.sqrt() + 1e-15);
+    let undefined = (1.0 - x()).square_root().less_than(0.0);
+    let parts = line(0.0, 1.0).transition(from(Here).on(Back).to(There).must(undefined));
+    let trajectory = go(parts, touching, 5.0);
+    assert!(matches!(trajectory.ending().reason, Reason::Finished(_)), "{:?}", trajectory.ending());
+    assert_said(&trajectory, FRAC_PI_4, 0.0);
+}
+
 /// Where a formula begins to have a value, at the start, nothing is in doubt.
 #[test]
 fn formulas_that_begin_with_the_run_are_met() {
