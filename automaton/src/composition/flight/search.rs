@@ -35,6 +35,14 @@ impl End {
     }
 }
 
+/// Whether what a piece says holds of the state, too.
+enum Confirmation {
+    /// It begins to hold here.
+    Onset(Onset),
+    /// It does not, and up to this time, which is later, the piece says otherwise.
+    Until(f64),
+}
+
 /// Why a flight ends early: how far it goes, and why.
 pub(super) struct Stop {
     pub(super) at: f64,
@@ -137,13 +145,47 @@ impl<'a> Search<'a, '_> {
             let found = isolate(piece, from, end, &search, &mut self.tension, self.steps);
             let Finding { onset, doubts } = found;
             doubts.into_iter().for_each(|doubt| self.doubt(doubt));
-            let onset = onset.or_else(|lost| self.at_last_value(lost))?;
-            if onset.is_some() || end <= from {
-                return Ok(onset);
-            }
-            from = end;
+            from = match onset.or_else(|lost| self.at_last_value(lost))? {
+                Some(onset) => match self.confirmed(onset, end)? {
+                    Confirmation::Onset(onset) => return Ok(Some(onset)),
+                    Confirmation::Until(time) => time,
+                },
+                None if end <= from => return Ok(None),
+                None => end,
+            };
         }
         Ok(None)
+    }
+
+    /// The onset as the state has it, of which the polynomials of a piece differ by rounding, and by the
+    /// errors of those through the values of a function. While they alone say that something has to happen,
+    /// it is in doubt.
+    fn confirmed(&mut self, onset: Onset, end: f64) -> Result<Confirmation, Stop> {
+        if self.holds_at(onset.time)? {
+            return Ok(Confirmation::Onset(onset));
+        }
+        let (mut before, mut step) = (onset.time, onset.time.next_up() - onset.time);
+        loop {
+            let time = before + step;
+            if time < end && self.holds_at(time)? {
+                return self.narrowed(before, time, 0.0).map(Confirmation::Onset);
+            }
+            if time >= end || !self.holds_on_piece(time, end)? {
+                let time = time.min(end);
+                self.doubt(Doubt { from: onset.time, to: time, why: Uncertainty::Touch });
+                return Ok(Confirmation::Until(time));
+            }
+            (before, step) = (time, 2.0 * step);
+        }
+    }
+
+    fn holds_on_piece(&mut self, time: f64, end: f64) -> Result<bool, Stop> {
+        let mut state = self.solver.start().to_vec();
+        match self.solver.piece_at(time, end) {
+            Ok(piece) => piece.state_at(time, &mut state),
+            Err(reason) => return Err(self.lost_flow(reason)),
+        }
+        self.holds(&state, time)
     }
 
     /// The first number of seconds after `from` at which floating-point numbers say, too, that
