@@ -232,24 +232,32 @@ pub(super) fn combine<const N: usize>(
     }
 }
 
-/// target = step · Σ weight · (stage − first stage), for weights that sum to 0: of straight motion
-/// it is exactly 0.
+/// targets = step · Σ weight · (stage − first stage), for weights that sum to 0: of straight motion
+/// they are exactly 0. Says whether all of them are finite.
 #[inline]
-pub(super) fn combine_differences<const N: usize>(
-    target: &mut [f64],
+pub(super) fn combine_differences<const M: usize, const N: usize>(
+    targets: [&mut [f64]; M],
     step: f64,
-    weights: [f64; N],
+    weights: [[f64; N]; M],
     stages: [&[f64]; N],
-) {
-    let dimension = target.len();
+) -> bool {
+    let dimension = stages[0].len();
     let stages = cut(stages, dimension);
+    let targets = targets.map(|target| &mut target[..dimension]);
+    // It stays 0 while everything is finite.
+    let mut trace = 0.0;
     for i in 0..dimension {
-        let mut sum = 0.0;
-        for stage in 0..N {
-            sum += weights[stage] * (stages[stage][i] - stages[0][i]);
+        let differences: [f64; N] = std::array::from_fn(|stage| stages[stage][i] - stages[0][i]);
+        for target in 0..M {
+            let mut sum = 0.0;
+            for stage in 0..N {
+                sum += weights[target][stage] * differences[stage];
+            }
+            targets[target][i] = step * sum;
+            trace += 0.0 * targets[target][i];
         }
-        target[i] = step * sum;
     }
+    trace == 0.0
 }
 
 /// Slices of one known length: a loop over them has no bounds to check.

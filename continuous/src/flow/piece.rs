@@ -55,6 +55,29 @@ impl Piece {
         self
     }
 
+    /// A piece of components with up to `N` coefficients each, given with a bound on their error.
+    pub(super) fn of_rows<const N: usize>(
+        [start, end]: [f64; 2],
+        origin: f64,
+        scale: f64,
+        rows: impl ExactSizeIterator<Item = ([f64; N], f64)>,
+    ) -> Self {
+        let (mut ends, mut errors) =
+            (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
+        let mut coefficients = Vec::with_capacity(N * rows.len());
+        for (row, error) in rows {
+            let zeros = row.iter().rev().take_while(|coefficient| **coefficient == 0.0).count();
+            coefficients.extend_from_slice(&row);
+            coefficients.truncate(coefficients.len() - zeros);
+            ends.push(coefficients.len());
+            errors.push(error);
+        }
+        if errors.iter().all(|error| *error == 0.0) {
+            errors.clear();
+        }
+        Piece { start, end, origin, scale, coefficients, ends, errors }
+    }
+
     /// Adds a component: its coefficients, the constant first, and a bound on its error.
     pub fn push(&mut self, coefficients: impl IntoIterator<Item = f64>, error: f64) {
         let first = self.coefficients.len();
@@ -116,6 +139,18 @@ impl Piece {
     /// The largest magnitude of what is raised to powers.
     pub(super) fn farthest(&self) -> f64 {
         self.place(self.start).abs().max(self.place(self.end).abs())
+    }
+
+    /// Whether values and rates of all components are certainly finite: all coefficients together are.
+    pub fn is_finite(&self) -> bool {
+        let (rows, rest) = self.coefficients.as_chunks::<8>();
+        let mut sums = [0.0; 8];
+        for row in rows {
+            sums.iter_mut().zip(row).for_each(|(sum, coefficient)| *sum += coefficient.abs());
+        }
+        let rest = rest.iter().chain(&self.errors).map(|number| number.abs());
+        let most: f64 = sums.into_iter().chain(rest).sum();
+        (most * self.coefficients.len() as f64).is_finite()
     }
 
     /// The highest power with a coefficient.

@@ -88,30 +88,23 @@ impl Inside {
         terms.map(|(coefficient, k)| f64::from(k) * coefficient * 0.5_f64.powi(k - 1)).sum()
     }
 
-    /// The coefficients of the same polynomial in powers of θ, from that of θ⁰ = 1 on.
+    /// The coefficients of the same polynomial in powers of θ, from that of θ⁰ = 1 on: term by term
+    /// θ, θφ, θ²φ, θ²φ², θ³φ², θ³φ³ and θ⁴φ³ multiplied out.
+    #[inline]
     fn powers(&self, component: usize) -> [f64; MOST_TERMS + 1] {
-        // A number of terms that is known in advance makes straight code.
-        match self.known {
-            MOST_TERMS => self.powers_of::<MOST_TERMS>(component),
-            STIFF_TERMS => self.powers_of::<STIFF_TERMS>(component),
-            _ => self.powers_of::<CUBIC_TERMS>(component),
-        }
-    }
-
-    fn powers_of<const TERMS: usize>(&self, component: usize) -> [f64; MOST_TERMS + 1] {
-        let terms: [f64; TERMS] = std::array::from_fn(|number| self.terms[number][component]);
-        let mut powers = [0.0; MOST_TERMS + 1];
-        for number in (0..TERMS).rev() {
-            powers[0] += terms[number];
-            let by_theta = number % 2 == 0;
-            let degree = TERMS - number;
-            for power in (1..=degree).rev() {
-                let lower = powers[power - 1];
-                powers[power] = if by_theta { lower } else { powers[power] - lower };
-            }
-            powers[0] = if by_theta { 0.0 } else { powers[0] };
-        }
-        powers
+        let term =
+            |number: usize| if number < self.known { self.terms[number][component] } else { 0.0 };
+        let [a, b, c, d, e, f, g]: [f64; MOST_TERMS] = std::array::from_fn(term);
+        [
+            0.0,
+            a + b,
+            c - b + d,
+            e - c - 2.0 * d + f,
+            d - 2.0 * e - 3.0 * f + g,
+            e + 3.0 * (f - g),
+            3.0 * g - f,
+            -g,
+        ]
     }
 }
 
@@ -147,15 +140,13 @@ impl<F: VectorField + ?Sized> Curve for Step<'_, F> {
     fn piece(&self, _time: f64) -> Option<Piece> {
         let mut inside = self.inside.borrow_mut();
         self.explore(&mut inside);
-        let mut piece = Piece::new(self.start, self.end, self.start, self.end - self.start)
-            .with_room(self.first.len(), MOST_TERMS + 1);
-        for (component, (first, last)) in self.first.iter().zip(self.last).enumerate() {
+        let ends = self.first.iter().zip(self.last).enumerate();
+        let rows = ends.map(|(component, (first, last))| {
             let mut powers = inside.powers(component);
-            powers[0] += first;
-            let error = INSIDE * self.tolerances.allowed(first.abs().max(last.abs()));
-            piece.push(powers, error);
-        }
-        Some(piece)
+            powers[0] = *first;
+            (powers, INSIDE * self.tolerances.allowed(first.abs().max(last.abs())))
+        });
+        Some(Piece::of_rows([self.start, self.end], self.start, self.end - self.start, rows))
     }
 }
 
@@ -177,7 +168,8 @@ impl<F: VectorField + ?Sized> Step<'_, F> {
         inside.known = match self.stages {
             Stages::Explicit { explicit, is_suspect } => {
                 let ends = (self.first, first_rates, last_rates);
-                let (room, terms) = (&mut inside.room, &mut inside.terms[3..]);
+                let [_, _, _, terms @ ..] = inside.terms.each_mut().map(Vec::as_mut_slice);
+                let room = &mut inside.room;
                 let extended = explicit.extend(self.field, self.start, step, ends, room, terms);
                 let is_sound = extended && !(is_suspect && self.prefers_cubic(inside));
                 if is_sound { MOST_TERMS } else { CUBIC_TERMS }
