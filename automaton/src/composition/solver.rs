@@ -143,8 +143,12 @@ impl<'a> Solver<'a> {
         while self.reached <= time && self.reached < limit || self.pieces.is_empty() {
             self.extend(limit)?;
         }
+        let last = self.pieces.len() - 1;
+        if self.pieces[last].start() <= time {
+            return Ok(&self.pieces[last]);
+        }
         let number = self.pieces.partition_point(|piece| piece.end() <= time);
-        Ok(&self.pieces[number.min(self.pieces.len() - 1)])
+        Ok(&self.pieces[number.min(last)])
     }
 
     /// How many numbers the pieces hold.

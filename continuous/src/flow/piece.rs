@@ -55,27 +55,36 @@ impl Piece {
         self
     }
 
-    /// A piece of components with up to `N` coefficients each, given with a bound on their error.
+    /// A piece of components with up to `N` coefficients each, with bounds on their errors.
     pub(super) fn of_rows<const N: usize>(
         [start, end]: [f64; 2],
         origin: f64,
         scale: f64,
-        rows: impl ExactSizeIterator<Item = ([f64; N], f64)>,
+        rows: impl Iterator<Item = [f64; N]>,
+        errors: Vec<f64>,
     ) -> Self {
-        let (mut ends, mut errors) =
-            (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
-        let mut coefficients = Vec::with_capacity(N * rows.len());
-        for (row, error) in rows {
-            let zeros = row.iter().rev().take_while(|coefficient| **coefficient == 0.0).count();
-            coefficients.extend_from_slice(&row);
-            coefficients.truncate(coefficients.len() - zeros);
-            ends.push(coefficients.len());
-            errors.push(error);
+        let mut coefficients = vec![0.0; N * errors.len()];
+        let (places, _) = coefficients.as_chunks_mut::<N>();
+        places.iter_mut().zip(rows).for_each(|(place, row)| *place = row);
+        let ends = (1..=errors.len()).map(|rows| N * rows).collect();
+        let mut piece = Piece { start, end, origin, scale, coefficients, ends, errors };
+        if piece.errors.iter().all(|error| *error == 0.0) {
+            piece.errors.clear();
         }
-        if errors.iter().all(|error| *error == 0.0) {
-            errors.clear();
+        piece.trim();
+        piece
+    }
+
+    /// Leaves zeros at the ends of components out.
+    fn trim(&mut self) {
+        if self.ends.iter().all(|&end| self.coefficients[end - 1] != 0.0) {
+            return;
         }
-        Piece { start, end, origin, scale, coefficients, ends, errors }
+        let mut trimmed = Piece::new(self.start, self.end, self.origin, self.scale);
+        for component in 0..self.ends.len() {
+            trimmed.push(self.coefficients(component).iter().copied(), self.error(component));
+        }
+        *self = trimmed;
     }
 
     /// Adds a component: its coefficients, the constant first, and a bound on its error.

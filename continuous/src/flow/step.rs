@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use super::dormand_prince::cut;
 use super::explicit::Explicit;
 use super::implicit::Implicit;
 use super::{Curve, Piece, Tolerances, VectorField};
@@ -83,28 +84,32 @@ impl Inside {
 
     /// The derivative with respect to θ at 1/2.
     fn slope_in_the_middle(&self, component: usize) -> f64 {
-        let powers = self.powers(component);
-        let terms = powers.iter().zip(0_i32..).skip(1);
-        terms.map(|(coefficient, k)| f64::from(k) * coefficient * 0.5_f64.powi(k - 1)).sum()
+        let (mut value, mut slope) = (0.0, 0.0);
+        for (number, term) in self.terms[..self.known].iter().enumerate().rev() {
+            value += term[component];
+            slope = 0.5 * slope + if number % 2 == 0 { value } else { -value };
+            value *= 0.5;
+        }
+        slope
     }
 
-    /// The coefficients of the same polynomial in powers of θ, from that of θ⁰ = 1 on: term by term
-    /// θ, θφ, θ²φ, θ²φ², θ³φ², θ³φ³ and θ⁴φ³ multiplied out.
+    /// By component, the coefficients of the same polynomial in powers of θ, from that of θ⁰ = 1 on,
+    /// which is `first`: θ, θφ, θ²φ, θ²φ², θ³φ², θ³φ³ and θ⁴φ³ are multiplied out.
     #[inline]
-    fn powers(&self, component: usize) -> [f64; MOST_TERMS + 1] {
-        let term =
-            |number: usize| if number < self.known { self.terms[number][component] } else { 0.0 };
-        let [a, b, c, d, e, f, g]: [f64; MOST_TERMS] = std::array::from_fn(term);
-        [
-            0.0,
-            a + b,
-            c - b + d,
-            e - c - 2.0 * d + f,
-            d - 2.0 * e - 3.0 * f + g,
-            e + 3.0 * (f - g),
-            3.0 * g - f,
-            -g,
-        ]
+    fn powers(&self, first: &[f64]) -> impl Iterator<Item = [f64; MOST_TERMS + 1]> {
+        let [a, b, c, d, e, f, g] = cut(self.terms.each_ref().map(Vec::as_slice), first.len());
+        (0..first.len()).map(move |i| {
+            [
+                first[i],
+                a[i] + b[i],
+                c[i] - b[i] + d[i],
+                e[i] - c[i] - 2.0 * d[i] + f[i],
+                d[i] - 2.0 * e[i] - 3.0 * f[i] + g[i],
+                e[i] + 3.0 * (f[i] - g[i]),
+                3.0 * g[i] - f[i],
+                -g[i],
+            ]
+        })
     }
 }
 
@@ -140,13 +145,13 @@ impl<F: VectorField + ?Sized> Curve for Step<'_, F> {
     fn piece(&self, _time: f64) -> Option<Piece> {
         let mut inside = self.inside.borrow_mut();
         self.explore(&mut inside);
-        let ends = self.first.iter().zip(self.last).enumerate();
-        let rows = ends.map(|(component, (first, last))| {
-            let mut powers = inside.powers(component);
-            powers[0] = *first;
-            (powers, INSIDE * self.tolerances.allowed(first.abs().max(last.abs())))
-        });
-        Some(Piece::of_rows([self.start, self.end], self.start, self.end - self.start, rows))
+        let ends = self.first.iter().zip(self.last);
+        let error = |(first, last): (&f64, &f64)| {
+            INSIDE * self.tolerances.allowed(first.abs().max(last.abs()))
+        };
+        let (span, duration) = ([self.start, self.end], self.end - self.start);
+        let (rows, errors) = (inside.powers(self.first), ends.map(error).collect());
+        Some(Piece::of_rows(span, self.start, duration, rows, errors))
     }
 }
 
@@ -179,6 +184,7 @@ impl<F: VectorField + ?Sized> Step<'_, F> {
                 if extended { STIFF_TERMS } else { CUBIC_TERMS }
             }
         };
+        inside.terms[inside.known..].iter_mut().for_each(|term| term.fill(0.0));
     }
 }
 
@@ -216,9 +222,10 @@ mod tests {
         for (number, term) in inside.terms.iter_mut().enumerate() {
             term[0] = [3.0, -1.0, 4.0, 1.0, -5.0, 9.0, 2.0][number];
         }
-        for known in [3, 4, 7] {
+        for known in [7, 4, 3] {
             inside.known = known;
-            let powers = inside.powers(0);
+            inside.terms[known..].iter_mut().for_each(|term| term.fill(0.0));
+            let powers = inside.powers(&[0.0]).next().expect("it has a component");
             for tenth in 0..=10 {
                 let theta = 0.1 * f64::from(tenth);
                 let sum = powers.iter().rev().fold(0.0, |sum, power| sum * theta + power);
