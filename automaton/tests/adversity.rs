@@ -4,8 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use pleach_automaton::{
-    Automaton, Builder, Coordinate, Coordinates, Flow, Reason, Settings, Trajectory, coordinates,
-    from,
+    Automaton, Builder, Coordinate, Coordinates, Reason, Settings, Trajectory, coordinates, from,
 };
 use pleach_discrete::vocabulary;
 use pleach_guards::{Expression, Predicate};
