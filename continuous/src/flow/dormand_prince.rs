@@ -277,16 +277,16 @@ fn combine_abreast<const LANES: usize, const M: usize, const N: usize>(
     for stage in 1..N {
         let row = row(stage);
         let differences: [f64; LANES] = std::array::from_fn(|lane| row[lane] - first[lane]);
-        for target in 0..M {
-            for lane in 0..LANES {
-                sums[target][lane] += weights[target][stage] * differences[lane];
+        for (sums, weights) in sums.iter_mut().zip(weights) {
+            for (sum, difference) in sums.iter_mut().zip(differences) {
+                *sum += weights[stage] * difference;
             }
         }
     }
     let mut trace = 0.0;
-    for target in 0..M {
-        let results: [f64; LANES] = std::array::from_fn(|lane| step * sums[target][lane]);
-        targets[target][place..place + LANES].copy_from_slice(&results);
+    for (target, sums) in targets.iter_mut().zip(sums) {
+        let results: [f64; LANES] = std::array::from_fn(|lane| step * sums[lane]);
+        target[place..place + LANES].copy_from_slice(&results);
         trace += 0.0 * results.iter().sum::<f64>();
     }
     trace
