@@ -213,6 +213,8 @@ mod how_to {
     struct Map;
     #[doc = include_str!("../docs/how-to/medium.md")]
     struct Medium;
+    #[doc = include_str!("../docs/how-to/model.md")]
+    struct Model;
     #[doc = include_str!("../docs/how-to/monitor.md")]
     struct Monitor;
     #[doc = include_str!("../docs/how-to/real-robots.md")]

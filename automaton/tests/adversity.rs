@@ -4,7 +4,8 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use pleach_automaton::{
-    Automaton, Builder, Coordinate, Coordinates, Reason, Settings, Trajectory, coordinates, from,
+    Automaton, Builder, Coordinate, Coordinates, Flow, Reason, Settings, Trajectory, coordinates,
+    from,
 };
 use pleach_discrete::vocabulary;
 use pleach_guards::{Expression, Predicate};
@@ -165,6 +166,70 @@ fn poles_and_domains_of_guards_are_met_or_said() {
     let late = go(line(0.0, 1.0), (1.0 - x()).square_root().less_than(0.0), 5.0);
     assert!(matches!(late.ending().reason, Reason::Finished(_)), "{:?}", late.ending());
     assert!((late.ending().at.t - 1.0).abs() < 1e-12, "{:?}", late.ending());
+}
+
+/// What holds at the last instant at which the formula has a value, and at no number before it.
+#[test]
+fn what_holds_where_a_domain_ends_is_taken() {
+    for bound in [0.0, 1e-9, 1e-8, 1e-7] {
+        let root = (1.0 - x()).square_root().at_most(bound);
+        assert_event(&go(line(0.0, 1.0), root, 5.0), 1.0, 1e-13);
+    }
+    // Time stops there, but before it, where the invariant holds.
+    let parts = line(0.0, 1.0).invariant(Here, (1.0 - x()).square_root().more_than(0.0));
+    let trajectory = run(parts, 5.0);
+    assert_eq!(trajectory.ending().reason, Reason::Blocked);
+    assert!((trajectory.ending().at.t - 1.0).abs() < 1e-15, "{:?}", trajectory.ending());
+}
+
+/// What was in doubt before is not forgotten.
+#[test]
+fn doubts_before_the_end_of_a_domain_are_kept() {
+    let touching = (x().sin() + x().cos()).at_least(2f64.sqrt() + 1e-15);
+    let undefined = (1.0 - x()).square_root().less_than(0.0);
+    let parts = line(0.0, 1.0).transition(from(Here).on(Back).to(There).must(undefined));
+    let trajectory = go(parts, touching, 5.0);
+    assert!(matches!(trajectory.ending().reason, Reason::Finished(_)), "{:?}", trajectory.ending());
+    assert_said(&trajectory, FRAC_PI_4, 0.0);
+}
+
+/// Clocks are exact in the state, and the polynomials of the flow beside them differ from it by rounding.
+#[test]
+fn formulas_of_clocks_beside_curves_are_met() {
+    let Body { place, speed, time } = Body::coordinates();
+    let forces = [-&place, -place.sin()];
+    for (number, force) in (1..=600).zip(forces.iter().cycle()) {
+        let (start, rate, due) = (0.37, 0.7 + 1e-3 * f64::from(number), 0.037 * f64::from(number));
+        let guards = [
+            time.power(3.0).at_least((start + rate * due).powi(3)),
+            time.square_root().at_least((start + rate * due).sqrt()),
+        ];
+        for guard in guards {
+            let swing = Automaton::starting_in(Here)
+                .initially(Body { place: 1.0, speed: 0.0, time: start })
+                .flow(Here, [place.rate(&speed), speed.rate(force.clone()), time.rate(rate)]);
+            let trajectory = go(swing, guard, 30.0);
+            assert_event(&trajectory, due, 1e-13);
+            assert_eq!(trajectory.ending().reason, Reason::Horizon);
+        }
+    }
+    let every = from(Here).on(Go).to(Here).must(time.power(2.0).at_least(0.01));
+    let pendulum = body([1.0, 0.0], [Expression::from(&speed), -place.sin()]);
+    let trajectory = run(pendulum.transition(every.then(time.becomes(0.0))), 100.05);
+    assert_eq!(trajectory.jumps().len(), 1000, "{:?}", trajectory.ending());
+}
+
+/// A function that solves a flow is taken at its own word, and not at that of the polynomials through it.
+#[test]
+fn formulas_of_functions_that_solve_flows_are_met() {
+    for number in 1..=300 {
+        let due = 0.01 * f64::from(number);
+        let decay = Flow::exact("x e^(-t)", |state: &mut Line, time: f64| state.x *= (-time).exp());
+        let parts = Automaton::starting_in(Here).initially(Line { x: 1.0 }).flow(Here, decay);
+        let trajectory = go(parts, x().power(2.0).at_most((-2.0 * due).exp()), 4.0);
+        assert_event(&trajectory, due, 1e-12);
+        assert_eq!(trajectory.ending().reason, Reason::Horizon);
+    }
 }
 
 /// Where a formula begins to have a value, at the start, nothing is in doubt.

@@ -143,6 +143,36 @@ fn events_at_the_horizon_and_right_behind_it() {
     assert_eq!(third.jumps().len(), 1);
 }
 
+/// Where rounding and the errors of solutions decide whether something happens at the horizon.
+#[test]
+fn what_may_happen_at_the_horizon_is_said() {
+    let [place, speed, _] = coordinates();
+    let growth = || body([1.0, 0.0], [Expression::from(&place), 0.0.into()]);
+    let fall = |height: f64| body([height, 0.0], [Expression::from(&speed), (-1.0).into()]);
+    let bent = || body([0.0; 2], [1.0 + place.power(2.0), 0.0.into()]);
+    for step in 1..80 {
+        let time = 0.019 * f64::from(step);
+        let cases = [
+            (growth(), place.at_least(time.exp())),
+            (fall(0.5 * time * time), place.at_most(0.0)),
+            (bent(), place.at_least(time.tan())),
+        ];
+        for (parts, guard) in cases {
+            let run = |horizon: f64| go(parts.clone(), guard.clone(), horizon);
+            let last = run(time);
+            let doubts = last.doubts().iter();
+            let is_said = doubts.clone().any(|doubt| doubt.from <= time && time <= doubt.to);
+            assert!(is_said || !last.jumps().is_empty(), "{guard} at {time}");
+            assert!(doubts.clone().all(|doubt| doubt.to <= time), "{guard}: {:?}", last.doubts());
+            for horizon in [time * (1.0 - 1e-6), time * (1.0 + 1e-6)] {
+                let trajectory = run(horizon);
+                assert_eq!(trajectory.doubts(), [], "{guard} before {horizon}");
+                assert_eq!(trajectory.jumps().len(), usize::from(horizon > time));
+            }
+        }
+    }
+}
+
 #[test]
 fn double_and_close_roots_are_met_in_order() {
     let [place, ..] = coordinates();

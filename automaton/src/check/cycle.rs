@@ -4,10 +4,11 @@
 //! holds where the one before has landed, and each landing is within the invariant. It goes on for
 //! ever if it comes back to the state in which it began: such a state is looked for.
 //!
-//! If all guards can hold strictly, that is an error. Where they hold only on their boundary, as
-//! at the point where the water of two tanks is gone, runs end there if they ever come there, which
-//! is worth a note. A cycle that can be repeated, but in another state each time, may count to a
-//! number or never end; it gets a note, too.
+//! If all guards can hold strictly there, that is an error, and so it is if every round is followed by
+//! another one, as where a reset puts the state on the boundary of its own guard. Where only some rounds
+//! are, and guards hold on their boundary alone, as at the point where the water of two tanks is gone,
+//! runs end there if they ever come there, which is worth a note. A cycle that can be repeated, but in
+//! another state each time, may count to a number or never end; it gets a note, too.
 
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::DiGraph;
@@ -46,20 +47,19 @@ impl Inquiry<'_> {
             self.error(Kind::TimelessCycle, place, message, witness);
             return;
         }
+        if let Some(witness) = self.for_ever(cycle, &round, &strict) {
+            let message = "no time passes while they follow each other for ever, since what they \
+                           wait for stays true: make one of the guards false after the others"
+                .to_owned();
+            self.error(Kind::TimelessCycle, place, message, witness);
+            return;
+        }
         let loose = Predicate::all([round.closed_invariants.clone(), round.guards.clone()]);
         if let Some(witness) = self.example(&(loose.clone() & round.returns.clone())) {
             let message = "on the boundary of their guards they follow each other for ever, and \
                            no time passes: a run that comes there ends"
                 .to_owned();
             self.note_with(Kind::TimelessCycle, place, message, witness);
-            return;
-        }
-        if let Some(witness) = self.for_ever(cycle, &round, &strict) {
-            let message = "no time passes while they follow each other for ever, each time in \
-                           another state, since what they wait for stays true: make one of the \
-                           guards false after the others"
-                .to_owned();
-            self.error(Kind::TimelessCycle, place, message, witness);
             return;
         }
         let again = strict.clone() & strict.substitute(&round.reset);

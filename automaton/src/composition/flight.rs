@@ -55,7 +55,9 @@ pub(super) struct Plan<'a> {
     pub(super) since: Moment,
     /// The state there, by variable of the group.
     pub(super) start: Vec<f64>,
-    /// How long it may take, in seconds.
+    /// How long it takes to the horizon, in seconds.
+    pub(super) horizon: f64,
+    /// How long it may take, in seconds: a little more, for what happens at the number nearest to the horizon.
     pub(super) limit: f64,
     /// How long the last flight was, in seconds: this one may be as long.
     pub(super) last: f64,
@@ -74,6 +76,7 @@ impl Plan<'_> {
             allowance,
             since,
             start,
+            horizon,
             limit,
             last,
             linear,
@@ -117,6 +120,9 @@ impl Plan<'_> {
             }
             Err(Stop { halt, .. }) => return Err(halt),
         };
+        if end.is_after(horizon) && horizon > 0.0 {
+            search.doubt_last(horizon).map_err(|stop| stop.halt)?;
+        }
         search.land(end, limit, failed)
     }
 }
@@ -169,8 +175,10 @@ impl Flight {
         if let Some(last) = self.pieces.pop() {
             self.pieces.push(last.within(0.0, time));
         }
-        self.doubts.retain(|doubt| doubt.from <= time);
-        self.grazes.retain(|graze| graze.from <= time);
+        for doubts in [&mut self.doubts, &mut self.grazes] {
+            doubts.retain(|doubt| doubt.from <= time);
+            doubts.iter_mut().for_each(|doubt| doubt.to = doubt.to.min(time));
+        }
         Flight { duration: Moment::from(time), must_leave: false, ..self }
     }
 }

@@ -128,7 +128,7 @@ impl<'a> Hold<'a> {
         let mut passage = Passage { hold: self, states: Vec::new() };
         let (search, mut spans) = (EventSearch::default(), MOST_SPANS);
         let found = isolate(&piece, piece.start(), piece.end(), &search, &mut passage, &mut spans);
-        found.map(|found| found.onset).map_err(|_| Unclear)
+        found.onset.map_err(|_| Unclear)
     }
 
     /// The spans of a piece of the solution in which its error hides whether the state passes a jump of
@@ -141,7 +141,7 @@ impl<'a> Hold<'a> {
         let (search, mut spans) = (EventSearch::default(), MOST_SPANS);
         let found = isolate(piece, piece.start(), piece.end(), &search, &mut graze, &mut spans);
         let throughout = Doubt { from: piece.start(), to: piece.end(), why: Uncertainty::Touch };
-        found.map_or_else(|_| vec![throughout], |found| found.doubts)
+        if found.onset.is_ok() { found.doubts } else { vec![throughout] }
     }
 
     /// What is known of something about the sides of all parts, of which one is enough.

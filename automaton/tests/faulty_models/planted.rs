@@ -368,6 +368,18 @@ fn loops_whose_reset_leaves_the_guard_true() {
     check(parts, &["error: timeless cycle: location `a`, on `go`"]);
 }
 
+/// A timer that starts again at its end, and so on the boundary of its own guard.
+#[test]
+fn loops_whose_reset_leads_to_the_boundary_of_the_guard() {
+    let Point { x, .. } = Point::coordinates();
+    let parts = machine()
+        .flow(A, x.rate(1.0))
+        .transition(from(A).on(Go).to(A).must(x.at_least(1.0)).then(x.becomes(1.0)))
+        .transition(from(A).on(Turn).to(B).may(x.at_least(0.5)))
+        .transition(from(B).on(Go).to(C).may(x.at_least(0.0)));
+    check(parts, &["error: timeless cycle: location `a`, on `go`"]);
+}
+
 /// The way out goes first as soon as it can.
 #[test]
 fn loops_that_another_transition_ends() {

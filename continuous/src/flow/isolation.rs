@@ -53,10 +53,11 @@ pub trait Watch {
 
 /// What was found on a piece.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
-    /// Where the condition begins to hold.
-    pub onset: Option<Onset>,
-    /// Spans before it in which it may hold for all that is known, in order.
+#[must_use]
+pub struct Finding<E> {
+    /// Where the condition begins to hold, or why the search ended without an answer.
+    pub onset: Result<Option<Onset>, Lost<E>>,
+    /// Spans up to there in which it may hold for all that is known, in order.
     pub doubts: Vec<Doubt>,
 }
 
@@ -106,10 +107,6 @@ pub enum Lost<E> {
 /// If it holds at `from`, that is the answer. What is found holds at `time` and does not hold at
 /// `before`, which is earlier by no more than the resolution. `budget` is the number of spans that
 /// may be looked at; it is used up.
-///
-/// # Errors
-///
-/// [`Lost`] where the condition has no verdict, or the budget does not suffice.
 pub fn isolate<W: Watch + ?Sized>(
     piece: &Piece,
     from: f64,
@@ -117,7 +114,7 @@ pub fn isolate<W: Watch + ?Sized>(
     search: &EventSearch,
     watch: &mut W,
     budget: &mut u64,
-) -> Result<Finding, Lost<W::Error>> {
+) -> Finding<W::Error> {
     let mut isolation = Isolation {
         piece,
         search,
@@ -126,14 +123,15 @@ pub fn isolate<W: Watch + ?Sized>(
         last: None,
         doubts: Vec::new(),
     };
-    let onset = isolation.run(from, to, budget)?;
-    if let Some(Onset { time, .. }) = onset.filter(|onset| onset.time > from)
+    let onset = isolation.run(from, to, budget);
+    if let Ok(Some(Onset { time, .. })) = onset
+        && time > from
         && !isolation.is_passed(time)
     {
         let from = isolation.doubts.last().map_or(from, |last| last.to.max(from)).min(time);
         isolation.doubts.push(Doubt { from, to: time, why: Uncertainty::Touch });
     }
-    Ok(Finding { onset, doubts: isolation.doubts })
+    Finding { onset, doubts: isolation.doubts }
 }
 
 /// Spans of this part of what is searched that are still open are looked at more closely.

@@ -1,6 +1,6 @@
 //! The search for the end of a flight: the first instant at which something has to happen.
 
-use pleach_continuous::flow::{Curve, Doubt, Finding, Lost, Onset, Uncertainty, isolate};
+use pleach_continuous::flow::{Curve, Doubt, Finding, Lost, Onset, Uncertainty, Watch, isolate};
 use pleach_guards::Course;
 
 use crate::composition::group::Group;
@@ -22,6 +22,25 @@ pub(super) enum End {
     Leaving(Moment),
     /// Nothing happens.
     Never,
+}
+
+impl End {
+    /// Whether nothing happens up to this time.
+    pub(super) fn is_after(&self, time: f64) -> bool {
+        match self {
+            End::At(end) | End::Leaving(end) => *end > Moment::from(time),
+            End::Onset(onset) => onset.time > time,
+            End::Never => true,
+        }
+    }
+}
+
+/// Whether what a piece says holds of the state, too.
+enum Confirmation {
+    /// It begins to hold here.
+    Onset(Onset),
+    /// It does not, and up to this time, which is later, the piece says otherwise.
+    Until(f64),
 }
 
 /// Why a flight ends early: how far it goes, and why.
@@ -124,14 +143,49 @@ impl<'a> Search<'a, '_> {
             self.stride *= LENGTHENING;
             let search = self.settings.search();
             let found = isolate(piece, from, end, &search, &mut self.tension, self.steps);
-            let Finding { onset, doubts } = found.map_err(|lost| self.lost(lost))?;
+            let Finding { onset, doubts } = found;
             doubts.into_iter().for_each(|doubt| self.doubt(doubt));
-            if onset.is_some() || end <= from {
-                return Ok(onset);
-            }
-            from = end;
+            from = match onset.or_else(|lost| self.at_last_value(lost))? {
+                Some(onset) => match self.confirmed(onset, end)? {
+                    Confirmation::Onset(onset) => return Ok(Some(onset)),
+                    Confirmation::Until(time) => time,
+                },
+                None if end <= from => return Ok(None),
+                None => end,
+            };
         }
         Ok(None)
+    }
+
+    /// The onset as the state has it, of which the polynomials of a piece differ by rounding, and by the
+    /// errors of those through the values of a function. While they alone say that something has to happen,
+    /// it is in doubt.
+    fn confirmed(&mut self, onset: Onset, end: f64) -> Result<Confirmation, Stop> {
+        if self.holds_at(onset.time)? {
+            return Ok(Confirmation::Onset(onset));
+        }
+        let (mut before, mut step) = (onset.time, onset.time.next_up() - onset.time);
+        loop {
+            let time = before + step;
+            if time < end && self.holds_at(time)? {
+                return self.narrowed(before, time, 0.0).map(Confirmation::Onset);
+            }
+            if time >= end || !self.holds_on_piece(time, end)? {
+                let time = time.min(end);
+                self.doubt(Doubt { from: onset.time, to: time, why: Uncertainty::Touch });
+                return Ok(Confirmation::Until(time));
+            }
+            (before, step) = (time, 2.0 * step);
+        }
+    }
+
+    fn holds_on_piece(&mut self, time: f64, end: f64) -> Result<bool, Stop> {
+        let mut state = self.solver.start().to_vec();
+        match self.solver.piece_at(time, end) {
+            Ok(piece) => piece.state_at(time, &mut state),
+            Err(reason) => return Err(self.lost_flow(reason)),
+        }
+        self.holds(&state, time)
     }
 
     /// The first number of seconds after `from` at which floating-point numbers say, too, that
@@ -141,7 +195,7 @@ impl<'a> Search<'a, '_> {
         let mut before = start;
         let least = self.spacing().max(f64::MIN_POSITIVE);
         let mut step = (start.next_up() - start).max(least);
-        let mut after = loop {
+        let after = loop {
             let time = start + step;
             if time >= to.seconds() {
                 return Ok(None);
@@ -152,10 +206,17 @@ impl<'a> Search<'a, '_> {
             before = time;
             step *= 2.0;
         };
+        self.narrowed(before, after, 2.0 * least).map(Some)
+    }
+
+    /// Where something begins to have to happen, between a time at which nothing has to and one at which
+    /// something does.
+    fn narrowed(&mut self, before: f64, after: f64, tolerance: f64) -> Result<Onset, Stop> {
+        let (mut before, mut after) = (before, after);
         loop {
             let middle = before + 0.5 * (after - before);
-            if after - before <= 2.0 * least || middle <= before || middle >= after {
-                return Ok(Some(Onset { before, time: after }));
+            if after - before <= tolerance || middle <= before || middle >= after {
+                return Ok(Onset { before, time: after });
             }
             if self.holds_at(middle)? { after = middle } else { before = middle }
         }
@@ -216,15 +277,38 @@ impl<'a> Search<'a, '_> {
         Stop { at, halt: flow_failure(standing, group, self.since, fault) }
     }
 
-    fn lost(&mut self, lost: Lost<Failure>) -> Stop {
+    /// What happens at the last time at which every formula has a value, as √h ≤ 0 does where h comes to 0.
+    fn at_last_value(&mut self, lost: Lost<Failure>) -> Result<Option<Onset>, Stop> {
         match lost {
             Lost::Endless { at } => {
-                Stop { at, halt: Halt::Limit(Limit::Steps(self.settings.step_limit)) }
+                Err(Stop { at, halt: Halt::Limit(Limit::Steps(self.settings.step_limit)) })
             }
             Lost::Undefined { after, at, error } => {
-                Stop { at: self.last_defined(after, at), halt: error.into() }
+                let last = self.last_defined(after, at);
+                if last > after && self.holds_at(last)? {
+                    return self.narrowed(after, last, 0.0).map(Some);
+                }
+                Err(Stop { at: last, halt: error.into() })
             }
         }
+    }
+
+    /// Takes note of it if, at the time at which the run ends, it is undecided whether something happens.
+    pub(super) fn doubt_last(&mut self, time: f64) -> Result<(), Stop> {
+        self.tension.set_window(Moment::from(time), Moment::from(time));
+        if self.tension.known_course() == Course::Never {
+            return Ok(());
+        }
+        let mut enclosures = Vec::new();
+        match self.solver.piece_at(time.next_down(), time) {
+            Ok(piece) => piece.enclose(time, time, &mut enclosures),
+            Err(reason) => return Err(self.lost_flow(reason)),
+        }
+        // What is a function is in doubt as a whole.
+        if !matches!(self.tension.course(&enclosures, 0.0), Course::Never | Course::Opaque) {
+            self.doubt(Doubt { from: time, to: time, why: Uncertainty::Touch });
+        }
+        Ok(())
     }
 
     /// The last time, from `defined` on, at which every formula has a value.

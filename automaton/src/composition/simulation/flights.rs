@@ -56,7 +56,7 @@ impl<'a> Simulation<'a> {
     /// The flow of a group from here on.
     fn fly(&mut self, group: usize, policy: Policy) -> Result<Flight, Halt> {
         let parts = &self.composition.groups[group];
-        let left = Moment::from(self.horizon) - self.now;
+        let left = (Moment::from(self.horizon) - self.now).seconds();
         let mut linear = std::mem::take(&mut self.groups[group].linear);
         let plan = Plan {
             group: parts,
@@ -67,8 +67,8 @@ impl<'a> Simulation<'a> {
             since: self.now,
             start: parts.slots.iter().map(|&slot| self.values[slot]).collect(),
             last: self.groups[group].last,
-            // A little more, for what happens at the instant nearest to the horizon.
-            limit: left.seconds() + f64::EPSILON * self.horizon,
+            horizon: left,
+            limit: left + f64::EPSILON * self.horizon,
             linear: &mut linear,
         };
         let mut steps = self.steps;
