@@ -96,6 +96,19 @@ fn a_region_ends_where_the_planning_set_does() {
     assert!(convex_region(&free_space, in_the_middle, in_the_middle, 0.2).is_empty());
 }
 
+/// Before the corner of a hole both of its walls bound the region by their own lines.
+#[test]
+fn walls_bound_the_region_by_their_own_lines() {
+    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
+    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
+    let workspace = Workspace::new(boundary, vec![hole]).unwrap();
+    let free_space = FreeSpace::new(&workspace, 0.1).unwrap();
+    let at = Point::new(0.85, 0.85);
+    let region = convex_region(&free_space, at, at, 0.3);
+    assert!(admit(&region, Point::new(0.85, 0.89)) && admit(&region, Point::new(0.89, 0.85)));
+    assert!(!admit(&region, Point::new(0.7, 0.91)) && !admit(&region, Point::new(0.91, 0.7)));
+}
+
 /// A wall that only just gets into the disc bounds the region, too.
 #[test]
 fn walls_at_the_edge_of_the_disc_bound_the_region() {

@@ -30,7 +30,7 @@ pub struct Ledger {
     pub primary_team: Vec<usize>,
     /// The primary team whose task has just been serviced: what its members have agreed on before they
     /// know, they still do.
-    dismissed: Vec<usize>,
+    pub dismissed: Vec<usize>,
     /// Whether a recruit is called for.
     pub calls: bool,
     /// The way of a secondary team along Σ.
