@@ -282,16 +282,19 @@ impl Overview<'_> {
             .enumerate()
             .filter_map(|(holder, robot)| {
                 let station = robot.duty.station().filter(|station| station.post.is_fixed())?;
-                let children = self.robots.iter().filter(|child| {
-                    child.duty.post().is_some_and(|held| {
-                        held.is_child_of(station.post.id) && !held.is_redundant()
-                    })
-                });
+                let attached = || {
+                    let held = self.robots.iter().filter_map(|child| child.duty.post());
+                    held.filter(|held| held.is_child_of(station.post.id) && !held.is_redundant())
+                };
+                // The primary team is one branch, also while a member of it has yet to attach to the
+                // newcomer.
+                let fixed = attached().filter(|held| held.is_fixed()).count();
+                let branches = fixed + usize::from(attached().any(|held| held.is_primary()));
                 Some(PostView {
                     reference: station.reference,
                     holder,
                     task: station.post.task,
-                    junction: children.count() > 1,
+                    junction: branches > 1,
                 })
             })
             .collect()

@@ -74,6 +74,52 @@ fn ways_may_touch_corners_of_the_sight_set() {
     assert!(touching > 10, "{touching}");
 }
 
+/// A wide room, and how far from its lower wall the planning set begins.
+fn room() -> (FreeSpace, f64) {
+    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
+    let free_space = FreeSpace::new(&Workspace::new(boundary, vec![]).unwrap(), CLEARANCE).unwrap();
+    let border = free_space.nearest(Point::new(1.5, 0.0)).y;
+    (free_space, border)
+}
+
+/// Beside a wall that is parallel to the way, all that belongs to the planning set is admitted.
+#[test]
+fn a_region_ends_where_the_planning_set_does() {
+    let (free_space, border) = room();
+    for height in [0.0, 0.01, 0.1, 0.19] {
+        let at = Point::new(1.5, border + height);
+        let region = convex_region(&free_space, at, Point::new(2.5, at.y), 0.2);
+        assert_eq!(region.len(), 1, "{height}");
+        assert!((margin(&region, at) - height).abs() < 1e-12, "{height}: {}", margin(&region, at));
+    }
+    let in_the_middle = Point::new(1.5, 1.5);
+    assert!(convex_region(&free_space, in_the_middle, in_the_middle, 0.2).is_empty());
+}
+
+/// Before the corner of a hole both of its walls bound the region by their own lines.
+#[test]
+fn walls_bound_the_region_by_their_own_lines() {
+    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
+    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
+    let workspace = Workspace::new(boundary, vec![hole]).unwrap();
+    let free_space = FreeSpace::new(&workspace, 0.1).unwrap();
+    let at = Point::new(0.85, 0.85);
+    let region = convex_region(&free_space, at, at, 0.3);
+    assert!(admit(&region, Point::new(0.85, 0.89)) && admit(&region, Point::new(0.89, 0.85)));
+    assert!(!admit(&region, Point::new(0.7, 0.91)) && !admit(&region, Point::new(0.91, 0.7)));
+}
+
+/// A wall that only just gets into the disc bounds the region, too.
+#[test]
+fn walls_at_the_edge_of_the_disc_bound_the_region() {
+    let (free_space, border) = room();
+    for share in [0.01, 0.5, 0.99, 1.01, 1.4] {
+        let at = Point::new(1.5, border + 0.2 - share * free_space.tolerance());
+        let region = convex_region(&free_space, at, Point::new(2.5, at.y), 0.2);
+        assert!(!admit(&region, Point::new(1.5, at.y - 0.2)), "{share}");
+    }
+}
+
 proptest! {
     #[test]
     fn voronoi_half_planes_are_cells_shrunk(

@@ -145,6 +145,31 @@ proptest! {
         }
     }
 
+    /// The region of a robot outside is not smaller than that of its entry: it admits what lies in the
+    /// latter, up to the radius.
+    #[test]
+    fn regions_from_outside_admit_what_the_entry_admits(
+        environment in environment(), pick in 0..1000_usize, angle in 0.0..6.3_f64,
+        share in 0.0..1.0_f64, goal in place(), radius in 0.02..0.3_f64,
+        probes in prop::collection::vec((0.0..6.3_f64, 0.0..1.0_f64), 60),
+    ) {
+        let space = &environment.free_space;
+        let Some(out) = strayed(&environment, pick, angle, share) else { return Ok(()) };
+        let entry = space.entry(out).unwrap();
+        let ahead = space.nearest(goal) - entry;
+        let waypoint = entry + ahead * (radius / ahead.norm().max(radius));
+        // The region of the entry looks as far as the square of the hull reaches.
+        let half_side = radius + (out - entry).norm();
+        let inner = convex_region(space, entry, waypoint, half_side * std::f64::consts::SQRT_2);
+        let region = convex_region(space, out, waypoint, radius);
+        for &(angle, share) in &probes {
+            let probe = entry + Vector::new(angle.cos(), angle.sin()) * (share * half_side);
+            if margin(&inner, probe) >= 0.0 {
+                prop_assert!(margin(&region, probe) >= -ROUNDING, "{probe} from {out}");
+            }
+        }
+    }
+
     /// The region of a robot outside admits where it is, its entry and the way ahead, and nothing
     /// that is farther out.
     #[test]

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, Phase, PostId, PostKind};
+use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, Phase, PostId};
 
 use crate::automaton::TransitionError;
 use crate::located::Place as _;
@@ -84,8 +84,8 @@ impl Robot {
         self.branches() > 0
     }
 
-    /// The number of branches that are attached to this robot's post. A member of the primary team that
-    /// is about to attach to the newcomer behind it counts with the newcomer.
+    /// The number of branches that are attached to this robot's post. The primary team is one, also
+    /// while a member of it has yet to attach to the newcomer.
     pub(super) fn branches(&self) -> usize {
         self.duty.post().map_or(0, |post| self.branches_of(post.id))
     }
@@ -93,15 +93,10 @@ impl Robot {
     /// The number of branches attached to `post`.
     pub(super) fn branches_of(&self, post: PostId) -> usize {
         let posts = || self.children_of(post).filter_map(Neighbour::post);
-        let is_followed = |post: PostId| {
-            posts().any(|other| other.kind == PostKind::Primary { follows: Some(post) })
-        };
         // During a hand-over two robots hold the same post.
-        let branches: BTreeSet<PostId> = posts()
-            .filter(|post| !post.is_redundant() && !is_followed(post.id))
-            .map(|post| post.id)
-            .collect();
-        branches.len()
+        let fixed: BTreeSet<PostId> =
+            posts().filter(|post| post.is_fixed()).map(|post| post.id).collect();
+        fixed.len() + usize::from(posts().any(|post| post.is_primary()))
     }
 
     pub(super) fn anchor(&self) -> Option<Anchor> {

@@ -3,7 +3,7 @@
 use pleach_continuous::Point;
 use pleach_discrete::network::{NodeId, Phase, Post, PostId, PostKind};
 
-use super::super::beacon::{Beacon, Notice, TeamReport};
+use super::super::beacon::{Notice, TeamReport};
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
 use super::Robot;
@@ -66,15 +66,11 @@ impl Robot {
     /// Whether this robot is p₁: no robot of the team follows it.
     ///
     /// In an exchange of duties there is an instant in which the mover has taken its new duty and
-    /// the parked robot still holds its own: the duty of the mover has no holder. A robot that hears
-    /// of an exchange does not take itself for p₁.
+    /// the parked robot still holds its own: the duty of the mover has no holder. The robot ahead
+    /// remembers its follower.
     pub(super) fn is_first(&self) -> bool {
-        let gives =
-            |beacon: &Beacon| beacon.reply.as_ref().is_some_and(|reply| reply.accepted.is_some());
         self.primary_post().is_some_and(|own| {
-            !self.hears_follower(own)
-                && (self.has_lost_follower() || !self.expects_follower(own))
-                && !self.neighbours.iter().any(|neighbour| gives(&neighbour.beacon))
+            !self.hears_follower(own) && (self.has_lost_follower() || !self.expects_follower(own))
         })
     }
 

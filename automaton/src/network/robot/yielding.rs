@@ -26,9 +26,11 @@ const PACES: u32 = 3;
 const WORTH_A_STEP: f64 = 0.1;
 
 impl Robot {
-    /// Where this robot wants to go next, if it has been stuck for a while.
+    /// Where this robot wants to go next, if it has been stuck for a while. One that steps aside and
+    /// cannot asks in turn.
     pub(super) fn way_asked_for(&self) -> Option<Point> {
-        self.waypoint.filter(|_| !self.is_parked() && self.still_periods >= ASKING)
+        let is_on_its_way = !self.is_parked() || self.way_to_clear().is_some();
+        self.waypoint.filter(|_| is_on_its_way && self.still_periods >= ASKING)
     }
 
     /// Whether a mover is so near that this robot should not settle now. One that is stuck may be

@@ -28,6 +28,9 @@ pub struct Ledger {
     pub awaits_release: bool,
     /// The primary team 𝒫, from p₁ to the leader.
     pub primary_team: Vec<usize>,
+    /// The primary team whose task has just been serviced: what its members have agreed on before they
+    /// know, they still do.
+    pub dismissed: Vec<usize>,
     /// Whether a recruit is called for.
     pub calls: bool,
     /// The way of a secondary team along Σ.
@@ -62,6 +65,7 @@ impl Ledger {
             leader: None,
             awaits_release: false,
             primary_team: Vec::new(),
+            dismissed: Vec::new(),
             calls: false,
             walk: None,
             untold: Vec::new(),
@@ -150,6 +154,7 @@ impl Ledger {
         }
         (self.leader, self.awaits_release) = (Some(robot), conflict);
         self.primary_team = vec![robot];
+        self.dismissed.clear();
         Ok(())
     }
 
@@ -370,13 +375,14 @@ impl Ledger {
         }
         self.serviced.insert(task, robot);
         (self.leader, self.calls, self.walk) = (None, false, None);
-        self.primary_team.clear();
+        self.dismissed = std::mem::take(&mut self.primary_team);
         Ok(())
     }
 
     /// Two robots take each other's place in everything.
     fn exchange(&mut self, mover: usize, parked: usize) -> Result<(), Dispute> {
-        if mover == parked || !self.active_team().contains(&mover) {
+        let may_give = self.active_team().contains(&mover) || self.dismissed.contains(&mover);
+        if mover == parked || !may_give {
             let sentence = format!(
                 "robot {mover} gives its duty to robot {parked} and is not of the active team {:?}",
                 self.active_team()

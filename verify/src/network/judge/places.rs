@@ -17,13 +17,20 @@ pub struct Places {
     of_robots: Vec<Option<Point>>,
     /// The places of Σ when it was announced, and whether each is that of a fixed post.
     path: Vec<(Point, bool)>,
+    /// The robots of Σ as it was announced: events name them by these.
+    announced: Vec<usize>,
     /// The robots of Σ, each at its place until it goes on to the next.
     walkers: Vec<usize>,
 }
 
 impl Places {
     pub fn new(robots: usize) -> Self {
-        Places { of_robots: vec![None; robots], path: Vec::new(), walkers: Vec::new() }
+        Places {
+            of_robots: vec![None; robots],
+            path: Vec::new(),
+            announced: Vec::new(),
+            walkers: Vec::new(),
+        }
     }
 
     /// The place of a robot's post.
@@ -52,9 +59,12 @@ impl Places {
                 }
             }
             MissionEvent::SubgroupArrived { robots, .. } => {
-                for (&walker, &(ahead, _)) in self.walkers.iter().zip(self.path.iter().skip(1)) {
-                    if robots.contains(&walker) {
-                        self.of_robots[walker] = Some(ahead);
+                let ahead = self.path.iter().skip(1);
+                for ((named, &walker), &(place, _)) in
+                    self.announced.iter().zip(&self.walkers).zip(ahead)
+                {
+                    if robots.contains(named) {
+                        self.of_robots[walker] = Some(place);
                     }
                 }
             }
@@ -64,6 +74,7 @@ impl Places {
                     (self.of_robots[robot].unwrap_or(snapshot.positions[robot]), is_fixed)
                 };
                 self.path = path.iter().map(place).collect();
+                self.announced.clone_from(path);
                 self.walkers.clone_from(path);
             }
             _ => {}

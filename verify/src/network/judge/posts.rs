@@ -105,12 +105,11 @@ pub fn are_held(in_team: impl Fn(usize) -> bool, snapshot: &Snapshot) -> Result<
 }
 
 /// Part of [`Property::Posts`]: the task of a post is the one that its holder answers for, a leaf
-/// has one, and a post is a junction if more than one branch parts there.
+/// has one, and a post is a junction if more than one branch parts there. The primary team is one branch,
+/// also while a member of it has yet to attach to the newcomer.
 pub fn are_those(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
     let answers_for =
         |robot: usize| snapshot.serviced.iter().find(|(_, it)| *it == robot).map(|(task, _)| *task);
-    let holds =
-        |robot: usize| post_of(robot, snapshot).is_some() || ledger.primary_team.contains(&robot);
     for post in &snapshot.posts {
         let (robot, task) = (post.holder, answers_for(post.holder));
         if post.task != task {
@@ -120,8 +119,12 @@ pub fn are_those(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
             );
             return Err(Dispute::of(Property::Posts, &[robot], sentence));
         }
-        let branches = snapshot.tree.iter().filter(|&&(child, it)| it == robot && holds(child));
-        let branches = branches.count();
+        let attached = snapshot.tree.iter().filter(|&&(_, parent)| parent == robot);
+        let (team, fixed): (Vec<usize>, Vec<usize>) = attached
+            .map(|&(child, _)| child)
+            .partition(|child| ledger.primary_team.contains(child));
+        let fixed = fixed.into_iter().filter(|&child| post_of(child, snapshot).is_some()).count();
+        let branches = fixed + usize::from(!team.is_empty());
         let role = snapshot.roles[robot];
         let is_junction = branches > 1;
         let fits = match role {

@@ -9,6 +9,7 @@ use pleach_automaton::node::Observed;
 use pleach_discrete::network::{Anchor, Post, PostId, Role};
 
 use super::super::judge::relayed;
+use super::super::limits::SLACK;
 use super::super::period::{self, Period};
 use super::super::property::Property;
 use super::super::{Limits, Violation, instant};
@@ -23,7 +24,7 @@ pub struct Judge {
     /// Whether nodes stop in this storm, or are cut off: what flowed there is lost.
     loses_nodes: bool,
     previous: Option<Snapshot>,
-    /// The nodes that had begun when this control period did.
+    /// The nodes that had begun when this control period did, and have been clear of all others since.
     begun: Vec<usize>,
     violations: Vec<Violation>,
     unheard: Option<Violation>,
@@ -66,8 +67,23 @@ impl Judge {
             }
             self.look_at_period(&period, nodes.len());
         }
-        self.begun = (0..nodes.len()).filter(|&node| nodes[node].has_begun()).collect();
+        self.count_begun(snapshot, nodes);
         self.previous = Some(snapshot.clone());
+    }
+
+    /// A node that begins next to another one, which did not know of it, counts when it is clear of it.
+    fn count_begun(&mut self, seen: &Snapshot, nodes: &[Frail]) {
+        let (places, bound) = (&seen.positions, self.limits.separation() - SLACK);
+        let is_clear = |node: usize| {
+            places.get(node).is_none_or(|place| {
+                let others = places.iter().enumerate().filter(|&(other, _)| other != node);
+                others.map(|(_, at)| (at - place).norm()).all(|gap| gap >= bound)
+            })
+        };
+        let counts = |&node: &usize| {
+            nodes[node].has_begun() && (self.begun.contains(&node) || is_clear(node))
+        };
+        self.begun = (0..nodes.len()).filter(counts).collect();
     }
 
     fn find(&mut self, found: Result<(), Violation>) {
@@ -80,11 +96,12 @@ impl Judge {
 
     fn look_at_period(&mut self, period: &Period, nodes: usize) {
         let limits = self.limits.clone();
-        let begun = std::mem::take(&mut self.begun);
-        self.find(period::separation_among(&begun, period, &limits).map(drop));
-        if self.unheard.is_none() && begun.len() < nodes {
+        let found = period::separation_among(&self.begun, period, &limits).map(drop);
+        self.find(found);
+        if self.unheard.is_none() && self.begun.len() < nodes {
+            let is_unheard = |robot: &usize| !self.begun.contains(robot);
             let found = period::separation(period, &limits).err();
-            self.unheard = found.filter(|pair| pair.robots.iter().any(|it| !begun.contains(it)));
+            self.unheard = found.filter(|pair| pair.robots.iter().any(is_unheard));
         }
         self.find(period::clearance(period, &limits).map(drop));
         self.find(period::load(period, &limits).map(drop));
@@ -130,12 +147,13 @@ fn rooted(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
     }
 }
 
-/// [`Property::SingleLeader`]: no two robots lead by the same announcement.
+/// [`Property::SingleLeader`]: no two robots lead by the same announcement. One that has given the
+/// leader's duty in an exchange does not count.
 fn led(seen: &Snapshot, nodes: &[Frail]) -> Result<(), Violation> {
     let mut announcements = Vec::new();
     for (robot, node) in nodes.iter().enumerate().take(seen.roles.len()) {
         if let Some(known) = node.member().view().robot().filter(|_| node.is_running()) {
-            let leads = seen.roles[robot] == Role::Leader;
+            let leads = seen.roles[robot] == Role::Leader && known.taking().is_none();
             announcements.extend(leads.then_some((known.announcement(), robot)));
         }
     }
