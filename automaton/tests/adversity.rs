@@ -4,8 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use pleach_automaton::{
-    Automaton, Builder, Coordinate, Coordinates, Flow, Reason, Settings, Trajectory, coordinates,
-    from,
+    Automaton, Builder, Coordinate, Coordinates, Reason, Settings, Trajectory, coordinates, from,
 };
 use pleach_discrete::vocabulary;
 use pleach_guards::{Expression, Predicate};
@@ -217,19 +216,6 @@ fn formulas_of_clocks_beside_curves_are_met() {
     let pendulum = body([1.0, 0.0], [Expression::from(&speed), -place.sin()]);
     let trajectory = run(pendulum.transition(every.then(time.becomes(0.0))), 100.05);
     assert_eq!(trajectory.jumps().len(), 1000, "{:?}", trajectory.ending());
-}
-
-/// A function that solves a flow is taken at its own word, and not at that of the polynomials through it.
-#[test]
-fn formulas_of_functions_that_solve_flows_are_met() {
-    for number in 1..=300 {
-        let due = 0.01 * f64::from(number);
-        let decay = Flow::exact("x e^(-t)", |state: &mut Line, time: f64| state.x *= (-time).exp());
-        let parts = Automaton::starting_in(Here).initially(Line { x: 1.0 }).flow(Here, decay);
-        let trajectory = go(parts, x().power(2.0).at_most((-2.0 * due).exp()), 4.0);
-        assert_event(&trajectory, due, 1e-12);
-        assert_eq!(trajectory.ending().reason, Reason::Horizon);
-    }
 }
 
 /// Where a formula begins to have a value, at the start, nothing is in doubt.

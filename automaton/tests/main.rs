@@ -9,6 +9,7 @@ mod compile_fail;
 mod coverage;
 mod decisions;
 mod diagrams;
+mod encounters;
 mod endings;
 mod error_messages;
 mod faulty_models;

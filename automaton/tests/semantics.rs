@@ -261,3 +261,32 @@ fn inputs_that_read_one_coordinate_add_up() {
     let total = trajectory.value("reader.s", 2.0);
     assert!(total.is_some_and(|total| (total - 4.0).abs() < 1e-12), "{total:?}");
 }
+
+/// What is read comes first among the coordinates of the reader; whichever of the two is added first.
+#[test]
+fn a_component_may_begin_with_its_inputs() {
+    let source = built(clock());
+    coordinates! {
+        struct Reader { read = "a", again = "b", total = "s" }
+    }
+    let Reader { read, again, total } = Reader::coordinates();
+    let reader: Automaton<Place, Cue, Reader> = Automaton::starting_in(Here)
+        .initially(Reader { read: 0.0, again: 0.0, total: 0.0 })
+        .flow(Here, total.rate(&read + &again))
+        .transition(from(Here).on(Go).to(There).must((&read * &again).at_least(2.25)))
+        .build()
+        .expect("the reader is sound");
+    for is_first in [true, false] {
+        let parts = Composition::builder();
+        let parts = if is_first { parts.add("reader", &reader) } else { parts };
+        let parts = parts.add("source", &source);
+        let parts = if is_first { parts } else { parts.add("reader", &reader) };
+        let parts = parts.connect("source.τ", "reader.a").connect("source.τ", "reader.b");
+        let trajectory = parts.build().expect("the parts fit").run(2.0).expect("it can be run");
+        let jumps: Vec<f64> = trajectory.jumps().iter().map(|jump| jump.at.t).collect();
+        assert_eq!(jumps, [1.5]);
+        // ṡ = 2t until then, and s rests behind it.
+        let total = trajectory.value("reader.s", 2.0);
+        assert!(total.is_some_and(|total| (total - 2.25).abs() < 1e-12), "{total:?}");
+    }
+}

@@ -44,6 +44,8 @@ pub struct Tape {
     /// How many places hold what is computed.
     computed: usize,
     instructions: Vec<Instruction>,
+    /// How many instructions of one width follow each other, again and again.
+    runs: Vec<u32>,
     /// The places that are gathered.
     gathered: Vec<u32>,
     tables: Vec<Table>,
@@ -173,10 +175,9 @@ impl Tape {
             places[given..self.variables].fill(f64::NAN);
         }
         let mut ahead = &self.instructions[..];
-        while let Some(next) = ahead.first() {
-            let run = ahead.iter().take_while(|other| other.width == next.width).count();
-            let (instructions, rest) = ahead.split_at(run);
-            match next.width {
+        for run in &self.runs {
+            let (instructions, rest) = ahead.split_at(*run as usize);
+            match instructions[0].width {
                 8 => self.abreast::<8>(instructions, places),
                 4 => self.abreast::<4>(instructions, places),
                 2 => self.abreast::<2>(instructions, places),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 use pleach_continuous::flow::{InvalidFlow, LinearField, Piece, Tolerances, VectorField};
-use pleach_guards::Interval;
+use pleach_guards::{Interval, Tape};
 
 use super::blueprint::{Mode, ModeMotion, RateProgram, Solution};
 use super::group::Group;
@@ -34,6 +34,8 @@ pub(super) struct Field<'a> {
     /// Those that do not solve their flow themselves, each with its mode.
     moving: Vec<(&'a Component, &'a Mode)>,
     solved: Vec<(&'a Component, &'a Solution)>,
+    /// The rates of all variables, if one component says how all of them move and none has a kink to hold.
+    whole: Option<&'a Tape>,
     /// By variable of the group.
     pub(super) rows: Vec<Row>,
     pub(super) start: Vec<f64>,
@@ -90,9 +92,17 @@ impl<'a> Field<'a> {
             }
         }
         let hold = Hold::of(&moving, &rows);
+        let whole = match &moving[..] {
+            [(component, mode)] if mode.is_whole && hold.is_none() => {
+                let is_all = component.window == Some(0) && component.places.len() == rows.len();
+                is_all.then_some(&mode.rates)
+            }
+            _ => None,
+        };
         Field {
             moving,
             solved,
+            whole,
             rows,
             start,
             hold,
@@ -171,7 +181,9 @@ impl<'a> Field<'a> {
 
     fn add_rates(&self, state: &[f64], rates: &mut [f64]) {
         let mut tapes = self.places.borrow_mut();
-        tapes.resize(self.moving.len(), Vec::new());
+        if tapes.len() < self.moving.len() {
+            tapes.resize(self.moving.len(), Vec::new());
+        }
         for (number, (component, mode)) in self.moving.iter().enumerate() {
             let places = &mut tapes[number];
             match &mode.motion {
@@ -304,6 +316,16 @@ impl<'a> Field<'a> {
         kinks.reduce(f64::min)
     }
 
+    /// Whether there are rates of which the next kink has to be asked for.
+    pub(super) fn has_known_kinks(&self) -> bool {
+        let has_kinks = |rate: &RateProgram| !rate.kinks.is_empty();
+        self.hold.is_none()
+            && self.moving.iter().any(|(_, mode)| match &mode.motion {
+                ModeMotion::Rates(rates) => rates.iter().any(has_kinks),
+                ModeMotion::Field(_) | ModeMotion::Exact(_) => false,
+            })
+    }
+
     /// Rates that could grow without bound, with where their variables are.
     pub(super) fn unbounded_rates(&self) -> impl Iterator<Item = (&'a Component, &'a RateProgram)> {
         self.moving.iter().flat_map(|(component, mode)| {
@@ -319,6 +341,13 @@ impl<'a> Field<'a> {
 impl VectorField for Field<'_> {
     /// What is solved by itself has rate 0 here, and others see it where it is at `time`.
     fn rates(&self, time: f64, state: &[f64], rates: &mut [f64]) {
+        if let Some(tape) = self.whole {
+            let mut tapes = self.places.borrow_mut();
+            if tapes.is_empty() {
+                tapes.push(tape.places());
+            }
+            return tape.evaluate(state, &mut tapes[0], rates);
+        }
         rates.fill(0.0);
         if self.solved.is_empty() {
             return self.add_rates(state, rates);

@@ -42,6 +42,12 @@ pub(super) struct Solver<'a> {
     /// Where the solution touches a jump of its rates, for all that is known.
     grazes: Vec<Doubt>,
     enclosures: Vec<Enclosure>,
+    /// Whether the integrator itself solves for all variables.
+    is_complete: bool,
+    /// Whether rates have kinks that are known beforehand.
+    has_kinks: bool,
+    /// Whether a rate could grow without bound.
+    may_diverge: bool,
     /// What steps must not pass over unseen, where rates are such that they could.
     seen_to: Option<Tolerances>,
 }
@@ -78,6 +84,10 @@ impl<'a> Solver<'a> {
         let (pieces, grazes, enclosures) = (Vec::new(), Vec::new(), Vec::new());
         let (size, reached, crawled, kink) = (0, 0.0, 0, None);
         let seen_to = field.is_sharp().then(|| settings.tolerances());
+        let is_complete =
+            matches!(method, Method::Steps(_)) && field.rows.iter().all(|row| *row == Row::Curved);
+        let has_kinks = matches!(method, Method::Steps(_)) && field.has_known_kinks();
+        let may_diverge = field.unbounded_rates().next().is_some();
         Ok(Solver {
             field,
             method,
@@ -88,6 +98,9 @@ impl<'a> Solver<'a> {
             kink,
             grazes,
             enclosures,
+            is_complete,
+            has_kinks,
+            may_diverge,
             seen_to,
         })
     }
@@ -130,8 +143,12 @@ impl<'a> Solver<'a> {
         while self.reached <= time && self.reached < limit || self.pieces.is_empty() {
             self.extend(limit)?;
         }
+        let last = self.pieces.len() - 1;
+        if self.pieces[last].start() <= time {
+            return Ok(&self.pieces[last]);
+        }
         let number = self.pieces.partition_point(|piece| piece.end() <= time);
-        Ok(&self.pieces[number.min(self.pieces.len() - 1)])
+        Ok(&self.pieces[number.min(last)])
     }
 
     /// How many numbers the pieces hold.
@@ -207,8 +224,8 @@ impl<'a> Solver<'a> {
                 flow.piece(start).ok_or("the flow has no solution")?.within(start, limit)
             }
             Method::Steps(integrator) => {
-                let kink = self.field.next_kink(start).unwrap_or(limit);
-                let limit = limit.min(kink);
+                let kink = self.has_kinks.then(|| self.field.next_kink(start)).flatten();
+                let limit = kink.map_or(limit, |kink| limit.min(kink));
                 let step = integrator.step(limit).map_err(|fault| without_time(&fault))?;
                 step.piece(start).ok_or("the flow has no solution")?
             }
@@ -337,6 +354,9 @@ impl<'a> Solver<'a> {
 
     /// Whether a variable that began with a finite value, or its rate, may have none in the piece.
     fn overflows(&self, piece: &Piece) -> bool {
+        if piece.is_finite() {
+            return false;
+        }
         let size = |(power, coefficient): (usize, &f64)| (power + 1) as f64 * coefficient.abs();
         let is_finite = |place: usize| {
             let sizes = piece.coefficients(place).iter().enumerate().map(size);
@@ -347,9 +367,7 @@ impl<'a> Solver<'a> {
 
     /// The piece with all variables, given that of the curved ones.
     fn complete(&self, curved: Piece) -> Piece {
-        let is_complete = matches!(self.method, Method::Steps(_))
-            && self.field.rows.iter().all(|row| *row == Row::Curved);
-        if is_complete {
+        if self.is_complete {
             return curved;
         }
         let (origin, scale) = (curved.origin(), curved.scale());
@@ -408,7 +426,7 @@ impl<'a> Solver<'a> {
     /// it does not, or until nothing is left to halve: then the rate is bounded up to there alone.
     fn check_rates(&mut self, piece: &Piece) -> Result<(), (f64, String)> {
         let field = self.field;
-        if field.bounds_rates(piece) {
+        if !self.may_diverge || field.bounds_rates(piece) {
             return Ok(());
         }
         for (component, rate) in field.unbounded_rates() {

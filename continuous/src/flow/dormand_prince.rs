@@ -232,24 +232,64 @@ pub(super) fn combine<const N: usize>(
     }
 }
 
-/// target = step · Σ weight · (stage − first stage), for weights that sum to 0: of straight motion
-/// it is exactly 0.
+/// targets = step · Σ weight · (stage − first stage), for weights that sum to 0: of straight motion
+/// they are exactly 0. Says whether all of them are finite.
 #[inline]
-pub(super) fn combine_differences<const N: usize>(
-    target: &mut [f64],
+pub(super) fn combine_differences<const M: usize, const N: usize>(
+    mut targets: [&mut [f64]; M],
     step: f64,
-    weights: [f64; N],
+    weights: [[f64; N]; M],
     stages: [&[f64]; N],
-) {
-    let dimension = target.len();
+) -> bool {
+    let dimension = stages[0].len();
     let stages = cut(stages, dimension);
-    for i in 0..dimension {
-        let mut sum = 0.0;
-        for stage in 0..N {
-            sum += weights[stage] * (stages[stage][i] - stages[0][i]);
-        }
-        target[i] = step * sum;
+    // It stays 0 while everything is finite.
+    let mut trace = 0.0;
+    let mut place = 0;
+    while place + ABREAST <= dimension {
+        trace += combine_abreast::<ABREAST, M, N>(&mut targets, place, step, &weights, &stages);
+        place += ABREAST;
     }
+    while place < dimension {
+        trace += combine_abreast::<1, M, N>(&mut targets, place, step, &weights, &stages);
+        place += 1;
+    }
+    trace == 0.0
+}
+
+/// How many components are combined at once: what is read of them is used for all targets.
+const ABREAST: usize = 4;
+
+/// Combines the components from `place` on; 0 if all are finite.
+#[inline]
+fn combine_abreast<const LANES: usize, const M: usize, const N: usize>(
+    targets: &mut [&mut [f64]; M],
+    place: usize,
+    step: f64,
+    weights: &[[f64; N]; M],
+    stages: &[&[f64]; N],
+) -> f64 {
+    let row = |stage: usize| -> [f64; LANES] {
+        let row = &stages[stage][place..place + LANES];
+        std::array::from_fn(|lane| row[lane])
+    };
+    let (first, mut sums) = (row(0), [[0.0; LANES]; M]);
+    for stage in 1..N {
+        let row = row(stage);
+        let differences: [f64; LANES] = std::array::from_fn(|lane| row[lane] - first[lane]);
+        for (sums, weights) in sums.iter_mut().zip(weights) {
+            for (sum, difference) in sums.iter_mut().zip(differences) {
+                *sum += weights[stage] * difference;
+            }
+        }
+    }
+    let mut trace = 0.0;
+    for (target, sums) in targets.iter_mut().zip(sums) {
+        let results: [f64; LANES] = std::array::from_fn(|lane| step * sums[lane]);
+        target[place..place + LANES].copy_from_slice(&results);
+        trace += 0.0 * results.iter().sum::<f64>();
+    }
+    trace
 }
 
 /// Slices of one known length: a loop over them has no bounds to check.

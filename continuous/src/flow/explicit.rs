@@ -111,7 +111,7 @@ impl Explicit {
         step: f64,
         (first, first_rates, last_rates): (&[f64], &[f64], &[f64]),
         room: &mut [Vec<f64>; 4],
-        terms: &mut [Vec<f64>],
+        terms: [&mut [f64]; 4],
     ) -> bool {
         let at = |stage: usize| start + NODES_INSIDE[stage - 14] * step;
         let [probe, k14, k15, k16] = room;
@@ -126,10 +126,7 @@ impl Explicit {
         field.rates(at(16), probe, k16);
 
         let stages = [k1, k6, k7, k8, k9, k10, k11, k12, k13, k14, k15, k16];
-        for (term, weights) in terms.iter_mut().zip(EXTENSION) {
-            combine_differences(term, step, weights, stages);
-        }
-        terms.iter().flatten().all(|x| x.is_finite())
+        combine_differences(terms, step, EXTENSION, stages)
     }
 }
 

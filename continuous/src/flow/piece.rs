@@ -55,6 +55,38 @@ impl Piece {
         self
     }
 
+    /// A piece of components with up to `N` coefficients each, with bounds on their errors.
+    pub(super) fn of_rows<const N: usize>(
+        [start, end]: [f64; 2],
+        origin: f64,
+        scale: f64,
+        rows: impl Iterator<Item = [f64; N]>,
+        errors: Vec<f64>,
+    ) -> Self {
+        let mut coefficients = vec![0.0; N * errors.len()];
+        let (places, _) = coefficients.as_chunks_mut::<N>();
+        places.iter_mut().zip(rows).for_each(|(place, row)| *place = row);
+        let ends = (1..=errors.len()).map(|rows| N * rows).collect();
+        let mut piece = Piece { start, end, origin, scale, coefficients, ends, errors };
+        if piece.errors.iter().all(|error| *error == 0.0) {
+            piece.errors.clear();
+        }
+        piece.trim();
+        piece
+    }
+
+    /// Leaves zeros at the ends of components out.
+    fn trim(&mut self) {
+        if self.ends.iter().all(|&end| self.coefficients[end - 1] != 0.0) {
+            return;
+        }
+        let mut trimmed = Piece::new(self.start, self.end, self.origin, self.scale);
+        for component in 0..self.ends.len() {
+            trimmed.push(self.coefficients(component).iter().copied(), self.error(component));
+        }
+        *self = trimmed;
+    }
+
     /// Adds a component: its coefficients, the constant first, and a bound on its error.
     pub fn push(&mut self, coefficients: impl IntoIterator<Item = f64>, error: f64) {
         let first = self.coefficients.len();
@@ -116,6 +148,18 @@ impl Piece {
     /// The largest magnitude of what is raised to powers.
     pub(super) fn farthest(&self) -> f64 {
         self.place(self.start).abs().max(self.place(self.end).abs())
+    }
+
+    /// Whether values and rates of all components are certainly finite: all coefficients together are.
+    pub fn is_finite(&self) -> bool {
+        let (rows, rest) = self.coefficients.as_chunks::<8>();
+        let mut sums = [0.0; 8];
+        for row in rows {
+            sums.iter_mut().zip(row).for_each(|(sum, coefficient)| *sum += coefficient.abs());
+        }
+        let rest = rest.iter().chain(&self.errors).map(|number| number.abs());
+        let most: f64 = sums.into_iter().chain(rest).sum();
+        (most * self.coefficients.len() as f64).is_finite()
     }
 
     /// The highest power with a coefficient.

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use super::dormand_prince::cut;
 use super::explicit::Explicit;
 use super::implicit::Implicit;
 use super::{Curve, Piece, Tolerances, VectorField};
@@ -83,35 +84,32 @@ impl Inside {
 
     /// The derivative with respect to θ at 1/2.
     fn slope_in_the_middle(&self, component: usize) -> f64 {
-        let powers = self.powers(component);
-        let terms = powers.iter().zip(0_i32..).skip(1);
-        terms.map(|(coefficient, k)| f64::from(k) * coefficient * 0.5_f64.powi(k - 1)).sum()
+        let (mut value, mut slope) = (0.0, 0.0);
+        for (number, term) in self.terms[..self.known].iter().enumerate().rev() {
+            value += term[component];
+            slope = 0.5 * slope + if number % 2 == 0 { value } else { -value };
+            value *= 0.5;
+        }
+        slope
     }
 
-    /// The coefficients of the same polynomial in powers of θ, from that of θ⁰ = 1 on.
-    fn powers(&self, component: usize) -> [f64; MOST_TERMS + 1] {
-        // A number of terms that is known in advance makes straight code.
-        match self.known {
-            MOST_TERMS => self.powers_of::<MOST_TERMS>(component),
-            STIFF_TERMS => self.powers_of::<STIFF_TERMS>(component),
-            _ => self.powers_of::<CUBIC_TERMS>(component),
-        }
-    }
-
-    fn powers_of<const TERMS: usize>(&self, component: usize) -> [f64; MOST_TERMS + 1] {
-        let terms: [f64; TERMS] = std::array::from_fn(|number| self.terms[number][component]);
-        let mut powers = [0.0; MOST_TERMS + 1];
-        for number in (0..TERMS).rev() {
-            powers[0] += terms[number];
-            let by_theta = number % 2 == 0;
-            let degree = TERMS - number;
-            for power in (1..=degree).rev() {
-                let lower = powers[power - 1];
-                powers[power] = if by_theta { lower } else { powers[power] - lower };
-            }
-            powers[0] = if by_theta { 0.0 } else { powers[0] };
-        }
-        powers
+    /// By component, the coefficients of the same polynomial in powers of θ, from that of θ⁰ = 1 on,
+    /// which is `first`: θ, θφ, θ²φ, θ²φ², θ³φ², θ³φ³ and θ⁴φ³ are multiplied out.
+    #[inline]
+    fn powers(&self, first: &[f64]) -> impl Iterator<Item = [f64; MOST_TERMS + 1]> {
+        let [a, b, c, d, e, f, g] = cut(self.terms.each_ref().map(Vec::as_slice), first.len());
+        (0..first.len()).map(move |i| {
+            [
+                first[i],
+                a[i] + b[i],
+                c[i] - b[i] + d[i],
+                e[i] - c[i] - 2.0 * d[i] + f[i],
+                d[i] - 2.0 * e[i] - 3.0 * f[i] + g[i],
+                e[i] + 3.0 * (f[i] - g[i]),
+                3.0 * g[i] - f[i],
+                -g[i],
+            ]
+        })
     }
 }
 
@@ -147,15 +145,13 @@ impl<F: VectorField + ?Sized> Curve for Step<'_, F> {
     fn piece(&self, _time: f64) -> Option<Piece> {
         let mut inside = self.inside.borrow_mut();
         self.explore(&mut inside);
-        let mut piece = Piece::new(self.start, self.end, self.start, self.end - self.start)
-            .with_room(self.first.len(), MOST_TERMS + 1);
-        for (component, (first, last)) in self.first.iter().zip(self.last).enumerate() {
-            let mut powers = inside.powers(component);
-            powers[0] += first;
-            let error = INSIDE * self.tolerances.allowed(first.abs().max(last.abs()));
-            piece.push(powers, error);
-        }
-        Some(piece)
+        let ends = self.first.iter().zip(self.last);
+        let error = |(first, last): (&f64, &f64)| {
+            INSIDE * self.tolerances.allowed(first.abs().max(last.abs()))
+        };
+        let (span, duration) = ([self.start, self.end], self.end - self.start);
+        let (rows, errors) = (inside.powers(self.first), ends.map(error).collect());
+        Some(Piece::of_rows(span, self.start, duration, rows, errors))
     }
 }
 
@@ -177,7 +173,8 @@ impl<F: VectorField + ?Sized> Step<'_, F> {
         inside.known = match self.stages {
             Stages::Explicit { explicit, is_suspect } => {
                 let ends = (self.first, first_rates, last_rates);
-                let (room, terms) = (&mut inside.room, &mut inside.terms[3..]);
+                let [_, _, _, terms @ ..] = inside.terms.each_mut().map(Vec::as_mut_slice);
+                let room = &mut inside.room;
                 let extended = explicit.extend(self.field, self.start, step, ends, room, terms);
                 let is_sound = extended && !(is_suspect && self.prefers_cubic(inside));
                 if is_sound { MOST_TERMS } else { CUBIC_TERMS }
@@ -187,6 +184,7 @@ impl<F: VectorField + ?Sized> Step<'_, F> {
                 if extended { STIFF_TERMS } else { CUBIC_TERMS }
             }
         };
+        inside.terms[inside.known..].iter_mut().for_each(|term| term.fill(0.0));
     }
 }
 
@@ -224,9 +222,10 @@ mod tests {
         for (number, term) in inside.terms.iter_mut().enumerate() {
             term[0] = [3.0, -1.0, 4.0, 1.0, -5.0, 9.0, 2.0][number];
         }
-        for known in [3, 4, 7] {
+        for known in [7, 4, 3] {
             inside.known = known;
-            let powers = inside.powers(0);
+            inside.terms[known..].iter_mut().for_each(|term| term.fill(0.0));
+            let powers = inside.powers(&[0.0]).next().expect("it has a component");
             for tenth in 0..=10 {
                 let theta = 0.1 * f64::from(tenth);
                 let sum = powers.iter().rev().fold(0.0, |sum, power| sum * theta + power);

@@ -162,8 +162,11 @@ impl<'a> Writer<'a> {
                 _ => result_places.push(Places { first: place, count: 1 }),
             }
         }
+        let runs = instructions.chunk_by(|one: &Instruction, next| one.width == next.width);
+        let runs = runs.map(|run| run.len() as u32).collect();
         Tape {
             variables,
+            runs,
             constants: constants.collect(),
             computed: computed + gathered.sources.len(),
             instructions,
