@@ -30,6 +30,7 @@ fn stressed(name: &str, stress: &Stress) -> Scenario {
     let share = if name == "leaf-leader" { 1.0 } else { 0.9 };
     let mut scenario = shipped(name);
     scenario.robot.iter_mut().for_each(|robot| robot.rate = share * stress.rate);
+    scenario.control.build_reliability = Some(stress.tree_reliability);
     scenario.control.tree_reliability = Some(stress.tree_reliability);
     scenario.control.slope_aversion = Some(stress.slope_aversion);
     scenario.control.step_radius = Some(stress.step_radius);

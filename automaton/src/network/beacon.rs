@@ -158,6 +158,9 @@ pub struct Beacon {
     pub reply: Option<Reply<Duty>>,
     /// What the primary team knows of itself, for the next member towards p₁.
     pub team: Option<TeamReport>,
+    /// Whether a team has found no robot that can be recruited, so that links of the tree may be as long as
+    /// they ever are.
+    pub stretched: bool,
     /// Where robots that do not take part were heard last.
     #[serde(with = "wire")]
     pub wrecks: Arc<Vec<Wreck>>,
@@ -189,6 +192,7 @@ impl Beacon {
             offers_made: 0,
             reply: None,
             team: None,
+            stretched: false,
             wrecks: Arc::default(),
         }
     }

@@ -52,6 +52,7 @@ impl AccessPoint {
             agreement,
             route,
             crossing,
+            stretched,
             attached,
             roster,
             settled_rounds,
@@ -88,7 +89,7 @@ impl AccessPoint {
             "{:?}",
             (
                 (number, bulletin, announced, &**service, election, rounds),
-                (agreement, route, crossing, (attached, roster), settled),
+                (agreement, route, crossing, stretched, (attached, roster), settled),
             )
         )
     }

@@ -63,6 +63,8 @@ pub struct AccessPoint {
     agreement: Option<Agreement>,
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     crossing: Vec<usize>,
+    /// Whether a team has found no robot that can be recruited.
+    stretched: bool,
     /// The robots that are attached here, to be told to other access points if there are any.
     attached: Arc<IdSet>,
     /// Robots that are heard here and know no way to an access point, for the others likewise.
@@ -112,6 +114,7 @@ impl AccessPoint {
             agreement: None,
             route: None,
             crossing: Vec::new(),
+            stretched: false,
             attached: Arc::default(),
             strays: Arc::default(),
             roster: Arc::default(),
@@ -169,6 +172,7 @@ impl AccessPoint {
             offers_made: 0,
             reply: None,
             team: None,
+            stretched: self.stretched,
             wrecks: Arc::default(),
         }
     }
@@ -243,6 +247,7 @@ impl AccessPoint {
             self.newest = None;
         }
         for beacon in &self.heard {
+            self.stretched |= beacon.stretched;
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
                 merge_election(own, heard);
             }
@@ -317,7 +322,8 @@ impl AccessPoint {
     }
 
     fn is_within_changeover(&self, other: Point) -> bool {
-        self.site.distance(self.position, other) <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
+        self.site.distance(self.position, other)
+            <= 2.0 * CHANGEOVER_SHARE * self.site.lengths(self.stretched).build
     }
 
     /// Which robots are attached to the access points, and which it hears of. One that knows no way to an

@@ -112,6 +112,7 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
         offers_made: 5,
         reply: Some(Reply { to: 2, number: 4, accepted: Some(duty) }),
         team: Some(TeamReport { still: 3, slack: Some(1), remaining: f64::INFINITY }),
+        stretched: true,
         wrecks: Arc::new(vec![Wreck { robot: 3, place: Point::new(0.5, 0.5), heard_in: 6 }]),
         ..silent()
     }

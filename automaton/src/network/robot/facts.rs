@@ -385,13 +385,13 @@ impl Robot {
 impl Robot {
     /// A robot on Σ may have to wait until the others of its subgroup have gone their way.
     pub(super) fn patience(&self) -> f64 {
-        let walk = self.site.hard_length / self.site.settings.step_radius;
+        let walk = self.hard_length() / self.site.settings.step_radius;
         PATIENCE * f64::from(STATIONARY_WINDOW).max(walk)
     }
 }
 
-/// The patience of a robot, in multiples of the longest regular wait.
-const PATIENCE: f64 = 4.0;
+/// The patience of a robot, in multiples of the longest regular wait or walk.
+pub(super) const PATIENCE: f64 = 4.0;
 
 /// Control periods without motion that make a stationary point.
 pub(super) const STATIONARY_WINDOW: u32 = 8;

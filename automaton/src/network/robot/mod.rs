@@ -192,6 +192,8 @@ pub struct Robot {
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     agreement: Option<Agreement>,
     team: Option<TeamReport>,
+    /// Whether a team has found no robot that can be recruited.
+    stretched: bool,
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
     unfollowed_periods: u32,
@@ -299,6 +301,7 @@ impl Robot {
             route: None,
             agreement: None,
             team: None,
+            stretched: false,
             followed_post: None,
             unfollowed_periods: 0,
             routing: routing::RoutingState::new(site.settings.routing_method),
@@ -407,6 +410,7 @@ impl Robot {
             offers_made: self.offers().offers_made(),
             reply: self.offers().reply().cloned(),
             team: self.team,
+            stretched: self.stretched,
             wrecks: Arc::clone(&self.wrecks),
         }
     }

@@ -179,14 +179,13 @@ impl Robot {
     }
 
     fn is_overloaded(&self) -> bool {
-        let load: f64 = self.routes().map(|link| link.share).sum();
         let own = self.reach_of(self.own_move(), self.is_parked());
         let worst = self.worst_load(own, |node| {
             let rests = |known: &Neighbour| known.is_access_point() || known.beacon.parked;
             let is_parked = self.neighbour(node).is_none_or(rests);
             self.reach_of(self.move_of(node), is_parked)
         });
-        worst > FULL_LOAD.max(load + ROUNDING)
+        worst > FULL_LOAD.max(self.load() + ROUNDING)
     }
 
     /// By how much at least each end that moves has to shorten a link of this length. What measurements

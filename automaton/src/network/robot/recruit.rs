@@ -72,7 +72,8 @@ pub(super) fn announce_path(
     Some(PathAgreement { path })
 }
 
-/// The caller finds that no robot can be recruited: other trees may try, or the mission ends.
+/// The caller finds that no robot can be recruited: other trees may try, links may be longer from now on, or
+/// the mission ends.
 pub(super) fn end_unaided(
     phase: &RecruitElection,
     robot: &Robot,
@@ -87,8 +88,14 @@ pub(super) fn end_unaided(
             effects.push(MissionEffect::Report(MissionEvent::ElectionRepeated { task }));
             let announcement = Announcement { eligible: Arc::new(others), ..known.clone() };
             effects.push(MissionEffect::Issue(Notice::Task(Shared::new(announcement))));
+        } else if robot.could_stretch() {
+            effects.extend([
+                MissionEffect::Stretch,
+                MissionEffect::Report(MissionEvent::LinksStretched { robot: robot.id }),
+                MissionEffect::Issue(Notice::Advance { joined: None }),
+            ]);
         } else {
-            let wanted = (robot.remaining() / robot.site.build_length).ceil().max(1.0);
+            let wanted = (robot.remaining() / robot.build_length()).ceil().max(1.0);
             let reason = format!(
                 "task {task} needs another recruit, and no robot is left that can come; from where the \
                  team stands about {wanted} more robots are needed"
@@ -104,6 +111,13 @@ pub(super) fn end_unaided(
 }
 
 impl Robot {
+    /// Whether longer links would take the team that calls farther.
+    fn could_stretch(&self) -> bool {
+        let calls_for_length =
+            matches!(*self.notice(), Notice::Call { releases_leader: false, .. });
+        calls_for_length && !self.stretched && self.site.could_stretch()
+    }
+
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
         let station = self.duty.station()?;
         let place = PathPlace { reference: station.reference, position: self.position };

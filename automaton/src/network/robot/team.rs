@@ -7,6 +7,7 @@ use super::super::beacon::{Notice, TeamReport};
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
 use super::Robot;
+use super::facts::PATIENCE;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
@@ -18,6 +19,8 @@ const TOUCH: f64 = 0.1;
 const BUNCHED: f64 = 2.6;
 /// A link shorter than this share of d_build is slack.
 const SLACK: f64 = 0.95;
+/// A robot that sends for this share of its time is at the limit of what its links carry.
+const SATURATED: f64 = 0.95;
 
 /// The leader is within reach of its task, and services it.
 pub(super) fn announce_service(_: &Advance, robot: &Robot, effects: &mut Effects) -> Option<Idle> {
@@ -99,7 +102,21 @@ impl Robot {
     }
 
     fn patience_with_followers(&self) -> u32 {
-        2 * self.site.roll_validity()
+        (2 * self.site.roll_validity()).saturating_add(self.patience_with_newcomer())
+    }
+
+    /// Control periods that a robot which has joined the team, and has not been heard on its post yet, may
+    /// take to come within range.
+    fn patience_with_newcomer(&self) -> u32 {
+        let (own, path) = (self.primary_post(), self.mission.path());
+        let newcomer = path.and_then(|path| path.hops.get(path.last_break_point()));
+        match newcomer.filter(|_| own.is_some() && self.followed_post != own) {
+            Some(hop) => {
+                let way = self.site.distance(hop.place.position, self.position);
+                (PATIENCE * way / self.site.settings.step_radius).ceil() as u32
+            }
+            None => 0,
+        }
     }
 
     /// Remembers that a robot follows it: one that falls silent follows all the same.
@@ -188,11 +205,16 @@ impl Robot {
         let bound = self
             .anchor()
             .and_then(|anchor| self.neighbour_at(anchor))
-            .is_none_or(|parent| self.walk_to(parent) >= SLACK * self.site.build_length);
+            .is_none_or(|parent| self.walk_to(parent) >= SLACK * self.build_length());
         let bunched = || {
             self.team_goal()
                 .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance())
         };
-        !bound && (self.leads() || !bunched())
+        !bound && !self.is_saturated() && (self.leads() || !bunched())
+    }
+
+    /// Whether the links of the robot carry no more: a recruit would make them shorter.
+    fn is_saturated(&self) -> bool {
+        self.load() >= SATURATED
     }
 }

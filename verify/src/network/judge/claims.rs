@@ -50,6 +50,7 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
         MissionEvent::SubgroupStarted { robots: members, .. }
         | MissionEvent::SubgroupArrived { robots: members, .. } => robots.extend(members),
         MissionEvent::Released { robot }
+        | MissionEvent::LinksStretched { robot }
         | MissionEvent::RoleChanged { robot, .. }
         | MissionEvent::RouteInfeasible { robot } => robots.push(*robot),
         MissionEvent::DutiesExchanged { mover, parked } => robots.extend([mover, parked]),

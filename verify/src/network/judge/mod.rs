@@ -186,9 +186,25 @@ impl<'a> Judge<'a> {
     ) -> Result<Ledger, Dispute> {
         let scene = self.scene(snapshot, events);
         claims::is_true(event, &self.ledger, &scene)?;
+        self.stretches_for_want_of_a_robot(event)?;
         let mut ledger = self.ledger.clone();
         ledger.enter(event)?;
         Ok(ledger)
+    }
+
+    /// A team stretches its links where no robot could have come.
+    fn stretches_for_want_of_a_robot(&self, event: &MissionEvent) -> Result<(), Dispute> {
+        let (MissionEvent::LinksStretched { robot }, Some(previous)) = (event, &self.previous)
+        else {
+            return Ok(());
+        };
+        match self.tried.overlooked(&self.ledger, previous) {
+            None => Ok(()),
+            Some(overlooked) => {
+                let sentence = format!("links are stretched for want of a robot, but {overlooked}");
+                Err(Dispute::of(Property::Events, &[*robot], sentence))
+            }
+        }
     }
 
     /// Takes an event with the ledger after it.
