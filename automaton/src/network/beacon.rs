@@ -100,6 +100,8 @@ pub struct TeamReport {
     pub still: u32,
     /// A member whose link is slack although it cannot move.
     pub slack: Option<NodeId>,
+    /// A member whose links carry no more.
+    pub saturated: Option<NodeId>,
     /// Geodesic distance from the leader to its task; infinite if no way leads there.
     #[serde(with = "wire::distance")]
     pub remaining: f64,

@@ -63,6 +63,8 @@ impl AccessPoint {
             requested: _,
             // Between two stimuli an access point has nothing left to do.
             heard: _,
+            sightings: _,
+            wrecks: _,
             silent: _,
             newest: _,
             rounds: _,

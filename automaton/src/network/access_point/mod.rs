@@ -22,7 +22,7 @@ use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
 use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
-use super::roll::Roll;
+use super::roll::{Roll, Wreck};
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election};
 use super::site::Site;
@@ -51,6 +51,10 @@ pub struct AccessPoint {
     position: Point,
     /// The beacon heard last of each node in range, by their senders.
     heard: Vec<Arc<Beacon>>,
+    /// Where each robot was when it was heard last.
+    sightings: Vec<Wreck>,
+    /// Where robots that do not take part were heard last, here or by the nodes that are heard.
+    wrecks: Arc<Vec<Wreck>>,
     /// The senders of which nothing has been heard in this control period yet.
     silent: BTreeSet<NodeId>,
     bulletin: Bulletin,
@@ -105,6 +109,8 @@ impl AccessPoint {
             roll: Roll::default(),
             site,
             heard: Vec::new(),
+            sightings: Vec::new(),
+            wrecks: Arc::default(),
             silent: BTreeSet::new(),
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             newest: None,
@@ -173,7 +179,7 @@ impl AccessPoint {
             reply: None,
             team: None,
             stretched: self.stretched,
-            wrecks: Arc::default(),
+            wrecks: Arc::clone(&self.wrecks),
         }
     }
 
@@ -185,6 +191,7 @@ impl AccessPoint {
         self.hear_notices()?;
         self.find_route();
         self.update_roster();
+        self.locate_wrecks();
         Ok(())
     }
 
@@ -205,6 +212,30 @@ impl AccessPoint {
             Ok(at) if beacon.is_older_than(&self.heard[at]) => {}
             Ok(at) => self.heard[at] = Arc::clone(beacon),
             Err(at) => self.heard.insert(at, Arc::clone(beacon)),
+        }
+        if beacon.duty.is_some() {
+            self.sight(Wreck { robot: beacon.sender, place: beacon.position, heard_in: period });
+        }
+    }
+
+    /// Remembers where a robot has been heard.
+    fn sight(&mut self, seen: Wreck) {
+        match self.sightings.binary_search_by_key(&seen.robot, |known| known.robot) {
+            Ok(at) => self.sightings[at] = seen,
+            Err(at) => self.sightings.insert(at, seen),
+        }
+    }
+
+    fn locate_wrecks(&mut self) {
+        let absent = &self.roll.absent;
+        if absent.is_empty() && self.wrecks.is_empty() {
+            return;
+        }
+        let told = self.heard.iter().flat_map(|beacon| beacon.wrecks.iter());
+        let wrecks =
+            absent.located(self.sightings.iter().chain(self.wrecks.iter()).chain(told).copied());
+        if *self.wrecks != wrecks {
+            self.wrecks = Arc::new(wrecks);
         }
     }
 

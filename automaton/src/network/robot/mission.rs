@@ -50,6 +50,8 @@ pub enum MissionEffect {
     Restart,
     /// From now on links of the tree may be as long as they ever are.
     Stretch,
+    /// It does not make the move that it has set off on: that would lead it nowhere.
+    Stay,
 }
 
 pub(super) type Effects = Vec<MissionEffect>;
@@ -87,6 +89,7 @@ impl Holds<Mission> for Robot {
                 MissionEffect::KeepUp => self.epoch = self.notice_id().epoch(),
                 MissionEffect::Restart => self.still_periods = 0,
                 MissionEffect::Stretch => self.stretched = true,
+                MissionEffect::Stay => self.stay(),
             }
         }
     }

@@ -63,6 +63,7 @@ pub use reservation::{FlowGrant, FlowRequest, RequestNumber};
 pub use routing::RouteLink;
 pub use step::{RobotError, RobotFault};
 pub use target::{Targets, targets};
+pub use team::SATURATED;
 pub use view::RobotView;
 
 use crate::automaton::TransitionError;

@@ -297,6 +297,13 @@ impl Robot {
         self.note_change();
     }
 
+    /// It stays where it is until the next sample, which every certified move allows.
+    pub(super) fn stay(&mut self) {
+        self.velocity = Vector::zeros();
+        self.arrival = self.position;
+        self.note_change();
+    }
+
     /// A new control period begins.
     pub(super) fn restart_clock(&mut self) {
         self.note_change();
