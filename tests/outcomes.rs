@@ -195,7 +195,7 @@ fn the_program_tells_outcomes_by_its_exit_status() {
         (
             Path::new("tests/scenarios/saturated.toml"),
             3,
-            "blocked: robots cannot go on because their links carry no more: the load is 1.000 at robot",
+            "blocked: the rates cannot be carried to task 0: ",
         ),
     ];
     for (scenario, status, outcome) in expected {

@@ -209,14 +209,15 @@ impl Robot {
         half_planes
     }
 
-    /// c̃_i ≥ −c_min, eq. (22), as a half-plane; none where c_i does not depend on x_i.
+    /// c̃_i ≥ −c_min, eq. (22), as a half-plane; none where c_i does not depend on x_i. Those that send to
+    /// this robot hold their flows, so that c_i does not fall where it comes nearer to them.
     fn linearised_residual(&self) -> Option<HalfPlane> {
         let mut gradient = Vector::zeros();
         for neighbour in &self.neighbours {
-            let net_share = self.share_to(neighbour.id()) - self.share_from(neighbour);
-            if net_share != 0.0 && neighbour.distance > 0.0 {
+            let share = self.share_to(neighbour.id());
+            if share != 0.0 && neighbour.distance > 0.0 {
                 let direction = (self.position - neighbour.position()) / neighbour.distance;
-                gradient += direction * (net_share * self.slope_at(neighbour.distance));
+                gradient += direction * (share * self.slope_at(neighbour.distance));
             }
         }
         let steepness = gradient.norm();
@@ -230,12 +231,6 @@ impl Robot {
 
     fn share_to(&self, to: NodeId) -> f64 {
         self.routes().find(|link| link.to == to).map_or(0.0, |link| link.share)
-    }
-
-    fn share_from(&self, neighbour: &Neighbour) -> f64 {
-        let id = neighbour.id();
-        let flow = self.inflows.iter().find(|(from, _)| *from == id).map_or(0.0, |(_, flow)| *flow);
-        if flow > 0.0 { flow / neighbour.reliability } else { 0.0 }
     }
 
     /// The holder of a fixed post stays within δ of it, and of the task serviced from it.
