@@ -191,11 +191,11 @@ fn the_program_tells_outcomes_by_its_exit_status() {
         (Path::new("scenarios/too-few.toml"), 3, "insufficient robots: task 1"),
         (Path::new("scenarios/unreachable.toml"), 3, "unreachable task: "),
         (&hasty, 3, "step limit: "),
-        // Five robots of rate 0.22: one relay cannot carry the traffic of all.
+        // Five robots of rate 0.27: one relay cannot carry the traffic of all.
         (
             Path::new("tests/scenarios/saturated.toml"),
             3,
-            "blocked: the rates cannot be carried to task 0: ",
+            "blocked: robots cannot go on because their links carry no more: the load is 1.000 at robot",
         ),
     ];
     for (scenario, status, outcome) in expected {

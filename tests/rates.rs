@@ -86,13 +86,13 @@ fn the_lower_the_rates_the_fewer_the_recruits() {
 /// Thirteen robots are too few at this rate for links that carry it in any case.
 #[test]
 fn a_team_without_a_recruit_stretches_its_links() {
-    let mission = run(study(0.2, 0.075));
+    let mission = run(study(0.2, 0.07));
     mission.assert_serviced();
     let stretched =
         |(_, event): &(usize, &MissionEvent)| matches!(event, MissionEvent::LinksStretched { .. });
     assert_eq!(mission.events().filter(stretched).count(), 1);
 
-    let mut scenario = study(0.2, 0.075);
+    let mut scenario = study(0.2, 0.07);
     scenario.control.tree_reliability = Some(0.8);
     assert_eq!(run(scenario).end.outcome, Outcome::InsufficientRobots);
 }

@@ -23,7 +23,7 @@ use super::motion::ROUNDING;
 use crate::node::Outputs;
 
 /// How much of a load a sender may be given, just below its whole time.
-const FULL_LOAD: f64 = 1.0 - 1e-9;
+pub(super) const FULL_LOAD: f64 = 1.0 - 1e-9;
 
 impl Robot {
     /// A new proposal is about to be made: nothing has been heard of others, and nobody consents.
