@@ -224,7 +224,7 @@ mod tests {
             link: LinkRanges::new(0.4, 0.5),
             control,
             access_point: vec![AccessPoint { position: [0.5, 0.2] }],
-            robot: vec![RobotStart { position: [0.6, 0.2], rate: 0.075 }],
+            robot: vec![RobotStart { position: [0.6, 0.2], rate: 0.075 }; 13],
             task: vec![],
         }
     }
@@ -238,6 +238,27 @@ mod tests {
         assert_eq!(settings.residual_tolerance, 0.0);
         assert!((settings.usual_links().hard - 0.4287).abs() < 1e-4);
         assert!((settings.usual_links().build - 0.3987).abs() < 1e-4);
+    }
+
+    /// Thirteen rates, up to 0.8 and from the floor on that is stated.
+    #[test]
+    fn links_are_made_for_what_all_robots_send() {
+        let built = |rate: f64, control: Control| {
+            let mut scenario = scenario(control);
+            scenario.robot.iter_mut().for_each(|robot| robot.rate = rate);
+            Settings::resolve(&scenario).build_reliability
+        };
+        let reliabilities = [0.001, 0.03, 0.2].map(|rate| built(rate, Control::default()));
+        assert_eq!(reliabilities[0], 0.1);
+        assert!((reliabilities[1] - 0.39).abs() < 1e-12);
+        assert_eq!(reliabilities[2], 0.8);
+        let stated = |tree, build| Control {
+            tree_reliability: tree,
+            build_reliability: build,
+            ..Control::default()
+        };
+        assert_eq!(built(0.03, stated(Some(0.9), None)), 0.9);
+        assert_eq!(built(0.03, stated(None, Some(0.2))), 0.2);
     }
 
     #[test]
