@@ -230,17 +230,17 @@ pub const THOROUGH: &[Campaign] = &[
     },
     Campaign {
         name: "three robots, a message lost and one late, moves once a period",
-        medium: periods(Faults { losses: 1, delays: 1, duplicates: 0 }),
+        medium: periods(Faults { losses: 1, delays: 1, ..Faults::NONE }),
         ..robots(3, Counts { configurations: 44, states: 242_249, transitions: 641_038 })
     },
     Campaign {
         name: "three robots, a message lost and one copied, moves once a period",
-        medium: periods(Faults { losses: 1, delays: 0, duplicates: 1 }),
+        medium: periods(Faults { losses: 1, duplicates: 1, ..Faults::NONE }),
         ..robots(3, Counts { configurations: 44, states: 1_476_186, transitions: 4_096_317 })
     },
     Campaign {
         name: "three robots, a message late and one copied, moves once a period",
-        medium: periods(Faults { losses: 0, delays: 1, duplicates: 1 }),
+        medium: periods(Faults { delays: 1, duplicates: 1, ..Faults::NONE }),
         ..robots(3, Counts { configurations: 44, states: 732_019, transitions: 1_786_374 })
     },
 ];

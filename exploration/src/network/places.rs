@@ -9,6 +9,8 @@ use pleach_automaton::network::scenario::{
 use pleach_automaton::network::site::Measure;
 use pleach_continuous::Point;
 
+use super::protocol::RATE;
+
 /// The number of a place: first those where the robots start, then those of the access points,
 /// then others.
 pub type PlaceId = usize;
@@ -184,7 +186,7 @@ impl PlaceGraph {
                 .map(|place| AccessPoint { position: at(place) })
                 .collect(),
             robot: (0..self.robots)
-                .map(|place| RobotStart { position: at(place), rate: 0.0 })
+                .map(|place| RobotStart { position: at(place), rate: RATE })
                 .collect(),
             task: self.tasks.iter().map(|&place| Task { position: at(place) }).collect(),
         }

@@ -55,6 +55,8 @@ crate::observed! {
         misses_elector: point.electors().any(Attendee::is_gone),
         /// A robot that takes part in the elections for its task has not been heard of.
         expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
+        /// A robot that does not take part is not gone yet, or is coming back.
+        may_return: point.attendees.iter().any(Attendee::may_return),
         /// The newest notice received announces a task, or calls for a recruit.
         hears_election: matches!(point.heard_notice(), Some(Notice::Task(_) | Notice::Call { .. })),
         /// The newest notice received announces a path Σ, or that the team advances.
@@ -294,7 +296,11 @@ fn end(effects: &mut Effects, outcome: Outcome, task: Option<usize>, reason: Str
 }
 
 fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
-    let reason = "no robot is connected to an access point".to_owned();
+    let mut reason = "no robot is connected to an access point".to_owned();
+    let gone = point.gone();
+    if !gone.is_empty() {
+        reason.push_str(&format!(" any more: robots {gone:?} have stopped, or nobody hears them"));
+    }
     end(effects, Outcome::InsufficientRobots, point.next_task(), reason)
 }
 
@@ -394,6 +400,8 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(announces_again::<Electing>(guards::elects_again()))
         .carried_out(announces_again::<UnderWay>(guards::announces_again()))
         .carried_out(no_robot::<Gathering>(guards::no_robot_first()))
+        .carried_out(no_robot::<Electing>(guards::no_robot_left()))
+        .carried_out(no_robot::<UnderWay>(guards::no_robot_left()))
         .carried_out(no_robot::<Serviced>(guards::no_robot_next()))
         .carried_out(all_serviced::<Gathering>(guards::nothing_to_service()))
         .carried_out(all_serviced::<Serviced>(guards::all_serviced()))

@@ -110,8 +110,12 @@ impl Robot {
 
     /// Once a period: for how long no robot has held the post that its own is attached to.
     pub(super) fn count_orphaned_periods(&mut self) {
-        let is_orphan =
-            matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none();
+        let is_orphan = match self.anchor() {
+            Some(Anchor::Access(_)) => false,
+            Some(Anchor::Post(_)) => self.named_parent().is_none(),
+            // It was redundant when it lost its parent, and another robot relies on it.
+            None => self.duty.post().is_some_and(|post| !post.is_redundant()),
+        };
         let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
         self.orphaned_periods = if is_orphan { longer } else { 0 };
     }
@@ -119,14 +123,14 @@ impl Robot {
     /// Another parent, where no robot has held the post for long that its own is attached to: the node
     /// with the fewest links to an access point that is near enough.
     fn replace_parent(&self) -> Option<Option<Anchor>> {
-        let (post, lost) = (self.duty.post()?.id, self.anchor()?);
+        let (post, lost) = (self.duty.post()?.id, self.anchor());
         if self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
             return None;
         }
         let limit = self.site.hard_length * (1.0 + ROUNDING);
         let leads_elsewhere = |lineage: &Lineage| {
             !lineage.contains(post)
-                && !matches!(lost, Anchor::Post(lost) if lineage.contains(lost))
+                && !matches!(lost, Some(Anchor::Post(lost)) if lineage.contains(lost))
                 && self.confirms(lineage)
         };
         let ways = self.neighbours.iter().filter_map(|neighbour| {

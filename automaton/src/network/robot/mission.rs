@@ -36,6 +36,8 @@ pub enum MissionEffect {
     Report(MissionEvent),
     /// It issues the next notice.
     Issue(Notice),
+    /// It issues a notice that supersedes those that others issue meanwhile.
+    Supersede(Notice),
     /// It goes by this announcement.
     Learn(Announced),
     /// It takes part in this election, with its own bid, from the way to the caller that it knows.
@@ -68,6 +70,7 @@ impl Holds<Mission> for Robot {
             match effect {
                 MissionEffect::Report(event) => self.report(event),
                 MissionEffect::Issue(notice) => self.issue(notice),
+                MissionEffect::Supersede(notice) => self.supersede(notice),
                 MissionEffect::Learn(announced) => {
                     self.epoch = announced.0.epoch();
                     self.target = Some(self.site.free_space.nearest(announced.1.position));
@@ -76,8 +79,10 @@ impl Holds<Mission> for Robot {
                 MissionEffect::Elect(election, bid, route) => {
                     (self.election, self.bid, self.route) = (Some(Arc::new(election)), bid, route);
                     self.waited_rounds = 1;
-                    if self.phase() == Phase::RecruitElection {
-                        self.answer_call();
+                    match self.phase() {
+                        Phase::LeaderElection => self.answer_announcement(),
+                        Phase::RecruitElection => self.answer_call(),
+                        _ => {}
                     }
                 }
                 MissionEffect::ForgetRoute => self.route = None,
@@ -118,6 +123,7 @@ impl Robot {
             }
         }
         match self.phase() {
+            Phase::LeaderElection => self.answer_announcement(),
             Phase::RecruitElection => self.answer_call(),
             Phase::Shift => {
                 self.report_arrival();
@@ -131,6 +137,10 @@ impl Robot {
     /// The next notice on the mission, which this robot is the one to issue.
     fn issue(&mut self, notice: Notice) {
         self.bulletin = self.bulletin.next(self.id, Shared::new(notice));
+    }
+
+    fn supersede(&mut self, notice: Notice) {
+        self.bulletin = self.bulletin.superseding(self.id, Shared::new(notice));
     }
 
     /// The identity of the next notice on the mission if this robot issues it.
@@ -151,7 +161,7 @@ fn ended<A: DataOf<Mission>>() -> Row {
 
 fn announced<A: DataOf<Mission>>() -> Row {
     let name = "place a bid for the task";
-    Transfer::where_known(MissionStep::Announced, guards::announced(), name, leader::place_bid::<A>)
+    Transfer::where_known(MissionStep::Announced, guards::announced(), name, leader::begin_election::<A>)
 }
 
 fn overtaken<A: DataOf<Mission>>() -> Row {

@@ -52,6 +52,8 @@ use pleach_discrete::network::{
     Role,
 };
 
+#[cfg(feature = "abstraction")]
+pub(super) use abstraction::Numbers;
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
 pub use exchange::{Exchange, ExchangeAutomaton, ExchangeEffect, exchange_automaton};

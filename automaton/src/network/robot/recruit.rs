@@ -110,12 +110,17 @@ impl Robot {
         Some(Hop { robot: self.id, post: station.post, place, crossing })
     }
 
-    /// Whether it counts the rounds of an election of a recruit.
+    /// Whether it counts the rounds of an election: of a recruit, or of a leader as long as it has not
+    /// answered.
     pub(super) fn counts_rounds(&self) -> bool {
-        self.phase() == Phase::RecruitElection
+        let has_answered = |election: &Election| election.has_token(self.id);
+        match self.phase() {
+            Phase::LeaderElection => !self.election.as_deref().is_some_and(has_answered),
+            phase => phase == Phase::RecruitElection,
+        }
     }
 
-    /// Counts one more round of an election of a recruit; returns whether a wait is over, so that the
+    /// Counts one more round of an election; returns whether a wait is over, so that the
     /// robot may do what it might not do before.
     pub(super) fn count_round(&mut self) -> bool {
         if !self.counts_rounds() {
