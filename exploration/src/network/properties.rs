@@ -253,10 +253,12 @@ pub fn elections_agree(protocol: &Protocol, state: &State) -> bool {
 /// The elected robot has bid best of all that took part, ties going to the higher index.
 ///
 /// Robots that have begun a later election remember no older bid of theirs: then the
-/// mission has gone on, and the election was checked before.
+/// mission has gone on, and the election was checked before. Nor do robots that have failed.
 pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
     protocol.robots(state).filter_map(RobotView::concluded_election).all(|(id, winner)| {
-        let took_part = |robot: RobotView<'_>| robot.election() == Some(id);
+        let took_part = |robot: RobotView<'_>| {
+            robot.election() == Some(id) && !protocol.has_failed(state, robot.id())
+        };
         let bids: Vec<_> = protocol.robots(state).map(|robot| robot.own_bid(id)).collect();
         !protocol.robots(state).all(took_part) || election::is_won_by_best(&bids, winner)
     })

@@ -73,7 +73,8 @@ impl AccessPoint {
         let attendees: Vec<_> = self.attendees.iter().map(Attendee::account).collect();
         let patience = self.patience_with_tasks() + 1;
         let tasks: Vec<u32> = self.tasks_serviced.iter().map(|&it| it.min(patience)).collect();
-        let told = (self.period, &self.roll, &self.strays, &self.serves, self.is_new);
+        let reports = (&self.strays, &self.serves, &self.forgetful);
+        let told = (self.period, &self.roll, reports, self.is_new);
         format!("{}{:?}", self.account(), (told, attendees, tasks))
     }
 
@@ -109,7 +110,8 @@ impl AccessPoint {
             is_new: _,
             last_beacon: _,
             log: _,
-            // The explorer stands for time; without it no robot is missed, and no task.
+            // The explorer stands for time; without it no robot is missed, and no task, and none restarts.
+            forgetful: _,
             strays: _,
             serves: _,
             tasks_serviced: _,

@@ -51,8 +51,9 @@ crate::observed! {
         attempts: ATTEMPTS_TO_ELECT,
     }
     propositions {
-        /// A robot that takes part in the elections for its task is gone.
-        misses_elector: point.electors().any(Attendee::is_gone),
+        /// A robot that takes part in the elections for its task is gone, or has forgotten what became of
+        /// them.
+        misses_elector: point.misses_elector(),
         /// A robot that takes part in the elections for its task has not been heard of.
         expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
         /// A robot that does not take part is not gone yet, or is coming back.
@@ -142,6 +143,17 @@ impl AccessPoint {
     fn electors(&self) -> impl Iterator<Item = &Attendee> {
         let roster = self.announced().into_iter().flat_map(|announced| announced.roster.iter());
         roster.filter_map(|robot| self.attendees.get(robot))
+    }
+
+    fn misses_elector(&self) -> bool {
+        self.electors().any(Attendee::is_gone) || self.forgetful_electors().next().is_some()
+    }
+
+    /// The robots that take part in the elections for its task, and have restarted since it was announced.
+    fn forgetful_electors(&self) -> impl Iterator<Item = NodeId> {
+        let pursued = self.announced();
+        let elects = move |&robot: &NodeId| pursued.is_some_and(|it| it.roster.contains(robot));
+        self.forgetful.iter().filter(elects)
     }
 
     /// The task to announce next: the first that has been serviced and is not any more, or the one after
@@ -283,8 +295,11 @@ fn announce_again<A: Knows>(
 ) -> Option<Electing> {
     let Announced { task, roster, unanswered } = place.announced()?;
     let notice = point.task_notice(task)?;
-    let is_unanswered = !point.electors().any(Attendee::is_gone);
-    let gone = if is_unanswered { point.unanswering(&roster) } else { point.gone() };
+    let is_unanswered = !point.misses_elector();
+    let gone = match is_unanswered {
+        true => point.unanswering(&roster),
+        false => point.gone().into_iter().chain(point.forgetful_electors()).collect(),
+    };
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone }));
     effects.push(ServiceEffect::Supersede(notice));
     Some(point.electing(task, unanswered + u32::from(is_unanswered)))

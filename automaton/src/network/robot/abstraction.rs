@@ -198,7 +198,8 @@ impl Robot {
         let seen = self.out_of_sight.iter().chain(self.wrecks.iter());
         let seen: BTreeSet<NodeId> = seen.map(|wreck| wreck.robot).collect();
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
-        let told = (self.period, &self.roll, self.confirmation, &self.strays, &self.serves);
+        let reports = (&self.strays, &self.serves, &self.forgetful);
+        let told = (self.period, &self.roll, self.confirmation, reports);
         let waits = (self.orphaned_periods, self.unfollowed_periods, self.is_late, self.is_new);
         format!("{}{:?}", self.account(), (told, waits, seen, heard))
     }
@@ -266,7 +267,8 @@ impl Robot {
             partner: _,
             taking_over: _,
             log: _,
-            // No robot is missed, and no task, where no time passes.
+            // No robot is missed, and no task, where no time passes; and none restarts.
+            forgetful: _,
             strays: _,
             serves: _,
             orphaned_periods: _,

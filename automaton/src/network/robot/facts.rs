@@ -272,7 +272,8 @@ impl Robot {
         };
         self.measure_notice(&mut facts);
         let best = self.election.as_ref().and_then(|election| election.best());
-        let won = best.is_some_and(|(bid, robot)| robot == self.id && Robot::can_come(bid));
+        let won = best.is_some_and(|(bid, robot)| robot == self.id && Robot::can_come(bid))
+            && self.knows_route();
         let over = self.election_is_over();
         facts.election_over = over;
         match self.phase() {

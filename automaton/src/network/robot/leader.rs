@@ -34,18 +34,12 @@ pub(super) fn begin_election<A>(
 }
 
 /// The robots that it hears go by an announcement that it has not received, because it has begun
-/// or restarted since. If it is one of those that have elected, it has forgotten what became of that:
-/// the task is announced again.
+/// or restarted since. If it is one of those that elected by it, it has forgotten what became of that.
 pub(super) fn learn<A: Clone>(phase: &A, robot: &Robot, effects: &mut Effects) -> Option<A> {
-    let (id, announcement) = robot.newer_announcement()?.clone();
-    if announcement.roster.contains(robot.id) && robot.hears_of_progress() {
-        let (task, gone) = (announcement.task, vec![robot.id]);
-        effects.extend([
-            MissionEffect::Report(MissionEvent::TaskReannounced { task, gone }),
-            MissionEffect::Supersede(Notice::Task(announcement.clone())),
-        ]);
-    }
-    effects.push(MissionEffect::Learn((id, announcement)));
+    let announced = robot.newer_announcement()?.clone();
+    let has_forgotten = announced.1.roster.contains(robot.id);
+    effects.push(MissionEffect::Learn(announced));
+    effects.extend(has_forgotten.then_some(MissionEffect::Forgotten));
     Some(phase.clone())
 }
 
@@ -85,11 +79,6 @@ impl Robot {
             Arc::make_mut(election).place(self.id, bid);
             self.bid = bid;
         }
-    }
-
-    /// Whether a task is pursued by the newest notice that it knows.
-    fn hears_of_progress(&self) -> bool {
-        matches!(self.notice(), Notice::Call { .. } | Notice::Path(_) | Notice::Advance { .. })
     }
 
     /// The nearer to the task along the geodesic, the better; none if the task is out of reach.

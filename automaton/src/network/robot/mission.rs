@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Agreement, Bid, Election, MISSION, MissionStep, NoticeId, Phase};
+use pleach_discrete::network::{Agreement, Bid, Election, IdSet, MISSION, MissionStep, NoticeId, Phase};
 use pleach_guards::network::mission as guards;
 
 use crate::located::{Current, DataOf, Holds, Place as _};
@@ -36,10 +36,10 @@ pub enum MissionEffect {
     Report(MissionEvent),
     /// It issues the next notice.
     Issue(Notice),
-    /// It issues a notice that supersedes those that others issue meanwhile.
-    Supersede(Notice),
     /// It goes by this announcement.
     Learn(Announced),
+    /// It has forgotten what became of the election by the announcement that it goes by.
+    Forgotten,
     /// It takes part in this election, with its own bid, from the way to the caller that it knows.
     Elect(Election, Option<Bid>, Option<(NoticeId, Shared<Vec<Hop>>)>),
     /// It forgets the way to the caller.
@@ -70,12 +70,13 @@ impl Holds<Mission> for Robot {
             match effect {
                 MissionEffect::Report(event) => self.report(event),
                 MissionEffect::Issue(notice) => self.issue(notice),
-                MissionEffect::Supersede(notice) => self.supersede(notice),
                 MissionEffect::Learn(announced) => {
                     self.epoch = announced.0.epoch();
                     self.target = Some(self.site.free_space.nearest(announced.1.position));
                     self.announced = Some(announced);
+                    self.forgetful = Arc::default();
                 }
+                MissionEffect::Forgotten => self.forgetful = Arc::new(IdSet::singleton(self.id)),
                 MissionEffect::Elect(election, bid, route) => {
                     (self.election, self.bid, self.route) = (Some(Arc::new(election)), bid, route);
                     self.waited_rounds = 1;
@@ -121,6 +122,7 @@ impl Robot {
             if let (Some(own), Some(heard)) = (&mut self.agreement, &neighbour.beacon.agreement) {
                 own.merge(heard);
             }
+            neighbour.beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
         }
         match self.phase() {
             Phase::LeaderElection => self.answer_announcement(),
@@ -137,10 +139,6 @@ impl Robot {
     /// The next notice on the mission, which this robot is the one to issue.
     fn issue(&mut self, notice: Notice) {
         self.bulletin = self.bulletin.next(self.id, Shared::new(notice));
-    }
-
-    fn supersede(&mut self, notice: Notice) {
-        self.bulletin = self.bulletin.superseding(self.id, Shared::new(notice));
     }
 
     /// The identity of the next notice on the mission if this robot issues it.

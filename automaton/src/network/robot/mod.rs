@@ -185,6 +185,8 @@ pub struct Robot {
     /// The epoch of the notices that it goes by.
     epoch: u32,
     announced: Option<Announced>,
+    /// The robots that have elected by this announcement and restarted since.
+    forgetful: Arc<IdSet>,
     /// The point of 𝒲_f nearest to the task announced, where the leader goes.
     target: Option<Point>,
     election: Option<Arc<Election>>,
@@ -294,6 +296,7 @@ impl Robot {
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             epoch: 0,
             announced: None,
+            forgetful: Arc::default(),
             target: None,
             election: None,
             bid: None,
@@ -392,6 +395,7 @@ impl Robot {
             position: self.position,
             bulletin: self.bulletin.clone(),
             announced: self.announced.clone(),
+            forgetful: Arc::clone(&self.forgetful),
             election: self.election.clone(),
             agreement: self.agreement.clone(),
             route: self.route.clone(),

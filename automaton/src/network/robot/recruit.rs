@@ -139,7 +139,7 @@ impl Robot {
         if election.id() != id {
             return;
         }
-        if self.route.as_ref().is_none_or(|&(known, _)| known != id) {
+        if !self.knows_route() {
             self.route = self.find_route(id).map(|route| (id, Shared::new(route)));
         }
         let bid = match (&self.route, self.recruit_class()) {
@@ -154,6 +154,11 @@ impl Robot {
             Arc::make_mut(election).place(self.id, bid);
             self.bid = bid;
         }
+    }
+
+    /// Whether it knows its way to the robot that calls. One that has restarted since it bid may not.
+    pub(super) fn knows_route(&self) -> bool {
+        self.route.as_ref().is_some_and(|&(call, _)| call == self.notice_id())
     }
 
     fn takes_part_in_elections(&self) -> bool {
