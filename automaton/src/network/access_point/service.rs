@@ -188,6 +188,15 @@ impl AccessPoint {
         Electing { announced: Some(Announced { task, roster, unanswered }) }
     }
 
+    /// How it issues a notice. Robots that it misses may know later ones, or go by an earlier announcement
+    /// when they come back.
+    fn issue(&self, notice: Notice) -> ServiceEffect {
+        match self.misses_robots() {
+            true => ServiceEffect::Supersede(notice),
+            false => ServiceEffect::Issue(notice),
+        }
+    }
+
     /// The task that is pursued with its electors, as robots tell it: an access point that restarts
     /// learns of it so.
     fn current_electors(&self) -> Option<Announced> {
@@ -279,11 +288,7 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
         Some(task) => MissionEvent::TaskReannounced { task, gone: point.gone() },
         None => MissionEvent::TaskAnnounced { task },
     }));
-    effects.push(match point.misses_robots() {
-        // They may still go by an earlier announcement when they come back.
-        true => ServiceEffect::Supersede(notice),
-        false => ServiceEffect::Issue(notice),
-    });
+    effects.push(point.issue(notice));
     Some(point.electing(task, 0))
 }
 
@@ -305,8 +310,15 @@ fn announce_again<A: Knows>(
     Some(point.electing(task, unanswered + u32::from(is_unanswered)))
 }
 
-fn end(effects: &mut Effects, outcome: Outcome, task: Option<usize>, reason: String) -> Over {
-    effects.push(ServiceEffect::Issue(Notice::Ended { outcome, reason: reason.into(), task }));
+/// The mission ends. Robots that are missed may know later notices than the access point.
+fn end(
+    point: &AccessPoint,
+    effects: &mut Effects,
+    outcome: Outcome,
+    task: Option<usize>,
+    reason: String,
+) -> Over {
+    effects.push(point.issue(Notice::Ended { outcome, reason: reason.into(), task }));
     Over
 }
 
@@ -316,21 +328,21 @@ fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> O
     if !gone.is_empty() {
         reason.push_str(&format!(" any more: robots {gone:?} have stopped, or nobody hears them"));
     }
-    end(effects, Outcome::InsufficientRobots, point.next_task(), reason)
+    end(point, effects, Outcome::InsufficientRobots, point.next_task(), reason)
 }
 
 fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
     let count = point.requested.as_ref().map_or(0, |tasks| tasks.len());
-    end(effects, Outcome::Serviced, None, format!("all {count} tasks are serviced"))
+    end(point, effects, Outcome::Serviced, None, format!("all {count} tasks are serviced"))
 }
 
-fn end_without_bid(place: &Electing, _: &AccessPoint, effects: &mut Effects) -> Option<Over> {
+fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     let task = place.announced.as_ref()?.task;
     let reason = format!(
         "no robot can come within the service radius of task {task}: it lies in a wall, too near \
          to one, or in a part of the workspace that no robot can enter"
     );
-    Some(end(effects, Outcome::UnreachableTask, Some(task), reason))
+    Some(end(point, effects, Outcome::UnreachableTask, Some(task), reason))
 }
 
 fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
@@ -339,7 +351,7 @@ fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) 
     let reason = format!(
         "the election for task {task} cannot end: robots {missing:?} do not answer any more"
     );
-    Some(end(effects, Outcome::Blocked, Some(*task), reason))
+    Some(end(point, effects, Outcome::Blocked, Some(*task), reason))
 }
 
 // ---- The automaton ---------------------------------------------------------------------------

@@ -110,21 +110,18 @@ impl Robot {
 
     /// Once a period: for how long no robot has held the post that its own is attached to.
     pub(super) fn count_orphaned_periods(&mut self) {
-        let is_orphan = match self.anchor() {
-            Some(Anchor::Access(_)) => false,
-            Some(Anchor::Post(_)) => self.named_parent().is_none(),
-            // It was redundant when it lost its parent, and another robot relies on it.
-            None => self.duty.post().is_some_and(|post| !post.is_redundant()),
-        };
+        let is_orphan =
+            matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none();
         let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
         self.orphaned_periods = if is_orphan { longer } else { 0 };
     }
 
-    /// Another parent, where no robot has held the post for long that its own is attached to: the node
-    /// with the fewest links to an access point that is near enough.
+    /// Another parent, where no robot has held the post for long that its own is attached to, or it is
+    /// attached to none, since it had lost its parent when another robot came to rely on it: the node with the
+    /// fewest links to an access point that is near enough.
     fn replace_parent(&self) -> Option<Option<Anchor>> {
         let (post, lost) = (self.duty.post()?.id, self.anchor());
-        if self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
+        if lost.is_some() && self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
             return None;
         }
         let limit = self.site.hard_length * (1.0 + ROUNDING);

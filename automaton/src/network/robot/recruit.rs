@@ -136,7 +136,8 @@ impl Robot {
     pub(super) fn answer_call(&mut self) {
         let id = self.notice_id();
         let Some(election) = &self.election else { return };
-        if election.id() != id {
+        // One that has restarted may have answered already: the task is announced again.
+        if election.id() != id || self.forgetful.contains(self.id) {
             return;
         }
         if !self.knows_route() {
