@@ -229,10 +229,16 @@ impl AccessPoint {
         attendees.filter(|(_, attendee)| attendee.is_gone()).map(|(robot, _)| robot).collect()
     }
 
+    /// The robots that it has heard of and that do not take part.
+    pub(super) fn absent_robots(&self) -> Vec<NodeId> {
+        let attendees = self.attendees.iter().enumerate();
+        let is_absent = |it: &Attendee| it.is_known() && !it.takes_part();
+        attendees.filter(|(_, attendee)| is_absent(attendee)).map(|(robot, _)| robot).collect()
+    }
+
     /// Whether robots that it has heard of do not take part.
     pub(super) fn misses_robots(&self) -> bool {
-        let is_absent = |it: &Attendee| it.is_known() && !it.takes_part();
-        self.attendees.iter().any(is_absent)
+        !self.absent_robots().is_empty()
     }
 
     /// The robots that take part, as far as it knows.

@@ -338,6 +338,14 @@ fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
 
 fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     let task = place.announced.as_ref()?.task;
+    if point.misses_robots() {
+        let absent = point.absent_robots();
+        let reason = format!(
+            "no robot is left that can go to task {task}: robots {absent:?} have stopped, or nobody \
+             hears them"
+        );
+        return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
+    }
     let reason = format!(
         "no robot can come within the service radius of task {task}: it lies in a wall, too near \
          to one, or in a part of the workspace that no robot can enter"

@@ -108,12 +108,15 @@ impl Robot {
         length <= self.site.build_length * (1.0 + ROUNDING)
     }
 
+    /// Whether no robot that it hears holds the post that its own is attached to.
+    pub(super) fn is_orphan(&self) -> bool {
+        matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none()
+    }
+
     /// Once a period: for how long no robot has held the post that its own is attached to.
     pub(super) fn count_orphaned_periods(&mut self) {
-        let is_orphan =
-            matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none();
         let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
-        self.orphaned_periods = if is_orphan { longer } else { 0 };
+        self.orphaned_periods = if self.is_orphan() { longer } else { 0 };
     }
 
     /// Another parent, where no robot has held the post for long that its own is attached to, or it is

@@ -65,13 +65,12 @@ impl Robot {
         let id = self.notice_id();
         let is_answered = |election: &Election| election.id() != id || election.has_token(self.id);
         let has_time = self.waited_rounds < 2 * self.longest_wait();
-        if self.election.as_deref().is_none_or(is_answered) || self.lineage().is_none() && has_time
-        {
+        let way = self.lineage().filter(|_| !self.is_orphan());
+        if self.election.as_deref().is_none_or(is_answered) || way.is_none() && has_time {
             return;
         }
         let competes = |it: &&Announcement| {
-            it.roster.contains(self.id)
-                && self.lineage().is_some_and(|way| it.eligible.contains(way.root()))
+            it.roster.contains(self.id) && way.is_some_and(|way| it.eligible.contains(way.root()))
         };
         let announcement = self.announcement().filter(competes);
         let bid = announcement.and_then(|announcement| self.leader_bid(announcement.position));
