@@ -21,6 +21,16 @@ const fn periods(faults: Faults) -> Medium {
     Medium::Rounds { faults, period: Some(ROUNDS_OF_A_PERIOD) }
 }
 
+/// The same where control periods count, and robots stop.
+const fn counted(faults: Faults) -> Medium {
+    Medium::Periods { faults, rounds: ROUNDS_OF_A_PERIOD }
+}
+
+/// A robot stops.
+const ONE_STOPS: Faults = Faults { stops: 1, ..Faults::NONE };
+/// A robot stops, and begins again after any time, or never.
+const ONE_RESTARTS: Faults = Faults { stops: 1, restarts: 1, ..Faults::NONE };
+
 /// How many rounds the control periods have in which two faults are explored.
 const ROUNDS_OF_A_PERIOD: u32 = 4;
 
@@ -94,6 +104,17 @@ pub const QUICK: &[Campaign] = &[
         access_points: 2,
         contacts: 1,
         ..robots(2, Counts { configurations: 92, states: 13_908, transitions: 18_326 })
+    },
+    Campaign {
+        name: "two robots, one stops",
+        medium: counted(ONE_STOPS),
+        ..robots(2, Counts { configurations: 9, states: 95_613, transitions: 104_754 })
+    },
+    Campaign {
+        name: "two robots, one begins again",
+        graphs: Graphs::Line,
+        medium: counted(ONE_RESTARTS),
+        ..robots(2, Counts { configurations: 3, states: 0, transitions: 0 })
     },
 ];
 
@@ -242,5 +263,43 @@ pub const THOROUGH: &[Campaign] = &[
         name: "three robots, a message late and one copied, moves once a period",
         medium: periods(Faults { delays: 1, duplicates: 1, ..Faults::NONE }),
         ..robots(3, Counts { configurations: 44, states: 732_019, transitions: 1_786_374 })
+    },
+    Campaign {
+        name: "two robots, two tasks, one stops",
+        tasks: 2,
+        medium: counted(ONE_STOPS),
+        ..robots(2, Counts { configurations: 27, states: 389_743, transitions: 428_940 })
+    },
+    Campaign {
+        name: "two robots, one stops, a message lost",
+        medium: counted(Faults { losses: 1, ..ONE_STOPS }),
+        ..robots(2, Counts { configurations: 9, states: 562_524, transitions: 808_904 })
+    },
+    Campaign {
+        name: "two robots, one begins again on every graph",
+        medium: counted(ONE_RESTARTS),
+        ..robots(2, Counts { configurations: 9, states: 0, transitions: 0 })
+    },
+    Campaign {
+        name: "two robots, one begins again, a message lost",
+        medium: counted(Faults { losses: 1, ..ONE_RESTARTS }),
+        ..robots(2, Counts { configurations: 9, states: 0, transitions: 0 })
+    },
+    Campaign {
+        name: "three robots, one stops",
+        medium: counted(ONE_STOPS),
+        ..robots(3, Counts { configurations: 44, states: 0, transitions: 0 })
+    },
+    Campaign {
+        name: "three robots in a line, one begins again",
+        graphs: Graphs::Line,
+        medium: counted(ONE_RESTARTS),
+        ..robots(3, Counts { configurations: 4, states: 0, transitions: 0 })
+    },
+    Campaign {
+        name: "four robots in a line, one stops",
+        graphs: Graphs::Line,
+        medium: counted(ONE_STOPS),
+        ..robots(4, Counts { configurations: 5, states: 0, transitions: 0 })
     },
 ];

@@ -78,7 +78,8 @@ pub(super) struct Copied {
 }
 
 impl Medium {
-    pub(super) const fn faults(self) -> Faults {
+    /// What may go wrong.
+    pub const fn faults(self) -> Faults {
         match self {
             Medium::Rounds { faults, .. } | Medium::Periods { faults, .. } => faults,
             Medium::NodesInAnyOrder | Medium::MessagesInAnyOrder => Faults::NONE,

@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use pleach_automaton::network::RobotView;
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::duty::Duty;
+use pleach_automaton::network::record::Outcome;
 use pleach_discrete::network::{Anchor, NoticeId, Phase, Post, PostId, PostKind, Role, Subgroup};
 
 use super::node::Local;
@@ -37,6 +38,7 @@ pub const ALWAYS: &[Property<Protocol>] = &[
     Property { name: "teams are disjoint", holds: teams_are_disjoint },
     Property { name: "no post is held twice", holds: no_post_is_held_twice },
     Property { name: "the gone stay where they are", holds: the_gone_stay },
+    Property { name: "what is left is sufficient where it can be", holds: the_rest_suffices },
 ];
 
 /// The property with this name.
@@ -348,6 +350,21 @@ pub fn no_post_is_held_twice(protocol: &Protocol, state: &State) -> bool {
 pub fn the_gone_stay(protocol: &Protocol, state: &State) -> bool {
     let gone: Vec<usize> = protocol.running(state).flat_map(|it| it.gone().iter()).collect();
     protocol.running(state).all(|it| !gone.contains(&it.id()) || !(it.may_leave_place() && it.is_active()))
+}
+
+/// A mission in which robots stop for good ends with every task serviced where every task is next to an access
+/// point, and the robots without any one of them are enough and reach an access point by themselves.
+pub fn the_rest_suffices(protocol: &Protocol, state: &State) -> bool {
+    let faults = protocol.configuration().medium.faults();
+    if (faults.stops, faults.restarts) != (1, 0)
+        || !protocol.configuration().places.can_lose_any_robot()
+    {
+        return true;
+    }
+    protocol.locals(state).all(|local| match local.notice() {
+        Notice::Ended { outcome, .. } => *outcome == Outcome::Serviced,
+        _ => true,
+    })
 }
 
 /// Whether the mission has ended, every task serviced or with a reason, and every robot knows that news

@@ -149,7 +149,7 @@ impl Robot {
     pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
         self.stand_at(self.position, still_periods);
         self.begin_period()?;
-        (self.orphaned_periods, self.unfollowed_periods) = (0, 0);
+        self.orphaned_periods = 0;
         self.deliberate()?;
         self.jump()
     }
@@ -200,7 +200,7 @@ impl Robot {
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
         let told = (self.period, &self.roll, self.confirmation, reports);
-        let waits = (self.orphaned_periods, self.unfollowed_periods, self.is_late, self.is_new);
+        let waits = (self.orphaned_periods, self.is_late, self.is_new);
         format!("{}{:?}", self.account(), (told, waits, seen, heard))
     }
 
@@ -272,7 +272,6 @@ impl Robot {
             strays: _,
             serves: _,
             orphaned_periods: _,
-            unfollowed_periods: _,
             roll: _,
             out_of_sight: _,
             wrecks: _,

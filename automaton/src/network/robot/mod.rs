@@ -198,7 +198,6 @@ pub struct Robot {
     team: Option<TeamReport>,
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
-    unfollowed_periods: u32,
 
     // Communication variables.
     routing: routing::RoutingState,
@@ -305,7 +304,6 @@ impl Robot {
             agreement: None,
             team: None,
             followed_post: None,
-            unfollowed_periods: 0,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
             upstream: None,
@@ -448,7 +446,6 @@ impl Robot {
         self.note_change();
         self.count_unused_periods();
         self.count_orphaned_periods();
-        self.count_unfollowed_periods();
         self.consider_exchange();
         self.advance_exchange()
     }
