@@ -259,7 +259,7 @@ fn outcomes(
     exploration: &StateGraph<State, Action>,
 ) -> impl Iterator<Item = &'static str> {
     exploration.states().iter().filter(|state| has_ended(protocol, state)).filter_map(|state| {
-        match protocol.locals(state).next()?.notice() {
+        match protocol.locals(state).last()?.notice() {
             Notice::Ended { outcome, .. } => Some(outcome.name()),
             _ => None,
         }

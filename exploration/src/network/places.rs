@@ -168,7 +168,7 @@ impl PlaceGraph {
         self.tasks.iter().map(|&place| self.position(place)).collect()
     }
 
-    /// Whether every task is next to an access point, and without any one of the robots there are as many as
+    /// Whether every task is next to an access point, and without any one of the robots there are more than
     /// tasks that are connected to an access point by one another, where they start.
     pub fn can_lose_any_robot(&self) -> bool {
         let access_points = self.robots..self.nodes();
@@ -182,7 +182,7 @@ impl PlaceGraph {
             }) {
                 reached.push(next);
             }
-            reached.len() >= self.access_points + self.tasks.len()
+            reached.len() > self.access_points + self.tasks.len()
         };
         self.tasks.iter().all(is_near) && (0..self.robots).all(is_left)
     }

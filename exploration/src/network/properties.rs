@@ -352,8 +352,8 @@ pub fn the_gone_stay(protocol: &Protocol, state: &State) -> bool {
     protocol.running(state).all(|it| !gone.contains(&it.id()) || !(it.may_leave_place() && it.is_active()))
 }
 
-/// A mission in which robots stop for good ends with every task serviced where every task is next to an access
-/// point, and the robots without any one of them are enough and reach an access point by themselves.
+/// A mission in which a robot stops for good ends with every task serviced where every task is next to an access
+/// point, and without any one of the robots one more than there are tasks is connected to an access point.
 pub fn the_rest_suffices(protocol: &Protocol, state: &State) -> bool {
     let faults = protocol.configuration().medium.faults();
     if (faults.stops, faults.restarts) != (1, 0)

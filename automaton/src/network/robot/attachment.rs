@@ -121,7 +121,7 @@ impl Robot {
 
     /// Another parent, where no robot has held the post for long that its own is attached to, or it is
     /// attached to none, since it had lost its parent when another robot came to rely on it: the node with the
-    /// fewest links to an access point that is near enough.
+    /// fewest links to an access point that is near enough; one that is confirmed already, if there is one.
     fn replace_parent(&self) -> Option<Option<Anchor>> {
         let (post, lost) = (self.duty.post()?.id, self.anchor());
         if lost.is_some() && self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
@@ -137,11 +137,11 @@ impl Robot {
             let lineage = neighbour.beacon.lineage.as_ref()?;
             let usable = Self::accepts_redundant(neighbour)
                 && leads_elsewhere(lineage)
-                && self.is_confirmed(neighbour)
                 && self.walk_to(neighbour) <= limit;
-            usable.then(|| (lineage.hops(), self.anchor_of(neighbour)))
+            let order = (!self.is_confirmed(neighbour), lineage.hops());
+            usable.then(|| (order, self.anchor_of(neighbour)))
         });
-        ways.min_by_key(|&(hops, _)| hops).map(|(_, anchor)| Some(anchor))
+        ways.min_by_key(|&(order, _)| order).map(|(_, anchor)| Some(anchor))
     }
 
     fn choose_parent(&self) -> Option<Option<Anchor>> {
