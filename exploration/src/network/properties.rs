@@ -205,7 +205,8 @@ fn holders(protocol: &Protocol, state: &State, task: usize) -> usize {
 
 /// Every task that has been serviced is the duty of a robot, unless that has failed.
 pub fn serviced_tasks_are_held(protocol: &Protocol, state: &State) -> bool {
-    protocol.has_failures(state) || (0..serviced(protocol, state)).all(|task| holders(protocol, state, task) > 0)
+    protocol.has_failures(state)
+        || (0..serviced(protocol, state)).all(|task| holders(protocol, state, task) > 0)
 }
 
 /// No task is the duty of two robots, but while one relieves the other on Σ; nor once a robot has failed:
@@ -271,8 +272,7 @@ pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
 pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
     let newest = announcements(protocol, state).into_iter().next_back().flatten();
     let of = |is_member: &dyn Fn(RobotView<'_>) -> bool| -> Vec<usize> {
-        let robots =
-            protocol.running(state).filter(|&it| going_by(protocol, state, it) == newest);
+        let robots = protocol.running(state).filter(|&it| going_by(protocol, state, it) == newest);
         robots.filter(|robot| is_member(*robot)).map(RobotView::id).collect()
     };
     let is_shifting = |robot: RobotView<'_>| matches!(robot.duty(), Duty::Shifting(_));
@@ -349,7 +349,9 @@ pub fn no_post_is_held_twice(protocol: &Protocol, state: &State) -> bool {
 /// A robot that another takes to be gone goes nowhere.
 pub fn the_gone_stay(protocol: &Protocol, state: &State) -> bool {
     let gone: Vec<usize> = protocol.running(state).flat_map(|it| it.gone().iter()).collect();
-    protocol.running(state).all(|it| !gone.contains(&it.id()) || !(it.may_leave_place() && it.is_active()))
+    protocol
+        .running(state)
+        .all(|it| !gone.contains(&it.id()) || !(it.may_leave_place() && it.is_active()))
 }
 
 /// A mission in which a robot stops for good ends with every task serviced where every task is next to an access

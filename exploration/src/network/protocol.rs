@@ -192,7 +192,16 @@ impl Protocol {
         let Configuration { medium, contacts, .. } = configuration;
         let round = if medium.periods_count() { 0 } else { medium.period().unwrap_or(0) };
         let faults = medium.faults();
-        let initial = State { locals, contacts, faults, copies: Vec::new(), round, moved: 0, stopped: 0, restarted: 0 };
+        let initial = State {
+            locals,
+            contacts,
+            faults,
+            copies: Vec::new(),
+            round,
+            moved: 0,
+            stopped: 0,
+            restarted: 0,
+        };
         let mut protocol = Protocol { configuration, nodes, initial, site };
         protocol.settle()?;
         Ok(protocol)

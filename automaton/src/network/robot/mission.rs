@@ -9,7 +9,9 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Agreement, Bid, Election, IdSet, MISSION, MissionStep, NoticeId, Phase};
+use pleach_discrete::network::{
+    Agreement, Bid, Election, IdSet, MISSION, MissionStep, NoticeId, Phase,
+};
 use pleach_guards::network::mission as guards;
 
 use crate::located::{Current, DataOf, Holds, Place as _};
@@ -159,7 +161,12 @@ fn ended<A: DataOf<Mission>>() -> Row {
 
 fn announced<A: DataOf<Mission>>() -> Row {
     let name = "place a bid for the task";
-    Transfer::where_known(MissionStep::Announced, guards::announced(), name, leader::begin_election::<A>)
+    Transfer::where_known(
+        MissionStep::Announced,
+        guards::announced(),
+        name,
+        leader::begin_election::<A>,
+    )
 }
 
 fn overtaken<A: DataOf<Mission>>() -> Row {

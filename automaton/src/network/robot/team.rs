@@ -69,9 +69,8 @@ impl Robot {
     /// the parked robot still holds its own: the duty of the mover has no holder. The robot ahead
     /// remembers its follower.
     pub(super) fn is_first(&self) -> bool {
-        self.primary_post().is_some_and(|own| {
-            !self.hears_follower(own) && !self.expects_follower(own)
-        })
+        self.primary_post()
+            .is_some_and(|own| !self.hears_follower(own) && !self.expects_follower(own))
     }
 
     /// Its post, if that is one of the primary team.
@@ -94,8 +93,7 @@ impl Robot {
 
     /// Remembers that a robot follows it: one that falls silent follows all the same.
     pub(super) fn note_follower(&mut self) {
-        let follows =
-            |own: &PostId| self.hears_follower(*own) || self.followed_post == Some(*own);
+        let follows = |own: &PostId| self.hears_follower(*own) || self.followed_post == Some(*own);
         self.followed_post = self.primary_post().filter(follows);
     }
 
