@@ -168,23 +168,15 @@ impl PlaceGraph {
         self.tasks.iter().map(|&place| self.position(place)).collect()
     }
 
-    /// Whether every task is next to an access point, and without any one of the robots there are more than
-    /// tasks that are connected to an access point by one another, where they start.
+    /// Whether all robots start next to an access point, all tasks are next to one, too, and without any one of
+    /// the robots there is one more than there are tasks.
     pub fn can_lose_any_robot(&self) -> bool {
         let access_points = self.robots..self.nodes();
-        let is_near = |task: &PlaceId| access_points.clone().any(|at| self.are_linked(*task, at));
-        let is_left = |lost: PlaceId| {
-            let mut reached: Vec<PlaceId> = access_points.clone().collect();
-            while let Some(next) = (0..self.robots).find(|robot| {
-                *robot != lost
-                    && !reached.contains(robot)
-                    && reached.iter().any(|&at| self.are_linked(*robot, at))
-            }) {
-                reached.push(next);
-            }
-            reached.len() > self.access_points + self.tasks.len()
+        let is_near = |place: PlaceId| {
+            access_points.clone().any(|access_point| self.are_linked(place, access_point))
         };
-        self.tasks.iter().all(is_near) && (0..self.robots).all(is_left)
+        self.robots > self.tasks.len() + 1
+            && (0..self.robots).chain(self.tasks.iter().copied()).all(is_near)
     }
 
     /// The mission with robots, access points and tasks at their places, in an empty room.

@@ -354,8 +354,8 @@ pub fn the_gone_stay(protocol: &Protocol, state: &State) -> bool {
         .all(|it| !gone.contains(&it.id()) || !(it.may_leave_place() && it.is_active()))
 }
 
-/// A mission in which a robot stops for good ends with every task serviced where every task is next to an access
-/// point, and without any one of the robots one more than there are tasks is connected to an access point.
+/// A mission in which a robot stops for good ends with every task serviced where all robots start next to an access
+/// point, all tasks are next to one, too, and without that robot there is one more than there are tasks.
 pub fn the_rest_suffices(protocol: &Protocol, state: &State) -> bool {
     let faults = protocol.configuration().medium.faults();
     if (faults.stops, faults.restarts) != (1, 0)
