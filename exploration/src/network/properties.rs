@@ -349,9 +349,8 @@ pub fn no_post_is_held_twice(protocol: &Protocol, state: &State) -> bool {
 /// A robot that another takes to be gone goes nowhere.
 pub fn the_gone_stay(protocol: &Protocol, state: &State) -> bool {
     let gone: Vec<usize> = protocol.running(state).flat_map(|it| it.gone().iter()).collect();
-    protocol
-        .running(state)
-        .all(|it| !gone.contains(&it.id()) || !(it.may_leave_place() && it.is_active()))
+    let goes = |robot: RobotView<'_>| robot.may_leave_place() && robot.is_active();
+    protocol.running(state).filter(|robot| gone.contains(&robot.id())).all(|robot| !goes(robot))
 }
 
 /// A mission in which a robot stops for good ends with every task serviced where all robots start next to an access
