@@ -69,9 +69,8 @@ impl Robot {
     /// the parked robot still holds its own: the duty of the mover has no holder. The robot ahead
     /// remembers its follower.
     pub(super) fn is_first(&self) -> bool {
-        self.primary_post().is_some_and(|own| {
-            !self.hears_follower(own) && (self.has_lost_follower() || !self.expects_follower(own))
-        })
+        self.primary_post()
+            .is_some_and(|own| !self.hears_follower(own) && !self.expects_follower(own))
     }
 
     /// Its post, if that is one of the primary team.
@@ -92,34 +91,10 @@ impl Robot {
         has_joined || self.followed_post == Some(own)
     }
 
-    /// Whether the robot that follows it has not been heard for so long that it would be gone by the roll
-    /// if it did not take part: it has restarted, and holds another post now.
-    fn has_lost_follower(&self) -> bool {
-        self.unfollowed_periods > self.patience_with_followers()
-    }
-
-    fn patience_with_followers(&self) -> u32 {
-        2 * self.site.roll_validity()
-    }
-
     /// Remembers that a robot follows it: one that falls silent follows all the same.
     pub(super) fn note_follower(&mut self) {
-        let follows = |own: &PostId| {
-            self.hears_follower(*own)
-                || self.followed_post == Some(*own) && !self.has_lost_follower()
-        };
+        let follows = |own: &PostId| self.hears_follower(*own) || self.followed_post == Some(*own);
         self.followed_post = self.primary_post().filter(follows);
-    }
-
-    /// Once a period: for how long the robot that follows it has not been heard.
-    pub(super) fn count_unfollowed_periods(&mut self) {
-        let is_missed = |own: PostId| self.expects_follower(own) && !self.hears_follower(own);
-        let longer = (self.unfollowed_periods + 1).min(self.patience_with_followers() + 1);
-        self.unfollowed_periods =
-            if self.primary_post().is_some_and(is_missed) { longer } else { 0 };
-        if self.has_lost_follower() {
-            self.receive_news();
-        }
     }
 
     /// The post of a newcomer that this robot should attach to but does not yet reach.
