@@ -43,26 +43,16 @@ const REASONS: &[([&str; 4], &str)] = &[
         ["exchange", "offering and refusing", "", ""],
         "a mover that is itself in the way of another has refused its offer",
     ),
-    (["attendance", "returning", "missed", ""], "a robot comes back and falls silent at once"),
     (
         ["duty", "", "attached", ""],
         "no robot holds the post of its parent any more: a robot stops on the way along Σ",
-    ),
-    (
-        ["duty", "awaiting release", "standby kept", ""],
-        "robots do not answer any more while the leader is relieved",
     ),
     (
         ["mission", "recruit election", "resumed", ""],
         "the notice between is not heard; taken by `explore -- thorough`",
     ),
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
-    (
-        ["service", "gathering", "no robot", ""],
-        "no robot is connected to an access point at the start",
-    ),
     (["service", "serviced", "no robot", ""], "the robots are all gone after a task"),
-    (["service", "electing", "no answer", ""], "the robots are all gone during an election"),
     (
         ["service", "", "heard", ""],
         "another access point has gone on although this one has not heard of it",

@@ -71,6 +71,16 @@ fn an_exchange_across_a_link_keeps_the_tree() {
     assert_eq!(states_of_sound(Configuration { places, medium, contacts: 1 }), 1_514);
 }
 
+/// A robot begins again when its task has been announced to others: it does not take the election that it hears
+/// of for over because the robots of the later announcement have answered.
+#[test]
+fn a_robot_that_begins_again_ends_no_election_of_others() {
+    let places = PlaceGraph::with_branches(3, 1, &[(0, 1), (1, 2), (2, 3)], &[(0, 1)]).unwrap();
+    let faults = Faults { stops: 1, restarts: 1, ..Faults::NONE };
+    let medium = Medium::Periods { faults, rounds: 4 };
+    assert_eq!(states_of_sound(Configuration { places, medium, contacts: 0 }), 116_469);
+}
+
 /// Two robots that are attached to a third, which becomes the leader, and hear each other: they look for
 /// another parent at once, and not to each other. The campaign of six robots found it.
 #[test]

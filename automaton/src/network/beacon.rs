@@ -120,6 +120,10 @@ pub struct Beacon {
     pub bulletin: Bulletin,
     /// The announcement that it goes by.
     pub announced: Option<Announced>,
+    /// The robots that have elected by this announcement and restarted since: they have forgotten what became
+    /// of it.
+    #[serde(with = "wire")]
+    pub forgetful: Arc<IdSet>,
     /// Its view of the current election.
     #[serde(with = "wire")]
     pub election: Option<Arc<Election>>,
@@ -177,6 +181,7 @@ impl Beacon {
             position,
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             announced: None,
+            forgetful: Arc::default(),
             election: None,
             agreement: None,
             route: None,
@@ -202,6 +207,15 @@ impl Beacon {
     /// The task that is serviced from the post of the sender.
     pub fn task(&self) -> Option<usize> {
         self.duty.as_ref()?.post()?.task
+    }
+
+    /// Adds the robots that have forgotten what became of an announcement, if the sender goes by the same one.
+    pub(super) fn tell_forgetful(&self, own: Option<&Announced>, known: &mut Arc<IdSet>) {
+        let goes_by = |announced: Option<&Announced>| announced.map(|(id, _)| *id);
+        let is_same = goes_by(self.announced.as_ref()) == goes_by(own);
+        if is_same && !self.forgetful.iter().all(|robot| known.contains(robot)) {
+            Arc::make_mut(known).merge(&self.forgetful);
+        }
     }
 
     /// Whether the same sender surely sent this before `other`: it had received, or offered, less.

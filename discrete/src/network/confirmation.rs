@@ -44,6 +44,12 @@ impl Confirmation {
         self.bound = self.bound.max(self.newest);
     }
 
+    /// The same where the control periods have other numbers.
+    #[must_use]
+    pub fn renumbered(self, number: impl Fn(u32) -> u32) -> Self {
+        Confirmation { newest: self.newest.map(&number), bound: self.bound.map(&number) }
+    }
+
     /// The robot holds another post from this control period on: robots that held it before have
     /// passed on nothing newer.
     pub fn take_over(&mut self, period: u32) {

@@ -15,7 +15,7 @@ use super::places::{PlaceGraph, PlaceGraphError, PlaceId};
 use super::properties::{ALWAYS, has_ended};
 use super::protocol::{Configuration, Protocol, ProtocolError, State};
 use super::story::story;
-use crate::{ExplorationError, Fairness, StateGraph, StateId, explore};
+use crate::{ExplorationError, StateGraph, StateId, explore};
 
 /// Which graphs of a number of robots and access points are explored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -217,7 +217,7 @@ impl Findings {
         };
         let ended = |state: &State| has_ended(protocol, state);
         let violations = exploration.violations().iter();
-        let trap = exploration.traps(ended, Fairness::Weak).first().copied();
+        let trap = exploration.traps(ended, protocol.fairness()).first().copied();
         let (states, transitions) = (exploration.states().len(), exploration.transition_count());
         Findings {
             counts: Counts { configurations: 1, states, transitions },
@@ -259,7 +259,7 @@ fn outcomes(
     exploration: &StateGraph<State, Action>,
 ) -> impl Iterator<Item = &'static str> {
     exploration.states().iter().filter(|state| has_ended(protocol, state)).filter_map(|state| {
-        match protocol.locals(state).next()?.notice() {
+        match protocol.locals(state).last()?.notice() {
             Notice::Ended { outcome, .. } => Some(outcome.name()),
             _ => None,
         }

@@ -21,6 +21,16 @@ const fn periods(faults: Faults) -> Medium {
     Medium::Rounds { faults, period: Some(ROUNDS_OF_A_PERIOD) }
 }
 
+/// The same where control periods count, and robots stop.
+const fn counted(faults: Faults) -> Medium {
+    Medium::Periods { faults, rounds: ROUNDS_OF_A_PERIOD }
+}
+
+/// A robot stops.
+const ONE_STOPS: Faults = Faults { stops: 1, ..Faults::NONE };
+/// A robot stops, and begins again after any time, or never.
+const ONE_RESTARTS: Faults = Faults { stops: 1, restarts: 1, ..Faults::NONE };
+
 /// How many rounds the control periods have in which two faults are explored.
 const ROUNDS_OF_A_PERIOD: u32 = 4;
 
@@ -95,6 +105,17 @@ pub const QUICK: &[Campaign] = &[
         contacts: 1,
         ..robots(2, Counts { configurations: 92, states: 13_908, transitions: 18_326 })
     },
+    Campaign {
+        name: "two robots, one stops",
+        medium: counted(ONE_STOPS),
+        ..robots(2, Counts { configurations: 9, states: 91_213, transitions: 99_768 })
+    },
+    Campaign {
+        name: "two robots, one begins again",
+        graphs: Graphs::Line,
+        medium: counted(ONE_RESTARTS),
+        ..robots(2, Counts { configurations: 3, states: 144_439, transitions: 163_195 })
+    },
 ];
 
 /// What takes minutes.
@@ -105,41 +126,41 @@ pub const THOROUGH: &[Campaign] = &[
         tasks: 2,
         steps: &[1, 2],
         contacts: 1,
-        ..robots(3, Counts { configurations: 2_432, states: 1_931_409, transitions: 2_568_291 })
+        ..robots(3, Counts { configurations: 2_432, states: 2_268_805, transitions: 2_981_007 })
     },
     Campaign {
         name: "three robots, a task behind the other",
         tasks: 2,
         steps: &[1, 2],
         in_a_row: true,
-        ..robots(3, Counts { configurations: 176, states: 65_252, transitions: 86_244 })
+        ..robots(3, Counts { configurations: 176, states: 73_143, transitions: 95_252 })
     },
     Campaign {
         name: "three robots, two access points",
         access_points: 2,
-        ..robots(3, Counts { configurations: 810, states: 151_969, transitions: 202_502 })
+        ..robots(3, Counts { configurations: 810, states: 155_268, transitions: 205_766 })
     },
     Campaign {
         name: "four robots",
         steps: &[1, 2],
         contacts: 1,
-        ..robots(4, Counts { configurations: 580, states: 779_636, transitions: 1_040_458 })
+        ..robots(4, Counts { configurations: 580, states: 919_841, transitions: 1_212_395 })
     },
     Campaign {
         name: "four robots, two tasks",
         tasks: 2,
-        ..robots(4, Counts { configurations: 1_450, states: 372_465, transitions: 483_732 })
+        ..robots(4, Counts { configurations: 1_450, states: 410_774, transitions: 527_736 })
     },
     Campaign {
         name: "four robots, a task behind the other",
         tasks: 2,
         steps: &[1, 2],
         in_a_row: true,
-        ..robots(4, Counts { configurations: 1_160, states: 742_698, transitions: 978_797 })
+        ..robots(4, Counts { configurations: 1_160, states: 878_958, transitions: 1_139_411 })
     },
     Campaign {
         name: "five robots",
-        ..robots(5, Counts { configurations: 2_442, states: 430_209, transitions: 556_531 })
+        ..robots(5, Counts { configurations: 2_442, states: 439_005, transitions: 563_462 })
     },
     Campaign {
         name: "six robots",
@@ -230,17 +251,55 @@ pub const THOROUGH: &[Campaign] = &[
     },
     Campaign {
         name: "three robots, a message lost and one late, moves once a period",
-        medium: periods(Faults { losses: 1, delays: 1, duplicates: 0 }),
+        medium: periods(Faults { losses: 1, delays: 1, ..Faults::NONE }),
         ..robots(3, Counts { configurations: 44, states: 242_249, transitions: 641_038 })
     },
     Campaign {
         name: "three robots, a message lost and one copied, moves once a period",
-        medium: periods(Faults { losses: 1, delays: 0, duplicates: 1 }),
+        medium: periods(Faults { losses: 1, duplicates: 1, ..Faults::NONE }),
         ..robots(3, Counts { configurations: 44, states: 1_476_186, transitions: 4_096_317 })
     },
     Campaign {
         name: "three robots, a message late and one copied, moves once a period",
-        medium: periods(Faults { losses: 0, delays: 1, duplicates: 1 }),
+        medium: periods(Faults { delays: 1, duplicates: 1, ..Faults::NONE }),
         ..robots(3, Counts { configurations: 44, states: 732_019, transitions: 1_786_374 })
+    },
+    Campaign {
+        name: "two robots, two tasks, one stops",
+        tasks: 2,
+        medium: counted(ONE_STOPS),
+        ..robots(2, Counts { configurations: 27, states: 376_543, transitions: 413_982 })
+    },
+    Campaign {
+        name: "two robots, one stops, a message lost",
+        medium: counted(Faults { losses: 1, ..ONE_STOPS }),
+        ..robots(2, Counts { configurations: 9, states: 535_403, transitions: 768_338 })
+    },
+    Campaign {
+        name: "two robots, one begins again on every graph",
+        medium: counted(ONE_RESTARTS),
+        ..robots(2, Counts { configurations: 9, states: 314_238, transitions: 356_824 })
+    },
+    Campaign {
+        name: "two robots, one begins again, a message lost",
+        medium: counted(Faults { losses: 1, ..ONE_RESTARTS }),
+        ..robots(2, Counts { configurations: 9, states: 2_339_083, transitions: 3_616_891 })
+    },
+    Campaign {
+        name: "three robots, one stops",
+        medium: counted(ONE_STOPS),
+        ..robots(3, Counts { configurations: 44, states: 2_357_436, transitions: 2_563_689 })
+    },
+    Campaign {
+        name: "three robots in a line, one begins again",
+        graphs: Graphs::Line,
+        medium: counted(ONE_RESTARTS),
+        ..robots(3, Counts { configurations: 4, states: 1_590_455, transitions: 1_796_558 })
+    },
+    Campaign {
+        name: "four robots in a line, one stops",
+        graphs: Graphs::Line,
+        medium: counted(ONE_STOPS),
+        ..robots(4, Counts { configurations: 5, states: 3_296_010, transitions: 3_656_311 })
     },
 ];

@@ -4,7 +4,7 @@ use pleach_automaton::network::RobotView;
 use pleach_automaton::network::robot::RobotError;
 use pleach_discrete::network::NodeId;
 
-use super::node::{BeaconId, Stimulus};
+use super::node::{BeaconId, MessageId, Stimulus};
 use super::protocol::{Action, Protocol, State};
 
 /// How messages go from node to node.
@@ -19,6 +19,14 @@ pub enum Medium {
         /// of times.
         period: Option<u32>,
     },
+    /// In rounds, too, and control periods count: nodes that are silent are missed, and given up at last.
+    Periods {
+        /// What may go wrong.
+        faults: Faults,
+        /// How many rounds a control period has. After the last of them each robot moves, by one place
+        /// at most, or stays on its way, and the next control period begins.
+        rounds: u32,
+    },
     /// One node at a time, in any order: it receives what all nodes in range send now. Others may
     /// send and deliberate any number of times meanwhile.
     NodesInAnyOrder,
@@ -28,7 +36,7 @@ pub enum Medium {
     MessagesInAnyOrder,
 }
 
-/// How many messages of a mission may fail.
+/// How many messages and robots may fail in a mission.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Faults {
     /// Messages that do not arrive.
@@ -39,14 +47,20 @@ pub struct Faults {
     /// Messages of which a copy arrives too, in place of what the sender sends in one of the next
     /// [`LONGEST_ECHO`] rounds.
     pub duplicates: u32,
+    /// Robots that stop, where control periods count: at any moment, each where it stands.
+    pub stops: u32,
+    /// How many of these begin again when another control period begins, having forgotten everything but
+    /// their number and where they stand.
+    pub restarts: u32,
 }
 
 impl Faults {
     /// Nothing goes wrong.
-    pub const NONE: Faults = Faults { losses: 0, delays: 0, duplicates: 0 };
+    pub const NONE: Faults = Faults { losses: 0, delays: 0, duplicates: 0, stops: 0, restarts: 0 };
 
+    /// Whether nothing goes wrong any more within a control period.
     const fn are_over(self) -> bool {
-        self.losses + self.delays + self.duplicates == 0
+        self.losses + self.delays + self.duplicates + self.stops == 0
     }
 }
 
@@ -58,15 +72,16 @@ pub const LONGEST_ECHO: u8 = 3;
 pub(super) struct Copied {
     from: NodeId,
     to: NodeId,
-    beacon: BeaconId,
+    message: MessageId,
     /// Rounds in which it may still arrive.
     rounds_left: u8,
 }
 
 impl Medium {
-    pub(super) const fn faults(self) -> Faults {
+    /// What may go wrong.
+    pub const fn faults(self) -> Faults {
         match self {
-            Medium::Rounds { faults, .. } => faults,
+            Medium::Rounds { faults, .. } | Medium::Periods { faults, .. } => faults,
             Medium::NodesInAnyOrder | Medium::MessagesInAnyOrder => Faults::NONE,
         }
     }
@@ -74,8 +89,14 @@ impl Medium {
     pub(super) const fn period(self) -> Option<u32> {
         match self {
             Medium::Rounds { period, .. } => period,
+            Medium::Periods { rounds, .. } => Some(rounds),
             Medium::NodesInAnyOrder | Medium::MessagesInAnyOrder => None,
         }
+    }
+
+    /// Whether control periods count.
+    pub const fn periods_count(self) -> bool {
+        matches!(self, Medium::Periods { .. })
     }
 }
 
@@ -88,6 +109,12 @@ impl Protocol {
             Medium::Rounds { .. } => {
                 let heard = self.all_heard(state);
                 found.push((Action::Round, self.round(state, &heard)?));
+            }
+            Medium::Periods { rounds, .. } => {
+                if state.round < rounds {
+                    let heard = self.all_heard(state);
+                    found.push((Action::Round, self.round(state, &heard)?));
+                }
             }
             Medium::NodesInAnyOrder => {
                 for node in 0..nodes {
@@ -115,7 +142,7 @@ impl Protocol {
     }
 
     /// What a node hears again that hears nothing new: nothing of a node that has left unheard.
-    pub(super) fn still_heard_by(&self, state: &State, receiver: NodeId) -> Vec<BeaconId> {
+    pub(super) fn still_heard_by(&mut self, state: &State, receiver: NodeId) -> Vec<MessageId> {
         let local = self.nodes().local(state.locals[receiver]);
         let is_silent = |sender: NodeId| {
             let mut known = local.robot().into_iter().flat_map(RobotView::audible);
@@ -125,7 +152,8 @@ impl Protocol {
             let sender = self.nodes().beacon(beacon).sender;
             self.is_in_range(state, sender, receiver) || !is_silent(sender)
         };
-        local.heard.iter().copied().filter(stays).collect()
+        let heard: Vec<_> = local.heard.iter().copied().filter(stays).collect();
+        heard.into_iter().map(|beacon| self.nodes_mut().message_with(beacon)).collect()
     }
 
     /// Rounds in which one message is lost, late or copied, or a copy arrives.
@@ -134,14 +162,16 @@ impl Protocol {
     /// When a node cannot go on.
     pub fn faulty_rounds(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let mut found = Vec::new();
-        if state.faults.are_over() && state.copies.is_empty() {
+        let is_over = self.configuration().medium.periods_count()
+            && self.configuration().medium.period() == Some(state.round);
+        if state.faults.are_over() && state.copies.is_empty() || is_over {
             return Ok(found);
         }
         let heard = self.all_heard(state);
         for to in 0..heard.len() {
             for at in 0..heard[to].len() {
                 let said = heard[to][at];
-                let from = self.nodes().beacon(said).sender;
+                let from = self.nodes().said(said).sender;
                 if state.faults.losses > 0 {
                     let mut without = heard.clone();
                     without[to].remove(at);
@@ -160,16 +190,16 @@ impl Protocol {
                 if state.faults.duplicates > 0 {
                     let mut next = self.round(state, &heard)?;
                     next.faults.duplicates -= 1;
-                    let copy = Copied { from, to, beacon: said, rounds_left: LONGEST_ECHO };
+                    let copy = Copied { from, to, message: said, rounds_left: LONGEST_ECHO };
                     next.copies.push(copy);
                     next.copies.sort_unstable();
                     found.push((Action::Copy { from, to }, next));
                 }
                 let arrives = |copy: &Copied| (copy.from, copy.to) == (from, to);
                 for copy in state.copies.iter().copied().filter(arrives) {
-                    if copy.beacon != said {
+                    if copy.message != said {
                         let mut echoed = heard.clone();
-                        echoed[to][at] = copy.beacon;
+                        echoed[to][at] = copy.message;
                         let mut next = self.round(state, &echoed)?;
                         next.copies.retain(|other| (other.from, other.to) != (from, to));
                         found.push((Action::Echo { from, to }, next));
@@ -181,13 +211,14 @@ impl Protocol {
     }
 
     /// What `to` heard last of `from`.
-    fn last_heard(&self, state: &State, from: NodeId, to: NodeId) -> Option<BeaconId> {
-        let known = &self.nodes().local(state.locals[to]).heard;
-        known.iter().find(|&&id| self.nodes().beacon(id).sender == from).copied()
+    fn last_heard(&mut self, state: &State, from: NodeId, to: NodeId) -> Option<MessageId> {
+        let mut known = self.nodes().local(state.locals[to]).heard.iter();
+        let beacon = known.find(|&&id| self.nodes().beacon(id).sender == from).copied()?;
+        Some(self.nodes_mut().message_with(beacon))
     }
 
     /// A round in which every node hears this.
-    fn round(&mut self, state: &State, heard: &[Vec<BeaconId>]) -> Result<State, RobotError> {
+    fn round(&mut self, state: &State, heard: &[Vec<MessageId>]) -> Result<State, RobotError> {
         let mut next = state.clone();
         next.locals = self.each(state, |node| Stimulus::Round(heard[node].clone()))?;
         next.copies.retain_mut(|copy| {
@@ -197,6 +228,10 @@ impl Protocol {
         if let Some(rounds) = self.configuration().medium.period() {
             let is_quiet = next.locals == state.locals;
             let nothing_fails = state.faults.are_over() && state.copies.is_empty();
+            if self.configuration().medium.periods_count() {
+                next.round = if is_quiet && nothing_fails { rounds } else { state.round + 1 };
+                return Ok(next);
+            }
             if is_quiet && (nothing_fails || state.round == rounds) {
                 // Nothing happens until robots move again.
                 next.round = rounds;

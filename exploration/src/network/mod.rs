@@ -23,7 +23,7 @@ pub use campaign::{Campaign, CampaignError, Counts, ENDS, Failure, Findings, Gra
 pub use campaigns::{QUICK, THOROUGH};
 pub use graphs::{Graph, graphs, numbered_graphs};
 pub use medium::{Faults, LONGEST_ECHO, Medium};
-pub use node::{BeaconId, Local, LocalId, Node, Nodes, Stimulus};
+pub use node::{BeaconId, Local, LocalId, MessageId, Node, Nodes, Stimulus};
 pub use places::{PlaceGraph, PlaceGraphError, PlaceId};
 pub use properties::{ALWAYS, has_ended};
 pub use protocol::{Action, Configuration, Protocol, ProtocolError, State};

@@ -12,11 +12,24 @@ use pleach_continuous::Point;
 
 /// The number of a beacon among all those ever sent.
 pub type BeaconId = u32;
+/// The number of a message among all those ever sent.
+pub type MessageId = u32;
 /// The number of a state of a node among all those ever met.
 pub type LocalId = u32;
 
-/// Nodes are explored within one control period: the explorer stands for time.
-const PERIOD: u32 = 1;
+/// Where control periods do not count, nodes are explored within the first one.
+const FIRST_PERIOD: u32 = 1;
+/// Where they do, the present one has this number at first, and those before have smaller ones.
+const PRESENT_PERIOD: u32 = 1000;
+
+/// A beacon, and what is told with it.
+#[derive(Clone, Debug, PartialEq)]
+struct Said {
+    beacon: BeaconId,
+    period: u32,
+    roll: Roll,
+    confirmed: Option<u32>,
+}
 
 /// A robot or an access point.
 #[derive(Clone, Debug)]
@@ -38,10 +51,14 @@ impl Node {
     }
 
     /// The clock ticks. In every round that is explored all nodes send, as they do in the first
-    /// rounds of a control period.
-    fn tick(&mut self) -> Result<(), RobotError> {
+    /// rounds of a control period; where these do not count, every way to an access point is confirmed
+    /// anew.
+    fn tick(&mut self, periods_count: bool) -> Result<(), RobotError> {
         if let Node::Robot(robot) = self {
             robot.count_rounds_anew();
+            if !periods_count {
+                robot.confirm_way_anew();
+            }
         }
         self.step(Input::Tick { passed: 0 })?;
         if let Node::AccessPoint(access_point) = self {
@@ -64,8 +81,10 @@ impl Node {
 pub struct Local {
     /// The node.
     pub node: Node,
-    /// What it sends.
+    /// The beacon that it sends.
     pub beacon: BeaconId,
+    /// What it sends.
+    pub message: MessageId,
     /// The last beacon heard of each node in range, by ascending sender.
     pub heard: Vec<BeaconId>,
 }
@@ -88,15 +107,22 @@ impl Local {
 /// Something that happens to one node.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stimulus {
-    /// It receives these beacons, and processes them, before its clock ticks.
-    Hear(Vec<BeaconId>),
-    /// It hears these beacons, and its clock ticks: it counts a round. An access point then serves
+    /// It receives these messages, and processes them, before its clock ticks.
+    Hear(Vec<MessageId>),
+    /// It hears these messages, and its clock ticks: it counts a round. An access point then serves
     /// the user.
-    Round(Vec<BeaconId>),
+    Round(Vec<MessageId>),
     /// It has moved to this place, given by number.
     Move(usize),
     /// It has made no progress for this many control periods, and another one begins.
     Period(u32),
+    /// The same where control periods count: the new one has the number of the last one, or the next.
+    CountedPeriod {
+        /// For how many control periods it has made no progress.
+        still: u32,
+        /// Whether the number is the next.
+        is_next: bool,
+    },
     /// An access point serves the user.
     Announce,
 }
@@ -109,20 +135,27 @@ pub enum Stimulus {
 #[derive(Debug)]
 pub struct Nodes {
     positions: Vec<Point>,
+    /// Whether control periods count.
+    periods_count: bool,
     beacons: Vec<Arc<Beacon>>,
     beacon_ids: BTreeMap<String, BeaconId>,
+    messages: Vec<Said>,
+    message_ids: BTreeMap<String, MessageId>,
     locals: Vec<Local>,
     local_ids: BTreeMap<(String, Vec<BeaconId>), LocalId>,
     outcomes: BTreeMap<(LocalId, Stimulus), LocalId>,
 }
 
 impl Nodes {
-    /// No node yet; `positions` are those of the places.
-    pub fn new(positions: Vec<Point>) -> Self {
+    /// No node yet; `positions` are those of the places, and control periods may count.
+    pub fn new(positions: Vec<Point>, periods_count: bool) -> Self {
         Nodes {
             positions,
+            periods_count,
             beacons: Vec::new(),
             beacon_ids: BTreeMap::new(),
+            messages: Vec::new(),
+            message_ids: BTreeMap::new(),
             locals: Vec::new(),
             local_ids: BTreeMap::new(),
             outcomes: BTreeMap::new(),
@@ -139,6 +172,22 @@ impl Nodes {
         &self.beacons[id as usize]
     }
 
+    /// The beacon of a message.
+    pub fn said(&self, id: MessageId) -> &Beacon {
+        self.beacon(self.messages[id as usize].beacon)
+    }
+
+    /// The control period of a message.
+    pub fn period(&self, id: MessageId) -> u32 {
+        self.messages[id as usize].period
+    }
+
+    /// The message with this beacon where control periods do not count.
+    pub fn message_with(&mut self, beacon: BeaconId) -> MessageId {
+        let (period, roll, confirmed) = (FIRST_PERIOD, Roll::default(), Some(FIRST_PERIOD + 1));
+        self.take_down_message(Said { beacon, period, roll, confirmed })
+    }
+
     /// How many states of single nodes have been met.
     pub fn len(&self) -> usize {
         self.locals.len()
@@ -149,23 +198,58 @@ impl Nodes {
         self.locals.is_empty()
     }
 
+    /// The mission begins with this node: where control periods count, in the present one.
+    pub(super) fn date(&self, node: &mut Node) {
+        match node {
+            Node::Robot(robot) if self.periods_count => robot.count_periods(PRESENT_PERIOD),
+            Node::AccessPoint(point) if self.periods_count => point.count_periods(PRESENT_PERIOD),
+            _ => {}
+        }
+    }
+
     /// Takes up a node that has heard the beacons given.
-    pub fn take_up(&mut self, node: Node, heard: Vec<BeaconId>) -> LocalId {
-        let (account, beacon) = match &node {
+    pub fn take_up(&mut self, mut node: Node, heard: Vec<BeaconId>) -> LocalId {
+        let told = self.periods_count.then(|| match &mut node {
+            Node::Robot(robot) => robot.tell_now(),
+            Node::AccessPoint(access_point) => access_point.tell_now(),
+        });
+        let account = match &node {
             Node::Robot(robot) => {
                 debug_assert!(robot.leaves_out_nothing(), "{}", robot.account());
-                (robot.account(), robot.view().beacon())
+                if self.periods_count { robot.account_in_time() } else { robot.account() }
             }
-            Node::AccessPoint(access_point) => (access_point.account(), access_point.beacon()),
+            Node::AccessPoint(point) if self.periods_count => point.account_in_time(),
+            Node::AccessPoint(access_point) => access_point.account(),
         };
         let key = (account, heard);
         if let Some(&id) = self.local_ids.get(&key) {
             return id;
         }
+        let beacon = match &node {
+            Node::Robot(robot) if self.periods_count => robot.view().beacon_in_time(),
+            Node::Robot(robot) => robot.view().beacon(),
+            Node::AccessPoint(point) if self.periods_count => point.beacon_in_time(),
+            Node::AccessPoint(access_point) => access_point.beacon(),
+        };
         let beacon = self.take_down(beacon);
+        let message = match told {
+            Some((period, roll, confirmed)) => {
+                self.take_down_message(Said { beacon, period, roll, confirmed })
+            }
+            None => self.message_with(beacon),
+        };
         let id = self.locals.len() as LocalId;
-        self.locals.push(Local { node, beacon, heard: key.1.clone() });
+        self.locals.push(Local { node, beacon, message, heard: key.1.clone() });
         self.local_ids.insert(key, id);
+        id
+    }
+
+    fn take_down_message(&mut self, said: Said) -> MessageId {
+        let next = self.messages.len() as MessageId;
+        let id = *self.message_ids.entry(format!("{said:?}")).or_insert(next);
+        if id == next {
+            self.messages.push(said);
+        }
         id
     }
 
@@ -188,10 +272,10 @@ impl Nodes {
             return Ok(known);
         }
         let Local { mut node, mut heard, .. } = self.local(local).clone();
-        if let Stimulus::Hear(beacons) | Stimulus::Round(beacons) = &key.1 {
-            self.hear(&mut node, beacons)?;
+        if let Stimulus::Hear(messages) | Stimulus::Round(messages) = &key.1 {
+            self.hear(&mut node, messages)?;
             self.apply(&mut node, &key.1)?;
-            heard = self.last_heard(&node, &heard, beacons);
+            heard = self.last_heard(&node, &heard, messages);
         } else {
             self.apply(&mut node, &key.1)?;
         }
@@ -200,13 +284,14 @@ impl Nodes {
         Ok(outcome)
     }
 
-    fn hear(&self, node: &mut Node, beacons: &[BeaconId]) -> Result<(), RobotError> {
-        beacons.iter().try_for_each(|&id| {
-            let beacon = &self.beacons[id as usize];
+    fn hear(&self, node: &mut Node, messages: &[MessageId]) -> Result<(), RobotError> {
+        messages.iter().try_for_each(|&id| {
+            let Said { beacon, period, roll, confirmed } = &self.messages[id as usize];
+            let beacon = &self.beacons[*beacon as usize];
             let message = Message::Beacon {
-                period: PERIOD,
-                roll: Roll::default(),
-                confirmed: Some(PERIOD + 1),
+                period: *period,
+                roll: roll.clone(),
+                confirmed: *confirmed,
                 beacon: Arc::clone(beacon),
             };
             node.step(Input::Heard { from: beacon.sender, message: &message })
@@ -226,18 +311,25 @@ impl Nodes {
             (Node::AccessPoint(access_point), Stimulus::Period(_) | Stimulus::Announce) => {
                 Ok(access_point.attend_to_user()?)
             }
-            (node, Stimulus::Round(_)) => node.tick(),
+            (Node::Robot(robot), &Stimulus::CountedPeriod { still, is_next }) => {
+                robot.begin_counted_period(still, is_next)
+            }
+            (Node::AccessPoint(access_point), &Stimulus::CountedPeriod { is_next, .. }) => {
+                Ok(access_point.begin_counted_period(is_next)?)
+            }
+            (node, Stimulus::Round(_)) => node.tick(self.periods_count),
             _ => Ok(()),
         }
     }
 
     /// The beacon that a node goes by of each of those that it knows now; it may have refused a late
     /// one.
-    fn last_heard(&self, node: &Node, known: &[BeaconId], heard: &[BeaconId]) -> Vec<BeaconId> {
-        let Some(robot) = node.robot() else { return heard.to_vec() };
+    fn last_heard(&self, node: &Node, known: &[BeaconId], heard: &[MessageId]) -> Vec<BeaconId> {
+        let heard = heard.iter().map(|&id| self.messages[id as usize].beacon);
+        let Some(robot) = node.robot() else { return heard.collect() };
         let number = |held: &Arc<Beacon>| {
-            let is_held = |id: &&BeaconId| Arc::ptr_eq(&self.beacons[**id as usize], held);
-            heard.iter().chain(known).find(is_held).copied()
+            let is_held = |id: &BeaconId| Arc::ptr_eq(&self.beacons[*id as usize], held);
+            heard.clone().chain(known.iter().copied()).find(is_held)
         };
         robot.beacons().filter_map(number).collect()
     }

@@ -9,6 +9,8 @@ use pleach_automaton::network::scenario::{
 use pleach_automaton::network::site::Measure;
 use pleach_continuous::Point;
 
+use super::protocol::RATE;
+
 /// The number of a place: first those where the robots start, then those of the access points,
 /// then others.
 pub type PlaceId = usize;
@@ -166,6 +168,17 @@ impl PlaceGraph {
         self.tasks.iter().map(|&place| self.position(place)).collect()
     }
 
+    /// Whether all robots start next to an access point, all tasks are next to one, too, and without any one of
+    /// the robots there is one more than there are tasks.
+    pub fn can_lose_any_robot(&self) -> bool {
+        let access_points = self.robots..self.nodes();
+        let is_near = |place: PlaceId| {
+            access_points.clone().any(|access_point| self.are_linked(place, access_point))
+        };
+        self.robots > self.tasks.len() + 1
+            && (0..self.robots).chain(self.tasks.iter().copied()).all(is_near)
+    }
+
     /// The mission with robots, access points and tasks at their places, in an empty room.
     pub fn scenario(&self) -> Scenario {
         let at = |place: PlaceId| self.position(place).into();
@@ -184,7 +197,7 @@ impl PlaceGraph {
                 .map(|place| AccessPoint { position: at(place) })
                 .collect(),
             robot: (0..self.robots)
-                .map(|place| RobotStart { position: at(place), rate: 0.0 })
+                .map(|place| RobotStart { position: at(place), rate: RATE })
                 .collect(),
             task: self.tasks.iter().map(|&place| Task { position: at(place) }).collect(),
         }

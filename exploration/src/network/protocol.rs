@@ -12,9 +12,10 @@ use pleach_automaton::node::Input;
 use pleach_discrete::network::NodeId;
 
 use super::medium::{Copied, Faults, Medium};
-use super::node::{BeaconId, Local, LocalId, Node, Nodes, Stimulus};
+use super::node::{Local, LocalId, MessageId, Node, Nodes, Stimulus};
 use super::places::{PlaceGraph, PlaceId};
-use crate::Model;
+use super::properties::has_ended;
+use crate::{Fairness, Model};
 
 /// What is explored: the places of robots, the medium, and how often a robot is in another's way.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +76,11 @@ pub enum Action {
     Move(NodeId),
     /// A parked robot at the same place does not let a mover pass.
     Touch(NodeId),
-    /// No node has news: a control period begins.
+    /// A robot stops, where it stands.
+    Stop(NodeId),
+    /// A robot that has stopped begins again, and has forgotten everything.
+    Restart(NodeId),
+    /// A control period begins: where these do not count, when no node has news.
     Period,
     /// The access points serve the user: a task is announced, or none is left.
     Announce,
@@ -100,6 +105,8 @@ impl fmt::Display for Action {
             Action::Deliberate(node) => write!(f, "{node} deliberates"),
             Action::Move(robot) => write!(f, "{robot} moves on"),
             Action::Touch(robot) => write!(f, "{robot} cannot pass a robot at its place"),
+            Action::Stop(robot) => write!(f, "{robot} stops"),
+            Action::Restart(robot) => write!(f, "{robot} begins again"),
             Action::Period => write!(f, "a control period begins"),
             Action::Announce => write!(f, "the access points serve the user"),
         }
@@ -122,6 +129,10 @@ pub struct State {
     pub(super) round: u32,
     /// The robots that have moved in this period, as bits, where there are periods.
     pub(super) moved: u32,
+    /// The robots that have stopped, as bits.
+    stopped: u32,
+    /// The robots that have begun again, as bits.
+    restarted: u32,
 }
 
 /// Why a configuration cannot be explored.
@@ -157,7 +168,7 @@ impl Protocol {
         site.automata = site.automata.counted();
         let site = Arc::new(site);
         let positions = (0..places.count()).map(|place| places.position(place)).collect();
-        let mut nodes = Nodes::new(positions);
+        let mut nodes = Nodes::new(positions, configuration.medium.periods_count());
         let robots = scenario.robot.iter().enumerate().map(|(id, start)| {
             let robot = Robot::new(id, start.position.into(), start.rate, Arc::clone(&site));
             Node::Robot(Box::new(robot))
@@ -174,13 +185,23 @@ impl Protocol {
             if locals.len() == scenario.robot.len() {
                 node.step(Input::Heard { from: user, message: &request })?;
             }
+            nodes.date(&mut node);
             locals.push(nodes.take_up(node, Vec::new()));
         }
         let locals = locals.into();
         let Configuration { medium, contacts, .. } = configuration;
-        let round = medium.period().unwrap_or(0);
+        let round = if medium.periods_count() { 0 } else { medium.period().unwrap_or(0) };
         let faults = medium.faults();
-        let initial = State { locals, contacts, faults, copies: Vec::new(), round, moved: 0 };
+        let initial = State {
+            locals,
+            contacts,
+            faults,
+            copies: Vec::new(),
+            round,
+            moved: 0,
+            stopped: 0,
+            restarted: 0,
+        };
         let mut protocol = Protocol { configuration, nodes, initial, site };
         protocol.settle()?;
         Ok(protocol)
@@ -199,9 +220,44 @@ impl Protocol {
         }
     }
 
+    /// Which paths count: where moves wait for the end of a control period, those that use every way out
+    /// that they pass forever.
+    pub const fn fairness(&self) -> Fairness {
+        match self.configuration.medium.periods_count() {
+            true => Fairness::Strong,
+            false => Fairness::Weak,
+        }
+    }
+
     /// The automata that the nodes run, which count the rows that are taken.
     pub fn automata(&self) -> &Automata {
         &self.site.automata
+    }
+
+    /// Whether a node runs.
+    pub const fn is_running(&self, state: &State, node: NodeId) -> bool {
+        state.stopped >> node & 1 == 0
+    }
+
+    /// The robots of a state that run.
+    pub fn running<'a>(&'a self, state: &'a State) -> impl Iterator<Item = RobotView<'a>> {
+        self.robots(state).filter(|robot| self.is_running(state, robot.id()))
+    }
+
+    /// Whether a robot has stopped, whether or not it has begun again.
+    pub const fn has_failed(&self, state: &State, robot: NodeId) -> bool {
+        (state.stopped | state.restarted) >> robot & 1 != 0
+    }
+
+    /// Whether any robot has.
+    pub const fn has_failures(&self, state: &State) -> bool {
+        state.stopped | state.restarted != 0
+    }
+
+    /// Whether others heed what a node says: it knows which control period this is.
+    pub fn is_heeded(&self, state: &State, node: NodeId) -> bool {
+        let period = |node: NodeId| self.nodes.period(self.nodes.local(state.locals[node]).message);
+        period(node) == period(self.configuration.places.robots())
     }
 
     /// What is explored.
@@ -224,6 +280,10 @@ impl Protocol {
         &self.nodes
     }
 
+    pub(super) const fn nodes_mut(&mut self) -> &mut Nodes {
+        &mut self.nodes
+    }
+
     /// Where a node is.
     pub fn place_of(&self, state: &State, node: NodeId) -> PlaceId {
         match self.nodes.local(state.locals[node]).robot() {
@@ -242,27 +302,33 @@ impl Protocol {
     }
 
     /// What a node hears if it hears all nodes in range.
-    pub(super) fn all_heard_by(&self, state: &State, receiver: NodeId) -> Vec<BeaconId> {
+    pub(super) fn all_heard_by(&self, state: &State, receiver: NodeId) -> Vec<MessageId> {
         (0..state.locals.len())
+            .filter(|&sender| self.is_running(state, sender))
             .filter(|&sender| self.is_in_range(state, sender, receiver))
-            .map(|sender| self.nodes.local(state.locals[sender]).beacon)
+            .map(|sender| self.nodes.local(state.locals[sender]).message)
             .collect()
     }
 
-    pub(super) fn all_heard(&self, state: &State) -> Vec<Vec<BeaconId>> {
-        (0..state.locals.len()).map(|receiver| self.all_heard_by(state, receiver)).collect()
+    /// What each node hears; those that have stopped hear nothing.
+    pub(super) fn all_heard(&self, state: &State) -> Vec<Vec<MessageId>> {
+        let heard_by = |receiver| match self.is_running(state, receiver) {
+            true => self.all_heard_by(state, receiver),
+            false => Vec::new(),
+        };
+        (0..state.locals.len()).map(heard_by).collect()
     }
 
     /// What `to` knows if it now hears `from`; none if there is nothing new.
     pub(super) fn heard_from(
-        &self,
+        &mut self,
         state: &State,
         from: NodeId,
         to: NodeId,
-    ) -> Option<Vec<BeaconId>> {
-        let sender_of = |&id: &BeaconId| self.nodes.beacon(id).sender;
+    ) -> Option<Vec<MessageId>> {
         let mut heard = self.still_heard_by(state, to);
-        let said = self.nodes.local(state.locals[from]).beacon;
+        let sender_of = |&id: &MessageId| self.nodes.said(id).sender;
+        let said = self.nodes.local(state.locals[from]).message;
         let known = heard.binary_search_by_key(&from, sender_of);
         match (known, self.is_in_range(state, from, to)) {
             (Ok(at), true) if heard[at] != said => heard[at] = said,
@@ -273,6 +339,24 @@ impl Protocol {
             _ => return None,
         }
         Some(heard)
+    }
+
+    /// Which nodes run and are connected to an access point by others that run.
+    pub fn connected(&self, state: &State) -> Vec<bool> {
+        let robots = self.configuration.places.robots();
+        let mut reached: Vec<bool> = (0..state.locals.len()).map(|node| node >= robots).collect();
+        loop {
+            let joins = |node: NodeId| {
+                let mut others = (0..state.locals.len()).filter(|&other| reached[other]);
+                others.any(|other| self.is_in_range(state, node, other))
+            };
+            let next = (0..robots)
+                .find(|&node| !reached[node] && self.is_running(state, node) && joins(node));
+            match next {
+                Some(node) => reached[node] = true,
+                None => return reached,
+            }
+        }
     }
 
     // ---- Steps of nodes ----------------------------------------------------------------------
@@ -286,7 +370,10 @@ impl Protocol {
             .locals
             .iter()
             .enumerate()
-            .map(|(node, &local)| self.nodes.after(local, stimulus(node)))
+            .map(|(node, &local)| match state.stopped >> node & 1 {
+                0 => self.nodes.after(local, stimulus(node)),
+                _ => Ok(local),
+            })
             .collect()
     }
 
@@ -299,9 +386,7 @@ impl Protocol {
         let mut next = state.clone();
         let local = self.nodes.after(state.locals[node], stimulus)?;
         if local != state.locals[node] {
-            let mut locals = state.locals.to_vec();
-            locals[node] = local;
-            next.locals = locals.into();
+            next.locals = with(&state.locals, node, local);
         }
         Ok(next)
     }
@@ -312,11 +397,18 @@ impl Protocol {
     pub fn next_place(&self, state: &State, robot: NodeId) -> Option<PlaceId> {
         let places = &self.configuration.places;
         let body = self.nodes.local(state.locals[robot]).robot()?;
+        if self.configuration.medium.periods_count()
+            && !(self.is_running(state, robot) && body.may_leave_place())
+        {
+            return None;
+        }
         let (here, goal) = (self.place_of(state, robot), places.place_at(body.goal()?));
         let mut held: Vec<NodeId> = body.tree_links().iter().map(|link| link.to).collect();
         held.extend((0..places.robots()).filter(|&other| {
             let other = self.nodes.local(state.locals[other]).robot();
-            other.is_some_and(|other| other.tree_parent() == Some(robot))
+            other.is_some_and(|other| {
+                self.is_running(state, other.id()) && other.tree_parent() == Some(robot)
+            })
         }));
         let holds = |place: &PlaceId| {
             held.iter().all(|&other| places.are_linked(*place, self.place_of(state, other)))
@@ -328,9 +420,11 @@ impl Protocol {
     fn is_in_contact(&self, state: &State, robot: NodeId) -> bool {
         let body = |node: NodeId| self.nodes.local(state.locals[node]).robot();
         let here = self.place_of(state, robot);
-        body(robot).is_some_and(|mover| !mover.is_parked() && mover.goal().is_some())
+        self.is_running(state, robot)
+            && body(robot).is_some_and(|mover| !mover.is_parked() && mover.goal().is_some())
             && (0..self.configuration.places.robots()).any(|other| {
                 other != robot
+                    && self.is_running(state, other)
                     && self.place_of(state, other) == here
                     && body(other).is_some_and(RobotView::is_parked)
             })
@@ -344,6 +438,10 @@ impl Protocol {
             return 0;
         }
         let thresholds = body.still_thresholds();
+        if self.configuration.medium.periods_count() {
+            // The end of patience comes when all other waits are over.
+            return (still + 1).min(thresholds[1]).max(still);
+        }
         thresholds.into_iter().find(|&next| next > still).unwrap_or(still)
     }
 
@@ -387,6 +485,83 @@ impl Protocol {
         Ok(next)
     }
 
+    /// Where control periods count, another one.
+    fn counted_period(&mut self, state: &State) -> Result<State, RobotError> {
+        let robots = self.configuration.places.robots();
+        let still: Vec<u32> = (0..robots).map(|robot| self.stillness(state, robot)).collect();
+        let mut next = self.next_period(state, &still)?;
+        let moves = (0..robots).any(|robot| self.next_place(state, robot).is_some());
+        if !moves && self.end_of_period(&next)? == state.locals {
+            // Nothing happens any more but that patience ends.
+            let last = |robot: NodeId| {
+                let body = self.nodes.local(state.locals[robot]).robot();
+                body.map_or(0, |body| body.still_thresholds()[2])
+            };
+            let still: Vec<u32> =
+                (0..robots).map(|it| if still[it] > 0 { last(it) } else { 0 }).collect();
+            next = self.next_period(state, &still)?;
+        }
+        Ok(next)
+    }
+
+    /// What comes of a control period that has begun, if nothing fails.
+    fn end_of_period(&mut self, begun: &State) -> Result<Arc<[LocalId]>, RobotError> {
+        let mut now = begun.clone();
+        for _ in 0..self.configuration.medium.period().unwrap_or(0) {
+            let heard = self.all_heard(&now);
+            now.locals = self.each(&now, |node| Stimulus::Round(heard[node].clone()))?;
+        }
+        Ok(now.locals)
+    }
+
+    /// A control period begins. Its number is that of the one before, and earlier ones are numbered anew,
+    /// unless a robot has made a post in that one: the numbers of posts do not change.
+    fn next_period(&mut self, state: &State, still: &[u32]) -> Result<State, RobotError> {
+        let is_next = self.robots(state).any(RobotView::has_made_post);
+        let mut next = state.clone();
+        (next.round, next.moved) = (0, 0);
+        next.locals = self.each(state, |node| {
+            let still = still.get(node).copied().unwrap_or_default();
+            Stimulus::CountedPeriod { still, is_next }
+        })?;
+        Ok(next)
+    }
+
+    /// A robot may stop at any moment between two rounds, and begin again with a control period.
+    fn failures(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
+        let mut found = Vec::new();
+        for robot in 0..self.configuration.places.robots() {
+            let is_running = self.is_running(state, robot);
+            if is_running && state.faults.stops > 0 {
+                let mut next = state.clone();
+                next.faults.stops -= 1;
+                next.stopped |= 1 << robot;
+                let body = self.robot_anew(state, robot);
+                let local = self.nodes.take_up(body, Vec::new());
+                next.locals = with(&state.locals, robot, local);
+                found.push((Action::Stop(robot), next));
+            }
+            if !is_running && state.faults.restarts > 0 && state.round == 0 {
+                let mut next = state.clone();
+                next.faults.restarts -= 1;
+                next.stopped &= !(1 << robot);
+                next.restarted |= 1 << robot;
+                let mut body = self.robot_anew(state, robot);
+                body.step(Input::Tick { passed: 0 })?;
+                let local = self.nodes.take_up(body, Vec::new());
+                next.locals = with(&state.locals, robot, local);
+                found.push((Action::Restart(robot), next));
+            }
+        }
+        Ok(found)
+    }
+
+    /// A robot that knows nothing, where this one stands.
+    fn robot_anew(&self, state: &State, robot: NodeId) -> Node {
+        let position = self.configuration.places.position(self.place_of(state, robot));
+        Node::Robot(Box::new(Robot::new(robot, position, RATE, Arc::clone(&self.site))))
+    }
+
     /// The user asks when nothing is under way.
     fn announcement(&mut self, state: &State) -> Result<Option<State>, RobotError> {
         let first = self.configuration.places.robots();
@@ -405,6 +580,9 @@ impl Protocol {
     /// # Errors
     /// When a node cannot go on.
     pub fn faultless_steps(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
+        if self.configuration.medium.periods_count() {
+            return self.steps_in_periods(state);
+        }
         let mut found = self.messages(state)?;
         let everything_is_known = found.is_empty();
         found.extend(self.bodies(state)?);
@@ -419,6 +597,30 @@ impl Protocol {
         }
         Ok(found)
     }
+
+    /// The same where control periods count: rounds, then moves, then the next one, until the mission has
+    /// ended.
+    fn steps_in_periods(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
+        if has_ended(self, state) {
+            return Ok(Vec::new());
+        }
+        let mut found = self.messages(state)?;
+        found.extend(self.bodies(state)?);
+        if self.configuration.medium.period() == Some(state.round) {
+            let next = self.counted_period(state)?;
+            found.push((Action::Period, next));
+        }
+        Ok(found)
+    }
+}
+
+/// Every robot has nothing to send: routes are left out.
+pub(super) const RATE: f64 = 0.0;
+
+fn with(locals: &[LocalId], node: NodeId, local: LocalId) -> Arc<[LocalId]> {
+    let mut locals = locals.to_vec();
+    locals[node] = local;
+    locals.into()
 }
 
 impl Model for Protocol {
@@ -432,7 +634,10 @@ impl Model for Protocol {
 
     fn successors(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let mut found = self.faultless_steps(state)?;
-        found.extend(self.faulty_rounds(state)?);
+        if !(self.configuration.medium.periods_count() && has_ended(self, state)) {
+            found.extend(self.faulty_rounds(state)?);
+            found.extend(self.failures(state)?);
+        }
         Ok(found)
     }
 }

@@ -56,7 +56,7 @@ impl Plan {
         let words = 1 + self.tasks() * 3 * (self.robots + 2);
         let rounds = nodes * (6 + 2 * self.robots);
         let steps_of_a_round = match self.medium {
-            Medium::Rounds { .. } => 1,
+            Medium::Rounds { .. } | Medium::Periods { .. } => 1,
             Medium::NodesInAnyOrder => nodes,
             Medium::MessagesInAnyOrder => nodes * nodes,
         };
@@ -183,7 +183,9 @@ impl Step {
             Action::Lose { .. }
             | Action::Delay { .. }
             | Action::Copy { .. }
-            | Action::Echo { .. } => {
+            | Action::Echo { .. }
+            | Action::Stop(_)
+            | Action::Restart(_) => {
                 matches!(self, Step::Fail(_))
             }
         }

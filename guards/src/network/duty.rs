@@ -71,15 +71,14 @@ fn kept() -> Predicate {
     !proposition("free") & !proposition("superfluous")
 }
 
-/// Another task is announced, and the post of the leader that awaits its release is held by the robot
-/// behind.
+/// Σ is given up, and the post of the leader that awaits its release is held by the robot behind.
 pub fn release_missed() -> Guard {
-    named("release missed", proposition("superseded") & proposition("superfluous"))
+    called_off("release missed", proposition("superfluous"))
 }
 
-/// Σ is given up although the leader has not been released.
+/// Σ is given up although the leader has not been released, and no other task is announced.
 pub fn bound_kept() -> Guard {
-    called_off("bound kept", !proposition("superseded"))
+    called_off("bound kept", !proposition("superseded") & !proposition("superfluous"))
 }
 
 /// It is the last robot that Σ relieves, and joins the team.

@@ -40,11 +40,11 @@ fn next(name: &str, predicate: Predicate) -> Guard {
 }
 
 fn can_announce() -> Predicate {
-    proposition("task_left") & variable("robots").at_least(1.0)
+    proposition("task_left") & has_robots()
 }
 
 fn lacks_robots() -> Predicate {
-    proposition("task_left") & variable("robots").less_than(1.0)
+    proposition("task_left") & !has_robots() & !proposition("may_return")
 }
 
 /// Robots have gathered, and there is a task.
@@ -90,16 +90,27 @@ pub fn no_answer() -> Guard {
     named("no answer", pursues() & goes_unanswered() & each_time)
 }
 
-/// A robot that takes part in the elections for the task is gone.
+/// A robot that takes part in the elections for the task is gone, and others are left.
 pub fn announces_again() -> Guard {
-    named("announces again", pursues() & proposition("misses_elector"))
+    named("announces again", pursues() & proposition("misses_elector") & has_robots())
 }
 
 /// So it is while the election is under way, or that goes unanswered.
 pub fn elects_again() -> Guard {
     let another_time = variable("unanswered").less_than(variable("attempts"));
     let unanswered = goes_unanswered() & another_time;
-    named("announces again", pursues() & (proposition("misses_elector") | unanswered))
+    let again = proposition("misses_elector") | unanswered;
+    named("announces again", pursues() & again & has_robots())
+}
+
+/// All robots that took part are gone.
+pub fn no_robot_left() -> Guard {
+    let all_gone = !has_robots() & !proposition("may_return");
+    named("no robot left", pursues() & proposition("misses_elector") & all_gone)
+}
+
+fn has_robots() -> Predicate {
+    variable("robots").at_least(1.0)
 }
 
 /// The election lasts longer than news can take, although all who take part have been heard of.

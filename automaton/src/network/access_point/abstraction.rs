@@ -3,6 +3,9 @@
 use std::sync::Arc;
 
 use super::super::beacon::{Beacon, Notice};
+use super::super::robot::Numbers;
+use super::super::roll::Roll;
+use super::attendance::Attendee;
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
 use crate::automaton::TransitionError;
 
@@ -35,6 +38,44 @@ impl AccessPoint {
     /// When a guard cannot be evaluated.
     pub fn attend_to_user(&mut self) -> Result<(), TransitionError> {
         self.serve()
+    }
+
+    /// From now on control periods count: this one has the number `now`.
+    pub fn count_periods(&mut self, now: u32) {
+        (self.period, self.roll.called) = (now, now);
+    }
+
+    /// Where control periods count, the next one begins; its number is that of the last one, and all
+    /// before are numbered anew, unless `is_next`.
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    pub fn begin_counted_period(&mut self, is_next: bool) -> Result<(), TransitionError> {
+        self.is_new = false;
+        self.period += u32::from(is_next);
+        let numbers = Numbers { now: self.period, passed: u32::from(!is_next) };
+        self.roll.called = numbers.of(self.roll.called, self.site.roll_validity() + 1);
+        self.call_roll()
+    }
+
+    /// What the access point tells beside its beacon: the control period, the roll, and its confirmation.
+    pub fn tell_now(&self) -> (u32, Roll, Option<u32>) {
+        (self.period, self.roll.clone(), Some(self.period))
+    }
+
+    /// The beacon that the access point sends where control periods count.
+    pub fn beacon_in_time(&self) -> Beacon {
+        self.public_state()
+    }
+
+    /// The [`account`](Self::account) of an access point where control periods count.
+    pub fn account_in_time(&self) -> String {
+        let attendees: Vec<_> = self.attendees.iter().map(Attendee::account).collect();
+        let patience = self.patience_with_tasks() + 1;
+        let tasks: Vec<u32> = self.tasks_serviced.iter().map(|&it| it.min(patience)).collect();
+        let reports = (&self.strays, &self.serves, &self.forgetful);
+        let told = (self.period, &self.roll, reports, self.is_new);
+        format!("{}{:?}", self.account(), (told, attendees, tasks))
     }
 
     /// Everything, apart from what it receives, that decides what the access point sends from now on.
@@ -72,7 +113,8 @@ impl AccessPoint {
             is_new: _,
             last_beacon: _,
             log: _,
-            // The explorer stands for time; without it no robot is missed, and no task.
+            // The explorer stands for time; without it no robot is missed, and no task, and none restarts.
+            forgetful: _,
             strays: _,
             serves: _,
             tasks_serviced: _,

@@ -137,9 +137,21 @@ impl Attendee {
         self.is_known() && self.standing.location() == Attendance::Present
     }
 
+    /// Whether it does not take part, and may in a while.
+    pub(super) fn may_return(&self) -> bool {
+        matches!(self.standing.location(), Attendance::Suspended | Attendance::Returning)
+    }
+
     /// Whether it is gone.
     pub(super) fn is_gone(&self) -> bool {
         self.standing.location() == Attendance::Gone
+    }
+
+    /// What decides on its standing from now on; how long a wait has been over does not matter.
+    #[cfg(feature = "abstraction")]
+    pub(super) fn account(&self) -> (Attendance, Option<u32>, u32) {
+        let silence = self.silence.map(|silence| silence.min(PATIENCE + 1));
+        (self.standing.location(), silence, self.age.min(self.validity + 1))
     }
 
     /// Another control period begins.
@@ -187,8 +199,12 @@ impl AccessPoint {
     /// The first task that has been serviced, and has not been for as long as it takes to give a robot
     /// up.
     pub(super) fn abandoned_task(&self) -> Option<usize> {
-        let patience = PATIENCE + self.site.roll_validity();
+        let patience = self.patience_with_tasks();
         self.tasks_serviced.iter().position(|&silence| silence > patience)
+    }
+
+    pub(super) fn patience_with_tasks(&self) -> u32 {
+        PATIENCE + self.site.roll_validity()
     }
 
     fn absent(&self) -> Absent {
@@ -213,10 +229,16 @@ impl AccessPoint {
         attendees.filter(|(_, attendee)| attendee.is_gone()).map(|(robot, _)| robot).collect()
     }
 
+    /// The robots that it has heard of and that do not take part.
+    pub(super) fn absent_robots(&self) -> Vec<NodeId> {
+        let attendees = self.attendees.iter().enumerate();
+        let is_absent = |it: &Attendee| it.is_known() && !it.takes_part();
+        attendees.filter(|(_, attendee)| is_absent(attendee)).map(|(robot, _)| robot).collect()
+    }
+
     /// Whether robots that it has heard of do not take part.
     pub(super) fn misses_robots(&self) -> bool {
-        let is_absent = |it: &Attendee| it.is_known() && !it.takes_part();
-        self.attendees.iter().any(is_absent)
+        !self.absent_robots().is_empty()
     }
 
     /// The robots that take part, as far as it knows.

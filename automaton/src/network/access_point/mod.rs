@@ -62,6 +62,8 @@ pub struct AccessPoint {
     newest: Option<Bulletin>,
     /// The newest announcement that it knows.
     announced: Option<Announced>,
+    /// The robots that have elected by it and restarted since.
+    forgetful: Arc<IdSet>,
     election: Option<Arc<Election>>,
     election_rounds: usize,
     agreement: Option<Agreement>,
@@ -115,6 +117,7 @@ impl AccessPoint {
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             newest: None,
             announced: None,
+            forgetful: Arc::default(),
             election: None,
             election_rounds: 0,
             agreement: None,
@@ -161,6 +164,7 @@ impl AccessPoint {
             position: self.position,
             bulletin: self.bulletin.clone(),
             announced: self.announced.clone(),
+            forgetful: Arc::clone(&self.forgetful),
             election: self.election.clone(),
             agreement: self.agreement.clone(),
             route: self.route.clone(),
@@ -293,7 +297,11 @@ impl AccessPoint {
         for announced in self.heard.iter().filter_map(|beacon| beacon.announced.as_ref()) {
             if self.announced.as_ref().is_none_or(|(known, _)| announced.0.is_newer_than(*known)) {
                 self.announced = Some(announced.clone());
+                self.forgetful = Arc::default();
             }
+        }
+        for beacon in &self.heard {
+            beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
         }
     }
 
@@ -308,6 +316,7 @@ impl AccessPoint {
         let id = bulletin.id();
         if let Notice::Task(announcement) = &**bulletin.notice() {
             self.announced = Some((id, announcement.clone()));
+            self.forgetful = Arc::default();
         }
         match **bulletin.notice() {
             Notice::Task(_) | Notice::Call { .. } => {

@@ -51,10 +51,13 @@ crate::observed! {
         attempts: ATTEMPTS_TO_ELECT,
     }
     propositions {
-        /// A robot that takes part in the elections for its task is gone.
-        misses_elector: point.electors().any(Attendee::is_gone),
+        /// A robot that takes part in the elections for its task is gone, or has forgotten what became of
+        /// them.
+        misses_elector: point.misses_elector(),
         /// A robot that takes part in the elections for its task has not been heard of.
         expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
+        /// A robot that does not take part is not gone yet, or is coming back.
+        may_return: point.attendees.iter().any(Attendee::may_return),
         /// The newest notice received announces a task, or calls for a recruit.
         hears_election: matches!(point.heard_notice(), Some(Notice::Task(_) | Notice::Call { .. })),
         /// The newest notice received announces a path Σ, or that the team advances.
@@ -142,6 +145,17 @@ impl AccessPoint {
         roster.filter_map(|robot| self.attendees.get(robot))
     }
 
+    fn misses_elector(&self) -> bool {
+        self.electors().any(Attendee::is_gone) || self.forgetful_electors().next().is_some()
+    }
+
+    /// The robots that take part in the elections for its task, and have restarted since it was announced.
+    fn forgetful_electors(&self) -> impl Iterator<Item = NodeId> {
+        let pursued = self.announced();
+        let elects = move |&robot: &NodeId| pursued.is_some_and(|it| it.roster.contains(robot));
+        self.forgetful.iter().filter(elects)
+    }
+
     /// The task to announce next: the first that has been serviced and is not any more, or the one after
     /// all that have been.
     fn next_task(&self) -> Option<usize> {
@@ -172,6 +186,15 @@ impl AccessPoint {
     fn electing(&self, task: usize, unanswered: u32) -> Electing {
         let roster = Arc::clone(&self.roster);
         Electing { announced: Some(Announced { task, roster, unanswered }) }
+    }
+
+    /// How it issues a notice. Robots that it misses may know later ones, or go by an earlier announcement
+    /// when they come back.
+    fn issue(&self, notice: Notice) -> ServiceEffect {
+        match self.misses_robots() {
+            true => ServiceEffect::Supersede(notice),
+            false => ServiceEffect::Issue(notice),
+        }
     }
 
     /// The task that is pursued with its electors, as robots tell it: an access point that restarts
@@ -265,11 +288,7 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
         Some(task) => MissionEvent::TaskReannounced { task, gone: point.gone() },
         None => MissionEvent::TaskAnnounced { task },
     }));
-    effects.push(match point.misses_robots() {
-        // They may still go by an earlier announcement when they come back.
-        true => ServiceEffect::Supersede(notice),
-        false => ServiceEffect::Issue(notice),
-    });
+    effects.push(point.issue(notice));
     Some(point.electing(task, 0))
 }
 
@@ -281,35 +300,57 @@ fn announce_again<A: Knows>(
 ) -> Option<Electing> {
     let Announced { task, roster, unanswered } = place.announced()?;
     let notice = point.task_notice(task)?;
-    let is_unanswered = !point.electors().any(Attendee::is_gone);
-    let gone = if is_unanswered { point.unanswering(&roster) } else { point.gone() };
+    let is_unanswered = !point.misses_elector();
+    let gone = match is_unanswered {
+        true => point.unanswering(&roster),
+        false => point.gone().into_iter().chain(point.forgetful_electors()).collect(),
+    };
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone }));
     effects.push(ServiceEffect::Supersede(notice));
     Some(point.electing(task, unanswered + u32::from(is_unanswered)))
 }
 
-fn end(effects: &mut Effects, outcome: Outcome, task: Option<usize>, reason: String) -> Over {
-    effects.push(ServiceEffect::Issue(Notice::Ended { outcome, reason: reason.into(), task }));
+/// The mission ends. Robots that are missed may know later notices than the access point.
+fn end(
+    point: &AccessPoint,
+    effects: &mut Effects,
+    outcome: Outcome,
+    task: Option<usize>,
+    reason: String,
+) -> Over {
+    effects.push(point.issue(Notice::Ended { outcome, reason: reason.into(), task }));
     Over
 }
 
 fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
-    let reason = "no robot is connected to an access point".to_owned();
-    end(effects, Outcome::InsufficientRobots, point.next_task(), reason)
+    let mut reason = "no robot is connected to an access point".to_owned();
+    let gone = point.gone();
+    if !gone.is_empty() {
+        reason.push_str(&format!(" any more: robots {gone:?} have stopped, or nobody hears them"));
+    }
+    end(point, effects, Outcome::InsufficientRobots, point.next_task(), reason)
 }
 
 fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
     let count = point.requested.as_ref().map_or(0, |tasks| tasks.len());
-    end(effects, Outcome::Serviced, None, format!("all {count} tasks are serviced"))
+    end(point, effects, Outcome::Serviced, None, format!("all {count} tasks are serviced"))
 }
 
-fn end_without_bid(place: &Electing, _: &AccessPoint, effects: &mut Effects) -> Option<Over> {
+fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     let task = place.announced.as_ref()?.task;
+    if point.misses_robots() {
+        let absent = point.absent_robots();
+        let reason = format!(
+            "no robot is left that can go to task {task}: robots {absent:?} have stopped, or nobody \
+             hears them"
+        );
+        return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
+    }
     let reason = format!(
         "no robot can come within the service radius of task {task}: it lies in a wall, too near \
          to one, or in a part of the workspace that no robot can enter"
     );
-    Some(end(effects, Outcome::UnreachableTask, Some(task), reason))
+    Some(end(point, effects, Outcome::UnreachableTask, Some(task), reason))
 }
 
 fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
@@ -318,7 +359,7 @@ fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) 
     let reason = format!(
         "the election for task {task} cannot end: robots {missing:?} do not answer any more"
     );
-    Some(end(effects, Outcome::Blocked, Some(*task), reason))
+    Some(end(point, effects, Outcome::Blocked, Some(*task), reason))
 }
 
 // ---- The automaton ---------------------------------------------------------------------------
@@ -394,6 +435,8 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(announces_again::<Electing>(guards::elects_again()))
         .carried_out(announces_again::<UnderWay>(guards::announces_again()))
         .carried_out(no_robot::<Gathering>(guards::no_robot_first()))
+        .carried_out(no_robot::<Electing>(guards::no_robot_left()))
+        .carried_out(no_robot::<UnderWay>(guards::no_robot_left()))
         .carried_out(no_robot::<Serviced>(guards::no_robot_next()))
         .carried_out(all_serviced::<Gathering>(guards::nothing_to_service()))
         .carried_out(all_serviced::<Serviced>(guards::all_serviced()))

@@ -103,6 +103,7 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
         parent: Some(13),
         below: Arc::new(IdSet::singleton(9)),
         strays: Arc::new(IdSet::singleton(4)),
+        forgetful: Arc::new(IdSet::singleton(2)),
         serves: Arc::new(IdSet::singleton(1)),
         duty: Some(duty),
         parked: true,

@@ -5,20 +5,73 @@
 //! stands, and for how long it has made no progress. Everything else is the robot itself.
 //! [`Robot::account`] says which robots an explorer need not tell apart.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use pleach_discrete::network::{Bid, Confirmation, NodeId, NoticeId, Phase, Subgroup};
+use pleach_continuous::Point;
+use pleach_discrete::network::{Bid, Confirmation, IdSet, NodeId, NoticeId, PostId, Subgroup};
 
 use super::super::beacon::Beacon;
 use super::super::duty::Path;
+use super::super::roll::{Roll, Wreck};
 use super::facts::STATIONARY_WINDOW;
-use super::{Robot, RobotError, RobotView};
+use super::hearing::PATIENCE_WITH_CHILDREN;
+use super::{FIRST_NEW_POST, Robot, RobotError, RobotView};
+
+/// Where control periods count, confirmations that are older than this many count as this old: robots
+/// that have had none for so long are cut off, and look in vain.
+const OLDEST_CONFIRMATION: u32 = 30;
+
+/// The numbers of control periods when another one has begun.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Numbers {
+    /// The number of the one that has begun.
+    pub now: u32,
+    /// By how much those before it are smaller than they were.
+    pub passed: u32,
+}
+
+impl Numbers {
+    /// The number of a control period; one that is `oldest` or more periods old is just as old.
+    pub fn of(self, period: u32, oldest: u32) -> u32 {
+        period.saturating_sub(self.passed).max(self.now.saturating_sub(oldest))
+    }
+}
 
 /// What an explorer reads from a robot in addition to what observers see.
 impl<'a> RobotView<'a> {
     /// The beacon that the robot would send now, without what matters only when time passes.
     pub fn beacon(self) -> Beacon {
         Beacon { strays: Arc::default(), serves: Arc::default(), ..self.robot().public_state() }
+    }
+
+    /// The beacon that the robot sends where control periods count. Where bodies lie that do not take
+    /// part is left out: it matters for motion alone.
+    pub fn beacon_in_time(self) -> Beacon {
+        let beacon = self.robot().public_state();
+        let named = |wreck: &Wreck| Wreck { place: Point::origin(), heard_in: 0, ..*wreck };
+        Beacon { wrecks: Arc::new(beacon.wrecks.iter().map(named).collect()), ..beacon }
+    }
+
+    /// Whether it may leave its place in this control period.
+    pub fn may_leave_place(self) -> bool {
+        self.robot().may_leave_place()
+    }
+
+    /// Whether it holds, or has just left, a post that was made in this control period.
+    pub fn has_made_post(self) -> bool {
+        let robot = self.robot();
+        let held = robot.duty.post().map(|post| post.id).into_iter().chain(robot.duty.left());
+        let made_in = |post: PostId| {
+            let number = post.0.checked_sub(FIRST_NEW_POST)?;
+            Some(number / robot.site.robots as u32)
+        };
+        held.into_iter().any(|post| made_in(post) == Some(robot.period))
+    }
+
+    /// The robots that are gone, as far as it knows.
+    pub fn gone(self) -> &'a IdSet {
+        &self.robot().roll.absent.gone
     }
 
     /// The path Σ that was announced last.
@@ -78,10 +131,13 @@ impl Robot {
             && (self.is_unmeasured || self.facts_stand())
     }
 
-    /// The next round counts as the first one of a control period, in which all robots send, and
-    /// every way to an access point as confirmed anew.
+    /// The next round counts as the first one of a control period, in which all robots send.
     pub fn count_rounds_anew(&mut self) {
         self.round_count.restart();
+    }
+
+    /// Every way to an access point counts as confirmed anew.
+    pub fn confirm_way_anew(&mut self) {
         self.confirmation = Confirmation::default();
     }
 
@@ -93,9 +149,59 @@ impl Robot {
     pub fn pass_period(&mut self, still_periods: u32) -> Result<(), RobotError> {
         self.stand_at(self.position, still_periods);
         self.begin_period()?;
-        (self.orphaned_periods, self.unfollowed_periods) = (0, 0);
+        self.orphaned_periods = 0;
         self.deliberate()?;
         self.jump()
+    }
+
+    /// From now on control periods count: this one has the number `now`.
+    pub fn count_periods(&mut self, now: u32) {
+        self.period = now;
+    }
+
+    /// Where control periods count, the next one begins; the robot has made no progress for
+    /// `still_periods` of them. The new one gets the number of the last one, and all before are numbered
+    /// anew, unless `is_next`: then its number is the next.
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated, or transitions do not come to an end.
+    pub fn begin_counted_period(
+        &mut self,
+        still_periods: u32,
+        is_next: bool,
+    ) -> Result<(), RobotError> {
+        self.is_new = false;
+        self.period += u32::from(is_next);
+        let numbers = Numbers { now: self.period, passed: u32::from(!is_next) };
+        let validity = self.site.roll_validity();
+        self.roll.called = numbers.of(self.roll.called, validity + 1);
+        self.confirmation = self.confirmation.renumbered(|it| numbers.of(it, OLDEST_CONFIRMATION));
+        for known in &mut self.neighbours {
+            known.heard_in = numbers.of(known.heard_in, PATIENCE_WITH_CHILDREN + 1);
+            known.confirmed = known.confirmed.map(|it| numbers.of(it, OLDEST_CONFIRMATION));
+        }
+        self.stand_at(self.position, still_periods);
+        self.jump()?;
+        self.begin_period()?;
+        Ok(())
+    }
+
+    /// What the robot tells beside its beacon: the control period, the roll, and the confirmation that it
+    /// passes on.
+    pub fn tell_now(&mut self) -> (u32, Roll, Option<u32>) {
+        (self.period, self.roll.clone(), self.pass_on_confirmation())
+    }
+
+    /// The [`account`](Self::account) of a robot where control periods count. Where bodies lie that do
+    /// not take part is left out: it matters for motion alone.
+    pub fn account_in_time(&self) -> String {
+        let seen = self.out_of_sight.iter().chain(self.wrecks.iter());
+        let seen: BTreeSet<NodeId> = seen.map(|wreck| wreck.robot).collect();
+        let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
+        let reports = (&self.strays, &self.serves, &self.forgetful);
+        let told = (self.period, &self.roll, self.confirmation, reports);
+        let waits = (self.orphaned_periods, self.is_late, self.is_new);
+        format!("{}{:?}", self.account(), (told, waits, seen, heard))
     }
 
     /// Everything, apart from the beacons that it goes by, that decides what the robot sends and does
@@ -162,11 +268,11 @@ impl Robot {
             partner: _,
             taking_over: _,
             log: _,
-            // No robot is missed, and no task, where no time passes.
+            // No robot is missed, and no task, where no time passes; and none restarts.
+            forgetful: _,
             strays: _,
             serves: _,
             orphaned_periods: _,
-            unfollowed_periods: _,
             roll: _,
             out_of_sight: _,
             wrecks: _,
@@ -204,9 +310,9 @@ impl Robot {
             arrival: _,
             resting_places: _,
         } = self;
-        let waited = match self.phase() {
-            Phase::RecruitElection => (*waited_rounds).min(2 * self.longest_wait() + 1),
-            _ => 0,
+        let waited = match self.counts_rounds() {
+            true => (*waited_rounds).min(2 * self.longest_wait() + 1),
+            false => 0,
         };
         let silences: Vec<u8> = self.audible().map(|(_, silent)| silent).collect();
         format!(

@@ -108,36 +108,40 @@ impl Robot {
         length <= self.build_length() * (1.0 + ROUNDING)
     }
 
-    /// Once a period: for how long no robot has held the post that its own is attached to.
-    pub(super) fn count_orphaned_periods(&mut self) {
-        let is_orphan =
-            matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none();
-        let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
-        self.orphaned_periods = if is_orphan { longer } else { 0 };
+    /// Whether no robot that it hears holds the post that its own is attached to.
+    pub(super) fn is_orphan(&self) -> bool {
+        matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none()
     }
 
-    /// Another parent, where no robot has held the post for long that its own is attached to: the node
-    /// with the fewest links to an access point that is near enough.
+    /// Once a period: for how long no robot has held the post that its own is attached to.
+    pub(super) fn count_orphaned_periods(&mut self) {
+        let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
+        self.orphaned_periods = if self.is_orphan() { longer } else { 0 };
+    }
+
+    /// Another parent, where no robot has held the post for long that its own is attached to, or it is
+    /// attached to none, since it had lost its parent when another robot came to rely on it: the node with the
+    /// fewest links to an access point that is near enough; one that is confirmed already, if there is one.
     fn replace_parent(&self) -> Option<Option<Anchor>> {
-        let (post, lost) = (self.duty.post()?.id, self.anchor()?);
-        if self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
+        let (post, lost) = (self.duty.post()?.id, self.anchor());
+        if lost.is_some() && self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
             return None;
         }
         let limit = self.hard_length() * (1.0 + ROUNDING);
         let leads_elsewhere = |lineage: &Lineage| {
             !lineage.contains(post)
-                && !matches!(lost, Anchor::Post(lost) if lineage.contains(lost))
+                && !matches!(lost, Some(Anchor::Post(lost)) if lineage.contains(lost))
                 && self.confirms(lineage)
         };
         let ways = self.neighbours.iter().filter_map(|neighbour| {
             let lineage = neighbour.beacon.lineage.as_ref()?;
             let usable = Self::accepts_redundant(neighbour)
                 && leads_elsewhere(lineage)
-                && self.is_confirmed(neighbour)
                 && self.walk_to(neighbour) <= limit;
-            usable.then(|| (lineage.hops(), self.anchor_of(neighbour)))
+            let order = (!self.is_confirmed(neighbour), lineage.hops());
+            usable.then(|| (order, self.anchor_of(neighbour)))
         });
-        ways.min_by_key(|&(hops, _)| hops).map(|(_, anchor)| Some(anchor))
+        ways.min_by_key(|&(order, _)| order).map(|(_, anchor)| Some(anchor))
     }
 
     fn choose_parent(&self) -> Option<Option<Anchor>> {

@@ -65,6 +65,7 @@ impl Robot {
             "confirmation": self.confirmation, before.confirmation;
             "robots below": now.below, then.below;
             "strays": now.strays, then.strays;
+            "robots that have forgotten": now.forgetful, then.forgetful;
             "tasks serviced below": now.serves, then.serves;
             "wrecks": now.wrecks, then.wrecks;
             "exchange of duties": self.exchange, before.exchange;

@@ -272,7 +272,8 @@ impl Robot {
         };
         self.measure_notice(&mut facts);
         let best = self.election.as_ref().and_then(|election| election.best());
-        let won = best.is_some_and(|(bid, robot)| robot == self.id && Robot::can_come(bid));
+        let won = best.is_some_and(|(bid, robot)| robot == self.id && Robot::can_come(bid))
+            && self.knows_route();
         let over = self.election_is_over();
         facts.election_over = over;
         match self.phase() {
@@ -313,11 +314,15 @@ impl Robot {
     }
 
     /// Whether the token of every robot of the roster is known. A robot that has joined since the task
-    /// was announced cannot tell before it knows the roster.
+    /// was announced cannot tell before it knows the roster; and the roster of a task that is announced again
+    /// is not that of the elections before.
     pub(super) fn election_is_over(&self) -> bool {
-        let roster = self.announcement().map(|announcement| &announcement.roster);
-        let known = self.election.as_ref().zip(roster.filter(|roster| !roster.is_empty()));
-        known.is_some_and(|(election, roster)| election.is_complete(roster))
+        let (Some(election), Some((id, announcement))) = (&self.election, &self.announced) else {
+            return false;
+        };
+        let roster = &announcement.roster;
+        let is_theirs = election.id().epoch() == id.epoch() && !roster.is_empty();
+        is_theirs && election.is_complete(roster)
     }
 
     fn is_caller(&self) -> bool {
@@ -391,7 +396,7 @@ impl Robot {
 }
 
 /// The patience of a robot, in multiples of the longest regular wait or walk.
-pub(super) const PATIENCE: f64 = 4.0;
+const PATIENCE: f64 = 4.0;
 
 /// Control periods without motion that make a stationary point.
 pub(super) const STATIONARY_WINDOW: u32 = 8;

@@ -38,7 +38,7 @@ pub(super) struct Neighbour {
 pub(in super::super) const ROUNDS_TO_BE_HEARD: usize = 3;
 
 /// Control periods for which a robot counts as attached that is not heard.
-const PATIENCE_WITH_CHILDREN: u32 = 8;
+pub(super) const PATIENCE_WITH_CHILDREN: u32 = 8;
 
 impl Neighbour {
     /// A node as heard from `own`.

@@ -1,9 +1,11 @@
 //! The election of a leader (Algorithm 1, Remark 5.3).
 
+use std::sync::Arc;
+
 use pleach_continuous::Point;
 use pleach_discrete::network::{Bid, Election, NodeId};
 
-use super::super::beacon::{Announced, Notice};
+use super::super::beacon::{Announced, Announcement, Notice};
 use super::super::mission::{Advance, LeaderElection};
 use super::super::record::MissionEvent;
 use super::Robot;
@@ -16,26 +18,28 @@ const BID_RESOLUTION: f64 = 1e-6;
 const BESIDE: f64 = 2.1;
 
 /// A task is announced: the robot places a bid for it (Remark 5.3).
-pub(super) fn place_bid<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Option<LeaderElection> {
+pub(super) fn begin_election<A>(
+    _: &A,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> Option<LeaderElection> {
     let Notice::Task(announcement) = robot.notice() else { return None };
-    let competes = announcement.roster.contains(robot.id)
-        && robot.lineage().is_some_and(|way| announcement.eligible.contains(way.root()));
-    let bid = competes.then(|| robot.leader_bid(announcement.position)).flatten();
-    let mut election = Election::new(robot.notice_id());
-    election.place(robot.id, bid);
     effects.extend([
         MissionEffect::Restart,
         MissionEffect::Learn((robot.notice_id(), announcement.clone())),
-        MissionEffect::Elect(election, bid, None),
+        MissionEffect::Elect(Election::new(robot.notice_id()), None, None),
         MissionEffect::Agree(None),
     ]);
     Some(LeaderElection)
 }
 
 /// The robots that it hears go by an announcement that it has not received, because it has begun
-/// or restarted since.
+/// or restarted since. If it is one of those that elected by it, it has forgotten what became of that.
 pub(super) fn learn<A: Clone>(phase: &A, robot: &Robot, effects: &mut Effects) -> Option<A> {
-    effects.push(MissionEffect::Learn(robot.newer_announcement()?.clone()));
+    let announced = robot.newer_announcement()?.clone();
+    let has_forgotten = announced.1.roster.contains(robot.id);
+    effects.push(MissionEffect::Learn(announced));
+    effects.extend(has_forgotten.then_some(MissionEffect::Forgotten));
     Some(phase.clone())
 }
 
@@ -55,6 +59,27 @@ pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects)
 }
 
 impl Robot {
+    /// Places its token in the election of a leader, with a bid if it competes. A robot that knows no way to
+    /// an access point looks for one first.
+    pub(super) fn answer_announcement(&mut self) {
+        let id = self.notice_id();
+        let is_answered = |election: &Election| election.id() != id || election.has_token(self.id);
+        let has_time = self.waited_rounds < 2 * self.longest_wait();
+        let way = self.lineage().filter(|_| !self.is_orphan());
+        if self.election.as_deref().is_none_or(is_answered) || way.is_none() && has_time {
+            return;
+        }
+        let competes = |it: &&Announcement| {
+            it.roster.contains(self.id) && way.is_some_and(|way| it.eligible.contains(way.root()))
+        };
+        let announcement = self.announcement().filter(competes);
+        let bid = announcement.and_then(|announcement| self.leader_bid(announcement.position));
+        if let Some(election) = &mut self.election {
+            Arc::make_mut(election).place(self.id, bid);
+            self.bid = bid;
+        }
+    }
+
     /// The nearer to the task along the geodesic, the better; none if the task is out of reach.
     fn leader_bid(&self, task: Point) -> Option<Bid> {
         let target = self.site.free_space.nearest(task);

@@ -9,7 +9,9 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Agreement, Bid, Election, MISSION, MissionStep, NoticeId, Phase};
+use pleach_discrete::network::{
+    Agreement, Bid, Election, IdSet, MISSION, MissionStep, NoticeId, Phase,
+};
 use pleach_guards::network::mission as guards;
 
 use crate::located::{Current, DataOf, Holds, Place as _};
@@ -38,6 +40,8 @@ pub enum MissionEffect {
     Issue(Notice),
     /// It goes by this announcement.
     Learn(Announced),
+    /// It has forgotten what became of the election by the announcement that it goes by.
+    Forgotten,
     /// It takes part in this election, with its own bid, from the way to the caller that it knows.
     Elect(Election, Option<Bid>, Option<(NoticeId, Shared<Vec<Hop>>)>),
     /// It forgets the way to the caller.
@@ -76,12 +80,16 @@ impl Holds<Mission> for Robot {
                     self.epoch = announced.0.epoch();
                     self.target = Some(self.site.free_space.nearest(announced.1.position));
                     self.announced = Some(announced);
+                    self.forgetful = Arc::default();
                 }
+                MissionEffect::Forgotten => self.forgetful = Arc::new(IdSet::singleton(self.id)),
                 MissionEffect::Elect(election, bid, route) => {
                     (self.election, self.bid, self.route) = (Some(Arc::new(election)), bid, route);
                     self.waited_rounds = 1;
-                    if self.phase() == Phase::RecruitElection {
-                        self.answer_call();
+                    match self.phase() {
+                        Phase::LeaderElection => self.answer_announcement(),
+                        Phase::RecruitElection => self.answer_call(),
+                        _ => {}
                     }
                 }
                 MissionEffect::ForgetRoute => self.route = None,
@@ -123,8 +131,10 @@ impl Robot {
             if let (Some(own), Some(heard)) = (&mut self.agreement, &neighbour.beacon.agreement) {
                 own.merge(heard);
             }
+            neighbour.beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
         }
         match self.phase() {
+            Phase::LeaderElection => self.answer_announcement(),
             Phase::RecruitElection => self.answer_call(),
             Phase::Shift => {
                 self.report_arrival();
@@ -158,7 +168,12 @@ fn ended<A: DataOf<Mission>>() -> Row {
 
 fn announced<A: DataOf<Mission>>() -> Row {
     let name = "place a bid for the task";
-    Transfer::where_known(MissionStep::Announced, guards::announced(), name, leader::place_bid::<A>)
+    Transfer::where_known(
+        MissionStep::Announced,
+        guards::announced(),
+        name,
+        leader::begin_election::<A>,
+    )
 }
 
 fn overtaken<A: DataOf<Mission>>() -> Row {

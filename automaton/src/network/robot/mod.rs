@@ -52,6 +52,8 @@ use pleach_discrete::network::{
     Role,
 };
 
+#[cfg(feature = "abstraction")]
+pub(super) use abstraction::Numbers;
 pub use control::{Act, Acts, ControlAutomaton, control_automaton};
 pub use duties::{DutyAutomaton, DutyEffect, duty_automaton};
 pub use exchange::{Exchange, ExchangeAutomaton, ExchangeEffect, exchange_automaton};
@@ -184,6 +186,8 @@ pub struct Robot {
     /// The epoch of the notices that it goes by.
     epoch: u32,
     announced: Option<Announced>,
+    /// The robots that have elected by this announcement and restarted since.
+    forgetful: Arc<IdSet>,
     /// The point of 𝒲_f nearest to the task announced, where the leader goes.
     target: Option<Point>,
     election: Option<Arc<Election>>,
@@ -197,7 +201,6 @@ pub struct Robot {
     stretched: bool,
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
-    unfollowed_periods: u32,
 
     // Communication variables.
     routing: routing::RoutingState,
@@ -295,6 +298,7 @@ impl Robot {
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             epoch: 0,
             announced: None,
+            forgetful: Arc::default(),
             target: None,
             election: None,
             bid: None,
@@ -304,7 +308,6 @@ impl Robot {
             team: None,
             stretched: false,
             followed_post: None,
-            unfollowed_periods: 0,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
             upstream: None,
@@ -394,6 +397,7 @@ impl Robot {
             position: self.position,
             bulletin: self.bulletin.clone(),
             announced: self.announced.clone(),
+            forgetful: Arc::clone(&self.forgetful),
             election: self.election.clone(),
             agreement: self.agreement.clone(),
             route: self.route.clone(),
@@ -447,7 +451,6 @@ impl Robot {
         self.note_change();
         self.count_unused_periods();
         self.count_orphaned_periods();
-        self.count_unfollowed_periods();
         self.consider_exchange();
         self.advance_exchange()
     }

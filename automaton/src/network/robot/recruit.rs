@@ -147,12 +147,17 @@ impl Robot {
         Some(Hop { robot: self.id, post: station.post, place, crossing })
     }
 
-    /// Whether it counts the rounds of an election of a recruit.
+    /// Whether it counts the rounds of an election: of a recruit, or of a leader as long as it has not
+    /// answered.
     pub(super) fn counts_rounds(&self) -> bool {
-        self.phase() == Phase::RecruitElection
+        let has_answered = |election: &Election| election.has_token(self.id);
+        match self.phase() {
+            Phase::LeaderElection => !self.election.as_deref().is_some_and(has_answered),
+            phase => phase == Phase::RecruitElection,
+        }
     }
 
-    /// Counts one more round of an election of a recruit; returns whether a wait is over, so that the
+    /// Counts one more round of an election; returns whether a wait is over, so that the
     /// robot may do what it might not do before.
     pub(super) fn count_round(&mut self) -> bool {
         if !self.counts_rounds() {
@@ -168,10 +173,11 @@ impl Robot {
     pub(super) fn answer_call(&mut self) {
         let id = self.notice_id();
         let Some(election) = &self.election else { return };
-        if election.id() != id {
+        // One that has restarted may have answered already: the task is announced again.
+        if election.id() != id || self.forgetful.contains(self.id) {
             return;
         }
-        if self.route.as_ref().is_none_or(|&(known, _)| known != id) {
+        if !self.knows_route() {
             self.route = self.find_route(id).map(|route| (id, Shared::new(route)));
         }
         let bid = match (&self.route, self.recruit_class()) {
@@ -186,6 +192,11 @@ impl Robot {
             Arc::make_mut(election).place(self.id, bid);
             self.bid = bid;
         }
+    }
+
+    /// Whether it knows its way to the robot that calls. One that has restarted since it bid may not.
+    pub(super) fn knows_route(&self) -> bool {
+        self.route.as_ref().is_some_and(|&(call, _)| call == self.notice_id())
     }
 
     fn takes_part_in_elections(&self) -> bool {

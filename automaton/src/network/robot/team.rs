@@ -7,7 +7,6 @@ use super::super::beacon::{Notice, TeamReport};
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
 use super::Robot;
-use super::facts::PATIENCE;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
@@ -75,9 +74,8 @@ impl Robot {
     /// the parked robot still holds its own: the duty of the mover has no holder. The robot ahead
     /// remembers its follower.
     pub(super) fn is_first(&self) -> bool {
-        self.primary_post().is_some_and(|own| {
-            !self.hears_follower(own) && (self.has_lost_follower() || !self.expects_follower(own))
-        })
+        self.primary_post()
+            .is_some_and(|own| !self.hears_follower(own) && !self.expects_follower(own))
     }
 
     /// Its post, if that is one of the primary team.
@@ -98,48 +96,10 @@ impl Robot {
         has_joined || self.followed_post == Some(own)
     }
 
-    /// Whether the robot that follows it has not been heard for so long that it would be gone by the roll
-    /// if it did not take part: it has restarted, and holds another post now.
-    fn has_lost_follower(&self) -> bool {
-        self.unfollowed_periods > self.patience_with_followers()
-    }
-
-    fn patience_with_followers(&self) -> u32 {
-        (2 * self.site.roll_validity()).saturating_add(self.patience_with_newcomer())
-    }
-
-    /// Control periods that a robot which has joined the team, and has not been heard on its post yet, may
-    /// take to come within range.
-    fn patience_with_newcomer(&self) -> u32 {
-        let (own, path) = (self.primary_post(), self.mission.path());
-        let newcomer = path.and_then(|path| path.hops.get(path.last_break_point()));
-        match newcomer.filter(|_| own.is_some() && self.followed_post != own) {
-            Some(hop) => {
-                let way = self.site.distance(hop.place.position, self.position);
-                (PATIENCE * way / self.site.settings.step_radius).ceil() as u32
-            }
-            None => 0,
-        }
-    }
-
     /// Remembers that a robot follows it: one that falls silent follows all the same.
     pub(super) fn note_follower(&mut self) {
-        let follows = |own: &PostId| {
-            self.hears_follower(*own)
-                || self.followed_post == Some(*own) && !self.has_lost_follower()
-        };
+        let follows = |own: &PostId| self.hears_follower(*own) || self.followed_post == Some(*own);
         self.followed_post = self.primary_post().filter(follows);
-    }
-
-    /// Once a period: for how long the robot that follows it has not been heard.
-    pub(super) fn count_unfollowed_periods(&mut self) {
-        let is_missed = |own: PostId| self.expects_follower(own) && !self.hears_follower(own);
-        let longer = (self.unfollowed_periods + 1).min(self.patience_with_followers() + 1);
-        self.unfollowed_periods =
-            if self.primary_post().is_some_and(is_missed) { longer } else { 0 };
-        if self.has_lost_follower() {
-            self.receive_news();
-        }
     }
 
     /// The post of a newcomer that this robot should attach to but does not yet reach.
