@@ -3,7 +3,8 @@
 //!
 //! A robot that is gone is not expected to be heard. Others go round the place where any node heard it
 //! last. From there it has moved at most the two steps that it had the right to before it fell
-//! silent: one in the control period in which it was heard, and one in the next. Others learn of this
+//! silent: one in the control period in which it was heard, and one in the next. (A robot that a partition
+//! cuts off may move on unheard as long as its roll is valid; this is not allowed for.) Others learn of this
 //! place when the robot is suspended, and so before they can come near without having heard it.
 
 use std::sync::Arc;
