@@ -89,7 +89,7 @@ fn mission(scenario: &ValidScenario, folder: Option<&Path>) -> Result<End, Box<d
     let tasks = scenario.task.len();
     let end = match outcome {
         Some(Outcome::Serviced) => {
-            let links = spans.spanning_tree(tasks) / scenario.site().build_length;
+            let links = spans.spanning_tree(tasks) / scenario.site().usual.build;
             let ways: f64 = (0..tasks).map(|task| spans.way_to(task)).sum();
             let periods = ways / scenario.site().settings.step_radius;
             End::Serviced {

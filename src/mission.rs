@@ -13,7 +13,9 @@ use thiserror::Error;
 
 use crate::automaton::network::record::{End, Faults, MissionEvent, Outcome, Snapshot};
 use crate::automaton::network::scenario::ValidScenario;
-use crate::automaton::network::{KernelTimes, Message, Network, NetworkError, RobotNode};
+use crate::automaton::network::{
+    KernelTimes, Message, Network, NetworkError, RobotNode, SATURATED,
+};
 use crate::automaton::node::Medium;
 use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use crate::continuous::Point;
@@ -153,9 +155,6 @@ fn stopped(violation: &Violation, end: &End) -> End {
         },
     }
 }
-
-/// The load from which on a robot counts as saturated: it sends all the time.
-const SATURATED: f64 = 0.999;
 
 /// The judge and the watchers of a mission: they look on while the executor runs it, or while it goes
 /// on elsewhere and its snapshots come from there.

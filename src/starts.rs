@@ -51,7 +51,7 @@ pub fn draw(scenario: &ValidScenario, seed: u64) -> Result<ValidScenario, NoStar
 /// Random places for this many robots, each connected to an access point, or none if they do not
 /// fit. Rates are not looked at.
 pub(crate) fn places(site: &Site, robots: usize, dice: &mut Dice) -> Option<Vec<[f64; 2]>> {
-    let reach = REACH * site.build_length;
+    let reach = REACH * site.usual.build;
     let apart = APART * site.settings.planning_clearance();
     let mut nodes = site.access_points.clone();
     let fixed = nodes.len();

@@ -114,6 +114,9 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
                 format!("stationary-at-{robot}"),
             ),
         ),
+        MissionEvent::LinksStretched { .. } => {
+            ("no recruit can come: the primary team stretches its links".to_owned(), None)
+        }
         MissionEvent::RecruitElected { robot, path, break_points } => (
             format!(
                 "robot {robot} is recruited along path {}, split at {}",

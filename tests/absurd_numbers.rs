@@ -48,6 +48,7 @@ const NUMBERS: &[(&str, &[&str], &str)] = &[
     ("control.routing_iterations", &[], "control.routing_iterations"),
     ("control.routing_reserve", NOTHING_OR_LITTLE, "control.routing_reserve"),
     ("control.slope_aversion", NOTHING_OR_LITTLE, "control.slope_aversion"),
+    ("control.build_reliability", &[], "control.build_reliability"),
     ("control.tree_reliability", &["1e-300"], "control.tree_reliability"),
     ("robot[1].rate", NOTHING_OR_LITTLE, "robot[1].rate"),
     ("robot[1].position[0]", &[], "robot[1].position"),

@@ -29,6 +29,7 @@ mod proofs;
 mod proven;
 mod public_api;
 mod random_missions;
+mod rates;
 mod records;
 mod routes;
 mod scenario_faults;

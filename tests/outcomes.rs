@@ -191,7 +191,7 @@ fn the_program_tells_outcomes_by_its_exit_status() {
         (Path::new("scenarios/too-few.toml"), 3, "insufficient robots: task 1"),
         (Path::new("scenarios/unreachable.toml"), 3, "unreachable task: "),
         (&hasty, 3, "step limit: "),
-        // Five robots of rate 0.22: one relay cannot carry the traffic of all.
+        // Five robots of rate 0.27: one relay cannot carry the traffic of all.
         (
             Path::new("tests/scenarios/saturated.toml"),
             3,

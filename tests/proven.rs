@@ -77,6 +77,12 @@ const CALLS: &[Call] = &[
     ("merge", ID_SET, ELECTION, "self.tokens.merge(&heard.tokens)"),
     ("includes", ID_SET, ELECTION, "self.tokens.includes(roster)"),
     (
+        "located",
+        "automaton/src/network/roll.rs",
+        "automaton/src/network/robot/absence.rs",
+        "absent.located(seen.chain",
+    ),
+    (
         "closes_cycle",
         "discrete/src/network/lineage.rs",
         "discrete/src/network/lineage.rs",

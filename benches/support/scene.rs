@@ -106,7 +106,7 @@ impl Scene {
         half_planes.extend(convex_region(&self.site.free_space, position, waypoint, wide));
         let parents = self
             .routes_of(leader)
-            .map(|route| Disc { center: self.place(route.to), radius: self.site.hard_length });
+            .map(|route| Disc { center: self.place(route.to), radius: self.site.usual.hard });
         let mut discs = vec![Disc { center: position, radius: settings.step_radius }];
         discs.extend(parents);
         let mut problem = MotionProblem { position, waypoint, half_planes, discs };

@@ -58,7 +58,7 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
         ("links", format!("{links} at the start, {crossing} of them through walls")),
         (
             "longest new link",
-            format!("{}, along the shortest way around walls", quantity(site.build_length)),
+            format!("{}, along the shortest way around walls", quantity(site.usual.build)),
         ),
         (
             "clearance",

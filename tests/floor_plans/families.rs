@@ -518,7 +518,7 @@ fn settings(dice: &mut Dice) -> Brief {
     brief.control.step_radius = Some((slope * dice.scale(0.04, 0.3)).min(0.1));
     brief.control.rounds_per_period = Some(dice.pick(&[1, 1, 2, 8, 50]));
     brief.control.routing_iterations = Some(dice.pick(&[1, 5, 20]));
-    brief.control.tree_reliability = Some(dice.between(0.6, 0.95));
+    brief.control.build_reliability = Some(dice.between(0.6, 0.95));
     brief.control.max_steps = Some(60_000);
     if dice.chance(0.2) {
         brief.control.routing_method = Some(RoutingMethod::Adal);

@@ -10,6 +10,8 @@ use pleach::continuous::geometry::{FreeSpace, Workspace};
 const TRIES: usize = 4000;
 /// Rounding of coordinates must not break a rule that a place just keeps.
 const CAUTION: f64 = 0.999;
+/// The reliability from which on a shorter link is hardly a better one.
+const GOOD_RELIABILITY: f64 = 0.8;
 /// A tree of robots is this much longer than one of shortest paths.
 const WASTE: f64 = 1.25;
 
@@ -30,6 +32,9 @@ impl Places {
     /// The floor of a scenario that has no robots and tasks yet; none if it is no workspace.
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let settings = Settings::resolve(scenario);
+        // Rates are not known yet. Links of this reliability carry those of any robots.
+        let build_reliability = scenario.control.build_reliability.unwrap_or(GOOD_RELIABILITY);
+        let settings = Settings { build_reliability, ..settings };
         let workspace = scenario.workspace().ok()?;
         let free_space = FreeSpace::new(&workspace, settings.clearance).ok()?;
         let access_points: Vec<Point> =
@@ -108,7 +113,7 @@ impl Places {
 
     /// Adds the shortest path from the tree to `stand`, a node every d_build.
     fn grow_tree(&mut self, stand: Point) -> Option<()> {
-        let step = self.settings.longest_new_link() / WASTE;
+        let step = self.settings.usual_links().build / WASTE;
         let (from, length) = (self.tree.iter())
             .map(|&node| (node, self.free_space.distance(node, stand)))
             .min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -157,7 +162,7 @@ impl Places {
                     let known = self.access_points.len() + self.robots.len();
                     let last = dice.count(known.saturating_sub(3), known - 1);
                     let center = *(self.access_points.iter().chain(&self.robots).nth(last))?;
-                    scattered(center, self.settings.longest_new_link(), dice)
+                    scattered(center, self.settings.usual_links().build, dice)
                 }
             };
             let far_enough = match crowd {
@@ -183,7 +188,7 @@ impl Places {
     }
 
     fn linked_to(&self, place: Point) -> impl Iterator<Item = Point> {
-        let longest = CAUTION * self.settings.longest_new_link();
+        let longest = CAUTION * self.settings.usual_links().build;
         (self.access_points.iter().chain(&self.robots).copied()).filter(move |&other| {
             (other - place).norm() <= longest && self.free_space.distance(other, place) <= longest
         })

@@ -44,6 +44,7 @@ fn rename(record: &mut Record, site: usize, kind: Kind) {
         }
         Event::LeaderElected { robot, .. }
         | Event::Stationary { robot, .. }
+        | Event::LinksStretched { robot }
         | Event::RecruitElected { robot, .. }
         | Event::JoinedPrimary { robot, .. }
         | Event::Released { robot }
@@ -263,6 +264,11 @@ pub const FALSE: &[Change] = changes! {
         let first = now.primary_team.first().copied();
         if let Some(&(robot, parent)) = now.tree.iter().find(|(child, _)| Some(*child) == first) {
             tell(record, site, Event::Reattached { robot, parent });
+        }
+    };
+    "false: the team stretches its links" => |record, site| {
+        if let Some(&robot) = record.at(site).primary_team.first() {
+            tell(record, site, Event::LinksStretched { robot });
         }
     };
     "false: the election is repeated" => |record, site| {

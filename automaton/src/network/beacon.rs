@@ -100,6 +100,8 @@ pub struct TeamReport {
     pub still: u32,
     /// A member whose link is slack although it cannot move.
     pub slack: Option<NodeId>,
+    /// A member whose links carry no more.
+    pub saturated: Option<NodeId>,
     /// Geodesic distance from the leader to its task; infinite if no way leads there.
     #[serde(with = "wire::distance")]
     pub remaining: f64,
@@ -162,6 +164,9 @@ pub struct Beacon {
     pub reply: Option<Reply<Duty>>,
     /// What the primary team knows of itself, for the next member towards p₁.
     pub team: Option<TeamReport>,
+    /// Whether a team has found no robot that can be recruited, so that links of the tree may be as long as
+    /// they ever are.
+    pub stretched: bool,
     /// Where robots that do not take part were heard last.
     #[serde(with = "wire")]
     pub wrecks: Arc<Vec<Wreck>>,
@@ -194,6 +199,7 @@ impl Beacon {
             offers_made: 0,
             reply: None,
             team: None,
+            stretched: false,
             wrecks: Arc::default(),
         }
     }

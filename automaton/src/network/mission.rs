@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Phase, Subgroup};
+use pleach_discrete::network::{NodeId, Phase, Subgroup};
 
 use super::duty::Path;
 
@@ -46,6 +46,17 @@ pub struct Advance {
 pub struct RecruitElection {
     /// The path Σ of the recruitment before, if there was one.
     pub before: Option<Arc<Path>>,
+    /// Where this robot calls for one: why.
+    pub standstill: Option<Standstill>,
+}
+
+/// What the primary team knows when it gets no farther.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standstill {
+    /// Geodesic distance from the leader to its task.
+    pub remaining: f64,
+    /// A member whose links carry no more.
+    pub saturated: Option<NodeId>,
 }
 
 /// The data of [`Phase::PathAgreement`].
@@ -90,7 +101,7 @@ impl Mission {
                 Some(path)
             }
             Mission::Advance(Advance { path })
-            | Mission::RecruitElection(RecruitElection { before: path }) => path.as_ref(),
+            | Mission::RecruitElection(RecruitElection { before: path, .. }) => path.as_ref(),
             Mission::Idle(_) | Mission::LeaderElection(_) | Mission::Ended(_) => None,
         }
     }

@@ -33,8 +33,8 @@ pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
 pub use robot::{
-    Robot, RobotView, attachment_automaton, control_automaton, duty_automaton, exchange_automaton,
-    mission_automaton,
+    Robot, RobotView, SATURATED, attachment_automaton, control_automaton, duty_automaton,
+    exchange_automaton, mission_automaton,
 };
 pub use site::{Site, SiteError};
 pub use user::{User, request_automaton};

@@ -144,6 +144,9 @@ pub enum MissionEvent {
     LeaderElected { task: usize, robot: usize, conflict: bool },
     /// The primary team is at a local stationary point; `robot` is p₁.
     Stationary { robot: usize, team: Vec<usize> },
+    /// No robot is left that can be recruited: the primary team of p₁ `robot` stretches its links up to the
+    /// longest that the tree allows.
+    LinksStretched { robot: usize },
     /// A recruit is elected (Remark 5.4), with the path Σ and the break points 𝓑.
     RecruitElected { robot: usize, path: Vec<usize>, break_points: Vec<usize> },
     /// Subgroup S_β starts to move.

@@ -3,6 +3,7 @@
 //! Every beacon carries the newest roll that its sender knows. A robot moves only by a roll that is
 //! valid and does not name it, so that robots which others take to be gone do not move.
 
+use std::cmp::Reverse;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -49,6 +50,15 @@ impl Absent {
     /// Whether all robots take part.
     pub fn is_empty(&self) -> bool {
         self.suspended.is_empty() && self.gone.is_empty()
+    }
+
+    /// Where each robot that does not take part was heard last, of all that has been seen, by number.
+    pub fn located(&self, seen: impl IntoIterator<Item = Wreck>) -> Vec<Wreck> {
+        let mut wrecks: Vec<Wreck> =
+            seen.into_iter().filter(|wreck| self.contains(wreck.robot)).collect();
+        wrecks.sort_by_key(|wreck| (wreck.robot, Reverse(wreck.heard_in)));
+        wrecks.dedup_by_key(|wreck| wreck.robot);
+        wrecks
     }
 
     /// Whether `robot` does not take part.

@@ -21,7 +21,7 @@ pub use fault::{Fault, InvalidScenario, Problem};
 pub use key_path::{KeyPath, KeyStep};
 pub use radio::{LinkModel, LinkRanges, STEEPEST, STEEPNESS};
 pub use remark::{Remark, TaskRemark};
-pub use settings::Settings;
+pub use settings::{LinkLengths, Settings};
 pub use valid::ValidScenario;
 
 use serde::{Deserialize, Serialize};

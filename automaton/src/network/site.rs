@@ -9,7 +9,7 @@ use pleach_continuous::network::{LinkReliability, WithMargin};
 use super::Link;
 use super::automata::Automata;
 use super::robot::ROUNDS_TO_BE_HEARD;
-use super::scenario::{Scenario, Settings};
+use super::scenario::{LinkLengths, Scenario, Settings};
 use crate::builder::BuildError;
 
 /// Steps of two robots towards each other from where they begin to watch each other to where they
@@ -38,10 +38,10 @@ pub struct Site {
     pub settings: Settings,
     /// Number of robots.
     pub robots: usize,
-    /// d_build: the geodesic length up to which a link of the tree may be made.
-    pub build_length: f64,
-    /// d_hard: the geodesic length that no link of the tree exceeds.
-    pub hard_length: f64,
+    /// How long links of the tree may be as long as there are robots left.
+    pub usual: LinkLengths,
+    /// How long they may be once no robot is left that can be recruited.
+    pub stretched: LinkLengths,
     /// The distance up to which robots watch each other.
     watch_radius: f64,
     /// Whether links behave as a model of the caller's says, and not as `[link]` does.
@@ -94,8 +94,8 @@ impl Site {
             free_space,
             access_points: scenario.access_point.iter().map(|ap| ap.position.into()).collect(),
             robots: scenario.robot.len(),
-            build_length: settings.longest_new_link(),
-            hard_length: settings.longest_tree_link(),
+            usual: settings.usual_links(),
+            stretched: settings.stretched_links(),
             watch_radius: Self::watch_radius(&settings, &link),
             settings,
             has_own_link: false,
@@ -134,19 +134,12 @@ impl Site {
     ) -> Result<Self, ReliabilityError> {
         let radio = Link::new(model);
         let link = Self::as_measured(&radio, &self.settings)?;
-        let longest = radio.distance_at(self.settings.tree_reliability);
-        let hard_length = longest - self.settings.length_margin();
-        let build_length = hard_length - self.settings.service_radius;
+        let settings = &self.settings;
+        let lengths = |reliability| settings.link_lengths(radio.distance_at(reliability));
+        let usual = lengths(settings.build_reliability);
+        let stretched = lengths(settings.tree_reliability);
         let watch_radius = Self::watch_radius(&self.settings, &link);
-        Ok(Site {
-            link,
-            radio,
-            hard_length,
-            build_length,
-            watch_radius,
-            has_own_link: true,
-            ..self
-        })
+        Ok(Site { link, radio, usual, stretched, watch_radius, has_own_link: true, ..self })
     }
 
     /// Whether links behave as the model given to [`with_link`](Self::with_link) says.
@@ -169,6 +162,16 @@ impl Site {
         let meeting = 2.0 * (settings.planning_clearance() + settings.step_radius);
         let well_in_range = link.range() - 2.0 * step;
         (meeting + WATCHED_STEPS * step).min(well_in_range).max(meeting)
+    }
+
+    /// How long links of the tree may be, before and after no robot was left that can be recruited.
+    pub const fn lengths(&self, stretched: bool) -> LinkLengths {
+        if stretched { self.stretched } else { self.usual }
+    }
+
+    /// Whether links may be any longer when no robot is left that can be recruited.
+    pub fn could_stretch(&self) -> bool {
+        self.stretched.build > self.usual.build
     }
 
     /// Whether robots at this distance move only if they have heard each other in the same control
@@ -206,7 +209,7 @@ impl Site {
     /// The geodesic length of a link, or infinity when it is longer than any link of the tree.
     pub fn walk(&self, from: Point, to: Point) -> f64 {
         let straight = (to - from).norm();
-        if straight > REACH_OF_INTEREST * self.hard_length {
+        if straight > REACH_OF_INTEREST * self.stretched.hard {
             return f64::INFINITY;
         }
         self.distance(from, to)

@@ -87,7 +87,7 @@ impl PlaceGraph {
         let positions = (0..places).map(|place| on_circle(place, places)).collect();
         let tasks = tasks.to_vec();
         let mut places = PlaceGraph { robots, access_points, tasks, steps, positions, step: 0.0 };
-        places.step = STEP * Settings::resolve(&places.scenario()).longest_new_link();
+        places.step = STEP * Settings::resolve(&places.scenario()).usual_links().build;
         Ok(places)
     }
 

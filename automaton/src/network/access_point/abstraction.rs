@@ -93,6 +93,7 @@ impl AccessPoint {
             agreement,
             route,
             crossing,
+            stretched,
             attached,
             roster,
             settled_rounds,
@@ -103,6 +104,8 @@ impl AccessPoint {
             requested: _,
             // Between two stimuli an access point has nothing left to do.
             heard: _,
+            sightings: _,
+            wrecks: _,
             silent: _,
             newest: _,
             rounds: _,
@@ -130,7 +133,7 @@ impl AccessPoint {
             "{:?}",
             (
                 (number, bulletin, announced, &**service, election, rounds),
-                (agreement, route, crossing, (attached, roster), settled),
+                (agreement, route, crossing, stretched, (attached, roster), settled),
             )
         )
     }

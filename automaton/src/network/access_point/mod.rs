@@ -22,7 +22,7 @@ use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
 use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
-use super::roll::Roll;
+use super::roll::{Roll, Wreck};
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election};
 use super::site::Site;
@@ -51,6 +51,10 @@ pub struct AccessPoint {
     position: Point,
     /// The beacon heard last of each node in range, by their senders.
     heard: Vec<Arc<Beacon>>,
+    /// Where each robot was when it was heard last.
+    sightings: Vec<Wreck>,
+    /// Where robots that do not take part were heard last, here or by the nodes that are heard.
+    wrecks: Arc<Vec<Wreck>>,
     /// The senders of which nothing has been heard in this control period yet.
     silent: BTreeSet<NodeId>,
     bulletin: Bulletin,
@@ -65,6 +69,8 @@ pub struct AccessPoint {
     agreement: Option<Agreement>,
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     crossing: Vec<usize>,
+    /// Whether a team has found no robot that can be recruited.
+    stretched: bool,
     /// The robots that are attached here, to be told to other access points if there are any.
     attached: Arc<IdSet>,
     /// Robots that are heard here and know no way to an access point, for the others likewise.
@@ -105,6 +111,8 @@ impl AccessPoint {
             roll: Roll::default(),
             site,
             heard: Vec::new(),
+            sightings: Vec::new(),
+            wrecks: Arc::default(),
             silent: BTreeSet::new(),
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             newest: None,
@@ -115,6 +123,7 @@ impl AccessPoint {
             agreement: None,
             route: None,
             crossing: Vec::new(),
+            stretched: false,
             attached: Arc::default(),
             strays: Arc::default(),
             roster: Arc::default(),
@@ -173,7 +182,8 @@ impl AccessPoint {
             offers_made: 0,
             reply: None,
             team: None,
-            wrecks: Arc::default(),
+            stretched: self.stretched,
+            wrecks: Arc::clone(&self.wrecks),
         }
     }
 
@@ -185,6 +195,7 @@ impl AccessPoint {
         self.hear_notices()?;
         self.find_route();
         self.update_roster();
+        self.locate_wrecks();
         Ok(())
     }
 
@@ -205,6 +216,30 @@ impl AccessPoint {
             Ok(at) if beacon.is_older_than(&self.heard[at]) => {}
             Ok(at) => self.heard[at] = Arc::clone(beacon),
             Err(at) => self.heard.insert(at, Arc::clone(beacon)),
+        }
+        if beacon.duty.is_some() {
+            self.sight(Wreck { robot: beacon.sender, place: beacon.position, heard_in: period });
+        }
+    }
+
+    /// Remembers where a robot has been heard.
+    fn sight(&mut self, seen: Wreck) {
+        match self.sightings.binary_search_by_key(&seen.robot, |known| known.robot) {
+            Ok(at) => self.sightings[at] = seen,
+            Err(at) => self.sightings.insert(at, seen),
+        }
+    }
+
+    fn locate_wrecks(&mut self) {
+        let absent = &self.roll.absent;
+        if absent.is_empty() && self.wrecks.is_empty() {
+            return;
+        }
+        let told = self.heard.iter().flat_map(|beacon| beacon.wrecks.iter());
+        let wrecks =
+            absent.located(self.sightings.iter().chain(self.wrecks.iter()).chain(told).copied());
+        if *self.wrecks != wrecks {
+            self.wrecks = Arc::new(wrecks);
         }
     }
 
@@ -247,6 +282,7 @@ impl AccessPoint {
             self.newest = None;
         }
         for beacon in &self.heard {
+            self.stretched |= beacon.stretched;
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
                 merge_election(own, heard);
             }
@@ -326,7 +362,8 @@ impl AccessPoint {
     }
 
     fn is_within_changeover(&self, other: Point) -> bool {
-        self.site.distance(self.position, other) <= 2.0 * CHANGEOVER_SHARE * self.site.build_length
+        self.site.distance(self.position, other)
+            <= 2.0 * CHANGEOVER_SHARE * self.site.lengths(self.stretched).build
     }
 
     /// Which robots are attached to the access points, and which it hears of. One that knows no way to an

@@ -112,7 +112,13 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
         offer: Some(Offer { to: 2, number: 5, duty }),
         offers_made: 5,
         reply: Some(Reply { to: 2, number: 4, accepted: Some(duty) }),
-        team: Some(TeamReport { still: 3, slack: Some(1), remaining: f64::INFINITY }),
+        team: Some(TeamReport {
+            still: 3,
+            slack: Some(1),
+            saturated: Some(2),
+            remaining: f64::INFINITY,
+        }),
+        stretched: true,
         wrecks: Arc::new(vec![Wreck { robot: 3, place: Point::new(0.5, 0.5), heard_in: 6 }]),
         ..silent()
     }

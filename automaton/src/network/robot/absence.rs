@@ -1,12 +1,12 @@
 //! Robots that do not take part: the roll that lets this robot move, and the bodies of those that are
 //! suspended or gone.
 //!
-//! A robot that is gone is not expected to be heard. Others go round the place where any of them heard
-//! it last. From there it has moved at most the two steps that it had the right to before it fell
-//! silent: one in the control period in which it was heard, and one in the next. Others learn of this
+//! A robot that is gone is not expected to be heard. Others go round the place where any node heard it
+//! last. From there it has moved at most the two steps that it had the right to before it fell
+//! silent: one in the control period in which it was heard, and one in the next. (A robot that a partition
+//! cuts off may move on unheard as long as its roll is valid; this is not allowed for.) Others learn of this
 //! place when the robot is suspended, and so before they can come near without having heard it.
 
-use std::cmp::Reverse;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -53,20 +53,16 @@ impl Robot {
         }
     }
 
-    /// Where robots that do not take part were heard last, by this robot or by those that it hears.
+    /// Where robots that do not take part were heard last, by this robot or by the nodes that it hears.
     pub(super) fn locate_wrecks(&mut self) {
         let absent = &self.roll.absent;
         if absent.is_empty() && self.wrecks.is_empty() {
             return;
         }
         let silent = self.neighbours.iter().filter(|known| known.is_silent());
-        let silent: Vec<Wreck> = silent.map(Neighbour::wreck).collect();
         let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter());
-        let seen = self.out_of_sight.iter().chain(self.wrecks.iter()).chain(told).chain(&silent);
-        let mut wrecks: Vec<Wreck> =
-            seen.filter(|seen| absent.contains(seen.robot)).copied().collect();
-        wrecks.sort_by_key(|wreck| (wreck.robot, Reverse(wreck.heard_in)));
-        wrecks.dedup_by_key(|wreck| wreck.robot);
+        let seen = self.out_of_sight.iter().chain(self.wrecks.iter()).chain(told).copied();
+        let wrecks = absent.located(seen.chain(silent.map(Neighbour::wreck)));
         if *self.wrecks != wrecks {
             self.wrecks = Arc::new(wrecks);
         }

@@ -236,6 +236,7 @@ impl Robot {
             route,
             agreement,
             team,
+            stretched,
             followed_post,
             neighbours: _, // by their beacons and their silence
             // Constant.
@@ -320,7 +321,7 @@ impl Robot {
                 (id, position, still_periods, &**duty, &**mission, unused_periods,),
                 (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
                 ((bulletin, epoch, announced), election, bid, waited, route),
-                (agreement, team, followed_post, silences),
+                (agreement, team, stretched, followed_post, silences),
             )
         )
     }

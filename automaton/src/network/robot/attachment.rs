@@ -105,7 +105,7 @@ impl Robot {
 
     /// Whether a link of this length may be made.
     pub(super) fn may_build(&self, length: f64) -> bool {
-        length <= self.site.build_length * (1.0 + ROUNDING)
+        length <= self.build_length() * (1.0 + ROUNDING)
     }
 
     /// Whether no robot that it hears holds the post that its own is attached to.
@@ -127,7 +127,7 @@ impl Robot {
         if lost.is_some() && self.orphaned_periods <= PATIENCE_WITH_ORPHANED_POSTS {
             return None;
         }
-        let limit = self.site.hard_length * (1.0 + ROUNDING);
+        let limit = self.hard_length() * (1.0 + ROUNDING);
         let leads_elsewhere = |lineage: &Lineage| {
             !lineage.contains(post)
                 && !matches!(lost, Some(Anchor::Post(lost)) if lineage.contains(lost))
@@ -152,7 +152,7 @@ impl Robot {
             let usable = Self::accepts_redundant(holder)
                 && !lineage.contains(post.id)
                 && self.walk_to(holder)
-                    <= (self.site.hard_length + 2.0 * self.stray()) * (1.0 + ROUNDING);
+                    <= (self.hard_length() + 2.0 * self.stray()) * (1.0 + ROUNDING);
             usable.then_some((lineage.hops(), anchor))
         });
         let best = |admits: &dyn Fn(&Neighbour) -> bool| self.best_parent(post.id, None, admits);
@@ -184,7 +184,7 @@ impl Robot {
             });
             if better
                 && admits(neighbour)
-                && neighbour.distance <= self.site.build_length * (1.0 + ROUNDING)
+                && neighbour.distance <= self.build_length() * (1.0 + ROUNDING)
                 && Self::accepts_redundant(neighbour)
                 && !lineage.contains(own)
                 && avoided.is_none_or(|avoided| !lineage.contains(avoided))
@@ -267,7 +267,7 @@ impl Robot {
         let (goal, anchor) = (self.team_goal()?, self.anchor()?);
         let parent = self.neighbour_at(anchor)?;
         let own = self.duty.post().map(|post| post.id);
-        let gain = REATTACHMENT_GAIN * self.site.build_length;
+        let gain = REATTACHMENT_GAIN * self.build_length();
         let mut nearest = self.site.distance(parent.position(), goal) - gain;
         let mut better = None;
         for neighbour in self.neighbours.iter().filter(|n| Self::accepts_redundant(n)) {
@@ -278,9 +278,9 @@ impl Robot {
                 });
             if candidate == anchor
                 || is_child
-                || neighbour.distance > self.site.build_length
+                || neighbour.distance > self.build_length()
                 || (goal - neighbour.position()).norm() >= nearest
-                || self.walk_to(neighbour) > self.site.build_length
+                || self.walk_to(neighbour) > self.build_length()
             {
                 continue;
             }

@@ -54,6 +54,7 @@ impl Robot {
             "agreement": now.agreement, then.agreement;
             "way to the caller": now.route, then.route;
             "report on the team": now.team, then.team;
+            "links of the tree": now.stretched, then.stretched;
             "post that is followed": self.followed_post, before.followed_post;
             "mission": self.mission, before.mission;
             "lineage": now.lineage, then.lineage;

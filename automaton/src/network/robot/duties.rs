@@ -220,12 +220,20 @@ impl Robot {
         let is_taken = left.is_some() && active.is_none_or(|active| active.first == place);
         let leads_on = active.is_some_and(|active| active.places().contains(&(place + 1)));
         match self.has_reported(place) {
-            false if !is_taken => hops.get(place).map(|hop| hop.post),
+            false if !is_taken => hops.get(place).map(|hop| self.detached_if_far(hop.post)),
             true if leads_on && self.has_reported(place + 1) => {
                 hops.get(place + 1).map(|hop| hop.post)
             }
             _ => Some(self.new_post()),
         }
+    }
+
+    /// This post, which it takes again. A redundant one is attached to nothing where the robot has gone out of
+    /// reach of its parent.
+    fn detached_if_far(&self, post: Post) -> Post {
+        let parent = post.parent.and_then(|anchor| self.neighbour_at(anchor));
+        let is_near = parent.is_some_and(|parent| self.walk_to(parent) <= self.hard_length());
+        if post.is_redundant() && !is_near { Post { parent: None, ..post } } else { post }
     }
 
     /// Whether its turn on Σ has come: its subgroup is the active team, and its post is held by

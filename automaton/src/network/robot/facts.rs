@@ -390,12 +390,12 @@ impl Robot {
 impl Robot {
     /// A robot on Σ may have to wait until the others of its subgroup have gone their way.
     pub(super) fn patience(&self) -> f64 {
-        let walk = self.site.hard_length / self.site.settings.step_radius;
+        let walk = self.hard_length() / self.site.settings.step_radius;
         PATIENCE * f64::from(STATIONARY_WINDOW).max(walk)
     }
 }
 
-/// The patience of a robot, in multiples of the longest regular wait.
+/// The patience of a robot, in multiples of the longest regular wait or walk.
 const PATIENCE: f64 = 4.0;
 
 /// Control periods without motion that make a stationary point.

@@ -85,7 +85,7 @@ impl Robot {
         let target = self.site.free_space.nearest(task);
         let gap = (target - task).norm();
         let distance = self.site.distance(self.position, target);
-        let unit = BID_RESOLUTION * self.site.build_length;
+        let unit = BID_RESOLUTION * self.site.usual.build;
         let within_reach = gap <= self.site.settings.leash_radius() && distance.is_finite();
         within_reach.then(|| Bid {
             rank: if self.could_be_relieved() { 1 } else { 0 },

@@ -58,9 +58,19 @@ impl Robot {
     /// exceeded.
     fn limit_of(&self, duty: Option<&Duty>) -> f64 {
         match duty {
-            Some(duty) if duty.is_primary() => self.site.build_length,
-            _ => self.site.hard_length,
+            Some(duty) if duty.is_primary() => self.build_length(),
+            _ => self.hard_length(),
         }
+    }
+
+    /// d_build: up to which length a link of the tree may be made.
+    pub(super) fn build_length(&self) -> f64 {
+        self.site.lengths(self.stretched).build
+    }
+
+    /// d_hard: which length no link of the tree exceeds.
+    pub(super) fn hard_length(&self) -> f64 {
+        self.site.lengths(self.stretched).hard
     }
 
     pub(super) fn named_parent(&self) -> Option<NodeId> {

@@ -52,6 +52,10 @@ pub enum MissionEffect {
     KeepUp,
     /// Its stillness is counted from 0.
     Restart,
+    /// From now on links of the tree may be as long as they ever are.
+    Stretch,
+    /// It does not make the move that it has set off on: that would lead it nowhere.
+    Stay,
 }
 
 pub(super) type Effects = Vec<MissionEffect>;
@@ -92,6 +96,8 @@ impl Holds<Mission> for Robot {
                 MissionEffect::Agree(agreement) => self.agreement = agreement,
                 MissionEffect::KeepUp => self.epoch = self.notice_id().epoch(),
                 MissionEffect::Restart => self.still_periods = 0,
+                MissionEffect::Stretch => self.stretched = true,
+                MissionEffect::Stay => self.stay(),
             }
         }
     }
@@ -117,6 +123,7 @@ impl Robot {
     /// Merges what it knows of the mission with the beacons of its neighbours.
     pub(super) fn hear_notices(&mut self) {
         for neighbour in &self.neighbours {
+            self.stretched |= neighbour.beacon.stretched;
             self.bulletin.merge(&neighbour.beacon.bulletin);
             if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {
                 merge_election(own, heard);

@@ -65,6 +65,7 @@ pub use reservation::{FlowGrant, FlowRequest, RequestNumber};
 pub use routing::RouteLink;
 pub use step::{RobotError, RobotFault};
 pub use target::{Targets, targets};
+pub use team::SATURATED;
 pub use view::RobotView;
 
 use crate::automaton::TransitionError;
@@ -196,6 +197,8 @@ pub struct Robot {
     route: Option<(NoticeId, Shared<Vec<Hop>>)>,
     agreement: Option<Agreement>,
     team: Option<TeamReport>,
+    /// Whether a team has found no robot that can be recruited.
+    stretched: bool,
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
 
@@ -303,6 +306,7 @@ impl Robot {
             route: None,
             agreement: None,
             team: None,
+            stretched: false,
             followed_post: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
@@ -411,6 +415,7 @@ impl Robot {
             offers_made: self.offers().offers_made(),
             reply: self.offers().reply().cloned(),
             team: self.team,
+            stretched: self.stretched,
             wrecks: Arc::clone(&self.wrecks),
         }
     }

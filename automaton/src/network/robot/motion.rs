@@ -7,13 +7,14 @@ use pleach_continuous::geometry::{Disc, HalfPlane, cell};
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::motion::{Motion, MotionProblem};
 use pleach_continuous::{Point, Vector};
-use pleach_discrete::network::{NodeId, Phase};
+use pleach_discrete::network::Phase;
 
 use super::super::duty::Duty;
 use super::super::scenario::MotionSolver;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::links::TreeLink;
+use super::negotiation::FULL_LOAD;
 use crate::automaton::TransitionError;
 
 /// A robot this share of ρ from the reference of its post has settled.
@@ -183,7 +184,7 @@ impl Robot {
         let step = self.site.settings.step_radius;
         let mut half_planes = self.cell(waypoint, step);
         half_planes.extend(self.sides_of_wrecks());
-        half_planes.extend(self.linearised_residual());
+        half_planes.extend(self.linearised_load());
         let mut discs = vec![Disc { center: self.position, radius: step }];
         discs.extend(self.post_discs());
         discs.extend(self.tree_links().iter().filter_map(|link| self.link_disc(link)));
@@ -209,33 +210,26 @@ impl Robot {
         half_planes
     }
 
-    /// c̃_i ≥ −c_min, eq. (22), as a half-plane; none where c_i does not depend on x_i.
-    fn linearised_residual(&self) -> Option<HalfPlane> {
+    /// Eq. (22) as a half-plane; none where the load does not depend on x_i. The flows are held, so that c_i
+    /// stays as it is: what changes is the load h_i = Σ_j F_ij/R_ij, which has to stay below all the time of
+    /// the sender, to first order.
+    fn linearised_load(&self) -> Option<HalfPlane> {
         let mut gradient = Vector::zeros();
-        for neighbour in &self.neighbours {
-            let net_share = self.share_to(neighbour.id()) - self.share_from(neighbour);
-            if net_share != 0.0 && neighbour.distance > 0.0 {
-                let direction = (self.position - neighbour.position()) / neighbour.distance;
-                gradient += direction * (net_share * self.slope_at(neighbour.distance));
+        for link in self.routes() {
+            let Some(receiver) = self.neighbour(link.to) else { continue };
+            if receiver.distance > 0.0 {
+                let direction = (self.position - receiver.position()) / receiver.distance;
+                let slope = -self.slope_at(receiver.distance) / link.reliability;
+                gradient += direction * (link.share * slope);
             }
         }
         let steepness = gradient.norm();
         if steepness * self.site.settings.step_radius < ROUNDING {
             return None;
         }
-        let normal = -gradient / steepness;
-        let room = (self.residual + self.site.settings.residual_tolerance).max(0.0) / steepness;
+        let normal = gradient / steepness;
+        let room = (FULL_LOAD - self.load()).max(0.0) / steepness;
         Some(HalfPlane::new(normal, normal.dot(&self.position.coords) + room))
-    }
-
-    fn share_to(&self, to: NodeId) -> f64 {
-        self.routes().find(|link| link.to == to).map_or(0.0, |link| link.share)
-    }
-
-    fn share_from(&self, neighbour: &Neighbour) -> f64 {
-        let id = neighbour.id();
-        let flow = self.inflows.iter().find(|(from, _)| *from == id).map_or(0.0, |(_, flow)| *flow);
-        if flow > 0.0 { flow / neighbour.reliability } else { 0.0 }
     }
 
     /// The holder of a fixed post stays within δ of it, and of the task serviced from it.
@@ -294,6 +288,13 @@ impl Robot {
         }
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
+        self.note_change();
+    }
+
+    /// It stays where it is until the next sample, which every certified move allows.
+    pub(super) fn stay(&mut self) {
+        self.velocity = Vector::zeros();
+        self.arrival = self.position;
         self.note_change();
     }
 

@@ -23,7 +23,7 @@ use super::motion::ROUNDING;
 use crate::node::Outputs;
 
 /// How much of a load a sender may be given, just below its whole time.
-const FULL_LOAD: f64 = 1.0 - 1e-9;
+pub(super) const FULL_LOAD: f64 = 1.0 - 1e-9;
 
 impl Robot {
     /// A new proposal is about to be made: nothing has been heard of others, and nobody consents.
@@ -179,14 +179,13 @@ impl Robot {
     }
 
     fn is_overloaded(&self) -> bool {
-        let load: f64 = self.routes().map(|link| link.share).sum();
         let own = self.reach_of(self.own_move(), self.is_parked());
         let worst = self.worst_load(own, |node| {
             let rests = |known: &Neighbour| known.is_access_point() || known.beacon.parked;
             let is_parked = self.neighbour(node).is_none_or(rests);
             self.reach_of(self.move_of(node), is_parked)
         });
-        worst > FULL_LOAD.max(load + ROUNDING)
+        worst > FULL_LOAD.max(self.load() + ROUNDING)
     }
 
     /// By how much at least each end that moves has to shorten a link of this length. What measurements

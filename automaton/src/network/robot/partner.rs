@@ -82,10 +82,10 @@ impl Robot {
             .post
             .parent
             .and_then(|anchor| self.neighbour_at(anchor))
-            .is_some_and(|parent| self.walk_to(parent) <= self.site.hard_length);
+            .is_some_and(|parent| self.walk_to(parent) <= self.hard_length());
         let children_hold = self
             .children_of(station.post.id)
-            .all(|child| self.walk_to(child) <= self.site.hard_length);
+            .all(|child| self.walk_to(child) <= self.hard_length());
         parked.beacon.parked
             && parked.beacon.offer.is_none()
             && parked.beacon.reply.is_none()
@@ -99,7 +99,7 @@ impl Robot {
     fn could_be_replaced_by(&self, parked: &Neighbour) -> bool {
         self.tree_links().iter().all(|link| {
             self.neighbour(link.to).is_some_and(|other| {
-                self.site.walk(parked.position(), other.position()) <= self.site.hard_length
+                self.site.walk(parked.position(), other.position()) <= self.hard_length()
             })
         })
     }

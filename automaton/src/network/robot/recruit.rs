@@ -6,9 +6,9 @@ use pleach_discrete::network::{Activity, Anchor, Bid, Election, IdSet, NoticeId,
 
 use crate::located::Place as _;
 
-use super::super::beacon::{Announcement, Beacon, Notice};
+use super::super::beacon::{Announcement, Beacon, Notice, TeamReport};
 use super::super::duty::{Hop, Path, PathPlace};
-use super::super::mission::{Advance, PathAgreement, RecruitElection};
+use super::super::mission::{Advance, PathAgreement, RecruitElection, Standstill};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::shared::Shared;
 use super::Robot;
@@ -37,10 +37,11 @@ pub(super) fn call(advance: &Advance, robot: &Robot, effects: &mut Effects) -> R
     let id = robot.next_notice_id();
     let route = robot.own_hop(Vec::new()).map(|hop| (id, Shared::new(vec![hop])));
     effects.extend([
+        MissionEffect::Stay,
         MissionEffect::Issue(Notice::Call { caller: robot.id, releases_leader }),
         MissionEffect::Elect(Election::new(id), None, route),
     ]);
-    RecruitElection { before: advance.path.clone() }
+    RecruitElection { before: advance.path.clone(), standstill: robot.standstill() }
 }
 
 /// A recruit is called for.
@@ -51,7 +52,7 @@ pub(super) fn answer<A>(_: &A, robot: &Robot, effects: &mut Effects) -> RecruitE
     let own = is_caller.then(|| robot.own_hop(Vec::new())).flatten();
     let route = own.map(|hop| (id, Shared::new(vec![hop])));
     effects.push(MissionEffect::Elect(Election::new(id), None, route));
-    RecruitElection { before: robot.mission.path().cloned() }
+    RecruitElection { before: robot.mission.path().cloned(), standstill: None }
 }
 
 /// The recruit announces the path Σ that it has found.
@@ -72,7 +73,8 @@ pub(super) fn announce_path(
     Some(PathAgreement { path })
 }
 
-/// The caller finds that no robot can be recruited: other trees may try, or the mission ends.
+/// The caller finds that no robot can be recruited: other trees may try, links may be longer from now on, or
+/// the mission ends.
 pub(super) fn end_unaided(
     phase: &RecruitElection,
     robot: &Robot,
@@ -87,14 +89,16 @@ pub(super) fn end_unaided(
             effects.push(MissionEffect::Report(MissionEvent::ElectionRepeated { task }));
             let announcement = Announcement { eligible: Arc::new(others), ..known.clone() };
             effects.push(MissionEffect::Issue(Notice::Task(Shared::new(announcement))));
+        } else if robot.could_stretch() {
+            effects.extend([
+                MissionEffect::Stretch,
+                MissionEffect::Report(MissionEvent::LinksStretched { robot: robot.id }),
+                MissionEffect::Issue(Notice::Advance { joined: None }),
+            ]);
         } else {
-            let wanted = (robot.remaining() / robot.site.build_length).ceil().max(1.0);
-            let reason = format!(
-                "task {task} needs another recruit, and no robot is left that can come; from where the \
-                 team stands about {wanted} more robots are needed"
-            );
+            let (outcome, reason) = robot.why_unaided(task, phase.standstill);
             effects.push(MissionEffect::Issue(Notice::Ended {
-                outcome: Outcome::InsufficientRobots,
+                outcome,
                 reason: reason.into(),
                 task: Some(task),
             }));
@@ -104,6 +108,39 @@ pub(super) fn end_unaided(
 }
 
 impl Robot {
+    fn standstill(&self) -> Option<Standstill> {
+        self.team.map(|TeamReport { remaining, saturated, .. }| Standstill { remaining, saturated })
+    }
+
+    /// How the mission ends without a recruit.
+    fn why_unaided(&self, task: usize, standstill: Option<Standstill>) -> (Outcome, String) {
+        match standstill.and_then(|team| team.saturated) {
+            Some(robot) => {
+                let reason = format!(
+                    "the rates cannot be carried to task {task}: the primary team stands still because the \
+                     links of robot {robot} carry no more, and no robot is left that can come"
+                );
+                (Outcome::Blocked, reason)
+            }
+            None => {
+                let remaining = standstill.map_or_else(|| self.remaining(), |team| team.remaining);
+                let wanted = (remaining / self.build_length()).ceil().max(1.0);
+                let reason = format!(
+                    "task {task} needs another recruit, and no robot is left that can come; from where \
+                     the team stands about {wanted} more robots are needed"
+                );
+                (Outcome::InsufficientRobots, reason)
+            }
+        }
+    }
+
+    /// Whether longer links would take the team that calls farther.
+    fn could_stretch(&self) -> bool {
+        let calls_for_length =
+            matches!(*self.notice(), Notice::Call { releases_leader: false, .. });
+        calls_for_length && !self.stretched && self.site.could_stretch()
+    }
+
     fn own_hop(&self, crossing: Vec<usize>) -> Option<Hop> {
         let station = self.duty.station()?;
         let place = PathPlace { reference: station.reference, position: self.position };

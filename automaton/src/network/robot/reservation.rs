@@ -266,9 +266,10 @@ impl Robot {
             }
         }
         let mut spare = (self.held_outflow() - needed).max(0.0);
+        let may_grant = self.round_count.is_for_grants();
         for kept in &mut self.reservations {
             let flow = kept.wanted.min(kept.flow + spare);
-            let can_grant = flow > kept.flow + SAME_FLOW;
+            let can_grant = flow > kept.flow + SAME_FLOW && may_grant;
             if can_grant {
                 spare -= flow - kept.flow;
                 kept.flow = flow;

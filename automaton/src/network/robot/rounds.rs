@@ -77,6 +77,12 @@ impl Rounds {
         self.0.is_multiple_of(ROUNDS_FOR_AN_ANSWER)
     }
 
+    /// Whether more may be granted: its sender hears of it, and can still give back what it has no room
+    /// for.
+    pub const fn is_for_grants(self) -> bool {
+        self.0 + 2 <= RESERVATION
+    }
+
     /// Whether the reservation is over.
     pub const fn is_last_of_reservation(self) -> bool {
         self.0 >= RESERVATION

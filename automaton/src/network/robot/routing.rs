@@ -257,6 +257,11 @@ impl Robot {
         self.links.iter().filter(|link| link.share > 0.0)
     }
 
+    /// h_i = Σ_j T_ij: the share of its time for which it sends.
+    pub(super) fn load(&self) -> f64 {
+        self.routes().map(|link| link.share).sum()
+    }
+
     /// Tells its flows to their receivers, where they have changed.
     pub(super) fn tell_flows(&mut self, outputs: &mut Outputs<Message, MissionEvent>) {
         if !std::mem::take(&mut self.has_untold_flows) {

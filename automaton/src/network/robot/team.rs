@@ -18,6 +18,10 @@ const TOUCH: f64 = 0.1;
 const BUNCHED: f64 = 2.6;
 /// A link shorter than this share of d_build is slack.
 const SLACK: f64 = 0.95;
+/// A robot that sends for this share of its time is at the limit of what its links carry.
+pub const SATURATED: f64 = 0.95;
+/// So is one that sends and has less than this share of the reserve η left as its residual.
+const SPENT: f64 = 0.1;
 
 /// The leader is within reach of its task, and services it.
 pub(super) fn announce_service(_: &Advance, robot: &Robot, effects: &mut Effects) -> Option<Idle> {
@@ -53,7 +57,8 @@ pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
         reason.push_str(&format!("; robots {stopped:?} have stopped and stand where they are"));
     }
     let (outcome, task) = (Outcome::Blocked, robot.current_task());
-    effects.push(MissionEffect::Issue(Notice::Ended { outcome, reason: reason.into(), task }));
+    let end = Notice::Ended { outcome, reason: reason.into(), task };
+    effects.extend([MissionEffect::Stay, MissionEffect::Issue(end)]);
     Ended
 }
 
@@ -140,16 +145,23 @@ impl Robot {
             return;
         }
         let own_slack = self.is_slack().then_some(self.id);
+        let own_saturated = self.is_saturated().then_some(self.id);
         let still = self.still_periods;
         self.team = match self.duty.post().map(|post| post.kind) {
             Some(PostKind::Primary { follows: Some(ahead) }) => {
                 self.holder(ahead).and_then(|n| n.beacon.team).map(|front| TeamReport {
                     still: front.still.min(still),
                     slack: front.slack.or(own_slack),
+                    saturated: front.saturated.or(own_saturated),
                     ..front
                 })
             }
-            _ => Some(TeamReport { still, slack: own_slack, remaining: self.remaining() }),
+            _ => Some(TeamReport {
+                still,
+                slack: own_slack,
+                saturated: own_saturated,
+                remaining: self.remaining(),
+            }),
         };
     }
 
@@ -163,11 +175,18 @@ impl Robot {
         let bound = self
             .anchor()
             .and_then(|anchor| self.neighbour_at(anchor))
-            .is_none_or(|parent| self.walk_to(parent) >= SLACK * self.site.build_length);
+            .is_none_or(|parent| self.walk_to(parent) >= SLACK * self.build_length());
         let bunched = || {
             self.team_goal()
                 .is_none_or(|goal| (goal - self.position).norm() <= BUNCHED * self.clearance())
         };
-        !bound && (self.leads() || !bunched())
+        !bound && !self.is_saturated() && (self.leads() || !bunched())
+    }
+
+    /// Whether the links of the robot carry no more, so that it stops where c_i ≥ −c_min would break: a
+    /// recruit makes them shorter.
+    fn is_saturated(&self) -> bool {
+        let (load, reserve) = (self.load(), self.site.settings.routing_reserve);
+        load >= SATURATED || load > 0.0 && self.residual < SPENT * reserve
     }
 }

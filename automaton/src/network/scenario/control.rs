@@ -62,7 +62,10 @@ pub struct Control {
     pub routing_reserve: Option<f64>,
     /// κ: how strongly traffic avoids links whose reliability changes with distance. Default 10.
     pub slope_aversion: Option<f64>,
-    /// Reliability that a link of the tree never falls below. Default 0.8.
+    /// Reliability of links of the tree when they are made. Default: what all rates together ask of one
+    /// link, from `tree_reliability` to 0.8.
+    pub build_reliability: Option<f64>,
+    /// Reliability that a link of the tree never falls below. Default 0.1.
     pub tree_reliability: Option<f64>,
     /// How the motion problem is solved. Default `exact`.
     pub motion_solver: Option<MotionSolver>,
@@ -122,6 +125,7 @@ pub const CONTROL: &[ControlKey] = &[
     key("routing_iterations", Values::Count(10_000, |control| control.routing_iterations)),
     key("routing_reserve", Values::Share(|control| control.routing_reserve)),
     key("slope_aversion", Values::UpTo(1e6, |control| control.slope_aversion)),
+    key("build_reliability", Values::Reliability(|control| control.build_reliability)),
     key("tree_reliability", Values::Reliability(|control| control.tree_reliability)),
     key("motion_solver", Values::OneOf(&["exact", "conic"])),
 ];

@@ -128,12 +128,19 @@ pub enum Problem {
     StepTooLong { step_radius: f64, most: f64 },
     /// No length is left for new links of the tree.
     #[error(
-        "no link can be added to the tree: a reliability of {tree_reliability} is reached \
+        "no link can be added to the tree: a reliability of {build_reliability} is reached \
          at distance {longest:.6}, and robots may stand service_radius = {service_radius} \
-         away from their posts; lower tree_reliability or service_radius, or raise \
+         away from their posts; lower this reliability or service_radius, or raise \
          full_range"
     )]
-    TreeLinksTooShort { tree_reliability: f64, longest: f64, service_radius: f64 },
+    TreeLinksTooShort { build_reliability: f64, longest: f64, service_radius: f64 },
+    /// Links would be too weak as soon as they are made.
+    #[error(
+        "links of the tree would be made at a reliability of {build_reliability}, below \
+         tree_reliability = {tree_reliability}, which they never fall below: raise it, or lower \
+         tree_reliability"
+    )]
+    BuiltTooWeak { build_reliability: f64, tree_reliability: f64 },
     /// Nowhere to send information to.
     #[error("there is none: information needs at least one [[access_point]] to go to")]
     NoAccessPoint,

@@ -116,7 +116,7 @@ impl Ground<'_> {
     /// A tree of new links from the access points to all robots, parents before children; the
     /// robots that no chain of such links reaches are faults.
     fn tree(&self) -> Result<Vec<Attached>, Vec<Fault>> {
-        let longest = self.site.build_length * (1.0 + ROUNDING);
+        let longest = self.site.usual.build * (1.0 + ROUNDING);
         let mut missing = Buckets::of(&self.robots, longest);
         let mut tree = Vec::with_capacity(self.robots.len());
         let mut reached: VecDeque<(Receiver, Point)> = (self.site.access_points.iter().enumerate())
@@ -136,7 +136,7 @@ impl Ground<'_> {
         }
         let mut is_missing = vec![true; self.robots.len()];
         tree.iter().for_each(|attached| is_missing[attached.robot] = false);
-        let longest = self.site.build_length;
+        let longest = self.site.usual.build;
         Err((0..self.robots.len())
             .filter(|&robot| is_missing[robot])
             .map(|robot| Problem::CutOff { longest }.at(robot_key(robot).key("position")))

@@ -36,6 +36,8 @@ pub struct Settings {
     pub routing_reserve: f64,
     /// κ: how strongly traffic avoids links whose reliability changes with distance.
     pub slope_aversion: f64,
+    /// Reliability of links of the tree when they are made.
+    pub build_reliability: f64,
     /// Reliability that a link of the tree never falls below.
     pub tree_reliability: f64,
     /// How the motion problem is solved.
@@ -56,11 +58,14 @@ impl Settings {
     const ROUTING_ITERATIONS: usize = 5;
     const ROUTING_RESERVE: f64 = 0.02;
     const SLOPE_AVERSION: f64 = 10.0;
-    const TREE_RELIABILITY: f64 = 0.8;
+    const TREE_RELIABILITY: f64 = 0.1;
+    /// The reliability from which on a shorter link is hardly a better one.
+    const GOOD_RELIABILITY: f64 = 0.8;
 
     /// The settings of `scenario`: what its `[control]` states, defaults for the rest.
     pub fn resolve(scenario: &Scenario) -> Self {
         let &Scenario { link, control, .. } = scenario;
+        let tree_reliability = control.tree_reliability.unwrap_or(Self::TREE_RELIABILITY);
         let clearance =
             control.clearance.unwrap_or(link.full_range / Self::CLEARANCES_PER_FULL_RANGE);
         let errors = Errors {
@@ -85,9 +90,20 @@ impl Settings {
             routing_iterations: control.routing_iterations.unwrap_or(Self::ROUTING_ITERATIONS),
             routing_reserve: control.routing_reserve.unwrap_or(Self::ROUTING_RESERVE),
             slope_aversion: control.slope_aversion.unwrap_or(Self::SLOPE_AVERSION),
-            tree_reliability: control.tree_reliability.unwrap_or(Self::TREE_RELIABILITY),
+            build_reliability: control
+                .build_reliability
+                .unwrap_or_else(|| Self::usual_build_reliability(scenario).max(tree_reliability)),
+            tree_reliability,
             motion_solver: control.motion_solver.unwrap_or_default(),
         }
+    }
+
+    /// Σ_i r_i: such a link carries, in all the time of its sender, what all robots generate together, so
+    /// that the tree alone carries the rates wherever it leads. Of rates that one link cannot carry, what
+    /// can be is left to the loads.
+    fn usual_build_reliability(scenario: &Scenario) -> f64 {
+        let rates: f64 = scenario.robot.iter().map(|robot| robot.rate).sum();
+        rates.min(Self::GOOD_RELIABILITY)
     }
 
     /// 3 (ρ + e + m) + e + m: a replacer services as well, wherever the errors lead.
@@ -125,17 +141,31 @@ impl Settings {
         2.0 * self.errors.stray() + 2.0 * (self.errors.position + self.errors.motion)
     }
 
-    /// The length that links of the tree do not exceed as their ends measure it, along geodesics:
-    /// R⁻¹(tree reliability), less [what errors add](Self::length_margin).
-    pub fn longest_tree_link(&self) -> f64 {
-        self.link.distance_of(self.tree_reliability) - self.length_margin()
+    /// How long links of the tree may be that are made at the build reliability: d_build and d_hard.
+    pub fn usual_links(&self) -> LinkLengths {
+        self.link_lengths(self.link.distance_of(self.build_reliability))
     }
 
-    /// The length up to which a link may be added to the tree. Both robots of it may still
-    /// come to stand δ away from their posts without passing [`Self::longest_tree_link`].
-    pub fn longest_new_link(&self) -> f64 {
-        self.longest_tree_link() - self.service_radius
+    /// How long they may be when no robot is left that can be recruited.
+    pub fn stretched_links(&self) -> LinkLengths {
+        self.link_lengths(self.link.distance_of(self.tree_reliability))
     }
+
+    /// How long links may be, as their ends measure them, whose true lengths are at most `longest`.
+    pub(crate) fn link_lengths(&self, longest: f64) -> LinkLengths {
+        let hard = longest - self.length_margin();
+        LinkLengths { build: hard - self.service_radius, hard }
+    }
+}
+
+/// How long links of the tree may be as their ends measure them, along geodesics.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkLengths {
+    /// d_build: up to which length a link may be made. Both its robots may still come to stand δ away from
+    /// their posts without passing d_hard.
+    pub build: f64,
+    /// d_hard: the length that links never exceed, less [what errors add](Settings::length_margin).
+    pub hard: f64,
 }
 
 impl From<Settings> for Control {
@@ -154,6 +184,7 @@ impl From<Settings> for Control {
             routing_iterations: Some(settings.routing_iterations),
             routing_reserve: Some(settings.routing_reserve),
             slope_aversion: Some(settings.slope_aversion),
+            build_reliability: Some(settings.build_reliability),
             tree_reliability: Some(settings.tree_reliability),
             motion_solver: Some(settings.motion_solver),
         }
@@ -193,7 +224,7 @@ mod tests {
             link: LinkRanges::new(0.4, 0.5),
             control,
             access_point: vec![AccessPoint { position: [0.5, 0.2] }],
-            robot: vec![RobotStart { position: [0.6, 0.2], rate: 0.075 }],
+            robot: vec![RobotStart { position: [0.6, 0.2], rate: 0.075 }; 13],
             task: vec![],
         }
     }
@@ -205,8 +236,29 @@ mod tests {
         assert_eq!(settings.service_radius, 0.03);
         assert!((settings.step_radius - 0.01).abs() < 1e-15);
         assert_eq!(settings.residual_tolerance, 0.0);
-        assert!((settings.longest_tree_link() - 0.4287).abs() < 1e-4);
-        assert!((settings.longest_new_link() - 0.3987).abs() < 1e-4);
+        assert!((settings.usual_links().hard - 0.4287).abs() < 1e-4);
+        assert!((settings.usual_links().build - 0.3987).abs() < 1e-4);
+    }
+
+    /// Thirteen rates, up to 0.8 and from the floor on that is stated.
+    #[test]
+    fn links_are_made_for_what_all_robots_send() {
+        let built = |rate: f64, control: Control| {
+            let mut scenario = scenario(control);
+            scenario.robot.iter_mut().for_each(|robot| robot.rate = rate);
+            Settings::resolve(&scenario).build_reliability
+        };
+        let reliabilities = [0.001, 0.03, 0.2].map(|rate| built(rate, Control::default()));
+        assert_eq!(reliabilities[0], 0.1);
+        assert!((reliabilities[1] - 0.39).abs() < 1e-12);
+        assert_eq!(reliabilities[2], 0.8);
+        let stated = |tree, build| Control {
+            tree_reliability: tree,
+            build_reliability: build,
+            ..Control::default()
+        };
+        assert_eq!(built(0.03, stated(Some(0.9), None)), 0.9);
+        assert_eq!(built(0.03, stated(None, Some(0.2))), 0.2);
     }
 
     #[test]

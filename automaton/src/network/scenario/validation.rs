@@ -2,7 +2,7 @@
 
 use super::control::{CONTROL, FARTHEST, SHORTEST, Values};
 use super::radio::STEEPEST;
-use super::{Fault, KeyPath, LinkModel, LinkRanges, Problem, Scenario, Settings};
+use super::{Fault, KeyPath, LinkLengths, LinkModel, LinkRanges, Problem, Scenario, Settings};
 
 /// Two robots 2ρ apart must both be able to service while they hand over a task; they approach
 /// 2ρ without ever reaching it, so δ is at least this many clearances (2 in Remark 5.5).
@@ -243,7 +243,9 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
     if !errors.is_empty() {
         return errors;
     }
-    let Settings { service_radius, step_radius, tree_reliability, errors, .. } = settings;
+    let Settings {
+        service_radius, step_radius, build_reliability, tree_reliability, errors, ..
+    } = settings;
     let clearance = settings.planning_clearance();
     let margin = clearance - settings.clearance;
     let least =
@@ -255,12 +257,20 @@ fn settings_fit_each_other(scenario: &Scenario) -> Vec<Fault> {
     let most = (max_range - 2.0 * clearance - settings.link_margin()) / 2.0;
     let step = (step_radius > most * (1.0 + ROUNDING))
         .then(|| Problem::StepTooLong { step_radius, most }.at(control_key("step_radius")));
-    let longest = settings.longest_tree_link();
-    let links = (settings.longest_new_link() <= 0.0).then(|| {
-        Problem::TreeLinksTooShort { tree_reliability, longest, service_radius }
-            .at(control_key("tree_reliability"))
+    let weak = (build_reliability < tree_reliability).then(|| {
+        Problem::BuiltTooWeak { build_reliability, tree_reliability }
+            .at(control_key("build_reliability"))
     });
-    [service, step, links].into_iter().flatten().collect()
+    let LinkLengths { build, hard: longest } = settings.usual_links();
+    let links = (build <= 0.0).then(|| {
+        let key = match scenario.control.build_reliability {
+            Some(_) => "build_reliability",
+            None => "tree_reliability",
+        };
+        Problem::TreeLinksTooShort { build_reliability, longest, service_radius }
+            .at(control_key(key))
+    });
+    [service, step, weak, links].into_iter().flatten().collect()
 }
 
 /// Errors larger than a share of ρ: a robot would not know on which side of it another one is.

@@ -14,8 +14,8 @@ use crate::network::tree;
 const CONTACT: f64 = 2.6;
 /// Rounds of beacons that an exchange of duties takes: offer, reply, and the two duties taken.
 const EXCHANGE_ROUNDS: usize = 4;
-/// A team is at a stationary point when no member has moved by more than this share of ρ or σ,
-/// the smaller one, in the last control period.
+/// A team is at a stationary point when every member is where it was before, within this share of ρ or σ,
+/// the smaller one: in the last control period or, as it moves back and forth, in one of the recent ones.
 const STILL: f64 = 0.3;
 
 /// The robots and tasks of an event exist.
@@ -50,6 +50,7 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
         MissionEvent::SubgroupStarted { robots: members, .. }
         | MissionEvent::SubgroupArrived { robots: members, .. } => robots.extend(members),
         MissionEvent::Released { robot }
+        | MissionEvent::LinksStretched { robot }
         | MissionEvent::RoleChanged { robot, .. }
         | MissionEvent::RouteInfeasible { robot } => robots.push(*robot),
         MissionEvent::DutiesExchanged { mover, parked } => robots.extend([mover, parked]),
@@ -113,14 +114,18 @@ pub(super) fn is_at_task(
     at_most(distance, bound, &[robot], sentence)
 }
 
-/// No member has moved to speak of in the period that ends here.
+/// No member has got anywhere in the periods that end here.
 fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
-    let Some(previous) = scene.previous else { return Ok(()) };
+    if scene.recent.is_empty() {
+        return Ok(());
+    }
     let settings = scene.limits.settings();
     let bound = (STILL * settings.planning_clearance().min(settings.step_radius))
         .max(settings.errors.stray());
     for &robot in team {
-        let moved = (scene.snapshot.positions[robot] - previous.positions[robot]).norm();
+        let now = scene.snapshot.positions[robot];
+        let moved = scene.recent.iter().map(|places| (now - places[robot]).norm());
+        let moved = moved.fold(f64::INFINITY, f64::min);
         at_most(moved, bound, &[robot], || {
             format!("the team {team:?} is reported stationary, and robot {robot} moves {moved:.6}")
         })?;

@@ -33,6 +33,8 @@ pub struct Ledger {
     pub dismissed: Vec<usize>,
     /// Whether a recruit is called for.
     pub calls: bool,
+    /// Whether a team has found no robot that can be recruited, so that links may be longer.
+    pub stretched: bool,
     /// The way of a secondary team along Σ.
     pub walk: Option<Walk>,
     /// Subgroups whose arrival follows from later events and is still to be told, with their robots
@@ -67,6 +69,7 @@ impl Ledger {
             primary_team: Vec::new(),
             dismissed: Vec::new(),
             calls: false,
+            stretched: false,
             walk: None,
             untold: Vec::new(),
         }
@@ -111,6 +114,7 @@ impl Ledger {
             MissionEvent::ElectionRepeated { task } => self.repeat_election(*task),
             MissionEvent::TaskReannounced { task, gone } => self.reannounce(*task, gone),
             MissionEvent::Stationary { robot, .. } => self.call(*robot),
+            MissionEvent::LinksStretched { robot } => self.stretch(*robot),
             MissionEvent::RecruitElected { robot, path, break_points } => {
                 self.recruit(*robot, path, break_points)
             }
@@ -172,8 +176,8 @@ impl Ledger {
         }
         self.serviced.remove(&task);
         let (roles, announced) = (std::mem::take(&mut self.roles), self.announced);
-        let serviced = std::mem::take(&mut self.serviced);
-        *self = Ledger { roles, announced, serviced, ..Ledger::new(0) };
+        let (serviced, stretched) = (std::mem::take(&mut self.serviced), self.stretched);
+        *self = Ledger { roles, announced, serviced, stretched, ..Ledger::new(0) };
         Ok(())
     }
 
@@ -203,6 +207,21 @@ impl Ledger {
             return dispute(&[robot], sentence);
         }
         self.calls = true;
+        Ok(())
+    }
+
+    /// No recruit can come: the primary team goes on with longer links. That happens once in a mission.
+    fn stretch(&mut self, robot: usize) -> Result<(), Dispute> {
+        let may = self.stage() == Stage::Calling && !self.awaits_release && !self.stretched;
+        if !may || self.primary_team.first() != Some(&robot) {
+            let sentence = format!(
+                "robot {robot} reports that the primary team {:?} stretches its links: it is not the first of \
+                 a team that calls and has not done so yet",
+                self.primary_team
+            );
+            return dispute(&[robot], sentence);
+        }
+        (self.calls, self.stretched) = (false, true);
         Ok(())
     }
 

@@ -29,8 +29,11 @@ mod states;
 mod verdicts;
 mod walk;
 
+use std::collections::VecDeque;
+
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
+use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
 use super::extremes::Extremes;
@@ -81,9 +84,14 @@ struct Scene<'a> {
     /// What is told of the period that ends with the snapshot.
     events: &'a [MissionEvent],
     previous: Option<&'a Snapshot>,
+    /// Where the robots were at the ends of the last [`RECENT`] periods.
+    recent: &'a VecDeque<Vec<Point>>,
     limits: &'a Limits,
     places: &'a Places,
 }
+
+/// Robots that move back and forth between a few places get nowhere: so many periods are looked back on.
+const RECENT: usize = 16;
 
 /// Judges a mission, period by period, and stops at the first violation.
 ///
@@ -99,6 +107,7 @@ pub struct Judge<'a> {
     tried: Tried,
     scenario: ValidScenario,
     previous: Option<Snapshot>,
+    recent: VecDeque<Vec<Point>>,
 }
 
 impl<'a> Judge<'a> {
@@ -115,6 +124,7 @@ impl<'a> Judge<'a> {
             tried: Tried::default(),
             scenario: scenario.clone(),
             previous: None,
+            recent: VecDeque::with_capacity(RECENT + 1),
             monitor,
         }
     }
@@ -140,6 +150,10 @@ impl<'a> Judge<'a> {
         }
         self.enter_all(events, snapshot).map_err(|dispute| dispute.at(now))?;
         self.conclude_period(snapshot, events).map_err(|dispute| dispute.at(now))?;
+        self.recent.push_back(snapshot.positions.clone());
+        if self.recent.len() > RECENT {
+            self.recent.pop_front();
+        }
         self.previous = Some(snapshot.clone());
         Ok(())
     }
@@ -172,6 +186,7 @@ impl<'a> Judge<'a> {
             snapshot,
             events,
             previous: self.previous.as_ref(),
+            recent: &self.recent,
             limits: self.monitor.limits(),
             places: &self.places,
         }
@@ -186,9 +201,25 @@ impl<'a> Judge<'a> {
     ) -> Result<Ledger, Dispute> {
         let scene = self.scene(snapshot, events);
         claims::is_true(event, &self.ledger, &scene)?;
+        self.stretches_for_want_of_a_robot(event)?;
         let mut ledger = self.ledger.clone();
         ledger.enter(event)?;
         Ok(ledger)
+    }
+
+    /// A team stretches its links where no robot could have come.
+    fn stretches_for_want_of_a_robot(&self, event: &MissionEvent) -> Result<(), Dispute> {
+        let (MissionEvent::LinksStretched { robot }, Some(previous)) = (event, &self.previous)
+        else {
+            return Ok(());
+        };
+        match self.tried.overlooked(&self.ledger, previous) {
+            None => Ok(()),
+            Some(overlooked) => {
+                let sentence = format!("links are stretched for want of a robot, but {overlooked}");
+                Err(Dispute::of(Property::Events, &[*robot], sentence))
+            }
+        }
     }
 
     /// Takes an event with the ledger after it.
@@ -214,6 +245,7 @@ impl<'a> Judge<'a> {
             snapshot,
             events,
             previous: self.previous.as_ref(),
+            recent: &self.recent,
             limits: self.monitor.limits(),
             places: &self.places,
         };
