@@ -276,6 +276,7 @@ impl Robot {
             roll: _,
             out_of_sight: _,
             wrecks: _,
+            trail: _,
             // Routes and motion.
             velocity: _,
             clock: _,

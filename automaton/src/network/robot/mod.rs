@@ -128,6 +128,8 @@ pub struct Robot {
     // Where robots were that it does not hear any more, and those that are gone.
     out_of_sight: Sightings,
     wrecks: Arc<Vec<Wreck>>,
+    /// Where it has set off since its roll was called, each with the control period.
+    trail: Vec<(u32, Point)>,
 
     // The rest of its continuous state: u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
     velocity: Vector,
@@ -279,6 +281,7 @@ impl Robot {
             roll: Roll::default(),
             out_of_sight: Sightings::default(),
             wrecks: Arc::default(),
+            trail: Vec::new(),
             heard_up_to: 0,
             parent: None,
             place: Current::new(PlaceInTree::Detached(lineage::Detached)),
