@@ -114,7 +114,8 @@ fn no_path_up_the_tree_becomes_a_cycle_whoever_is_cut_off() {
 /// - places of robots that are suspended are told to those that have not heard them;
 /// - packets flow to an access point that is not heard for a while;
 /// - a robot that restarts takes a new post before anything else;
-/// - a robot that is cut off, and stops then, has not got farther than others allow for.
+/// - a robot that is cut off, and stops then, has not got farther than others allow for;
+/// - packets flow to a robot that is called gone as long as it has granted them.
 #[test]
 fn storms_in_which_one_rule_decides_break_no_promise() {
     let found = [
@@ -123,6 +124,7 @@ fn storms_in_which_one_rule_decides_break_no_promise() {
         (Family::Settings, Kind::Loss { rate: 0.6, later: true }, 755),
         (Family::Parked, Kind::Restart, 1114),
         (Family::Chains, Kind::Everything, 747),
+        (Family::Settings, Kind::Loss { rate: 0.6, later: true }, 1943),
     ];
     for (family, kind, seed) in found {
         let scenario = allowing_for(kind, &plan(family, seed)).expect("there is room for errors");

@@ -119,6 +119,7 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
             remaining: f64::INFINITY,
         }),
         stretched: true,
+        longest_wait: 9,
         wrecks: Arc::new(vec![Wreck { robot: 3, place: Point::new(0.5, 0.5), heard_in: 6 }]),
         ..silent()
     }

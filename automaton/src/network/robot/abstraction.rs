@@ -237,6 +237,7 @@ impl Robot {
             agreement,
             team,
             stretched,
+            longest_wait: _, // told, with its own depth
             followed_post,
             neighbours: _, // by their beacons and their silence
             // Constant.
@@ -322,7 +323,7 @@ impl Robot {
                 (id, position, still_periods, &**duty, &**mission, unused_periods,),
                 (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
                 ((bulletin, epoch, announced), election, bid, waited, route),
-                (agreement, team, stretched, followed_post, silences),
+                (agreement, team, stretched, self.longest_wait(), followed_post, silences),
             )
         )
     }

@@ -201,6 +201,8 @@ pub struct Robot {
     team: Option<TeamReport>,
     /// Whether a team has found no robot that can be recruited.
     stretched: bool,
+    /// For how many rounds news may be under way, as far as it has heard.
+    longest_wait: usize,
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
 
@@ -310,6 +312,7 @@ impl Robot {
             agreement: None,
             team: None,
             stretched: false,
+            longest_wait: 0,
             followed_post: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
@@ -419,6 +422,7 @@ impl Robot {
             reply: self.offers().reply().cloned(),
             team: self.team,
             stretched: self.stretched,
+            longest_wait: self.longest_wait(),
             wrecks: Arc::clone(&self.wrecks),
         }
     }
