@@ -149,7 +149,7 @@ fn messages() -> Vec<Message> {
         Message::Demand(f64::MIN_POSITIVE),
         Message::Shortage,
         Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075 }),
-        Message::GrantFlow(FlowGrant { number, flow: 0.05 }),
+        Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12 }),
         Message::Proposal { period: 5, segment },
         Message::Objection { period: 5 },
         Message::Consent { period: 5 },

@@ -15,7 +15,7 @@ use super::super::roll::{Roll, Wreck};
 use super::super::scenario::Settings;
 use super::Robot;
 use super::hearing::Neighbour;
-use super::motion::MARGIN;
+use super::motion::{MARGIN, ROUNDING};
 
 /// A robot that is gone is at most this many steps from where it was heard last.
 const ASTRAY: f64 = 2.0;
@@ -61,11 +61,17 @@ impl Robot {
     /// Where the robot stays, in case that it is not heard any more: near each place where it has been since
     /// its newest roll was called.
     pub(super) fn discs_of_trail(&self) -> impl Iterator<Item = Disc> {
-        let Settings { step_radius, errors, .. } = self.site.settings;
-        self.trail.iter().map(move |&(_, center)| {
-            let away = (center - self.position).norm() - errors.motion;
-            Disc { center, radius: away.max(ASTRAY * step_radius) }
+        let leash = ASTRAY * self.site.settings.step_radius;
+        self.trail.iter().map(move |&(_, center)| Disc {
+            center,
+            radius: leash.max((center - self.position).norm()),
         })
+    }
+
+    /// Whether it is there; a move that was off may have led it farther.
+    pub(super) fn is_near_trail(&self) -> bool {
+        let leash = ASTRAY * self.site.settings.step_radius * (1.0 + ROUNDING);
+        self.trail.iter().all(|(_, place)| (place - self.position).norm() <= leash)
     }
 
     /// The places of wrecks that are not heard in this control period.

@@ -232,8 +232,9 @@ impl Robot {
         at + 1
     }
 
-    /// Whether the robot may leave its place in this control period: it takes part, and has heard in
-    /// this period where each robot is that was near when it was heard last, but those that are gone.
+    /// Whether the robot may leave its place in this control period: it takes part, is where others allow
+    /// for it if they do not hear it any more, and has heard in this period where each robot is that was near
+    /// when it was heard last, but those that are gone.
     ///
     /// If one of two robots that could meet moves, it so knows where the other is. If both move, each
     /// keeps to its own side of the line between them (17); if one stays, its place lies on its own
@@ -245,7 +246,7 @@ impl Robot {
                 || !self.site.is_near(known.distance)
                 || self.is_gone(known.id())
         };
-        self.is_called() && self.neighbours.iter().all(is_sure)
+        self.is_called() && self.is_near_trail() && self.neighbours.iter().all(is_sure)
     }
 
     /// The nodes that the robot hears, and for how many rounds each has been silent.
