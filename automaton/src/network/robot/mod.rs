@@ -90,6 +90,8 @@ use rounds::Rounds;
 
 /// Posts that are made during a mission have numbers from here on: higher than those of notices.
 const FIRST_NEW_POST: u32 = 1 << 31;
+/// More than a robot makes in a control period: it may give one away in an exchange, and need another.
+const POSTS_OF_A_PERIOD: u32 = 8;
 
 /// A robot of the network.
 #[derive(Clone, Debug)]
@@ -138,6 +140,8 @@ pub struct Robot {
     // Where it is in its automata, and what the duty automaton jumps together with.
     duty: Current<Duty>,
     label: Label,
+    /// How many posts it has made in this control period.
+    posts_made: u32,
     mission: Current<Mission>,
     facts: Facts,
     is_quiet: bool,
@@ -265,6 +269,7 @@ impl Robot {
             clock: site.settings.period,
             duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
             label: Label::Alone,
+            posts_made: 0,
             mission: Current::new(Mission::Idle(Idle)),
             facts: Facts::default(),
             is_quiet: false,
@@ -360,7 +365,8 @@ impl Robot {
 
     /// The post of a redundant robot that no robot has ever had.
     pub(super) fn new_post(&self) -> Post {
-        let number = self.period.wrapping_mul(self.site.robots as u32).wrapping_add(self.id as u32);
+        let made = self.period.wrapping_mul(POSTS_OF_A_PERIOD).wrapping_add(self.posts_made);
+        let number = made.wrapping_mul(self.site.robots as u32).wrapping_add(self.id as u32);
         Post::redundant(PostId(FIRST_NEW_POST | number))
     }
 

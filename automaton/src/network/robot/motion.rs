@@ -304,6 +304,7 @@ impl Robot {
     pub(super) fn restart_clock(&mut self) {
         self.note_change();
         self.period = self.period.saturating_add(1);
+        self.posts_made = 0;
         self.velocity = Vector::zeros();
         self.clock = 0.0;
     }
