@@ -322,10 +322,9 @@ impl Robot {
         ends.filter(lasts).max().unwrap_or(self.period)
     }
 
-    /// The last control period for which it has granted a flow.
+    /// The last control period for which it has granted a flow; what it grants more may be used as long.
     fn promised_until(&self) -> u32 {
-        let granted = self.reservations.iter().filter(|kept| kept.flow > 0.0);
-        granted.map(|kept| kept.until).max().unwrap_or(self.period)
+        self.reservations.iter().map(|kept| kept.until).max().unwrap_or(self.period)
     }
 
     /// What others may send to this robot.
