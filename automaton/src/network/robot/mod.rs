@@ -358,7 +358,7 @@ impl Robot {
     fn join_in(&mut self, period: u32) {
         self.period = period;
         if period > 1 {
-            self.is_late = true;
+            (self.is_late, self.is_quiet) = (true, false);
             self.note_change();
         }
     }
