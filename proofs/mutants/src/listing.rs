@@ -1,0 +1,60 @@
+//! The mutants: which text stands where instead of which.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde::Deserialize;
+
+use crate::Error;
+
+/// A deliberate change of one place of the sources, as `cargo mutants --list` describes it.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Mutant {
+    /// Place and change, in words.
+    pub name: String,
+    /// The file, from the root of the workspace.
+    pub file: String,
+    pub genre: Genre,
+    /// What stands at the place instead.
+    pub replacement: String,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Genre {
+    FnValue,
+    BinaryOperator,
+    UnaryOperator,
+    MatchArm,
+    MatchArmGuard,
+    StructField,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub struct Span {
+    pub start: Place,
+    pub end: Place,
+}
+
+/// Lines and columns are counted from one, columns in characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub struct Place {
+    pub line: usize,
+    pub column: usize,
+}
+
+/// The mutants of a package that `.cargo/mutants.toml` asks for, in files whose path has one of `parts`
+/// in it, or in all.
+pub fn mutants(root: &Path, package: &str, parts: &[String]) -> Result<Vec<Mutant>, Error> {
+    let mut command = Command::new("cargo");
+    command.current_dir(root).args(["mutants", "--list", "--json", "--package", package]);
+    let output = command.output()?;
+    if !output.status.success() {
+        return Err(Error::Listing(String::from_utf8_lossy(&output.stderr).into_owned()));
+    }
+    let mut mutants: Vec<Mutant> = serde_json::from_slice(&output.stdout)?;
+    mutants.retain(|mutant| {
+        parts.is_empty() || parts.iter().any(|part| mutant.file.contains(part.as_str()))
+    });
+    Ok(mutants)
+}

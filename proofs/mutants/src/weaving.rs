@@ -1,0 +1,240 @@
+//! Sources with switches: every mutant is in the text, and at most one of them is switched on.
+//!
+//! ```text
+//! a < b              (if none(&[7, 8]) { a < b } else if is(7) { a == b } else { a > b })
+//! fn f() -> u8 {…}   fn f() -> u8 { if is(9) { return 0; } … }
+//! x if y => …        x if !is(10) && (y) => …
+//! ```
+//!
+//! The branch without mutants contains the switches of what is within it. The other branches are the
+//! original text with one change.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use syn::spanned::Spanned;
+use syn::visit::{self, Visit};
+
+use crate::Error;
+use crate::listing::{Genre, Mutant, Place};
+
+/// Where the functions are that say which mutant is switched on: see [`SWITCHES`].
+const PATH: &str = "crate::mutant_switches";
+
+/// The module that is added to the package.
+pub const SWITCHES: &str = include_str!("switches.rs");
+
+/// A source file with switches.
+pub struct Woven {
+    pub text: String,
+    /// Stretches of the text, each with the mutants that it is there for.
+    stretches: Vec<(Range<usize>, Vec<usize>)>,
+}
+
+impl Woven {
+    /// The mutants that the narrowest stretch about this byte of the text is there for.
+    pub fn at(&self, byte: usize) -> Option<&[usize]> {
+        let around = self.stretches.iter().filter(|(range, _)| range.contains(&byte));
+        around.min_by_key(|(range, _)| range.len()).map(|(_, mutants)| &**mutants)
+    }
+
+    /// The mutants that are in the text.
+    pub fn mutants(&self) -> impl Iterator<Item = usize> {
+        self.stretches.iter().flat_map(|(_, mutants)| mutants.iter().copied())
+    }
+}
+
+/// What of the text depends on switches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Site {
+    /// An expression, from byte to byte.
+    Expression(usize, usize),
+    /// What begins at this byte is left out.
+    Body(usize),
+    /// Whether an arm is considered: the end of its pattern, and its guard.
+    Arm(usize, Option<(usize, usize)>),
+}
+
+/// The file with a switch for each of these mutants, which have numbers. Those for which there is no
+/// place in the syntax are left out.
+pub fn woven(file: &str, text: &str, mutants: &[(usize, &Mutant)]) -> Result<Woven, Error> {
+    let syntax = syn::parse_file(text)
+        .map_err(|source| Error::Syntax { file: file.to_owned(), source })?;
+    let mut finder = Finder::default();
+    finder.visit_file(&syntax);
+    let lines = Lines::of(text);
+    let mut sites: BTreeMap<Site, Vec<(usize, String)>> = BTreeMap::new();
+    for &(number, mutant) in mutants {
+        let span = lines.byte(mutant.span.start)..lines.byte(mutant.span.end);
+        let site = match mutant.genre {
+            Genre::FnValue => Some(Site::Body(span.start)),
+            Genre::MatchArm => finder.places.get(&(true, span.start)).copied(),
+            _ => finder.places.get(&(false, span.start)).copied(),
+        };
+        let alternative = match site {
+            Some(Site::Expression(start, end)) => {
+                [&text[start..span.start], &*mutant.replacement, &text[span.end..end]].concat()
+            }
+            Some(_) => mutant.replacement.clone(),
+            None => continue,
+        };
+        sites.entry(site.expect("found above")).or_default().push((number, alternative));
+    }
+    Ok(assembled(text, &sites))
+}
+
+/// The text with what is put in at each site.
+fn assembled(text: &str, sites: &BTreeMap<Site, Vec<(usize, String)>>) -> Woven {
+    let mut pieces: Vec<Piece> = sites.iter().flat_map(|(site, mutants)| site.pieces(mutants)).collect();
+    pieces.sort_by_key(|piece| (piece.at, piece.order));
+    let mut woven = Woven { text: String::new(), stretches: Vec::new() };
+    let mut open: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut copied = 0;
+    for piece in pieces {
+        woven.text += &text[copied..piece.at];
+        copied = piece.at;
+        let first = piece.mutants[0];
+        let begin = *open.entry(first).or_insert(woven.text.len());
+        for (piece, mutant) in piece.texts {
+            let start = woven.text.len();
+            woven.text += &piece;
+            if let Some(mutant) = mutant {
+                woven.stretches.push((start..woven.text.len(), vec![mutant]));
+            }
+        }
+        if piece.ends {
+            woven.stretches.push((begin..woven.text.len(), piece.mutants));
+        }
+    }
+    woven.text += &text[copied..];
+    woven
+}
+
+/// Text that is put in.
+struct Piece {
+    at: usize,
+    /// What comes first of what is put in at the same byte: endings, from the inside; then beginnings,
+    /// from the outside.
+    order: isize,
+    /// Each with the mutant that it is there for, if there is one alone.
+    texts: Vec<(String, Option<usize>)>,
+    /// All mutants of the site.
+    mutants: Vec<usize>,
+    /// Whether this is the last piece of the site.
+    ends: bool,
+}
+
+impl Site {
+    /// The pieces of text that are put in for these mutants, each with its alternative.
+    fn pieces(self, mutants: &[(usize, String)]) -> Vec<Piece> {
+        let numbers: Vec<usize> = mutants.iter().map(|(number, _)| *number).collect();
+        let piece = |at, order, texts, ends| Piece { at, order, texts, mutants: numbers.clone(), ends };
+        let single = |text: String| vec![(text, None)];
+        let is = |number: usize| format!("{PATH}::is({number})");
+        match self {
+            Site::Expression(start, end) => {
+                let length = (end - start) as isize;
+                let mut texts = single(" }".to_owned());
+                for (place, (number, alternative)) in mutants.iter().enumerate() {
+                    let last = place + 1 == mutants.len();
+                    let test = if last { String::new() } else { format!("if {} ", is(*number)) };
+                    texts.push((format!(" else {test}{{ {alternative} }}"), Some(*number)));
+                }
+                texts.push((")".to_owned(), None));
+                let none = format!("(if {PATH}::none(&{numbers:?}) {{ ");
+                vec![piece(start, isize::MAX - length, single(none), false), piece(end, length, texts, true)]
+            }
+            Site::Body(at) => {
+                let leave = |(number, value): &(usize, String)| {
+                    (format!("if {} {{ return {value}; }} ", is(*number)), Some(*number))
+                };
+                vec![piece(at, isize::MIN, mutants.iter().map(leave).collect(), true)]
+            }
+            Site::Arm(pattern_end, None) => {
+                vec![piece(pattern_end, 0, single(format!(" if !{}", is(numbers[0]))), true)]
+            }
+            Site::Arm(_, Some((start, end))) => {
+                let length = (end - start) as isize + 1;
+                let test = single(format!("!{} && (", is(numbers[0])));
+                let close = single(")".to_owned());
+                vec![piece(start, isize::MAX - length, test, false), piece(end, length, close, true)]
+            }
+        }
+    }
+}
+
+/// The sites by the bytes at which mutants begin that change them, arms apart from what their patterns
+/// begin with.
+#[derive(Default)]
+struct Finder {
+    places: BTreeMap<(bool, usize), Site>,
+}
+
+impl Finder {
+    fn note(&mut self, changed: &impl Spanned, expression: &impl Spanned) {
+        let range = expression.span().byte_range();
+        let site = Site::Expression(range.start, range.end);
+        self.places.insert((false, changed.span().byte_range().start), site);
+    }
+}
+
+impl<'a> Visit<'a> for Finder {
+    fn visit_expr_binary(&mut self, binary: &'a syn::ExprBinary) {
+        // A chain that binds names is none of `||`.
+        if !binds_names(&binary.left) && !binds_names(&binary.right) {
+            self.note(&binary.op, binary);
+        }
+        visit::visit_expr_binary(self, binary);
+    }
+
+    fn visit_expr_unary(&mut self, unary: &'a syn::ExprUnary) {
+        self.note(&unary.op, unary);
+        visit::visit_expr_unary(self, unary);
+    }
+
+    fn visit_expr_struct(&mut self, literal: &'a syn::ExprStruct) {
+        for field in &literal.fields {
+            self.note(field, literal);
+        }
+        visit::visit_expr_struct(self, literal);
+    }
+
+    fn visit_arm(&mut self, arm: &'a syn::Arm) {
+        let guard = arm.guard.as_ref().map(|(_, guard)| guard);
+        let range = guard.map(|guard| guard.span().byte_range());
+        let site = Site::Arm(arm.pat.span().byte_range().end, range.map(|range| (range.start, range.end)));
+        self.places.insert((true, arm.span().byte_range().start), site);
+        if let Some(guard) = guard {
+            self.note(guard, guard);
+        }
+        visit::visit_arm(self, arm);
+    }
+}
+
+/// Whether this is a chain with `let`.
+fn binds_names(expression: &syn::Expr) -> bool {
+    match expression {
+        syn::Expr::Let(_) => true,
+        syn::Expr::Binary(binary) => binds_names(&binary.left) || binds_names(&binary.right),
+        _ => false,
+    }
+}
+
+/// At which byte each line begins.
+struct Lines<'t> {
+    text: &'t str,
+    begins: Vec<usize>,
+}
+
+impl<'t> Lines<'t> {
+    fn of(text: &'t str) -> Self {
+        let after_breaks = text.match_indices('\n').map(|(at, _)| at + 1);
+        Lines { text, begins: std::iter::once(0).chain(after_breaks).collect() }
+    }
+
+    fn byte(&self, place: Place) -> usize {
+        let begin = self.begins[place.line - 1];
+        let before = self.text[begin..].chars().take(place.column - 1);
+        begin + before.map(char::len_utf8).sum::<usize>()
+    }
+}
