@@ -32,6 +32,8 @@ pub struct Built {
     pub programs: Vec<PathBuf>,
     /// The mutants that do not compile.
     pub unviable: BTreeSet<usize>,
+    /// Those that might, and cannot be behind a switch.
+    pub fixed: BTreeSet<usize>,
 }
 
 impl Copy {
@@ -67,10 +69,10 @@ impl Copy {
     /// Builds the tests with all mutants that compile, leaving out those that the compiler complains of until
     /// it does no more. Numbers of mutants begin with one.
     pub fn build(&self, mutants: &[Mutant]) -> Result<Built, Error> {
-        let mut unviable = BTreeSet::new();
+        let (mut unviable, mut fixed) = (BTreeSet::new(), BTreeSet::new());
         for step in [&["check", "--lib"][..], &["test", "--no-run", "--lib", "--tests"]] {
             loop {
-                let files = self.weave(mutants, &unviable)?;
+                let files = self.weave(mutants, &(&unviable | &fixed))?;
                 let said = self.cargo(step)?;
                 let errors = said.iter().filter_map(|line| line.message.as_ref());
                 let errors: Vec<_> = errors.filter(|message| message.level == "error").collect();
@@ -80,21 +82,26 @@ impl Copy {
                     if step[0] == "test" {
                         let woven: BTreeSet<usize> =
                             files.values().flat_map(Woven::mutants).collect();
-                        unviable.extend((1..=mutants.len()).filter(|number| !woven.contains(number)));
-                        return Ok(Built { programs, unviable });
+                        let is_left = |number: &usize| !unviable.contains(number);
+                        fixed = (1..=mutants.len()).filter(is_left).collect::<BTreeSet<_>>().difference(&woven).copied().collect();
+                        return Ok(Built { programs, unviable, fixed });
                     }
                     break;
                 }
-                let known = unviable.len();
+                let known = unviable.len() + fixed.len();
                 for error in &errors {
                     for span in error.spans.iter().filter(|span| span.is_primary) {
                         let woven = files.get(&span.file_name);
                         let at_fault = woven.and_then(|woven| woven.at(span.byte_start));
-                        unviable.extend(at_fault.unwrap_or_default());
+                        match at_fault {
+                            Some([mutant]) if !error.needs_constants() => unviable.extend([*mutant]),
+                            Some(mutants) => fixed.extend(mutants),
+                            None => {}
+                        };
                     }
                 }
-                eprintln!("{} errors, {} unviable", errors.len(), unviable.len());
-                if unviable.len() == known {
+                eprintln!("{} errors: {} unviable, {} without a switch", errors.len(), unviable.len(), fixed.len());
+                if unviable.len() + fixed.len() == known {
                     let all: Vec<&str> = errors.iter().map(|error| &*error.rendered).collect();
                     return Err(Error::Build(all.join("\n")));
                 }
@@ -156,6 +163,7 @@ struct Line {
 #[derive(Deserialize)]
 struct Message {
     level: String,
+    code: Option<Code>,
     rendered: String,
     spans: Vec<MessageSpan>,
 }
@@ -165,4 +173,16 @@ struct MessageSpan {
     file_name: String,
     byte_start: usize,
     is_primary: bool,
+}
+
+#[derive(Deserialize)]
+struct Code {
+    code: String,
+}
+
+impl Message {
+    /// Whether a switch is where the compiler has to know the value: the mutant may be viable.
+    fn needs_constants(&self) -> bool {
+        self.code.as_ref().is_some_and(|code| code.code == "E0015")
+    }
 }

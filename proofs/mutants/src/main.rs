@@ -64,6 +64,7 @@ enum Error {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
     Unviable,
+    NoSwitch,
     Caught,
     TimedOut,
     Unreached,
@@ -95,6 +96,9 @@ fn main() -> Result<ExitCode, Error> {
                 let Some(mutant) = mutants.get(number - 1) else { return Ok(()) };
                 let verdict = if built.unviable.contains(&number) {
                     Verdict::Unviable
+                } else if built.fixed.contains(&number) {
+                    println!("NO SWITCH {}", mutant.name);
+                    Verdict::NoSwitch
                 } else if tests.iter().all(|test| !test.reaches.contains(&number)) {
                     println!("UNREACHED {}", mutant.name);
                     Verdict::Unreached
@@ -128,13 +132,14 @@ fn report(mutants: &[Mutant], verdicts: &BTreeMap<usize, Verdict>) {
             *files.entry(row).or_default().entry(*verdict).or_default() += 1;
         }
     }
-    println!("| file | mutants | unviable | caught | timed out | unreached | survived |");
+    println!("| file | mutants | unviable | no switch | caught | timed out | unreached | survived |");
     for (file, counts) in files {
         let count = |verdict| counts.get(&verdict).copied().unwrap_or(0);
         let all: usize = counts.values().sum();
         println!(
-            "| {file} | {all} | {} | {} | {} | {} | {} |",
+            "| {file} | {all} | {} | {} | {} | {} | {} | {} |",
             count(Verdict::Unviable),
+            count(Verdict::NoSwitch),
             count(Verdict::Caught),
             count(Verdict::TimedOut),
             count(Verdict::Unreached),
