@@ -20,7 +20,7 @@ pub struct Mutant {
     pub span: Span,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 pub enum Genre {
     FnValue,
     BinaryOperator,

@@ -16,7 +16,7 @@ use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 
 use crate::Error;
-use crate::listing::{Genre, Mutant, Place};
+use crate::listing::{Genre, Mutant, Span};
 
 /// Where the functions are that say which mutant is switched on: see [`SWITCHES`].
 const PATH: &str = "crate::mutant_switches";
@@ -60,18 +60,18 @@ enum Site {
 pub fn woven(file: &str, text: &str, mutants: &[(usize, &Mutant)]) -> Result<Woven, Error> {
     let syntax = syn::parse_file(text)
         .map_err(|source| Error::Syntax { file: file.to_owned(), source })?;
-    let mut finder = Finder::default();
-    finder.visit_file(&syntax);
     let lines = Lines::of(text);
+    let mut finder = Finder { lines: &lines, places: BTreeMap::new() };
+    finder.visit_file(&syntax);
     let mut sites: BTreeMap<Site, Vec<(usize, String)>> = BTreeMap::new();
     for &(number, mutant) in mutants {
-        let span = lines.byte(mutant.span.start)..lines.byte(mutant.span.end);
+        let Span { start, end } = mutant.span;
+        let span = lines.byte(start.line, start.column - 1)..lines.byte(end.line, end.column - 1);
         let site = match mutant.genre {
             // The function has one type of iterator, which is not this one.
             Genre::FnValue if mutant.replacement.starts_with("::std::iter::") => None,
             Genre::FnValue => Some(Site::Body(span.start)),
-            Genre::MatchArm => finder.places.get(&(true, span.start)).copied(),
-            _ => finder.places.get(&(false, span.start)).copied(),
+            genre => finder.places.get(&(genre, span.start)).copied(),
         };
         let alternative = match site {
             Some(Site::Expression(start, end)) => {
@@ -165,49 +165,49 @@ impl Site {
     }
 }
 
-/// The sites by the bytes at which mutants begin that change them, arms apart from what their patterns
-/// begin with.
-#[derive(Default)]
-struct Finder {
-    places: BTreeMap<(bool, usize), Site>,
+/// The sites, by the genres of mutants that change them and the bytes at which these begin.
+struct Finder<'t> {
+    lines: &'t Lines<'t>,
+    places: BTreeMap<(Genre, usize), Site>,
 }
 
-impl Finder {
-    fn note(&mut self, changed: &impl Spanned, expression: &impl Spanned) {
-        let range = expression.span().byte_range();
+impl Finder<'_> {
+    fn note(&mut self, genre: Genre, changed: &impl Spanned, expression: &impl Spanned) {
+        let range = self.lines.range(expression);
         let site = Site::Expression(range.start, range.end);
-        self.places.insert((false, changed.span().byte_range().start), site);
+        self.places.insert((genre, self.lines.range(changed).start), site);
     }
 }
 
-impl<'a> Visit<'a> for Finder {
+impl<'a> Visit<'a> for Finder<'_> {
     fn visit_expr_binary(&mut self, binary: &'a syn::ExprBinary) {
         // A chain that binds names is none of `||`.
         if !binds_names(&binary.left) && !binds_names(&binary.right) {
-            self.note(&binary.op, binary);
+            self.note(Genre::BinaryOperator, &binary.op, binary);
         }
         visit::visit_expr_binary(self, binary);
     }
 
     fn visit_expr_unary(&mut self, unary: &'a syn::ExprUnary) {
-        self.note(&unary.op, unary);
+        self.note(Genre::UnaryOperator, &unary.op, unary);
         visit::visit_expr_unary(self, unary);
     }
 
     fn visit_expr_struct(&mut self, literal: &'a syn::ExprStruct) {
         for field in &literal.fields {
-            self.note(field, literal);
+            self.note(Genre::StructField, field, literal);
         }
         visit::visit_expr_struct(self, literal);
     }
 
     fn visit_arm(&mut self, arm: &'a syn::Arm) {
         let guard = arm.guard.as_ref().map(|(_, guard)| guard);
-        let range = guard.map(|guard| guard.span().byte_range());
-        let site = Site::Arm(arm.pat.span().byte_range().end, range.map(|range| (range.start, range.end)));
-        self.places.insert((true, arm.span().byte_range().start), site);
+        let range = guard.map(|guard| self.lines.range(&**guard));
+        let pattern_end = self.lines.range(&arm.pat).end;
+        let site = Site::Arm(pattern_end, range.map(|range| (range.start, range.end)));
+        self.places.insert((Genre::MatchArm, self.lines.range(arm).start), site);
         if let Some(guard) = guard {
-            self.note(guard, guard);
+            self.note(Genre::MatchArmGuard, &**guard, &**guard);
         }
         visit::visit_arm(self, arm);
     }
@@ -234,9 +234,14 @@ impl<'t> Lines<'t> {
         Lines { text, begins: std::iter::once(0).chain(after_breaks).collect() }
     }
 
-    fn byte(&self, place: Place) -> usize {
-        let begin = self.begins[place.line - 1];
-        let before = self.text[begin..].chars().take(place.column - 1);
-        begin + before.map(char::len_utf8).sum::<usize>()
+    /// Lines are counted from one, columns from zero, in characters.
+    fn byte(&self, line: usize, column: usize) -> usize {
+        let begin = self.begins[line - 1];
+        begin + self.text[begin..].chars().take(column).map(char::len_utf8).sum::<usize>()
+    }
+
+    fn range(&self, syntax: &impl Spanned) -> Range<usize> {
+        let (start, end) = (syntax.span().start(), syntax.span().end());
+        self.byte(start.line, start.column)..self.byte(end.line, end.column)
     }
 }
