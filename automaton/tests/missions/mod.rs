@@ -6,6 +6,7 @@
 
 mod decisions;
 mod faults;
+mod routes;
 mod story;
 
 use std::ops::ControlFlow;

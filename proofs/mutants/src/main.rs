@@ -57,8 +57,6 @@ enum Error {
     Syntax { file: String, source: syn::Error },
     #[error("the package does not build, whatever is left out:\n{0}")]
     Build(String),
-    #[error("{0} fails although no mutant is switched on")]
-    Fails(String),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -46,7 +46,8 @@ pub fn tests(programs: &[PathBuf], folder: &Path, skipped: &[String]) -> Result<
             let mut command = command(program, &[name], folder);
             command.env("MUTANTS_REACHED", &record);
             if run(command, Duration::from_secs(600))? != Outcome::Passed {
-                return Err(Error::Fails(name.to_owned()));
+                println!("LEFT OUT {name}: it fails although no mutant is switched on");
+                continue;
             }
             let time = begin.elapsed();
             let reached = fs::read_to_string(&record).unwrap_or_default();
@@ -97,6 +98,7 @@ fn command(program: &Path, names: &[&str], folder: &Path) -> Command {
     command.arg(program).args(names).args(["--exact", "--test-threads", "1"]);
     // A failure need not be made small, nor be remembered.
     command.env("PROPTEST_MAX_SHRINK_ITERS", "0").env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
+    command.env("INSTA_UPDATE", "no").env("INSTA_WORKSPACE_ROOT", folder.parent().unwrap_or(folder));
     command.env("CARGO_MANIFEST_DIR", folder).current_dir(folder);
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command
