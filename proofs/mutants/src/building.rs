@@ -44,7 +44,10 @@ impl Copy {
             .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
             .output()?;
         let names = String::from_utf8_lossy(&list.stdout).into_owned();
-        for name in names.split_terminator('\0').filter(|name| root.join(name).is_file() && *name != "Cargo.toml") {
+        for name in names
+            .split_terminator('\0')
+            .filter(|name| root.join(name).is_file() && *name != "Cargo.toml")
+        {
             write_if_changed(&to.join(name), &fs::read(root.join(name))?)?;
         }
         let manifest = fs::read_to_string(root.join("Cargo.toml"))?;
@@ -58,7 +61,13 @@ impl Copy {
         }
         let library = format!("{folder}/src/lib.rs");
         originals.insert(library.clone(), fs::read_to_string(root.join(&library))?);
-        Ok(Copy { root: to, target: root.join("target"), package: package.to_owned(), folder, originals })
+        Ok(Copy {
+            root: to,
+            target: root.join("target"),
+            package: package.to_owned(),
+            folder,
+            originals,
+        })
     }
 
     /// The folder in which the tests of the package run.
@@ -83,7 +92,12 @@ impl Copy {
                         let woven: BTreeSet<usize> =
                             files.values().flat_map(Woven::mutants).collect();
                         let is_left = |number: &usize| !unviable.contains(number);
-                        fixed = (1..=mutants.len()).filter(is_left).collect::<BTreeSet<_>>().difference(&woven).copied().collect();
+                        fixed = (1..=mutants.len())
+                            .filter(is_left)
+                            .collect::<BTreeSet<_>>()
+                            .difference(&woven)
+                            .copied()
+                            .collect();
                         return Ok(Built { programs, unviable, fixed });
                     }
                     break;
@@ -94,13 +108,20 @@ impl Copy {
                         let woven = files.get(&span.file_name);
                         let at_fault = woven.and_then(|woven| woven.at(span.byte_start));
                         match at_fault {
-                            Some([mutant]) if !error.needs_constants() => unviable.extend([*mutant]),
+                            Some([mutant]) if !error.needs_constants() => {
+                                unviable.extend([*mutant])
+                            }
                             Some(mutants) => fixed.extend(mutants),
                             None => {}
                         };
                     }
                 }
-                eprintln!("{} errors: {} unviable, {} without a switch", errors.len(), unviable.len(), fixed.len());
+                eprintln!(
+                    "{} errors: {} unviable, {} without a switch",
+                    errors.len(),
+                    unviable.len(),
+                    fixed.len()
+                );
                 if unviable.len() + fixed.len() == known {
                     let all: Vec<&str> = errors.iter().map(|error| &*error.rendered).collect();
                     return Err(Error::Build(all.join("\n")));

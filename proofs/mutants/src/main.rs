@@ -39,6 +39,9 @@ struct Arguments {
     /// Tests with one of these in their name are not run
     #[arg(long)]
     skip: Vec<String>,
+    /// Only a sample: every so manieth mutant
+    #[arg(long, default_value_t = 1)]
+    one_in: usize,
     /// Only mutants that are named in this file, one a line
     #[arg(long)]
     only: Option<PathBuf>,
@@ -78,6 +81,7 @@ fn main() -> Result<ExitCode, Error> {
         let names = fs::read_to_string(only)?;
         mutants.retain(|mutant| names.lines().any(|name| name.ends_with(&mutant.name)));
     }
+    let mutants: Vec<Mutant> = mutants.into_iter().step_by(arguments.one_in.max(1)).collect();
     eprintln!("{} mutants", mutants.len());
     let place = root.join("target/mutants").join(&arguments.package);
     let copy = Copy::of(&root, place, &arguments.package, &mutants)?;
@@ -130,7 +134,9 @@ fn report(mutants: &[Mutant], verdicts: &BTreeMap<usize, Verdict>) {
             *files.entry(row).or_default().entry(*verdict).or_default() += 1;
         }
     }
-    println!("| file | mutants | unviable | no switch | caught | timed out | unreached | survived |");
+    println!(
+        "| file | mutants | unviable | no switch | caught | timed out | unreached | survived |"
+    );
     for (file, counts) in files {
         let count = |verdict| counts.get(&verdict).copied().unwrap_or(0);
         let all: usize = counts.values().sum();

@@ -98,7 +98,9 @@ fn command(program: &Path, names: &[&str], folder: &Path) -> Command {
     command.arg(program).args(names).args(["--exact", "--test-threads", "1"]);
     // A failure need not be made small, nor be remembered.
     command.env("PROPTEST_MAX_SHRINK_ITERS", "0").env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
-    command.env("INSTA_UPDATE", "no").env("INSTA_WORKSPACE_ROOT", folder.parent().unwrap_or(folder));
+    command
+        .env("INSTA_UPDATE", "no")
+        .env("INSTA_WORKSPACE_ROOT", folder.parent().unwrap_or(folder));
     command.env("CARGO_MANIFEST_DIR", folder).current_dir(folder);
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command

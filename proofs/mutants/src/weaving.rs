@@ -58,8 +58,8 @@ enum Site {
 /// The file with a switch for each of these mutants, which have numbers. Those for which there is no
 /// place in the syntax are left out.
 pub fn woven(file: &str, text: &str, mutants: &[(usize, &Mutant)]) -> Result<Woven, Error> {
-    let syntax = syn::parse_file(text)
-        .map_err(|source| Error::Syntax { file: file.to_owned(), source })?;
+    let syntax =
+        syn::parse_file(text).map_err(|source| Error::Syntax { file: file.to_owned(), source })?;
     let lines = Lines::of(text);
     let mut finder = Finder { lines: &lines, places: BTreeMap::new() };
     finder.visit_file(&syntax);
@@ -87,7 +87,8 @@ pub fn woven(file: &str, text: &str, mutants: &[(usize, &Mutant)]) -> Result<Wov
 
 /// The text with what is put in at each site.
 fn assembled(text: &str, sites: &BTreeMap<Site, Vec<(usize, String)>>) -> Woven {
-    let mut pieces: Vec<Piece> = sites.iter().flat_map(|(site, mutants)| site.pieces(mutants)).collect();
+    let mut pieces: Vec<Piece> =
+        sites.iter().flat_map(|(site, mutants)| site.pieces(mutants)).collect();
     pieces.sort_by_key(|piece| (piece.at, piece.order));
     let mut woven = Woven { text: String::new(), stretches: Vec::new() };
     let mut open: BTreeMap<usize, usize> = BTreeMap::new();
@@ -130,7 +131,8 @@ impl Site {
     /// The pieces of text that are put in for these mutants, each with its alternative.
     fn pieces(self, mutants: &[(usize, String)]) -> Vec<Piece> {
         let numbers: Vec<usize> = mutants.iter().map(|(number, _)| *number).collect();
-        let piece = |at, order, texts, ends| Piece { at, order, texts, mutants: numbers.clone(), ends };
+        let piece =
+            |at, order, texts, ends| Piece { at, order, texts, mutants: numbers.clone(), ends };
         let single = |text: String| vec![(text, None)];
         let is = |number: usize| format!("{PATH}::is({number})");
         match self {
@@ -144,7 +146,10 @@ impl Site {
                 }
                 texts.push((")".to_owned(), None));
                 let none = format!("(if {PATH}::none(&{numbers:?}) {{ ");
-                vec![piece(start, isize::MAX - length, single(none), false), piece(end, length, texts, true)]
+                vec![
+                    piece(start, isize::MAX - length, single(none), false),
+                    piece(end, length, texts, true),
+                ]
             }
             Site::Body(at) => {
                 let leave = |(number, value): &(usize, String)| {
@@ -159,7 +164,10 @@ impl Site {
                 let length = (end - start) as isize + 1;
                 let test = single(format!("!{} && (", is(numbers[0])));
                 let close = single(")".to_owned());
-                vec![piece(start, isize::MAX - length, test, false), piece(end, length, close, true)]
+                vec![
+                    piece(start, isize::MAX - length, test, false),
+                    piece(end, length, close, true),
+                ]
             }
         }
     }

@@ -1,6 +1,8 @@
 //! The rules of robots, one at a time: a robot, the beacons of its neighbours, and what it makes of them.
 
 mod attachment;
+mod elections;
+mod flows;
 mod hearing;
 mod moves;
 mod partner;

@@ -169,7 +169,10 @@ fn sent(outputs: &mut Outputs<Message, super::super::MissionEvent>) -> Vec<Messa
 fn a_robot_moves_with_the_consent_of_all_that_rely_on_it() {
     let relied_on = |consents: &[NodeId]| {
         let mut robot = mover();
-        robot.hears(Beacon { parent: Some(0), ..beacon(1, west(0.5), primary(31, Some(30), 30), &[]) });
+        robot.hears(Beacon {
+            parent: Some(0),
+            ..beacon(1, west(0.5), primary(31, Some(30), 30), &[])
+        });
         proposed(&mut robot).expect("nothing is in its way");
         consents.iter().for_each(|&from| robot.hear_consent(from));
         robot.stay_without_consent();
@@ -183,7 +186,7 @@ fn a_proposal_is_told_until_all_have_consented_and_whenever_it_changes() {
     let mut robot = mover();
     robot.hears(Beacon { parent: Some(0), ..beacon(1, west(0.5), primary(31, Some(30), 30), &[]) });
     proposed(&mut robot).expect("nothing is in its way");
-    let mut told = |robot: &mut Robot| {
+    let told = |robot: &mut Robot| {
         let mut outputs = Outputs::of(0);
         robot.tell_proposal(&mut outputs);
         sent(&mut outputs).len()
