@@ -163,11 +163,11 @@ pub struct Gallery<'a, 'w> {
     judge: Referee<'a>,
     watchers: &'a mut [&'w mut dyn Watcher],
     failure: Option<io::Error>,
-    /// The robots that send all the time in the last period, with their loads.
+    /// The robots that send nearly all the time in the last period, with their loads.
     saturated: Vec<(usize, f64)>,
 }
 
-/// The robots that send all the time, each with its load Σ_j T_ij.
+/// The robots that send nearly all the time, each with its load Σ_j T_ij.
 fn saturated(snapshot: &Snapshot) -> Vec<(usize, f64)> {
     let mut loads = vec![0.0; snapshot.positions.len()];
     for route in &snapshot.routes {

@@ -58,7 +58,12 @@ const CALLS: &[Call] = &[
     ("merge", ELECTION, ROBOT_MISSION, "merge_election(own, heard)"),
     ("best", ELECTION, ROBOT_LEADER, "self.election.as_ref()?.best()"),
     ("is_complete", ELECTION, ROBOT_FACTS, "election.is_complete(roster)"),
-    ("has_token", ELECTION, ROBOT_RECRUIT, "!election.has_token(self.id)"),
+    (
+        "has_token",
+        ELECTION,
+        "automaton/src/network/robot/leader.rs",
+        "!election.has_token(self.id)",
+    ),
     ("new", OFFERS, "automaton/src/network/robot/mod.rs", "Offers::new()"),
     ("make_offer", OFFERS, ROBOT_EXCHANGE, "offers.make_offer(robot.partner?"),
     ("answer", OFFERS, ROBOT_EXCHANGE, "offers.answer(mover, offer, given)"),
@@ -77,10 +82,10 @@ const CALLS: &[Call] = &[
     ("merge", ID_SET, ELECTION, "self.tokens.merge(&heard.tokens)"),
     ("includes", ID_SET, ELECTION, "self.tokens.includes(roster)"),
     (
-        "located",
+        "locate",
         "automaton/src/network/roll.rs",
         "automaton/src/network/robot/absence.rs",
-        "absent.located(seen.chain",
+        "absent.locate(&mut self.wrecks, seen)",
     ),
     (
         "closes_cycle",

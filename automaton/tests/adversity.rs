@@ -6,19 +6,15 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use pleach_automaton::{
     Automaton, Builder, Coordinate, Coordinates, Reason, Settings, Trajectory, coordinates, from,
 };
-use pleach_discrete::vocabulary;
 use pleach_guards::{Expression, Predicate};
 
-vocabulary! {
-    enum Place: Location { Here = "here", There = "there" }
-    enum Cue: Event { Go = "go", Back = "back" }
-}
+use crate::common::body::Cue::{self, Back, Go};
+use crate::common::body::Place::{self, Here, There};
+use crate::common::body::{Body, body};
+
 coordinates! {
     struct Line { x }
-    struct Body { place = "p", speed = "s", time = "t" }
 }
-use Cue::{Back, Go};
-use Place::{Here, There};
 
 fn x() -> Coordinate<Line> {
     Line::coordinates().x
@@ -27,15 +23,6 @@ fn x() -> Coordinate<Line> {
 /// x from a start on at a constant rate.
 fn line(start: f64, rate: f64) -> Builder<Place, Cue, Line> {
     Automaton::starting_in(Here).initially(Line { x: start }).flow(Here, x().rate(rate))
-}
-
-/// A body in the time t with these rates of place and speed.
-fn body(start: [f64; 2], rates: [Expression; 2]) -> Builder<Place, Cue, Body> {
-    let Body { place, speed, time } = Body::coordinates();
-    let [moves, speeds] = rates;
-    Automaton::starting_in(Here)
-        .initially(Body { place: start[0], speed: start[1], time: 0.0 })
-        .flow(Here, [place.rate(moves), speed.rate(speeds), time.rate(1.0)])
 }
 
 fn run<S: Coordinates>(parts: Builder<Place, Cue, S>, horizon: f64) -> Trajectory {

@@ -7,19 +7,15 @@ use std::thread;
 use pleach_automaton::{
     Automaton, Builder, Composition, Policy, Reason, Settings, Trajectory, coordinates, from,
 };
-use pleach_discrete::vocabulary;
 use pleach_guards::{Expression, Predicate, Table, constant, maximum, minimum, piecewise};
 
-vocabulary! {
-    enum Place: Location { Here = "here", There = "there" }
-    enum Cue: Event { Go = "go", Back = "back" }
-}
+use crate::common::body::Cue::{self, Back, Go};
+use crate::common::body::Place::{self, Here, There};
+use crate::common::body::{Body, body, line};
+
 coordinates! {
     struct Link { heard = "h", time = "t", done = "d" }
-    struct Body { place = "p", speed = "s", clock = "c" }
 }
-use Cue::{Back, Go};
-use Place::{Here, There};
 
 type Part = Automaton<Place, Cue, Link>;
 
@@ -36,14 +32,6 @@ fn link(guard: impl Fn(&Expression, &Expression) -> Predicate) -> Part {
         .expect("it is sound")
 }
 
-fn body(start: [f64; 2], rates: [Expression; 2]) -> Builder<Place, Cue, Body> {
-    let Body { place, speed, clock } = Body::coordinates();
-    let [moves, speeds] = rates;
-    Automaton::starting_in(Here)
-        .initially(Body { place: start[0], speed: start[1], clock: 0.0 })
-        .flow(Here, [place.rate(moves), speed.rate(speeds), clock.rate(1.0)])
-}
-
 fn run_with(parts: Builder<Place, Cue, Body>, settings: Settings, horizon: f64) -> Trajectory {
     parts.build().expect("it is sound").run_with(settings, horizon).expect("it can be run")
 }
@@ -51,10 +39,6 @@ fn run_with(parts: Builder<Place, Cue, Body>, settings: Settings, horizon: f64) 
 fn go(parts: Builder<Place, Cue, Body>, guard: Predicate, horizon: f64) -> Trajectory {
     let parts = parts.transition(from(Here).on(Go).to(There).must(guard));
     run_with(parts, Settings { step_limit: 1_000_000, ..Settings::default() }, horizon)
-}
-
-fn line() -> Builder<Place, Cue, Body> {
-    body([0.0; 2], [1.0.into(), 0.0.into()])
 }
 
 fn instants(trajectory: &Trajectory) -> Vec<f64> {
@@ -161,16 +145,16 @@ fn kinks_and_jumps_at_the_crossing_are_met_or_said() {
 /// A table that jumps onto the threshold, over it, and to it from a slope, as a guard and as an input of a flow.
 #[test]
 fn tables_that_jump_at_the_threshold() {
-    let Body { place: x, clock, .. } = Body::coordinates();
+    let Body { place: x, time, .. } = Body::coordinates();
     let steps = Table::steps([(0.0, 0.0), (2.0, 1.0), (3.0, 0.0)]).expect("in order");
     assert_event(&go(line(), steps.at(&x).at_least(1.0), 5.0), 2.0, 1e-15);
     assert!(go(line(), steps.at(&x).more_than(1.0), 5.0).jumps().is_empty());
     let ramp = Table::linear([(0.0, 0.0), (2.0, 1.0), (4.0, 0.0)]).expect("in order");
     assert_said(&go(line(), ramp.at(&x).at_least(1.0), 5.0), 2.0, 1e-15);
     // It rests at zero, then falls to its threshold within a second, and rests there.
-    let driven = body([1.0, 0.0], [-steps.at(&clock), 0.0.into()]);
+    let driven = body([1.0, 0.0], [-steps.at(&time), 0.0.into()]);
     assert_said(&go(driven, x.at_most(0.0), 5.0), 3.0, 1e-12);
-    let driven = body([1.0, 0.0], [-steps.at(&clock), 0.0.into()]);
+    let driven = body([1.0, 0.0], [-steps.at(&time), 0.0.into()]);
     assert_event(&go(driven, x.at_most(0.25), 5.0), 2.75, 1e-12);
 }
 
@@ -249,7 +233,7 @@ fn runs_that_are_cut_go_on_as_one() {
     for cut in [20.0, 17.3] {
         let first = kicked().run(cut).expect("it can be run");
         let values = first.values_at(cut).expect("it lasts");
-        let state = Body { place: values[0], speed: values[1], clock: values[2] };
+        let state = Body { place: values[0], speed: values[1], time: values[2] };
         let rest = kicked().run_from(state, 40.0 - cut).expect("it can be run");
         let later = instants(&rest).into_iter().map(|time| cut + time);
         let joined: Vec<f64> = instants(&first).into_iter().chain(later).collect();

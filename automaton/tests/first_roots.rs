@@ -3,40 +3,17 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
-use pleach_automaton::{
-    Automaton, Builder, Coordinate, Reason, Settings, Trajectory, Why, coordinates, from,
-};
-use pleach_discrete::vocabulary;
+use pleach_automaton::{Builder, Coordinate, Reason, Settings, Trajectory, Why, from};
 use pleach_guards::{Expression, Predicate, constant, maximum, minimum, piecewise, variable};
 use proptest::prelude::*;
 
-vocabulary! {
-    enum Place: Location { Here = "here", There = "there" }
-    enum Cue: Event { Go = "go", Back = "back" }
-}
-coordinates! {
-    struct Body { place = "p", speed = "s", time = "t" }
-}
-use Cue::Go;
-use Place::{Here, There};
+use crate::common::body::Cue::{self, Go};
+use crate::common::body::Place::{self, Here, There};
+use crate::common::body::{Body, body, line};
 
 fn coordinates() -> [Coordinate<Body>; 3] {
     let Body { place, speed, time } = Body::coordinates();
     [place, speed, time]
-}
-
-/// A body in the time t with these rates of place and speed.
-fn body(start: [f64; 2], rates: [Expression; 2]) -> Builder<Place, Cue, Body> {
-    let [place, speed, time] = coordinates();
-    let [moves, speeds] = rates;
-    Automaton::starting_in(Here)
-        .initially(Body { place: start[0], speed: start[1], time: 0.0 })
-        .flow(Here, [place.rate(moves), speed.rate(speeds), time.rate(1.0)])
-}
-
-/// p = t, s = 0.
-fn line() -> Builder<Place, Cue, Body> {
-    body([0.0; 2], [1.0.into(), 0.0.into()])
 }
 
 /// p = sin t, s = cos t, by a linear flow or by the integrator.

@@ -10,8 +10,6 @@ use pleach::continuous::geometry::{FreeSpace, Workspace};
 const TRIES: usize = 4000;
 /// Rounding of coordinates must not break a rule that a place just keeps.
 const CAUTION: f64 = 0.999;
-/// The reliability from which on a shorter link is hardly a better one.
-const GOOD_RELIABILITY: f64 = 0.8;
 /// A tree of robots is this much longer than one of shortest paths.
 const WASTE: f64 = 1.25;
 
@@ -33,7 +31,8 @@ impl Places {
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let settings = Settings::resolve(scenario);
         // Rates are not known yet. Links of this reliability carry those of any robots.
-        let build_reliability = scenario.control.build_reliability.unwrap_or(GOOD_RELIABILITY);
+        let build_reliability =
+            scenario.control.build_reliability.unwrap_or(Settings::GOOD_RELIABILITY);
         let settings = Settings { build_reliability, ..settings };
         let workspace = scenario.workspace().ok()?;
         let free_space = FreeSpace::new(&workspace, settings.clearance).ok()?;

@@ -46,19 +46,43 @@ pub struct Wreck {
     pub heard_in: u32,
 }
 
+/// Where robots were when they were heard last, by number.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sightings(Vec<Wreck>);
+
+impl Sightings {
+    /// A robot was heard.
+    pub fn note(&mut self, seen: Wreck) {
+        match self.0.binary_search_by_key(&seen.robot, |known| known.robot) {
+            Ok(at) => self.0[at] = seen,
+            Err(at) => self.0.insert(at, seen),
+        }
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = Wreck> {
+        self.0.iter().copied()
+    }
+}
+
 impl Absent {
     /// Whether all robots take part.
     pub fn is_empty(&self) -> bool {
         self.suspended.is_empty() && self.gone.is_empty()
     }
 
-    /// Where each robot that does not take part was heard last, of all that has been seen, by number.
-    pub fn located(&self, seen: impl IntoIterator<Item = Wreck>) -> Vec<Wreck> {
-        let mut wrecks: Vec<Wreck> =
-            seen.into_iter().filter(|wreck| self.contains(wreck.robot)).collect();
+    /// Brings up to date where each robot that does not take part was heard last, by number: of what is
+    /// known and of what has been seen.
+    pub fn locate(&self, known: &mut Arc<Vec<Wreck>>, seen: impl IntoIterator<Item = Wreck>) {
+        if self.is_empty() && known.is_empty() {
+            return;
+        }
+        let mut wrecks: Vec<Wreck> = known.iter().copied().chain(seen).collect();
+        wrecks.retain(|wreck| self.contains(wreck.robot));
         wrecks.sort_by_key(|wreck| (wreck.robot, Reverse(wreck.heard_in)));
         wrecks.dedup_by_key(|wreck| wreck.robot);
-        wrecks
+        if **known != wrecks {
+            *known = Arc::new(wrecks);
+        }
     }
 
     /// Whether `robot` does not take part.

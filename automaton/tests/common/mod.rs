@@ -3,6 +3,7 @@
 //! Heater and window of a room are two automata over one state, the room. A heater warms by 2 °C/s
 //! and without it a room cools by 1 °C/s, so that every run has a closed form.
 
+pub mod body;
 pub mod classics;
 
 use pleach_automaton::{Automaton, Flow, Reset};

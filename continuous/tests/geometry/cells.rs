@@ -4,7 +4,7 @@ use pleach_continuous::geometry::{
 use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;
 
-use super::environments::{CLEARANCE, environment, place, ring};
+use super::environments::{CLEARANCE, environment, place, ring, room_with_hole};
 use super::plain;
 
 fn admit(region: &[HalfPlane], point: Point) -> bool {
@@ -48,9 +48,7 @@ fn spread(region: &[HalfPlane], center: Point, radius: f64) -> Vec<Point> {
 
 #[test]
 fn ways_may_touch_corners_of_the_sight_set() {
-    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
-    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
-    let workspace = Workspace::new(boundary, vec![hole]).unwrap();
+    let workspace = room_with_hole();
     let free_space = FreeSpace::new(&workspace, 0.125).unwrap();
     let edges = plain::edges(workspace.polygons());
     let sight_offset = 0.125 + free_space.tolerance() / 2.0;
@@ -99,9 +97,7 @@ fn a_region_ends_where_the_planning_set_does() {
 /// Before the corner of a hole both of its walls bound the region by their own lines.
 #[test]
 fn walls_bound_the_region_by_their_own_lines() {
-    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
-    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
-    let workspace = Workspace::new(boundary, vec![hole]).unwrap();
+    let workspace = room_with_hole();
     let free_space = FreeSpace::new(&workspace, 0.1).unwrap();
     let at = Point::new(0.85, 0.85);
     let region = convex_region(&free_space, at, at, 0.3);

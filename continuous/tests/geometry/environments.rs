@@ -134,6 +134,18 @@ fn hole(center: Point, radius: f64, mut angles: Vec<f64>) -> Vec<Point> {
         .collect()
 }
 
+/// A square room of side 3 with a square hole of side 1 in its middle.
+pub fn room_with_hole() -> Workspace {
+    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
+    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
+    Workspace::new(boundary, vec![hole]).unwrap()
+}
+
+/// The free space of a body of radius 1/8 in that room.
+pub fn space_round_hole() -> FreeSpace {
+    FreeSpace::new(&room_with_hole(), 0.125).unwrap()
+}
+
 /// A polygon from coordinates.
 pub fn ring(coordinates: &[(f64, f64)]) -> Vec<Point> {
     coordinates.iter().map(|&(x, y)| Point::new(x, y)).collect()

@@ -2,18 +2,12 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{Disc, FreeSpace, Segment, Workspace};
 use proptest::prelude::*;
 
-use super::environments::{CLEARANCE, environment, place, ring};
+use super::environments::{CLEARANCE, environment, place, ring, space_round_hole};
 use super::plain;
-
-fn square_room_with_square_hole() -> FreeSpace {
-    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
-    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
-    FreeSpace::new(&Workspace::new(boundary, vec![hole]).unwrap(), 0.125).unwrap()
-}
 
 #[test]
 fn diagonals_of_a_hole_are_blocked() {
-    let free_space = square_room_with_square_hole();
+    let free_space = space_round_hole();
     for (a, b) in [((0.25, 0.25), (2.75, 2.75)), ((0.25, 2.75), (2.75, 0.25))] {
         let (a, b) = (Point::new(a.0, a.1), Point::new(b.0, b.1));
         assert!(!free_space.sees(a, b) && !free_space.sees(b, a));
@@ -25,7 +19,7 @@ fn diagonals_of_a_hole_are_blocked() {
 
 #[test]
 fn corners_and_edges_of_the_outline_see_what_they_should() {
-    let free_space = square_room_with_square_hole();
+    let free_space = space_round_hole();
     for ring in free_space.outline() {
         for (index, &from) in ring.iter().enumerate() {
             let to = ring[(index + 1) % ring.len()];
@@ -40,7 +34,7 @@ fn corners_and_edges_of_the_outline_see_what_they_should() {
 
 #[test]
 fn robot_at_a_corner_is_sent_on() {
-    let free_space = square_room_with_square_hole();
+    let free_space = space_round_hole();
     let goal = Point::new(2.75, 2.75);
     let destination = free_space.destination(goal);
     let mut at = Point::new(0.25, 0.25);
@@ -60,7 +54,7 @@ fn robot_at_a_corner_is_sent_on() {
 
 #[test]
 fn outside_there_is_no_path() {
-    let free_space = square_room_with_square_hole();
+    let free_space = space_round_hole();
     let (inside, hole) = (Point::new(0.5, 0.5), Point::new(1.5, 1.5));
     assert!(!free_space.sees(inside, hole) && !free_space.sees(hole, hole));
     assert_eq!(free_space.geodesic(inside, hole), None);

@@ -2,7 +2,7 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, Workspace};
 use proptest::prelude::*;
 
-use super::environments::{CLEARANCE, environment, place, ring};
+use super::environments::{CLEARANCE, environment, place, ring, space_round_hole};
 
 /// The way from `a` over `c` to `b`, without its start.
 fn over(space: &FreeSpace, a: Point, c: Point, b: Point) -> Option<(Vec<Point>, f64)> {
@@ -14,9 +14,7 @@ fn over(space: &FreeSpace, a: Point, c: Point, b: Point) -> Option<(Vec<Point>, 
 /// Round a square of side 1.25 in the middle of a room, on the side that is asked for.
 #[test]
 fn a_path_stays_on_its_side_of_a_hole() {
-    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
-    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
-    let space = FreeSpace::new(&Workspace::new(boundary, vec![hole]).unwrap(), 0.125).unwrap();
+    let space = space_round_hole();
     let (from, to) = (Point::new(0.5, 1.2), Point::new(2.5, 1.2));
     let [below, above] = [0.2, 2.8].map(|y| {
         let corners = [(0.2, y), (2.8, y)].map(|(x, y)| Point::new(x, y));
@@ -31,9 +29,7 @@ fn a_path_stays_on_its_side_of_a_hole() {
 /// There and back on the same side is no way at all.
 #[test]
 fn a_way_there_and_back_comes_to_nothing() {
-    let boundary = ring(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
-    let hole = ring(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0)]);
-    let space = FreeSpace::new(&Workspace::new(boundary, vec![hole]).unwrap(), 0.125).unwrap();
+    let space = space_round_hole();
     let (from, to) = (Point::new(0.5, 0.5), Point::new(2.6, 2.4));
     let (waypoints, _) = over(&space, from, to, from).unwrap();
     assert!(space.taut(from, &waypoints).length < 1e-9);

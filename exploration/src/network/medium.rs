@@ -101,20 +101,20 @@ impl Medium {
 }
 
 impl Protocol {
+    /// Whether the last round of the control period has been played.
+    pub(super) fn period_is_over(&self, state: &State) -> bool {
+        self.configuration().medium.period() == Some(state.round)
+    }
+
     /// What may be heard, if anything comes of it.
     pub(super) fn messages(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let nodes = state.locals.len();
         let mut found = Vec::new();
         match self.configuration().medium {
-            Medium::Rounds { .. } => {
+            Medium::Periods { .. } if self.period_is_over(state) => {}
+            Medium::Rounds { .. } | Medium::Periods { .. } => {
                 let heard = self.all_heard(state);
                 found.push((Action::Round, self.round(state, &heard)?));
-            }
-            Medium::Periods { rounds, .. } => {
-                if state.round < rounds {
-                    let heard = self.all_heard(state);
-                    found.push((Action::Round, self.round(state, &heard)?));
-                }
             }
             Medium::NodesInAnyOrder => {
                 for node in 0..nodes {
@@ -162,9 +162,8 @@ impl Protocol {
     /// When a node cannot go on.
     pub fn faulty_rounds(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let mut found = Vec::new();
-        let is_over = self.configuration().medium.periods_count()
-            && self.configuration().medium.period() == Some(state.round);
-        if state.faults.are_over() && state.copies.is_empty() || is_over {
+        let waits = self.configuration().medium.periods_count() && self.period_is_over(state);
+        if state.faults.are_over() && state.copies.is_empty() || waits {
             return Ok(found);
         }
         let heard = self.all_heard(state);

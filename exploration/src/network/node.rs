@@ -1,6 +1,8 @@
 //! Nodes as the explorer handles them: one robot or access point, and what it has heard.
 
 use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Index;
 use std::sync::Arc;
 
 use pleach_automaton::network::beacon::{Beacon, Notice};
@@ -29,6 +31,11 @@ struct Said {
     period: u32,
     roll: Roll,
     confirmed: Option<u32>,
+}
+
+/// What any node tells beside its beacon where control periods do not count.
+fn told_without_periods() -> (u32, Roll, Option<u32>) {
+    (FIRST_PERIOD, Roll::default(), Some(FIRST_PERIOD + 1))
 }
 
 /// A robot or an access point.
@@ -73,6 +80,65 @@ impl Node {
             Node::Robot(robot) => Some(robot.view()),
             Node::AccessPoint(_) => None,
         }
+    }
+
+    /// All that decides on what the node does, beside what it has heard last.
+    fn account(&self, periods_count: bool) -> String {
+        match (self, periods_count) {
+            (Node::Robot(robot), false) => robot.account(),
+            (Node::Robot(robot), true) => robot.account_in_time(),
+            (Node::AccessPoint(point), false) => point.account(),
+            (Node::AccessPoint(point), true) => point.account_in_time(),
+        }
+    }
+
+    fn beacon(&self, periods_count: bool) -> Beacon {
+        match (self, periods_count) {
+            (Node::Robot(robot), false) => robot.view().beacon(),
+            (Node::Robot(robot), true) => robot.view().beacon_in_time(),
+            (Node::AccessPoint(point), false) => point.beacon(),
+            (Node::AccessPoint(point), true) => point.beacon_in_time(),
+        }
+    }
+
+    /// What it tells beside its beacon: the control period, the roll, and the confirmation of its way.
+    fn tell_now(&mut self, periods_count: bool) -> (u32, Roll, Option<u32>) {
+        match self {
+            _ if !periods_count => told_without_periods(),
+            Node::Robot(robot) => robot.tell_now(),
+            Node::AccessPoint(access_point) => access_point.tell_now(),
+        }
+    }
+}
+
+/// Different things in the order in which they were met, each with its number.
+#[derive(Debug)]
+struct Numbered<T> {
+    things: Vec<T>,
+    numbers: BTreeMap<String, u32>,
+}
+
+impl<T: fmt::Debug> Numbered<T> {
+    const fn new() -> Self {
+        Numbered { things: Vec::new(), numbers: BTreeMap::new() }
+    }
+
+    /// The number of a thing.
+    fn number_of(&mut self, thing: T) -> u32 {
+        let next = self.things.len() as u32;
+        let number = *self.numbers.entry(format!("{thing:?}")).or_insert(next);
+        if number == next {
+            self.things.push(thing);
+        }
+        number
+    }
+}
+
+impl<T> Index<u32> for Numbered<T> {
+    type Output = T;
+
+    fn index(&self, number: u32) -> &T {
+        &self.things[number as usize]
     }
 }
 
@@ -137,10 +203,8 @@ pub struct Nodes {
     positions: Vec<Point>,
     /// Whether control periods count.
     periods_count: bool,
-    beacons: Vec<Arc<Beacon>>,
-    beacon_ids: BTreeMap<String, BeaconId>,
-    messages: Vec<Said>,
-    message_ids: BTreeMap<String, MessageId>,
+    beacons: Numbered<Arc<Beacon>>,
+    messages: Numbered<Said>,
     locals: Vec<Local>,
     local_ids: BTreeMap<(String, Vec<BeaconId>), LocalId>,
     outcomes: BTreeMap<(LocalId, Stimulus), LocalId>,
@@ -152,10 +216,8 @@ impl Nodes {
         Nodes {
             positions,
             periods_count,
-            beacons: Vec::new(),
-            beacon_ids: BTreeMap::new(),
-            messages: Vec::new(),
-            message_ids: BTreeMap::new(),
+            beacons: Numbered::new(),
+            messages: Numbered::new(),
             locals: Vec::new(),
             local_ids: BTreeMap::new(),
             outcomes: BTreeMap::new(),
@@ -169,23 +231,23 @@ impl Nodes {
 
     /// The beacon with this number.
     pub fn beacon(&self, id: BeaconId) -> &Beacon {
-        &self.beacons[id as usize]
+        &self.beacons[id]
     }
 
     /// The beacon of a message.
     pub fn said(&self, id: MessageId) -> &Beacon {
-        self.beacon(self.messages[id as usize].beacon)
+        self.beacon(self.messages[id].beacon)
     }
 
     /// The control period of a message.
     pub fn period(&self, id: MessageId) -> u32 {
-        self.messages[id as usize].period
+        self.messages[id].period
     }
 
     /// The message with this beacon where control periods do not count.
     pub fn message_with(&mut self, beacon: BeaconId) -> MessageId {
-        let (period, roll, confirmed) = (FIRST_PERIOD, Roll::default(), Some(FIRST_PERIOD + 1));
-        self.take_down_message(Said { beacon, period, roll, confirmed })
+        let (period, roll, confirmed) = told_without_periods();
+        self.messages.number_of(Said { beacon, period, roll, confirmed })
     }
 
     /// How many states of single nodes have been met.
@@ -209,56 +271,19 @@ impl Nodes {
 
     /// Takes up a node that has heard the beacons given.
     pub fn take_up(&mut self, mut node: Node, heard: Vec<BeaconId>) -> LocalId {
-        let told = self.periods_count.then(|| match &mut node {
-            Node::Robot(robot) => robot.tell_now(),
-            Node::AccessPoint(access_point) => access_point.tell_now(),
-        });
-        let account = match &node {
-            Node::Robot(robot) => {
-                debug_assert!(robot.leaves_out_nothing(), "{}", robot.account());
-                if self.periods_count { robot.account_in_time() } else { robot.account() }
-            }
-            Node::AccessPoint(point) if self.periods_count => point.account_in_time(),
-            Node::AccessPoint(access_point) => access_point.account(),
-        };
-        let key = (account, heard);
+        let (period, roll, confirmed) = node.tell_now(self.periods_count);
+        if let Node::Robot(robot) = &node {
+            debug_assert!(robot.leaves_out_nothing(), "{}", robot.account());
+        }
+        let key = (node.account(self.periods_count), heard);
         if let Some(&id) = self.local_ids.get(&key) {
             return id;
         }
-        let beacon = match &node {
-            Node::Robot(robot) if self.periods_count => robot.view().beacon_in_time(),
-            Node::Robot(robot) => robot.view().beacon(),
-            Node::AccessPoint(point) if self.periods_count => point.beacon_in_time(),
-            Node::AccessPoint(access_point) => access_point.beacon(),
-        };
-        let beacon = self.take_down(beacon);
-        let message = match told {
-            Some((period, roll, confirmed)) => {
-                self.take_down_message(Said { beacon, period, roll, confirmed })
-            }
-            None => self.message_with(beacon),
-        };
+        let beacon = self.beacons.number_of(Arc::new(node.beacon(self.periods_count)));
+        let message = self.messages.number_of(Said { beacon, period, roll, confirmed });
         let id = self.locals.len() as LocalId;
         self.locals.push(Local { node, beacon, message, heard: key.1.clone() });
         self.local_ids.insert(key, id);
-        id
-    }
-
-    fn take_down_message(&mut self, said: Said) -> MessageId {
-        let next = self.messages.len() as MessageId;
-        let id = *self.message_ids.entry(format!("{said:?}")).or_insert(next);
-        if id == next {
-            self.messages.push(said);
-        }
-        id
-    }
-
-    fn take_down(&mut self, beacon: Beacon) -> BeaconId {
-        let next = self.beacons.len() as BeaconId;
-        let id = *self.beacon_ids.entry(format!("{beacon:?}")).or_insert(next);
-        if id == next {
-            self.beacons.push(Arc::new(beacon));
-        }
         id
     }
 
@@ -286,8 +311,8 @@ impl Nodes {
 
     fn hear(&self, node: &mut Node, messages: &[MessageId]) -> Result<(), RobotError> {
         messages.iter().try_for_each(|&id| {
-            let Said { beacon, period, roll, confirmed } = &self.messages[id as usize];
-            let beacon = &self.beacons[*beacon as usize];
+            let Said { beacon, period, roll, confirmed } = &self.messages[id];
+            let beacon = &self.beacons[*beacon];
             let message = Message::Beacon {
                 period: *period,
                 roll: roll.clone(),
@@ -325,10 +350,10 @@ impl Nodes {
     /// The beacon that a node goes by of each of those that it knows now; it may have refused a late
     /// one.
     fn last_heard(&self, node: &Node, known: &[BeaconId], heard: &[MessageId]) -> Vec<BeaconId> {
-        let heard = heard.iter().map(|&id| self.messages[id as usize].beacon);
+        let heard = heard.iter().map(|&id| self.messages[id].beacon);
         let Some(robot) = node.robot() else { return heard.collect() };
         let number = |held: &Arc<Beacon>| {
-            let is_held = |id: &BeaconId| Arc::ptr_eq(&self.beacons[*id as usize], held);
+            let is_held = |id: &BeaconId| Arc::ptr_eq(&self.beacons[*id], held);
             heard.clone().chain(known.iter().copied()).find(is_held)
         };
         robot.beacons().filter_map(number).collect()

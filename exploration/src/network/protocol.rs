@@ -450,7 +450,7 @@ impl Protocol {
     fn bodies(&mut self, state: &State) -> Result<Vec<(Action, State)>, RobotError> {
         let mut found = Vec::new();
         let period = self.configuration.medium.period();
-        if period.is_some_and(|rounds| state.round < rounds) {
+        if period.is_some() && !self.period_is_over(state) {
             return Ok(found);
         }
         for robot in 0..self.configuration.places.robots() {
@@ -606,7 +606,7 @@ impl Protocol {
         }
         let mut found = self.messages(state)?;
         found.extend(self.bodies(state)?);
-        if self.configuration.medium.period() == Some(state.round) {
+        if self.period_is_over(state) {
             let next = self.counted_period(state)?;
             found.push((Action::Period, next));
         }

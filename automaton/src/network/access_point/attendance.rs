@@ -230,15 +230,15 @@ impl AccessPoint {
     }
 
     /// The robots that it has heard of and that do not take part.
-    pub(super) fn absent_robots(&self) -> Vec<NodeId> {
+    pub(super) fn absent_robots(&self) -> impl Iterator<Item = NodeId> {
         let attendees = self.attendees.iter().enumerate();
         let is_absent = |it: &Attendee| it.is_known() && !it.takes_part();
-        attendees.filter(|(_, attendee)| is_absent(attendee)).map(|(robot, _)| robot).collect()
+        attendees.filter(move |(_, attendee)| is_absent(attendee)).map(|(robot, _)| robot)
     }
 
     /// Whether robots that it has heard of do not take part.
     pub(super) fn misses_robots(&self) -> bool {
-        !self.absent_robots().is_empty()
+        self.absent_robots().next().is_some()
     }
 
     /// The robots that take part, as far as it knows.

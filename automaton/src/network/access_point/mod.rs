@@ -22,7 +22,7 @@ use super::member::Sense;
 use super::message::Message;
 use super::record::MissionEvent;
 use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
-use super::roll::{Roll, Wreck};
+use super::roll::{Roll, Sightings, Wreck};
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election};
 use super::site::Site;
@@ -52,7 +52,7 @@ pub struct AccessPoint {
     /// The beacon heard last of each node in range, by their senders.
     heard: Vec<Arc<Beacon>>,
     /// Where each robot was when it was heard last.
-    sightings: Vec<Wreck>,
+    sightings: Sightings,
     /// Where robots that do not take part were heard last, here or by the nodes that are heard.
     wrecks: Arc<Vec<Wreck>>,
     /// The senders of which nothing has been heard in this control period yet.
@@ -111,7 +111,7 @@ impl AccessPoint {
             roll: Roll::default(),
             site,
             heard: Vec::new(),
-            sightings: Vec::new(),
+            sightings: Sightings::default(),
             wrecks: Arc::default(),
             silent: BTreeSet::new(),
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
@@ -218,29 +218,15 @@ impl AccessPoint {
             Err(at) => self.heard.insert(at, Arc::clone(beacon)),
         }
         if beacon.duty.is_some() {
-            self.sight(Wreck { robot: beacon.sender, place: beacon.position, heard_in: period });
+            let (robot, place) = (beacon.sender, beacon.position);
+            self.sightings.note(Wreck { robot, place, heard_in: period });
         }
     }
 
-    /// Remembers where a robot has been heard.
-    fn sight(&mut self, seen: Wreck) {
-        match self.sightings.binary_search_by_key(&seen.robot, |known| known.robot) {
-            Ok(at) => self.sightings[at] = seen,
-            Err(at) => self.sightings.insert(at, seen),
-        }
-    }
-
+    /// Where robots that do not take part were heard last, here or by the nodes that are heard.
     fn locate_wrecks(&mut self) {
-        let absent = &self.roll.absent;
-        if absent.is_empty() && self.wrecks.is_empty() {
-            return;
-        }
-        let told = self.heard.iter().flat_map(|beacon| beacon.wrecks.iter());
-        let wrecks =
-            absent.located(self.sightings.iter().chain(self.wrecks.iter()).chain(told).copied());
-        if *self.wrecks != wrecks {
-            self.wrecks = Arc::new(wrecks);
-        }
+        let told = self.heard.iter().flat_map(|beacon| beacon.wrecks.iter().copied());
+        self.roll.absent.locate(&mut self.wrecks, self.sightings.iter().chain(told));
     }
 
     /// A control period begins, in which all nodes send again.
@@ -294,14 +280,20 @@ impl AccessPoint {
     }
 
     fn hear_announcements(&mut self) {
-        for announced in self.heard.iter().filter_map(|beacon| beacon.announced.as_ref()) {
-            if self.announced.as_ref().is_none_or(|(known, _)| announced.0.is_newer_than(*known)) {
-                self.announced = Some(announced.clone());
-                self.forgetful = Arc::default();
-            }
+        let heard = self.heard.iter().filter_map(|beacon| beacon.announced.as_ref());
+        if let Some(newest) = heard.max_by_key(|&&(id, _)| id).cloned() {
+            self.learn(newest);
         }
         for beacon in &self.heard {
             beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
+        }
+    }
+
+    /// Takes over an announcement that is newer than the one that it knows.
+    fn learn(&mut self, announced: Announced) {
+        if self.announced.as_ref().is_none_or(|(known, _)| announced.0.is_newer_than(*known)) {
+            self.announced = Some(announced);
+            self.forgetful = Arc::default();
         }
     }
 
@@ -315,8 +307,7 @@ impl AccessPoint {
     fn take_up(&mut self, bulletin: Bulletin) {
         let id = bulletin.id();
         if let Notice::Task(announcement) = &**bulletin.notice() {
-            self.announced = Some((id, announcement.clone()));
-            self.forgetful = Arc::default();
+            self.learn((id, announcement.clone()));
         }
         match **bulletin.notice() {
             Notice::Task(_) | Notice::Call { .. } => {

@@ -339,7 +339,7 @@ fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
 fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     let task = place.announced.as_ref()?.task;
     if point.misses_robots() {
-        let absent = point.absent_robots();
+        let absent: Vec<NodeId> = point.absent_robots().collect();
         let reason = format!(
             "no robot is left that can go to task {task}: robots {absent:?} have stopped, or nobody \
              hears them"

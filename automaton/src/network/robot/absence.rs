@@ -7,8 +7,6 @@
 //! cuts off may move on unheard as long as its roll is valid; this is not allowed for.) Others learn of this
 //! place when the robot is suspended, and so before they can come near without having heard it.
 
-use std::sync::Arc;
-
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{Disc, HalfPlane};
 use pleach_discrete::network::NodeId;
@@ -43,29 +41,17 @@ impl Robot {
 
     /// A robot is out of sight: where it was heard last.
     pub(super) fn lose_sight_of(&mut self, lost: &Neighbour) {
-        if lost.is_access_point() {
-            return;
-        }
-        let seen = lost.wreck();
-        match self.out_of_sight.binary_search_by_key(&seen.robot, |known| known.robot) {
-            Ok(at) => self.out_of_sight[at] = seen,
-            Err(at) => self.out_of_sight.insert(at, seen),
+        if !lost.is_access_point() {
+            self.out_of_sight.note(lost.wreck());
         }
     }
 
     /// Where robots that do not take part were heard last, by this robot or by the nodes that it hears.
     pub(super) fn locate_wrecks(&mut self) {
-        let absent = &self.roll.absent;
-        if absent.is_empty() && self.wrecks.is_empty() {
-            return;
-        }
         let silent = self.neighbours.iter().filter(|known| known.is_silent());
-        let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter());
-        let seen = self.out_of_sight.iter().chain(self.wrecks.iter()).chain(told).copied();
-        let wrecks = absent.located(seen.chain(silent.map(Neighbour::wreck)));
-        if *self.wrecks != wrecks {
-            self.wrecks = Arc::new(wrecks);
-        }
+        let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter().copied());
+        let seen = self.out_of_sight.iter().chain(told).chain(silent.map(Neighbour::wreck));
+        self.roll.absent.locate(&mut self.wrecks, seen);
     }
 
     /// The places of wrecks that are not heard in this control period.

@@ -195,7 +195,7 @@ impl Robot {
     /// The [`account`](Self::account) of a robot where control periods count. Where bodies lie that do
     /// not take part is left out: it matters for motion alone.
     pub fn account_in_time(&self) -> String {
-        let seen = self.out_of_sight.iter().chain(self.wrecks.iter());
+        let seen = self.out_of_sight.iter().chain(self.wrecks.iter().copied());
         let seen: BTreeSet<NodeId> = seen.map(|wreck| wreck.robot).collect();
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);

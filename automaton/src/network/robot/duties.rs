@@ -231,9 +231,8 @@ impl Robot {
     /// This post, which it takes again. A redundant one is attached to nothing where the robot has gone out of
     /// reach of its parent.
     fn detached_if_far(&self, post: Post) -> Post {
-        let parent = post.parent.and_then(|anchor| self.neighbour_at(anchor));
-        let is_near = parent.is_some_and(|parent| self.walk_to(parent) <= self.hard_length());
-        if post.is_redundant() && !is_near { Post { parent: None, ..post } } else { post }
+        let is_far = post.is_redundant() && !self.reaches_parent(post.parent);
+        if is_far { Post { parent: None, ..post } } else { post }
     }
 
     /// Whether its turn on Σ has come: its subgroup is the active team, and its post is held by

@@ -74,7 +74,14 @@ impl Robot {
         };
         let announcement = self.announcement().filter(competes);
         let bid = announcement.and_then(|announcement| self.leader_bid(announcement.position));
-        if let Some(election) = &mut self.election {
+        self.place_token(bid);
+    }
+
+    /// Answers the election under way, once.
+    pub(super) fn place_token(&mut self, bid: Option<Bid>) {
+        if let Some(election) = &mut self.election
+            && !election.has_token(self.id)
+        {
             Arc::make_mut(election).place(self.id, bid);
             self.bid = bid;
         }

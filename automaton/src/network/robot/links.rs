@@ -73,6 +73,12 @@ impl Robot {
         self.site.lengths(self.stretched).hard
     }
 
+    /// Whether a link of the tree from here to the holder of this parent would not be too long.
+    pub(super) fn reaches_parent(&self, parent: Option<Anchor>) -> bool {
+        let node = parent.and_then(|anchor| self.neighbour_at(anchor));
+        node.is_some_and(|node| self.walk_to(node) <= self.hard_length())
+    }
+
     pub(super) fn named_parent(&self) -> Option<NodeId> {
         if let Duty::Shifting(Shifting { place, .. }) = *self.duty {
             return self.parent_under_way(place);

@@ -80,7 +80,7 @@ use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::message::Message;
 use super::mission::{Idle, Mission};
 use super::record::MissionEvent;
-use super::roll::{Roll, Wreck};
+use super::roll::{Roll, Sightings, Wreck};
 use super::shared::Shared;
 use super::site::Site;
 use duties::Label;
@@ -128,7 +128,7 @@ pub struct Robot {
     is_new: bool,
 
     // Where robots were that it does not hear any more, and those that are gone.
-    out_of_sight: Vec<Wreck>,
+    out_of_sight: Sightings,
     wrecks: Arc<Vec<Wreck>>,
 
     // The rest of its continuous state: u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
@@ -279,7 +279,7 @@ impl Robot {
             neighbours: Vec::new(),
             period: 0,
             roll: Roll::default(),
-            out_of_sight: Vec::new(),
+            out_of_sight: Sightings::default(),
             wrecks: Arc::default(),
             heard_up_to: 0,
             parent: None,

@@ -78,11 +78,6 @@ impl Robot {
             self.task_position(task)
                 .is_some_and(|place| near(place).norm() <= settings.arrival_radius())
         });
-        let link_holds = station
-            .post
-            .parent
-            .and_then(|anchor| self.neighbour_at(anchor))
-            .is_some_and(|parent| self.walk_to(parent) <= self.hard_length());
         let children_hold = self
             .children_of(station.post.id)
             .all(|child| self.walk_to(child) <= self.hard_length());
@@ -91,7 +86,7 @@ impl Robot {
             && parked.beacon.reply.is_none()
             && within_reach
             && services
-            && link_holds
+            && self.reaches_parent(station.post.parent)
             && children_hold
     }
 

@@ -186,12 +186,7 @@ impl Robot {
             (None, _) if self.waited_rounds < 2 * self.longest_wait() => return,
             (None, _) => self.stranded_bid(),
         };
-        if let Some(election) = &mut self.election
-            && !election.has_token(self.id)
-        {
-            Arc::make_mut(election).place(self.id, bid);
-            self.bid = bid;
-        }
+        self.place_token(bid);
     }
 
     /// Whether it knows its way to the robot that calls. One that has restarted since it bid may not.

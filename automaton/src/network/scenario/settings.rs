@@ -60,7 +60,7 @@ impl Settings {
     const SLOPE_AVERSION: f64 = 10.0;
     const TREE_RELIABILITY: f64 = 0.1;
     /// The reliability from which on a shorter link is hardly a better one.
-    const GOOD_RELIABILITY: f64 = 0.8;
+    pub const GOOD_RELIABILITY: f64 = 0.8;
 
     /// The settings of `scenario`: what its `[control]` states, defaults for the rest.
     pub fn resolve(scenario: &Scenario) -> Self {

@@ -90,7 +90,8 @@ struct Scene<'a> {
     places: &'a Places,
 }
 
-/// Robots that move back and forth between a few places get nowhere: so many periods are looked back on.
+/// How many control periods are looked back on: a robot that moves back and forth between a few places
+/// makes no progress.
 const RECENT: usize = 16;
 
 /// Judges a mission, period by period, and stops at the first violation.
