@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use crate::Error;
 use crate::listing::Mutant;
+use crate::report::Verdict;
 use crate::weaving::{SWITCHES, Woven, woven};
 
 /// Where the manifest of the workspace says what the compiler objects to, and what it says there of mutants
@@ -16,9 +17,13 @@ use crate::weaving::{SWITCHES, Woven, woven};
 const LINTS: &str = "[workspace.lints.rust]\n";
 const LENIENT: &str = "arithmetic_overflow = \"allow\"\nunconditional_panic = \"allow\"\n";
 
+/// What cargo is asked for, one after the other: the first tells quickly what does not compile.
+const STEPS: [&[&str]; 2] = [&["check", "--lib"], &["test", "--no-run", "--lib", "--tests"]];
+
 /// The copy.
 pub struct Copy {
     root: PathBuf,
+    /// What is built of copies.
     target: PathBuf,
     package: String,
     /// The folder of the package in the workspace.
@@ -29,45 +34,39 @@ pub struct Copy {
 
 /// What has come of building.
 pub struct Built {
+    /// The test programs.
     pub programs: Vec<PathBuf>,
-    /// The mutants that do not compile.
-    pub unviable: BTreeSet<usize>,
-    /// Those that might, and cannot be behind a switch.
-    pub fixed: BTreeSet<usize>,
+    /// The mutants that are not in them.
+    pub unusable: BTreeMap<usize, Verdict>,
 }
 
 impl Copy {
     /// Copies the files of the workspace `root` that are under version control or about to be.
-    pub fn of(root: &Path, to: PathBuf, package: &str, mutants: &[Mutant]) -> Result<Self, Error> {
+    pub fn of(root: &Path, package: &str, mutants: &[Mutant]) -> Result<Self, Error> {
+        let place = root.join("target/mutants");
+        let copy = place.join(package);
         let list = Command::new("git")
             .current_dir(root)
             .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
             .output()?;
         let names = String::from_utf8_lossy(&list.stdout).into_owned();
-        for name in names
-            .split_terminator('\0')
-            .filter(|name| root.join(name).is_file() && *name != "Cargo.toml")
-        {
-            write_if_changed(&to.join(name), &fs::read(root.join(name))?)?;
+        for name in names.split_terminator('\0').filter(|name| root.join(name).is_file()) {
+            let mut content = fs::read(root.join(name))?;
+            if name == "Cargo.toml" {
+                let manifest = String::from_utf8_lossy(&content);
+                content = manifest.replace(LINTS, &[LINTS, LENIENT].concat()).into_bytes();
+            }
+            write_if_changed(&copy.join(name), &content)?;
         }
-        let manifest = fs::read_to_string(root.join("Cargo.toml"))?;
-        let manifest = manifest.replace(LINTS, &[LINTS, LENIENT].concat());
-        write_if_changed(&to.join("Cargo.toml"), manifest.as_bytes())?;
-        let folder = mutants.first().and_then(|mutant| mutant.file.split_once("/src/"));
+        let folder = mutants.first().and_then(|mutant| mutant.file.split_once("src/"));
         let folder = folder.map(|(folder, _)| folder.to_owned()).unwrap_or_default();
-        let mut originals = BTreeMap::new();
-        for file in mutants.iter().map(|mutant| &mutant.file) {
-            originals.insert(file.clone(), fs::read_to_string(root.join(file))?);
-        }
-        let library = format!("{folder}/src/lib.rs");
-        originals.insert(library.clone(), fs::read_to_string(root.join(&library))?);
-        Ok(Copy {
-            root: to,
-            target: root.join("target"),
-            package: package.to_owned(),
-            folder,
-            originals,
-        })
+        let library = format!("{folder}src/lib.rs");
+        let files = mutants.iter().map(|mutant| &mutant.file).chain([&library]);
+        let originals = files
+            .map(|file| Ok((file.clone(), fs::read_to_string(root.join(file))?)))
+            .collect::<Result<_, Error>>()?;
+        let (package, target) = (package.to_owned(), place.join("built"));
+        Ok(Copy { root: copy, target, package, folder, originals })
     }
 
     /// The folder in which the tests of the package run.
@@ -75,78 +74,50 @@ impl Copy {
         self.root.join(&self.folder)
     }
 
-    /// Builds the tests with all mutants that compile, leaving out those that the compiler complains of until
-    /// it does no more. Numbers of mutants begin with one.
+    /// Builds the tests with all mutants that compile, leaving out those of which the compiler complains
+    /// until it does no more.
     pub fn build(&self, mutants: &[Mutant]) -> Result<Built, Error> {
-        let (mut unviable, mut fixed) = (BTreeSet::new(), BTreeSet::new());
-        for step in [&["check", "--lib"][..], &["test", "--no-run", "--lib", "--tests"]] {
+        let mut unusable = BTreeMap::new();
+        let mut programs = Vec::new();
+        for step in STEPS {
             loop {
-                let files = self.weave(mutants, &(&unviable | &fixed))?;
+                let files = self.weave(mutants, &mut unusable)?;
                 let said = self.cargo(step)?;
-                let errors = said.iter().filter_map(|line| line.message.as_ref());
-                let errors: Vec<_> = errors.filter(|message| message.level == "error").collect();
+                let messages = said.iter().filter_map(|line| line.message.as_ref());
+                let errors: Vec<_> = messages.filter(|it| it.level == "error").collect();
                 if errors.is_empty() {
-                    let programs: Vec<PathBuf> =
-                        said.into_iter().filter_map(|line| line.executable).collect();
-                    if step[0] == "test" {
-                        let woven: BTreeSet<usize> =
-                            files.values().flat_map(Woven::mutants).collect();
-                        let is_left = |number: &usize| !unviable.contains(number);
-                        fixed = (1..=mutants.len())
-                            .filter(is_left)
-                            .collect::<BTreeSet<_>>()
-                            .difference(&woven)
-                            .copied()
-                            .collect();
-                        return Ok(Built { programs, unviable, fixed });
-                    }
+                    programs = said.into_iter().filter_map(|line| line.executable).collect();
                     break;
                 }
-                let known = unviable.len() + fixed.len();
-                for error in &errors {
-                    for span in error.spans.iter().filter(|span| span.is_primary) {
-                        let woven = files.get(&span.file_name);
-                        let at_fault = woven.and_then(|woven| woven.at(span.byte_start));
-                        match at_fault {
-                            Some([mutant]) if !error.needs_constants() => {
-                                unviable.extend([*mutant])
-                            }
-                            Some(mutants) => fixed.extend(mutants),
-                            None => {}
-                        };
-                    }
-                }
-                eprintln!(
-                    "{} errors: {} unviable, {} without a switch",
-                    errors.len(),
-                    unviable.len(),
-                    fixed.len()
-                );
-                if unviable.len() + fixed.len() == known {
+                let known = unusable.len();
+                errors.iter().for_each(|error| error.blame(&files, &mut unusable));
+                if unusable.len() == known {
                     let all: Vec<&str> = errors.iter().map(|error| &*error.rendered).collect();
                     return Err(Error::Build(all.join("\n")));
                 }
             }
         }
-        unreachable!("the last step returns")
+        Ok(Built { programs, unusable })
     }
 
-    /// Writes all files with the mutants that are not known to be unviable.
+    /// Writes all files with the mutants that are not known to be unusable. Those for which there is no place
+    /// are.
     fn weave(
         &self,
         mutants: &[Mutant],
-        unviable: &BTreeSet<usize>,
+        unusable: &mut BTreeMap<usize, Verdict>,
     ) -> Result<BTreeMap<String, Woven>, Error> {
         let mut files = BTreeMap::new();
         for (file, original) in &self.originals {
-            let numbered = mutants.iter().enumerate().map(|(place, mutant)| (place + 1, mutant));
-            let here: Vec<(usize, &Mutant)> = numbered
-                .filter(|(number, mutant)| mutant.file == *file && !unviable.contains(number))
-                .collect();
+            let is_here =
+                |mutant: &&Mutant| mutant.file == *file && !unusable.contains_key(&mutant.number);
+            let here: Vec<&Mutant> = mutants.iter().filter(is_here).collect();
             let woven = woven(file, original, &here)?;
-            let added = if file.ends_with("src/lib.rs") { SWITCHES } else { "" };
-            let text = [&woven.text, added].concat();
-            write_if_changed(&self.root.join(file), text.as_bytes())?;
+            let placed: BTreeSet<usize> = woven.mutants().collect();
+            let unplaced = here.iter().filter(|mutant| !placed.contains(&mutant.number));
+            unusable.extend(unplaced.map(|mutant| (mutant.number, Verdict::NoSwitch)));
+            let switches = if file.ends_with("src/lib.rs") { SWITCHES } else { "" };
+            write_if_changed(&self.root.join(file), [&woven.text, switches].concat().as_bytes())?;
             files.insert(file.clone(), woven);
         }
         Ok(files)
@@ -156,10 +127,11 @@ impl Copy {
     fn cargo(&self, step: &[&str]) -> Result<Vec<Line>, Error> {
         let output = Command::new("cargo")
             .current_dir(&self.root)
-            .env("CARGO_TARGET_DIR", &self.target)
             .args(step)
             .args(["--quiet", "--package", &self.package, "--message-format", "json"])
-            .stderr(Stdio::inherit())
+            .arg("--target-dir")
+            .arg(&self.target)
+            .stderr(Stdio::null())
             .output()?;
         let text = String::from_utf8_lossy(&output.stdout);
         text.lines().map(|line| Ok(serde_json::from_str(line)?)).collect()
@@ -181,6 +153,7 @@ struct Line {
     executable: Option<PathBuf>,
 }
 
+/// What the compiler says.
 #[derive(Deserialize)]
 struct Message {
     level: String,
@@ -190,20 +163,29 @@ struct Message {
 }
 
 #[derive(Deserialize)]
+struct Code {
+    code: String,
+}
+
+#[derive(Deserialize)]
 struct MessageSpan {
     file_name: String,
     byte_start: usize,
     is_primary: bool,
 }
 
-#[derive(Deserialize)]
-struct Code {
-    code: String,
-}
-
 impl Message {
-    /// Whether a switch is where the compiler has to know the value: the mutant may be viable.
-    fn needs_constants(&self) -> bool {
-        self.code.as_ref().is_some_and(|code| code.code == "E0015")
+    /// The compiler complains of one mutant, which is unviable, or of what is left where several are: these
+    /// may be viable, but not behind a switch. Nor may they where the compiler has to know the value.
+    fn blame(&self, files: &BTreeMap<String, Woven>, unusable: &mut BTreeMap<usize, Verdict>) {
+        let is_constant = self.code.as_ref().is_some_and(|code| code.code == "E0015");
+        for span in self.spans.iter().filter(|span| span.is_primary) {
+            let at_fault = files.get(&span.file_name).and_then(|woven| woven.at(span.byte_start));
+            let verdict = match at_fault {
+                Some([_]) if !is_constant => Verdict::Unviable,
+                _ => Verdict::NoSwitch,
+            };
+            unusable.extend(at_fault.unwrap_or_default().iter().map(|&mutant| (mutant, verdict)));
+        }
     }
 }

@@ -10,6 +10,9 @@ use crate::Error;
 /// A deliberate change of one place of the sources, as `cargo mutants --list` describes it.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Mutant {
+    /// By which it is switched on, from one.
+    #[serde(skip)]
+    pub number: usize,
     /// Place and change, in words.
     pub name: String,
     /// The file, from the root of the workspace.
@@ -43,18 +46,20 @@ pub struct Place {
     pub column: usize,
 }
 
-/// The mutants of a package that `.cargo/mutants.toml` asks for, in files whose path has one of `parts`
-/// in it, or in all.
+/// The mutants of a package that `.cargo/mutants.toml` does not exclude, in files whose path has one of
+/// `parts` in it, or in all.
 pub fn mutants(root: &Path, package: &str, parts: &[String]) -> Result<Vec<Mutant>, Error> {
-    let mut command = Command::new("cargo");
-    command.current_dir(root).args(["mutants", "--list", "--json", "--package", package]);
-    let output = command.output()?;
+    let output = Command::new("cargo")
+        .current_dir(root)
+        .args(["mutants", "--list", "--json", "--file", "**/*.rs", "--package", package])
+        .output()?;
     if !output.status.success() {
         return Err(Error::Listing(String::from_utf8_lossy(&output.stderr).into_owned()));
     }
     let mut mutants: Vec<Mutant> = serde_json::from_slice(&output.stdout)?;
-    mutants.retain(|mutant| {
-        parts.is_empty() || parts.iter().any(|part| mutant.file.contains(part.as_str()))
-    });
+    let is_asked_for =
+        |mutant: &Mutant| parts.is_empty() || parts.iter().any(|part| mutant.file.contains(part));
+    mutants.retain(is_asked_for);
+    mutants.iter_mut().enumerate().for_each(|(at, mutant)| mutant.number = at + 1);
     Ok(mutants)
 }

@@ -55,32 +55,26 @@ enum Site {
     Arm(usize, Option<(usize, usize)>),
 }
 
-/// The file with a switch for each of these mutants, which have numbers. Those for which there is no
-/// place in the syntax are left out.
-pub fn woven(file: &str, text: &str, mutants: &[(usize, &Mutant)]) -> Result<Woven, Error> {
+/// The file with a switch for each of these mutants. Those for which there is no place in the syntax are
+/// left out.
+pub fn woven(file: &str, text: &str, mutants: &[&Mutant]) -> Result<Woven, Error> {
     let syntax =
         syn::parse_file(text).map_err(|source| Error::Syntax { file: file.to_owned(), source })?;
     let lines = Lines::of(text);
-    let mut finder = Finder { lines: &lines, places: BTreeMap::new() };
+    let mut finder = Finder { lines: &lines, sites: BTreeMap::new() };
     finder.visit_file(&syntax);
     let mut sites: BTreeMap<Site, Vec<(usize, String)>> = BTreeMap::new();
-    for &(number, mutant) in mutants {
+    for mutant in mutants {
         let Span { start, end } = mutant.span;
         let span = lines.byte(start.line, start.column - 1)..lines.byte(end.line, end.column - 1);
-        let site = match mutant.genre {
-            // The function has one type of iterator, which is not this one.
-            Genre::FnValue if mutant.replacement.starts_with("::std::iter::") => None,
-            Genre::FnValue => Some(Site::Body(span.start)),
-            genre => finder.places.get(&(genre, span.start)).copied(),
-        };
+        let Some(site) = finder.site_of(mutant, span.start) else { continue };
         let alternative = match site {
-            Some(Site::Expression(start, end)) => {
+            Site::Expression(start, end) => {
                 [&text[start..span.start], &*mutant.replacement, &text[span.end..end]].concat()
             }
-            Some(_) => mutant.replacement.clone(),
-            None => continue,
+            Site::Body(_) | Site::Arm(..) => mutant.replacement.clone(),
         };
-        sites.entry(site.expect("found above")).or_default().push((number, alternative));
+        sites.entry(site).or_default().push((mutant.number, alternative));
     }
     Ok(assembled(text, &sites))
 }
@@ -176,14 +170,24 @@ impl Site {
 /// The sites, by the genres of mutants that change them and the bytes at which these begin.
 struct Finder<'t> {
     lines: &'t Lines<'t>,
-    places: BTreeMap<(Genre, usize), Site>,
+    sites: BTreeMap<(Genre, usize), Site>,
 }
 
 impl Finder<'_> {
+    /// What a mutant changes that begins at this byte.
+    fn site_of(&self, mutant: &Mutant, start: usize) -> Option<Site> {
+        match mutant.genre {
+            // The function has one type of iterator, which is not this one.
+            Genre::FnValue if mutant.replacement.starts_with("::std::iter::") => None,
+            Genre::FnValue => Some(Site::Body(start)),
+            genre => self.sites.get(&(genre, start)).copied(),
+        }
+    }
+
     fn note(&mut self, genre: Genre, changed: &impl Spanned, expression: &impl Spanned) {
         let range = self.lines.range(expression);
         let site = Site::Expression(range.start, range.end);
-        self.places.insert((genre, self.lines.range(changed).start), site);
+        self.sites.insert((genre, self.lines.range(changed).start), site);
     }
 }
 
@@ -213,7 +217,7 @@ impl<'a> Visit<'a> for Finder<'_> {
         let range = guard.map(|guard| self.lines.range(&**guard));
         let pattern_end = self.lines.range(&arm.pat).end;
         let site = Site::Arm(pattern_end, range.map(|range| (range.start, range.end)));
-        self.places.insert((Genre::MatchArm, self.lines.range(arm).start), site);
+        self.sites.insert((Genre::MatchArm, self.lines.range(arm).start), site);
         if let Some(guard) = guard {
             self.note(Genre::MatchArmGuard, &**guard, &**guard);
         }
@@ -251,5 +255,96 @@ impl<'t> Lines<'t> {
     fn range(&self, syntax: &impl Spanned) -> Range<usize> {
         let (start, end) = (syntax.span().start(), syntax.span().end());
         self.byte(start.line, start.column)..self.byte(end.line, end.column)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::listing::Place;
+
+    /// The mutant that puts `replacement` in place of the first `text` of the line.
+    fn mutant(genre: Genre, line: &str, text: &str, replacement: &str, number: usize) -> Mutant {
+        let before = line.find(text).expect("it is there");
+        let place = |bytes: usize| Place { line: 1, column: line[..bytes].chars().count() + 1 };
+        Mutant {
+            number,
+            name: String::new(),
+            file: String::new(),
+            genre,
+            replacement: replacement.to_owned(),
+            span: Span { start: place(before), end: place(before + text.len()) },
+        }
+    }
+
+    fn text(line: &str, mutants: &[Mutant]) -> String {
+        let mutants: Vec<&Mutant> = mutants.iter().collect();
+        woven("", line, &mutants).expect("it is Rust").text.replace("crate::mutant_switches::", "")
+    }
+
+    #[test]
+    fn an_operator_stands_beside_those_that_could_be_in_its_place() {
+        let line = "fn f(ä: u8, b: u8) -> bool { ä < b }";
+        let less = |with, number| mutant(Genre::BinaryOperator, line, "<", with, number);
+        assert_eq!(
+            text(line, &[less("==", 7), less(">", 8)]),
+            "fn f(ä: u8, b: u8) -> bool { (if none(&[7, 8]) { ä < b } else if is(7) { ä == b } \
+             else { ä > b }) }"
+        );
+    }
+
+    /// What is within is switched only where the expression about it is as it was.
+    #[test]
+    fn switches_stand_in_the_branch_without_mutants() {
+        let line = "fn f(a: i8, b: i8) -> i8 { a + -b }";
+        let mutants = [
+            mutant(Genre::BinaryOperator, line, "+", "-", 1),
+            mutant(Genre::UnaryOperator, line, "-b", "b", 2),
+        ];
+        let minus = Mutant {
+            span: Span { start: mutants[1].span.start, ..mutants[1].span },
+            ..mutants[1].clone()
+        };
+        assert_eq!(
+            text(line, &[mutants[0].clone(), minus]),
+            "fn f(a: i8, b: i8) -> i8 { (if none(&[1]) { a + (if none(&[2]) { -b } else { b }) } \
+             else { a - -b }) }"
+        );
+    }
+
+    #[test]
+    fn bodies_are_left_and_arms_passed_over() {
+        let line = "fn f(a: u8) -> u8 { match a { 0 => 1, b if b > 2 => 3, _ => 4 } }";
+        let mutants = [
+            mutant(Genre::FnValue, line, "match a", "0", 1),
+            mutant(Genre::MatchArm, line, "0 => 1", "", 2),
+            mutant(Genre::MatchArm, line, "b if", "", 3),
+            mutant(Genre::MatchArmGuard, line, "b > 2", "true", 4),
+        ];
+        assert_eq!(
+            text(line, &mutants),
+            "fn f(a: u8) -> u8 { if is(1) { return 0; } match a { 0 if !is(2) => 1, \
+             b if !is(3) && ((if none(&[4]) { b > 2 } else { true })) => 3, _ => 4 } }"
+        );
+    }
+
+    #[test]
+    fn chains_that_bind_names_are_left_as_they_are() {
+        let line = "fn f(a: Option<u8>, b: bool) { if let Some(_) = a && b {} }";
+        assert_eq!(text(line, &[mutant(Genre::BinaryOperator, line, "&&", "||", 1)]), line);
+    }
+
+    /// Of what the compiler complains is the mutant within which it stands, or all of that place.
+    #[test]
+    fn a_complaint_is_about_the_narrowest_stretch() {
+        let line = "fn f(a: u8, b: u8) -> bool { a < b }";
+        let less = |with, number| mutant(Genre::BinaryOperator, line, "<", with, number);
+        let (one, two) = (less("==", 7), less(">", 8));
+        let woven = woven("", line, &[&one, &two]).expect("it is Rust");
+        let at = |text: &str| woven.at(woven.text.find(text).expect("it is there"));
+        assert_eq!(at("a == b"), Some(&[7][..]));
+        assert_eq!(at("a > b"), Some(&[8][..]));
+        assert_eq!(at("a < b"), Some(&[7, 8][..]));
+        assert_eq!(at("fn"), None);
     }
 }

@@ -2,6 +2,7 @@
 
 mod attachment;
 mod elections;
+mod errors;
 mod flows;
 mod hearing;
 mod moves;
