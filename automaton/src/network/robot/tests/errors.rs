@@ -150,3 +150,62 @@ fn a_robot_under_way_is_attached_to_the_next_of_the_chain() {
     robot.report_arrival();
     assert!(robot.has_reported(0));
 }
+
+/// From where a link is longer than errors explain, each end that moves makes it shorter by as much as its
+/// move may be off.
+#[test]
+fn a_link_that_is_far_too_long_truly_gets_no_longer() {
+    use pleach_continuous::network::acceptance::Segment;
+    let far = unsure().hard_length() + 2.0 * unsure().stray();
+    let accepts = |length: f64, own: f64, other: f64| {
+        let mut robot = unsure();
+        robot.holds(fixed(20, 13));
+        robot.hears(beacon(5, west(length), fixed(13, 14), &[13, 14]));
+        robot.remember_parent();
+        robot.begin_negotiation();
+        if other > 0.0 {
+            robot.hear_proposal(5, Segment { from: west(length), to: west(length - other) });
+        }
+        let proposal = (own > 0.0).then(|| Segment { from: HERE, to: west(own) });
+        robot.proposal = proposal;
+        robot.judge_moves(&mut crate::node::Outputs::of(0));
+        robot.proposal == proposal && !robot.must_judge_moves
+    };
+    let (near, long) = (far - LITTLE, far + LITTLE);
+    let (enough, short) = (MOTION_ERROR + LITTLE, MOTION_ERROR - LITTLE);
+    assert!(accepts(long, enough, 0.0) && !accepts(long, short, 0.0));
+    assert!(accepts(near, short, 0.0), "errors explain its length");
+    assert!(accepts(long, 0.0, enough) && !accepts(long, 0.0, short));
+    assert!(accepts(long, enough, enough) && !accepts(long, enough, short));
+}
+
+/// Where a robot may be within a disc, a sender reckons with the farthest place.
+#[test]
+fn a_sender_reckons_with_where_its_receiver_may_measure_itself() {
+    use pleach_continuous::network::LinkReliability as _;
+    use pleach_continuous::network::acceptance::Segment;
+    let objects = |share: f64, move_to: f64, parked: bool| {
+        let mut robot = unsure();
+        robot.holds(fixed(20, 99));
+        robot.hears(Beacon { parked, ..beacon(5, west(1.2), fixed(13, 14), &[13, 14]) });
+        robot.survey_links();
+        robot.links[0].share = share;
+        robot.links[0].held.flow = share * robot.links[0].reliability;
+        robot.begin_negotiation();
+        robot.hear_proposal(5, Segment { from: west(1.2), to: west(move_to) });
+        let mut outputs = crate::node::Outputs::of(0);
+        robot.judge_moves(&mut outputs);
+        outputs.drain_sent().count() > 0
+    };
+    let link = |away: f64| unsure().site.link.reliability(away);
+    // The share at which the load is 1 at this distance.
+    let full = |away: f64| link(away) / link(1.2);
+    let stray = 2.0 * POSITION_ERROR + MOTION_ERROR;
+    let farthest = 1.25 + stray;
+    assert!(!objects(full(farthest) - 1e-4, 1.25, true));
+    assert!(objects(full(farthest) + 1e-4, 1.25, true));
+    // One that rests is where it is known to be; one that is not parked may measure itself anew.
+    assert!(!objects(full(1.2) - 1e-4, 1.2, true));
+    let anew = full(1.2 + 2.0 * POSITION_ERROR);
+    assert!(!objects(anew - 1e-4, 1.2, false) && objects(anew + 1e-4, 1.2, false));
+}

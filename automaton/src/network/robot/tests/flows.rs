@@ -314,3 +314,26 @@ fn a_robot_passes_on_the_demand_that_it_does_not_meet() {
         "{told:?}"
     );
 }
+
+/// Two flows that are granted share the time of their sender.
+#[test]
+fn flows_take_no_more_than_all_the_time_of_a_sender() {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    let [one, two] = [0, 1].map(|at| robot.links[at].reliability);
+    (robot.links[0].share, robot.links[1].share) = (0.7, 0.7);
+    robot.ask_for_flows(&mut outputs);
+    let number = requests(&mut outputs)[0].1.number;
+    robot.hear_grant(5, FlowGrant { number, flow: 0.7 * one });
+    robot.take_in_requests(&mut outputs);
+    let flows = [robot.links[0].held.flow, robot.links[1].held.flow];
+    assert!((flows[0] / one + flows[1] / two - 1.0).abs() < 1e-9, "{flows:?}");
+    // What the first gives up the other one takes.
+    (robot.links[0].share, robot.links[1].share) = (0.1, 0.7);
+    robot.ask_for_flows(&mut outputs);
+    let flows = [robot.links[0].held.flow, robot.links[1].held.flow];
+    assert!(
+        (flows[0] - 0.1 * one).abs() < 1e-9 && (flows[1] - 0.7 * two).abs() < 1e-9,
+        "{flows:?}"
+    );
+}

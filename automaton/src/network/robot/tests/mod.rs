@@ -7,6 +7,7 @@ mod flows;
 mod hearing;
 mod moves;
 mod partner;
+mod seen;
 mod team;
 mod ways;
 mod yielding;
@@ -54,7 +55,7 @@ fn hall() -> Scenario {
         "link": {"full_range": 1.0, "max_range": 2.0},
         "control": {
             "clearance": CLEARANCE, "service_radius": SERVICE_RADIUS, "step_radius": STEP,
-            "tree_reliability": 0.1,
+            "tree_reliability": 0.1, "period": 0.5,
         },
         "access_point": [{"position": [1.0, 2.0]}],
         "robot": robots,

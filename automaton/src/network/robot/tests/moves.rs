@@ -298,3 +298,23 @@ fn a_sender_relies_on_its_receiver_and_answers_it() {
     robot.judge_moves(&mut outputs);
     assert!(matches!(sent(&mut outputs)[..], [Message::Consent { period: NOW }]));
 }
+
+/// In the last round of a negotiation a robot that still hears an objection stays.
+#[test]
+fn a_robot_gives_its_move_up_at_the_last_chance() {
+    use super::super::super::control::{Control, Negotiation};
+    for (rounds, moves) in [(15, true), (16, false)] {
+        let mut robot = mover();
+        proposed(&mut robot).expect("nothing is in its way");
+        robot.control = Current::new(Control::Negotiation(Negotiation {}));
+        robot.round_count.restart();
+        robot.round_count.pass(rounds);
+        robot.yield_to_objection();
+        assert_eq!(robot.proposal.is_some(), moves, "{rounds}");
+    }
+    let mut elsewhere = mover();
+    proposed(&mut elsewhere).expect("nothing is in its way");
+    elsewhere.round_count.pass(16);
+    elsewhere.yield_to_objection();
+    assert!(elsewhere.proposal.is_some(), "rounds of another stage do not count");
+}
