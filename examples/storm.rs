@@ -10,26 +10,19 @@
 #[path = "../tests/floor_plans/mod.rs"]
 mod floor_plans;
 
-use floor_plans::{Family, scenario as plan};
+use floor_plans::in_storms::{SHIPPED, mission_in_storm, shipped};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::ValidScenario;
+use pleach::story;
 use pleach::verify::network::storm::{
     Kind, Storm, Verdict, allowing_for, draw, ride, ride_watched, shrink,
 };
-use pleach::{scenario_file, story};
 use rayon::prelude::*;
 use std::error::Error;
-use std::path::Path;
 use std::time::Instant;
 
-/// Scenarios of the table.
-const SHIPPED: [&str; 5] = ["study-1", "study-2", "office", "discs", "corridor"];
 /// Control periods after which a mission is given up.
 const MOST_PERIODS: usize = 3_000;
-
-fn shipped(name: &str) -> Result<ValidScenario, Box<dyn Error>> {
-    Ok(scenario_file::read(Path::new(&format!("scenarios/{name}.toml")))?)
-}
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -37,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         [word, name, kind, seed] if word == "one" => one(name, kind, seed.parse()?),
         [word, seed] if word == "seed" => {
             let seed = seed.parse()?;
-            let (scenario, storm) = mission(seed)?;
+            let (scenario, storm) = mission_in_storm(seed);
             tell_in_full(&scenario, seed, &storm, MOST_PERIODS)
         }
         [word, seeds, kind @ ..] if word == "table" => table(seeds.parse()?, kind.first()),
@@ -60,7 +53,7 @@ fn is_serviced(verdict: &Verdict) -> bool {
 fn table(seeds: u64, only: Option<&String>) -> Result<(), Box<dyn Error>> {
     let mut missions = Vec::new();
     for name in SHIPPED {
-        let scenario = shipped(name)?;
+        let scenario = shipped(name);
         let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
         println!("{name}: {} periods without faults", calm.periods);
         missions.push((scenario, calm.periods));
@@ -139,7 +132,7 @@ fn report(scenario: &ValidScenario, seed: u64, verdict: &Verdict) {
 
 /// Tells one mission.
 fn one(name: &str, kind: &str, seed: u64) -> Result<(), Box<dyn Error>> {
-    let scenario = shipped(name)?;
+    let scenario = shipped(name);
     let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
     let named = |known: &&Kind| known.name() == kind;
     let kind = Kind::ALL.iter().find(named).ok_or("no such kind")?;
@@ -197,24 +190,6 @@ fn count(broken: &mut Vec<(String, usize)>, name: &str) {
     }
 }
 
-/// The mission of a seed, and its storm.
-fn mission(seed: u64) -> Result<(ValidScenario, Storm), Box<dyn Error>> {
-    let kind = Kind::ALL[seed as usize % Kind::ALL.len()];
-    let turn = seed as usize / Kind::ALL.len();
-    let families: Vec<Family> =
-        Family::ALL.into_iter().filter(|&family| family != Family::Hall).collect();
-    let scenario = match turn % (SHIPPED.len() + families.len()) {
-        number if number < SHIPPED.len() => shipped(SHIPPED[number])?,
-        number => plan(families[number - SHIPPED.len()], seed),
-    };
-    // Where there is no room for errors, robots do not allow for them, and there are none.
-    let Ok(scenario) = allowing_for(kind, &scenario) else {
-        return Ok((scenario, Storm::default()));
-    };
-    let storm = draw(kind, seed, &scenario, 300.0);
-    Ok((scenario, storm))
-}
-
 /// Runs missions on all cores, and tells the first that breaks a promise.
 fn many(first: u64, missions: u64) -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
@@ -222,7 +197,7 @@ fn many(first: u64, missions: u64) -> Result<(), Box<dyn Error>> {
     let seeds: Vec<u64> = (first..first + missions).collect();
     for batch in seeds.chunks(BATCH) {
         let run = |&seed: &u64| -> Result<(u64, Verdict), String> {
-            let (scenario, storm) = mission(seed).map_err(|error| error.to_string())?;
+            let (scenario, storm) = mission_in_storm(seed);
             let verdict = ride(&scenario, &storm, MOST_PERIODS);
             verdict.map(|verdict| (seed, verdict)).map_err(|error| format!("seed {seed}: {error}"))
         };
@@ -231,7 +206,7 @@ fn many(first: u64, missions: u64) -> Result<(), Box<dyn Error>> {
             serviced += u64::from(is_serviced(&verdict));
             if !verdict.violations.is_empty() {
                 if broken.is_empty() {
-                    let (scenario, storm) = mission(seed)?;
+                    let (scenario, storm) = mission_in_storm(seed);
                     tell(&scenario, &storm, &verdict)?;
                 }
                 broken.push((seed, verdict.violations[0].property.name()));

@@ -33,7 +33,6 @@ const ROBOT_MOTION: &str = "automaton/src/network/robot/motion.rs";
 const ROBOT_LEADER: &str = "automaton/src/network/robot/leader.rs";
 const ROBOT_MISSION: &str = "automaton/src/network/robot/mission.rs";
 const ROBOT_PATH: &str = "automaton/src/network/robot/path.rs";
-const ROBOT_RECRUIT: &str = "automaton/src/network/robot/recruit.rs";
 const ROBOT_ROUTING: &str = "automaton/src/network/robot/routing.rs";
 
 const CALLS: &[Call] = &[

@@ -84,19 +84,31 @@
 (check-sat) ; expect sat
 (pop)
 
-; A lease ends at the sender first. It counts `lease` periods from the one in which it asked, the
-; receiver from the one in which it took the request in, which is not earlier.
+; A lease does not end at the receiver first: a grant says until when the receiver keeps it, which never
+; becomes less, whichever of its grants the sender has heard.
 (push)
-(declare-const lease Int) (declare-const period Int)
-(declare-const asked-in Int) (declare-const answered-in Int)
-(assert (and (<= asked-in answered-in) (>= lease 0)))
-(define-fun sender-uses () Bool (<= period (+ asked-in lease)))
-(define-fun receiver-keeps () Bool (<= period (+ answered-in lease)))
+(declare-fun until (Message) Int)
+(declare-const used-until Int) (declare-const kept-until Int)
+(declare-const used-until2 Int) (declare-const kept-until2 Int) (declare-const given-until Int)
+(assert (<= used-until kept-until))
+(assert (forall ((m Message)) (=> (was-grant m) (<= (until m) kept-until))))
 (push)
-(assert (and sender-uses (not receiver-keeps)))
+(assert (and (= kept-until2 (ite (> given-until kept-until) given-until kept-until))
+             (= (until new) kept-until2) sends-grant (= used-until2 used-until)))
+(assert (not (and (<= used-until2 kept-until2)
+                  (forall ((m Message)) (=> (is-grant m) (<= (until m) kept-until2))))))
 (check-sat) ; expect unsat
 (pop)
-(assert (and (not sender-uses) receiver-keeps))
+(push)
+(assert (and (was-grant heard) (= kept-until2 kept-until)
+             (= used-until2 (ite (> (until heard) used-until) (until heard) used-until))))
+(assert (> used-until2 kept-until2))
+(check-sat) ; expect unsat
+(pop)
+; If a later grant may say less, the sender may use what is not kept any more.
+(assert (and (was-grant heard) (= kept-until2 given-until)
+             (= used-until2 (ite (> (until heard) used-until) (until heard) used-until))))
+(assert (> used-until2 kept-until2))
 (check-sat) ; expect sat
 (pop)
 
@@ -112,5 +124,23 @@
 (assert (< (- (- out2 given2) rate) 0.0))
 (check-sat) ; expect unsat
 (pop)
+(push)
 (assert (and (< out2 (- out spare)) (= given2 given) (< (- (- out2 given2) rate) 0.0)))
+(check-sat) ; expect sat
+(pop)
+
+; So it is when flows end that are not granted again. Of two links the second one's grant ends earlier, in
+; `end-b`. What is given lasts until `promised`, and is no more than what lasts as long.
+(declare-const a Real) (declare-const b Real) (declare-const end-a Int) (declare-const end-b Int)
+(declare-const promised Int) (declare-const now Int)
+(define-fun lasting ((period Int)) Real (+ (ite (>= end-a period) a 0.0) (ite (>= end-b period) b 0.0)))
+(assert (and (>= a 0.0) (>= b 0.0) (>= given 0.0) (>= rate 0.0) (<= end-b end-a)))
+(push)
+(assert (>= (lasting promised) (+ given rate)))
+(assert (and (<= now promised) (< (lasting now) (+ given rate))))
+(check-sat) ; expect unsat
+(pop)
+; If what is given is carried now, and is promised for longer than that lasts, it is not.
+(assert (>= (lasting now) (+ given rate)))
+(assert (and (> given 0.0) (> promised end-b) (< (lasting promised) (+ given rate))))
 (check-sat) ; expect sat

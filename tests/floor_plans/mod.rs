@@ -9,6 +9,7 @@
 mod brief;
 mod dice;
 mod families;
+pub mod in_storms;
 mod outline;
 mod places;
 

@@ -167,6 +167,8 @@ pub struct Beacon {
     /// Whether a team has found no robot that can be recruited, so that links of the tree may be as long as
     /// they ever are.
     pub stretched: bool,
+    /// For how many rounds news may be under way, by the deepest place in a tree that the sender has heard of.
+    pub longest_wait: usize,
     /// Where robots that do not take part were heard last.
     #[serde(with = "wire")]
     pub wrecks: Arc<Vec<Wreck>>,
@@ -200,6 +202,7 @@ impl Beacon {
             reply: None,
             team: None,
             stretched: false,
+            longest_wait: 0,
             wrecks: Arc::default(),
         }
     }

@@ -19,6 +19,10 @@ const WATCHED_STEPS: f64 = 8.0;
 /// Control periods for which a roll is valid at the least.
 const ROLL_MARGIN: u32 = 6;
 
+/// Rounds for which news may be under way beside those over links of trees: over the wire from one access
+/// point to another, and while trees grow.
+const ROUNDS_TO_SPARE: usize = 5;
+
 /// Common knowledge of the robots; it does not change during a mission.
 #[derive(Debug)]
 pub struct Site {
@@ -187,14 +191,18 @@ impl Site {
     /// Control periods for which a roll is valid: as long as it may take to reach every robot, some
     /// messages being lost. Beacons that stay the same carry it over three links in a period.
     pub fn roll_validity(&self) -> u32 {
-        let nodes = self.robots + self.access_points.len();
-        ROLL_MARGIN + 2 * nodes.div_ceil(ROUNDS_TO_BE_HEARD) as u32
+        ROLL_MARGIN + 2 * self.nodes().div_ceil(ROUNDS_TO_BE_HEARD) as u32
     }
 
-    /// Rounds of messages in which news surely crosses the network and comes back: no message is
-    /// longer under way than there are nodes to pass it on.
-    pub fn rounds_there_and_back(&self) -> usize {
-        2 * (self.robots + self.access_points.len())
+    /// For how many rounds news is under way, without losses, between nodes of trees that are no deeper than
+    /// this: up one tree and down another, and no longer than there are nodes to pass it on.
+    pub fn rounds_across(&self, depth: usize) -> usize {
+        (2 * depth + ROUNDS_TO_SPARE).min(self.nodes())
+    }
+
+    /// How many robots and access points there are.
+    pub const fn nodes(&self) -> usize {
+        self.robots + self.access_points.len()
     }
 
     /// The length of the shortest way in 𝒲_f; infinite if there is none.

@@ -94,6 +94,7 @@ impl AccessPoint {
             route,
             crossing,
             stretched,
+            longest_wait,
             attached,
             roster,
             settled_rounds,
@@ -127,13 +128,13 @@ impl AccessPoint {
             Notice::Quiet => (*settled_rounds).min(ROUNDS_UNTIL_ROSTER_SETTLES),
             _ => 0,
         };
-        let patience = PATIENCE_WITH_ELECTIONS * self.longest_wait() + 1;
+        let patience = PATIENCE_WITH_ELECTIONS * longest_wait + 1;
         let rounds = if self.is_electing() { (*election_rounds).min(patience) } else { 0 };
         format!(
             "{:?}",
             (
                 (number, bulletin, announced, &**service, election, rounds),
-                (agreement, route, crossing, stretched, (attached, roster), settled),
+                (agreement, route, crossing, stretched, longest_wait, (attached, roster), settled),
             )
         )
     }

@@ -71,6 +71,8 @@ pub struct AccessPoint {
     crossing: Vec<usize>,
     /// Whether a team has found no robot that can be recruited.
     stretched: bool,
+    /// For how many rounds news may be under way, as far as it has heard.
+    longest_wait: usize,
     /// The robots that are attached here, to be told to other access points if there are any.
     attached: Arc<IdSet>,
     /// Robots that are heard here and know no way to an access point, for the others likewise.
@@ -103,7 +105,7 @@ pub struct AccessPoint {
 impl AccessPoint {
     /// Access point `number` of the site.
     pub fn new(number: usize, site: Arc<Site>) -> Self {
-        let period = site.settings.period;
+        let (period, longest_wait) = (site.settings.period, site.rounds_across(0));
         AccessPoint {
             number,
             position: site.access_points[number],
@@ -124,6 +126,7 @@ impl AccessPoint {
             route: None,
             crossing: Vec::new(),
             stretched: false,
+            longest_wait,
             attached: Arc::default(),
             strays: Arc::default(),
             roster: Arc::default(),
@@ -183,6 +186,7 @@ impl AccessPoint {
             reply: None,
             team: None,
             stretched: self.stretched,
+            longest_wait: self.longest_wait,
             wrecks: Arc::clone(&self.wrecks),
         }
     }
@@ -252,12 +256,6 @@ impl AccessPoint {
         }
     }
 
-    /// A control period has a fixed number of rounds, the first one as many as the robots take.
-    fn rounds_of_this_period(&self) -> usize {
-        let in_a_period = self.site.settings.rounds_per_period;
-        if self.is_new { in_a_period.max(self.site.rounds_there_and_back()) } else { in_a_period }
-    }
-
     fn hear_notices(&mut self) -> Result<(), TransitionError> {
         self.hear_announcements();
         let mut newest = self.bulletin.clone();
@@ -269,6 +267,7 @@ impl AccessPoint {
         }
         for beacon in &self.heard {
             self.stretched |= beacon.stretched;
+            self.longest_wait = self.longest_wait.max(beacon.longest_wait.min(self.site.nodes()));
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
                 merge_election(own, heard);
             }
@@ -416,11 +415,6 @@ impl AccessPoint {
 
     fn is_electing(&self) -> bool {
         matches!(*self.service, Serving::Electing(_))
-    }
-
-    /// A message travels for at most as many rounds as there are nodes.
-    fn longest_wait(&self) -> usize {
-        self.site.robots + self.site.access_points.len()
     }
 
     /// The newest notice on the mission that it knows.

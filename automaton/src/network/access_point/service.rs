@@ -34,7 +34,7 @@ crate::observed! {
         /// The number of this round of beacons.
         round: point.round() as f64,
         /// The number of rounds in this control period.
-        rounds: point.rounds_of_this_period() as f64,
+        rounds: point.site.settings.rounds_per_period as f64,
         /// The number of robots that are connected to an access point.
         robots: point.roster.len() as f64,
         /// Rounds for which the roster has not changed.
@@ -44,7 +44,7 @@ crate::observed! {
         /// Rounds since the election began.
         waited: point.election_rounds as f64,
         /// Rounds after which an election should be over.
-        longest_wait: (PATIENCE_WITH_ELECTIONS * point.longest_wait()) as f64,
+        longest_wait: (PATIENCE_WITH_ELECTIONS * point.longest_wait) as f64,
         /// Elections for its task that were not answered by all.
         unanswered: point.announced().map_or(0.0, |announced| f64::from(announced.unanswered)),
         /// Elections that may go unanswered before the mission ends.

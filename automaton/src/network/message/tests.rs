@@ -119,6 +119,7 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
             remaining: f64::INFINITY,
         }),
         stretched: true,
+        longest_wait: 9,
         wrecks: Arc::new(vec![Wreck { robot: 3, place: Point::new(0.5, 0.5), heard_in: 6 }]),
         ..silent()
     }
@@ -148,7 +149,7 @@ fn messages() -> Vec<Message> {
         Message::Demand(f64::MIN_POSITIVE),
         Message::Shortage,
         Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075 }),
-        Message::GrantFlow(FlowGrant { number, flow: 0.05 }),
+        Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12 }),
         Message::Proposal { period: 5, segment },
         Message::Objection { period: 5 },
         Message::Consent { period: 5 },

@@ -2,10 +2,10 @@
 //! suspended or gone.
 //!
 //! A robot that is gone is not expected to be heard. Others go round the place where any node heard it
-//! last. From there it has moved at most the two steps that it had the right to before it fell
-//! silent: one in the control period in which it was heard, and one in the next. (A robot that a partition
-//! cuts off may move on unheard as long as its roll is valid; this is not allowed for.) Others learn of this
-//! place when the robot is suspended, and so before they can come near without having heard it.
+//! last, and stay two steps farther away: one for the control period in which it was heard, and one for the
+//! next. They learn of this place when the robot is suspended, and so before they can come near without
+//! having heard it. A robot that is cut off cannot know in which period it was heard last, but that this was
+//! not before its newest roll was called. So it stays within two steps of each place where it has been since.
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{Disc, HalfPlane};
@@ -15,7 +15,7 @@ use super::super::roll::{Roll, Wreck};
 use super::super::scenario::Settings;
 use super::Robot;
 use super::hearing::Neighbour;
-use super::motion::MARGIN;
+use super::motion::{MARGIN, ROUNDING};
 
 /// A robot that is gone is at most this many steps from where it was heard last.
 const ASTRAY: f64 = 2.0;
@@ -24,8 +24,12 @@ impl Robot {
     /// A roll is received.
     #[inline]
     pub(super) fn hear_roll(&mut self, roll: &Roll) {
+        let called = self.roll.called;
         if self.roll.merge(roll) {
             self.note_change();
+        }
+        if self.roll.called > called {
+            self.trail.retain(|&(period, _)| period >= self.roll.called);
         }
     }
 
@@ -52,6 +56,22 @@ impl Robot {
         let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter().copied());
         let seen = self.out_of_sight.iter().chain(told).chain(silent.map(Neighbour::wreck));
         self.roll.absent.locate(&mut self.wrecks, seen);
+    }
+
+    /// Where the robot stays, in case that it is not heard any more: near each place where it has been since
+    /// its newest roll was called.
+    pub(super) fn discs_of_trail(&self) -> impl Iterator<Item = Disc> {
+        let leash = ASTRAY * self.site.settings.step_radius;
+        self.trail.iter().map(move |&(_, center)| Disc {
+            center,
+            radius: leash.max((center - self.position).norm()),
+        })
+    }
+
+    /// Whether it is there; a move that was off may have led it farther.
+    pub(super) fn is_near_trail(&self) -> bool {
+        let leash = ASTRAY * self.site.settings.step_radius * (1.0 + ROUNDING);
+        self.trail.iter().all(|(_, place)| (place - self.position).norm() <= leash)
     }
 
     /// The places of wrecks that are not heard in this control period.

@@ -16,7 +16,7 @@ use super::super::duty::Path;
 use super::super::roll::{Roll, Wreck};
 use super::facts::STATIONARY_WINDOW;
 use super::hearing::PATIENCE_WITH_CHILDREN;
-use super::{FIRST_NEW_POST, Robot, RobotError, RobotView};
+use super::{FIRST_NEW_POST, POSTS_OF_A_PERIOD, Robot, RobotError, RobotView};
 
 /// Where control periods count, confirmations that are older than this many count as this old: robots
 /// that have had none for so long are cut off, and look in vain.
@@ -64,7 +64,7 @@ impl<'a> RobotView<'a> {
         let held = robot.duty.post().map(|post| post.id).into_iter().chain(robot.duty.left());
         let made_in = |post: PostId| {
             let number = post.0.checked_sub(FIRST_NEW_POST)?;
-            Some(number / robot.site.robots as u32)
+            Some(number / (POSTS_OF_A_PERIOD * robot.site.robots as u32))
         };
         held.into_iter().any(|post| made_in(post) == Some(robot.period))
     }
@@ -172,6 +172,7 @@ impl Robot {
     ) -> Result<(), RobotError> {
         self.is_new = false;
         self.period += u32::from(is_next);
+        self.posts_made = 0;
         let numbers = Numbers { now: self.period, passed: u32::from(!is_next) };
         let validity = self.site.roll_validity();
         self.roll.called = numbers.of(self.roll.called, validity + 1);
@@ -237,7 +238,9 @@ impl Robot {
             agreement,
             team,
             stretched,
+            longest_wait: _, // told, with its own depth
             followed_post,
+            posts_made,
             neighbours: _, // by their beacons and their silence
             // Constant.
             rate: _,
@@ -276,6 +279,7 @@ impl Robot {
             roll: _,
             out_of_sight: _,
             wrecks: _,
+            trail: _,
             // Routes and motion.
             velocity: _,
             clock: _,
@@ -318,10 +322,10 @@ impl Robot {
         format!(
             "{:?}",
             (
-                (id, position, still_periods, &**duty, &**mission, unused_periods,),
+                (id, position, still_periods, &**duty, posts_made, &**mission, unused_periods),
                 (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
                 ((bulletin, epoch, announced), election, bid, waited, route),
-                (agreement, team, stretched, followed_post, silences),
+                (agreement, team, stretched, self.longest_wait(), followed_post, silences),
             )
         )
     }

@@ -55,6 +55,7 @@ impl Robot {
             "way to the caller": now.route, then.route;
             "report on the team": now.team, then.team;
             "links of the tree": now.stretched, then.stretched;
+            "longest wait": now.longest_wait, then.longest_wait;
             "post that is followed": self.followed_post, before.followed_post;
             "mission": self.mission, before.mission;
             "lineage": now.lineage, then.lineage;

@@ -98,6 +98,9 @@ impl Robot {
             if self.duty.post().is_some_and(|post| Some(post.id) != held) {
                 self.confirmation.take_over(self.period);
             }
+            if self.duty.post().is_some_and(|post| post.id == self.new_post().id) {
+                self.posts_made += 1;
+            }
             self.look_after_place()?;
         }
         jump

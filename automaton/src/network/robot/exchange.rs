@@ -270,6 +270,7 @@ mod tests {
     use pleach_continuous::Point;
     use pleach_discrete::network::{Offer, Phase, Post, PostId};
     use serde_json::json;
+    use std::collections::BTreeSet;
 
     use super::super::super::beacon::{Announcement, Beacon, Notice};
     use super::super::super::duty::{Held, Standby, Station};
@@ -320,6 +321,20 @@ mod tests {
             duty: Some(Duty::Standby(Standby(Held { station, left: None }))),
             parked: true,
             ..Beacon::silent(1, reference)
+        }
+    }
+
+    /// A robot may need another post in the period in which it has made one, and given it away.
+    #[test]
+    fn posts_of_one_period_differ() {
+        let mut robot = robot();
+        let mut posts = BTreeSet::new();
+        for made in 1..=3 {
+            (robot.is_late, robot.is_quiet) = (true, false);
+            robot.note_change();
+            robot.jump().expect("guards have values");
+            posts.insert(robot.duty.post().expect("it stands by").id);
+            assert_eq!(posts.len(), made);
         }
     }
 

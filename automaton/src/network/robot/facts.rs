@@ -125,7 +125,7 @@ facts! {
             /// The number of this round of beacons.
             round: robot.round_count.count() as f64,
             /// The number of rounds in this control period.
-            rounds: robot.rounds_of_this_period() as f64,
+            rounds: robot.site.settings.rounds_per_period as f64,
             /// The number of this iteration of the routes.
             iteration: robot.control.count() as f64,
             /// The number of iterations in a control period.

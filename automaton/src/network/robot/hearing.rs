@@ -207,7 +207,7 @@ impl Robot {
     /// near when it was heard last is not out of range: it stays where it is taken to be, and this
     /// robot does not leave its place meanwhile. Nor is one to which packets flow, as long as it has
     /// granted them, nor, for a while, one that is attached to this robot's post: a branch is not cut off
-    /// because its messages are lost. A robot that is gone is not waited for.
+    /// because its messages are lost. A robot that is gone is not waited for, once no packets flow to it.
     fn miss(&mut self, at: usize) -> usize {
         let (own, period) = (self.duty.post().map(|post| post.id), self.period);
         let known = &mut self.neighbours[at];
@@ -222,7 +222,8 @@ impl Robot {
         let is_lost = is_silent && (known.is_access_point() || !self.site.is_near(known.distance));
         let (id, reliability) = (known.id(), known.reliability);
         let is_gone = is_silent && self.is_gone(id);
-        if is_lost && !is_kept && !self.sends_to(id) || is_gone || reliability <= 0.0 {
+        let is_out_of_sight = (is_lost && !is_kept || is_gone) && !self.sends_to(id);
+        if is_out_of_sight || reliability <= 0.0 {
             let lost = self.neighbours.remove(at);
             self.lose_sight_of(&lost);
             self.receive_news();
@@ -231,8 +232,9 @@ impl Robot {
         at + 1
     }
 
-    /// Whether the robot may leave its place in this control period: it takes part, and has heard in
-    /// this period where each robot is that was near when it was heard last, but those that are gone.
+    /// Whether the robot may leave its place in this control period: it takes part, is where others allow
+    /// for it if they do not hear it any more, and has heard in this period where each robot is that was near
+    /// when it was heard last, but those that are gone.
     ///
     /// If one of two robots that could meet moves, it so knows where the other is. If both move, each
     /// keeps to its own side of the line between them (17); if one stays, its place lies on its own
@@ -244,7 +246,7 @@ impl Robot {
                 || !self.site.is_near(known.distance)
                 || self.is_gone(known.id())
         };
-        self.is_called() && self.neighbours.iter().all(is_sure)
+        self.is_called() && self.is_near_trail() && self.neighbours.iter().all(is_sure)
     }
 
     /// The nodes that the robot hears, and for how many rounds each has been silent.

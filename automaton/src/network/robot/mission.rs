@@ -122,7 +122,10 @@ impl Robot {
 
     /// Merges what it knows of the mission with the beacons of its neighbours.
     pub(super) fn hear_notices(&mut self) {
+        self.longest_wait = self.longest_wait();
         for neighbour in &self.neighbours {
+            let wait = neighbour.beacon.longest_wait.min(self.site.nodes());
+            self.longest_wait = self.longest_wait.max(wait);
             self.stretched |= neighbour.beacon.stretched;
             self.bulletin.merge(&neighbour.beacon.bulletin);
             if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {

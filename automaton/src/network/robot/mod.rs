@@ -92,6 +92,8 @@ use rounds::Rounds;
 
 /// Posts that are made during a mission have numbers from here on: higher than those of notices.
 const FIRST_NEW_POST: u32 = 1 << 31;
+/// More than a robot makes in a control period: it may give one away in an exchange, and need another.
+const POSTS_OF_A_PERIOD: u32 = 8;
 
 /// A robot of the network.
 #[derive(Clone, Debug)]
@@ -130,6 +132,8 @@ pub struct Robot {
     // Where robots were that it does not hear any more, and those that are gone.
     out_of_sight: Sightings,
     wrecks: Arc<Vec<Wreck>>,
+    /// Where it has set off since its roll was called, each with the control period.
+    trail: Vec<(u32, Point)>,
 
     // The rest of its continuous state: u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
     velocity: Vector,
@@ -138,6 +142,8 @@ pub struct Robot {
     // Where it is in its automata, and what the duty automaton jumps together with.
     duty: Current<Duty>,
     label: Label,
+    /// How many posts it has made in this control period.
+    posts_made: u32,
     mission: Current<Mission>,
     facts: Facts,
     is_quiet: bool,
@@ -201,6 +207,8 @@ pub struct Robot {
     team: Option<TeamReport>,
     /// Whether a team has found no robot that can be recruited.
     stretched: bool,
+    /// For how many rounds news may be under way, as far as it has heard.
+    longest_wait: usize,
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
 
@@ -263,6 +271,7 @@ impl Robot {
             clock: site.settings.period,
             duty: Current::new(Duty::Standby(Standby(Held { station, left: None }))),
             label: Label::Alone,
+            posts_made: 0,
             mission: Current::new(Mission::Idle(Idle)),
             facts: Facts::default(),
             is_quiet: false,
@@ -281,6 +290,7 @@ impl Robot {
             roll: Roll::default(),
             out_of_sight: Sightings::default(),
             wrecks: Arc::default(),
+            trail: Vec::new(),
             heard_up_to: 0,
             parent: None,
             place: Current::new(PlaceInTree::Detached(lineage::Detached)),
@@ -309,6 +319,7 @@ impl Robot {
             agreement: None,
             team: None,
             stretched: false,
+            longest_wait: 0,
             followed_post: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
@@ -356,7 +367,8 @@ impl Robot {
 
     /// The post of a redundant robot that no robot has ever had.
     pub(super) fn new_post(&self) -> Post {
-        let number = self.period.wrapping_mul(self.site.robots as u32).wrapping_add(self.id as u32);
+        let made = self.period.wrapping_mul(POSTS_OF_A_PERIOD).wrapping_add(self.posts_made);
+        let number = made.wrapping_mul(self.site.robots as u32).wrapping_add(self.id as u32);
         Post::redundant(PostId(FIRST_NEW_POST | number))
     }
 
@@ -418,6 +430,7 @@ impl Robot {
             reply: self.offers().reply().cloned(),
             team: self.team,
             stretched: self.stretched,
+            longest_wait: self.longest_wait(),
             wrecks: Arc::clone(&self.wrecks),
         }
     }

@@ -186,6 +186,7 @@ impl Robot {
         half_planes.extend(self.sides_of_wrecks());
         half_planes.extend(self.linearised_load());
         let mut discs = vec![Disc { center: self.position, radius: step }];
+        discs.extend(self.discs_of_trail());
         discs.extend(self.post_discs());
         discs.extend(self.tree_links().iter().filter_map(|link| self.link_disc(link)));
         MotionProblem { position: self.position, waypoint, half_planes, discs }
@@ -286,6 +287,7 @@ impl Robot {
         } else {
             self.still_periods = self.still_periods.saturating_add(1);
         }
+        self.trail.push((self.period, segment.from));
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
         self.note_change();
@@ -302,6 +304,7 @@ impl Robot {
     pub(super) fn restart_clock(&mut self) {
         self.note_change();
         self.period = self.period.saturating_add(1);
+        self.posts_made = 0;
         self.velocity = Vector::zeros();
         self.clock = 0.0;
     }

@@ -218,16 +218,18 @@ impl Robot {
     }
 
     /// A neighbour, or the robot itself, objects to its move: it halves it or, in the last round,
-    /// gives it up.
+    /// gives it up. A move that leads back into the region from outside is made in whole or not at all: half
+    /// of it might not gain what errors may lose.
     pub(super) fn yield_to_objection(&mut self) {
         if self.proposal.is_some() {
             self.must_judge_moves = true;
         }
         let is_last_chance =
             self.stage() == Stage::Negotiation && self.round_count.is_last_chance();
-        self.proposal = match is_last_chance {
-            false => self.proposal.map(|segment| segment.halved()),
-            true => None,
+        let begins_in_region = self.problem.is_some();
+        self.proposal = match begins_in_region && !is_last_chance {
+            true => self.proposal.map(|segment| segment.halved()),
+            false => None,
         };
     }
 }

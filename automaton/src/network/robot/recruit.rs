@@ -236,9 +236,10 @@ impl Robot {
         bid.rank > STRANDED
     }
 
-    /// A message travels for at most as many rounds as there are nodes.
+    /// For how many rounds news may be under way, by the deepest place in a tree that it has heard of.
     pub(super) fn longest_wait(&self) -> usize {
-        self.site.robots + self.site.access_points.len()
+        let depth = self.lineage().map_or(0, |way| way.hops());
+        self.longest_wait.max(self.site.rounds_across(depth))
     }
 
     /// The way to the caller, through a tree neighbour that knows one; where the trees of two

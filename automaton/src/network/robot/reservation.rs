@@ -13,8 +13,8 @@
 //! leaves flows as they are. A grant answers one request, and a new request voids the grants before it,
 //! so that late messages and copies change nothing.
 //!
-//! A grant holds for [`LEASE`] control periods. The sender counts them from its request and the receiver
-//! from its answer, so that the sender stops first.
+//! A grant says until when it holds, which is never longer than the flows of the receiver last that carry it:
+//! where grants are not renewed, flows end at those who send first.
 
 use pleach_discrete::network::NodeId;
 use serde::{Deserialize, Serialize};
@@ -25,11 +25,12 @@ use super::Robot;
 use super::routing::{RESIDUAL_ROUNDING, RouteLink, link_at};
 use crate::node::Outputs;
 
-/// Control periods for which a grant holds. Every flow is asked for again in each of them.
+/// Control periods for which a grant holds at the least as long as no message is lost. Every flow is asked for
+/// again in each of them.
 const LEASE: u32 = 8;
-/// Control periods for which packets flow to an access point that is not heard: it promises nothing, so
-/// that nothing ends but its service.
-const PATIENCE_WITH_ACCESS_POINTS: u32 = 4 * LEASE;
+/// Packets flow to an access point that is not heard for so many leases: it promises nothing, so that nothing
+/// ends but its service.
+const PATIENCE_WITH_ACCESS_POINTS: u32 = 2;
 /// Flows that differ by less are the same.
 const SAME_FLOW: f64 = 1e-12;
 /// Passes in which some flows are raised and others lowered to make room for them.
@@ -65,6 +66,8 @@ pub struct FlowGrant {
     pub number: RequestNumber,
     /// The largest F_ij that the sender may use.
     pub flow: f64,
+    /// The last control period in which it may.
+    pub until: u32,
 }
 
 /// What a sender uses of a link, and what it may use.
@@ -137,6 +140,7 @@ impl Robot {
     /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
     pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
         let (period, robots) = (self.period, self.site.robots);
+        let patience = PATIENCE_WITH_ACCESS_POINTS * self.lease();
         self.reservations.retain(|kept| kept.until >= period);
         for at in 0..self.links.len() {
             let heard_in = self.neighbour(self.links[at].to).map_or(0, |known| known.heard_in);
@@ -147,7 +151,7 @@ impl Robot {
             held.wanted = if link.is_retiring { 0.0 } else { planned };
             if link.to >= robots {
                 // An access point takes everything, as long as it is there.
-                let until = heard_in.saturating_add(PATIENCE_WITH_ACCESS_POINTS);
+                let until = heard_in.saturating_add(patience);
                 (held.granted, held.until) = (f64::INFINITY, until);
             }
             if held.until < period {
@@ -209,8 +213,10 @@ impl Robot {
         if known.is_ok_and(|at| number <= self.reservations[at].asked) {
             return;
         }
-        let flow = known.map_or(0.0, |at| self.reservations[at].flow.min(held).max(0.0));
-        let until = self.period.saturating_add(LEASE);
+        let (flow, until) = known.map_or((0.0, self.period), |at| {
+            let kept = &self.reservations[at];
+            (kept.flow.min(held).max(0.0), kept.until)
+        });
         let kept = Reservation { from, flow, wanted, asked: number, is_answered: false, until };
         match known {
             Ok(at) => self.reservations[at] = kept,
@@ -224,7 +230,7 @@ impl Robot {
         let Some(at) = link_at(&self.links, from) else { return };
         let held = &mut self.links[at].held;
         if held.asked == grant.number {
-            (held.is_open, held.until) = (false, grant.number.period.saturating_add(LEASE));
+            (held.is_open, held.until) = (false, held.until.max(grant.until));
             held.granted = held.granted.max(grant.flow);
             self.has_flow_news = true;
         }
@@ -236,6 +242,7 @@ impl Robot {
     fn settle_flows(&mut self, outputs: &mut Out) {
         self.has_flow_news = false;
         let needed = self.granted_to_others() + self.rate;
+        let promised = self.promised_until();
         for _ in 0..PASSES {
             let mut change = 0.0;
             let mut room = 1.0 - self.links.iter().map(|link| link.load()).sum::<f64>();
@@ -244,7 +251,7 @@ impl Robot {
                 room -= more / link.reliability;
                 change += more;
             }
-            let mut spare = self.held_outflow() - needed;
+            let mut spare = self.lasting_outflow(promised) - needed;
             for link in &mut self.links {
                 let less = link.held.lower(spare.max(0.0));
                 spare -= less;
@@ -265,24 +272,59 @@ impl Robot {
                 self.ask(at, outputs);
             }
         }
-        let mut spare = (self.held_outflow() - needed).max(0.0);
+        self.grant_flows(needed, outputs);
+    }
+
+    /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
+    /// granted for as long as these last.
+    fn grant_flows(&mut self, needed: f64, outputs: &mut Out) {
+        let wanted = self.reservations.iter().map(|kept| (kept.wanted - kept.flow).max(0.0));
+        let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
+        let until = self.lasts_until(carried).min(self.period.saturating_add(self.lease()));
+        let mut spare = self.lasting_outflow(until.max(self.promised_until())) - needed;
         let may_grant = self.round_count.is_for_grants();
         for kept in &mut self.reservations {
-            let flow = kept.wanted.min(kept.flow + spare);
+            let flow = kept.wanted.min(kept.flow + spare.max(0.0));
             let can_grant = flow > kept.flow + SAME_FLOW && may_grant;
             if can_grant {
                 spare -= flow - kept.flow;
                 kept.flow = flow;
             }
             if can_grant || !std::mem::replace(&mut kept.is_answered, true) {
-                let grant = FlowGrant { number: kept.asked, flow: kept.flow };
+                kept.until = kept.until.max(until);
+                let grant = FlowGrant { number: kept.asked, flow: kept.flow, until: kept.until };
                 outputs.send(kept.from, Message::GrantFlow(grant));
             }
         }
     }
 
+    /// Control periods for which it grants flows that last as long. A robot farther from the access points
+    /// grants its own for one period less, as it hears of a renewal one period later.
+    fn lease(&self) -> u32 {
+        LEASE.saturating_add(self.longest_wait() as u32)
+    }
+
     fn held_outflow(&self) -> f64 {
         self.links.iter().map(|link| link.held.flow).sum()
+    }
+
+    /// The flows that last up to this control period, even if no grant is renewed.
+    fn lasting_outflow(&self, period: u32) -> f64 {
+        let lasting = self.links.iter().filter(|link| link.held.until >= period);
+        lasting.map(|link| link.held.flow).sum()
+    }
+
+    /// The last control period up to which flows last that carry this much.
+    fn lasts_until(&self, carried: f64) -> u32 {
+        let ends = self.links.iter().filter(|link| link.held.flow > 0.0);
+        let ends = ends.map(|link| link.held.until);
+        let lasts = |&end: &u32| self.lasting_outflow(end) >= carried - SAME_FLOW;
+        ends.filter(lasts).max().unwrap_or(self.period)
+    }
+
+    /// The last control period for which it has granted a flow; what it grants more may be used as long.
+    fn promised_until(&self) -> u32 {
+        self.reservations.iter().map(|kept| kept.until).max().unwrap_or(self.period)
     }
 
     /// What others may send to this robot.

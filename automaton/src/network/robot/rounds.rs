@@ -107,7 +107,7 @@ impl Robot {
     /// last of its stage while it has nothing to tell or to judge.
     pub(super) fn rounds_to_pass(&self) -> usize {
         let (has_nothing_to_do, last) = match self.stage() {
-            Stage::Beacons => (self.needs_no_round(), self.rounds_of_this_period()),
+            Stage::Beacons => (self.needs_no_round(), self.site.settings.rounds_per_period),
             Stage::Sweeps => (self.routes_stand(), Rounds::LAST_OF_SWEEPS),
             Stage::Reserving => (!self.has_flow_news, self.next_of_reservation()),
             Stage::Negotiation => (self.has_no_moves_to_judge(), Rounds::LAST_OF_NEGOTIATION),

@@ -224,13 +224,6 @@ impl Robot {
         }
     }
 
-    /// A control period has a fixed number of rounds. In the first one there are as many as news
-    /// can take to cross the network and come back, so that the tree stands when the clock starts.
-    pub(super) fn rounds_of_this_period(&self) -> usize {
-        let in_a_period = self.site.settings.rounds_per_period;
-        if self.is_new { in_a_period.max(self.site.rounds_there_and_back()) } else { in_a_period }
-    }
-
     /// The robot's own transitions, which are taken at once.
     pub(super) fn jump(&mut self) -> Result<(), RobotError> {
         for _ in 0..MOST_JUMPS {

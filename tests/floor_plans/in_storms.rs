@@ -1,0 +1,40 @@
+//! Missions in storms, of all kinds and on all plans in turn.
+
+use std::path::Path;
+
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::scenario_file;
+use pleach::verify::network::storm::{Kind, Storm, allowing_for, draw};
+
+use super::{Family, scenario as plan};
+
+/// Scenarios that are tried in storms beside random ones.
+pub const SHIPPED: [&str; 5] = ["study-1", "study-2", "office", "discs", "corridor"];
+/// Seconds for which a mission is taken to last when its faults are drawn.
+const DURATION: f64 = 300.0;
+
+/// A shipped scenario.
+pub fn shipped(name: &str) -> ValidScenario {
+    let path = format!("scenarios/{name}.toml");
+    scenario_file::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The mission of a seed, and its storm.
+pub fn mission_in_storm(seed: u64) -> (ValidScenario, Storm) {
+    let kind = Kind::ALL[seed as usize % Kind::ALL.len()];
+    let turn = seed as usize / Kind::ALL.len();
+    let families: Vec<Family> =
+        Family::ALL.into_iter().filter(|&family| family != Family::Hall).collect();
+    let scenario = match turn % (SHIPPED.len() + families.len()) {
+        number if number < SHIPPED.len() => shipped(SHIPPED[number]),
+        number => plan(families[number - SHIPPED.len()], seed),
+    };
+    // Where there is no room for errors, robots do not allow for them, and there are none.
+    match allowing_for(kind, &scenario) {
+        Ok(scenario) => {
+            let storm = draw(kind, seed, &scenario, DURATION);
+            (scenario, storm)
+        }
+        Err(_) => (scenario, Storm::default()),
+    }
+}
