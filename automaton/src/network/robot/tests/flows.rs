@@ -78,7 +78,8 @@ fn a_flow_is_raised_to_what_is_planned_and_granted() {
         robot.ask_for_flows(&mut outputs);
         let asked = requests(&mut outputs);
         let [(Destination::One(5), request)] = asked[..] else { panic!("{asked:?}") };
-        robot.hear_grant(5, FlowGrant { number: request.number, flow: granted });
+        robot
+            .hear_grant(5, FlowGrant { number: request.number, flow: granted, until: NOW + LEASE });
         robot.take_in_requests(&mut outputs);
         (robot.links[0].held.flow, robot.links[1].load())
     };
@@ -160,7 +161,7 @@ fn grants_end_with_their_lease() {
     sender.ask_for_flows(&mut outputs);
     let asked = requests(&mut outputs);
     let FlowRequest { number, wanted: flow, .. } = asked.first().expect("it asks").1;
-    sender.hear_grant(5, FlowGrant { number, flow });
+    sender.hear_grant(5, FlowGrant { number, flow, until: NOW + LEASE });
     sender.take_in_requests(&mut outputs);
     assert!(sender.sends_to(5) && sender.requests_are_answered());
     for (later, sends) in [(LEASE, true), (LEASE + 1, false)] {
@@ -193,7 +194,7 @@ fn an_answer_to_an_older_request_counts_for_nothing() {
     robot.ask_for_flows(&mut outputs);
     let number = requests(&mut outputs)[0].1.number;
     let older = RequestNumber { number: number.number - 1, ..number };
-    robot.hear_grant(5, FlowGrant { number: older, flow: 0.5 });
+    robot.hear_grant(5, FlowGrant { number: older, flow: 0.5, until: NOW + LEASE });
     robot.take_in_requests(&mut outputs);
     assert!(!robot.sends_to(5) && !robot.requests_are_answered());
     assert!(robot.has_asked(5) && !robot.has_asked(ROBOTS) && !robot.has_asked(4));
@@ -324,7 +325,7 @@ fn flows_take_no_more_than_all_the_time_of_a_sender() {
     (robot.links[0].share, robot.links[1].share) = (0.7, 0.7);
     robot.ask_for_flows(&mut outputs);
     let number = requests(&mut outputs)[0].1.number;
-    robot.hear_grant(5, FlowGrant { number, flow: 0.7 * one });
+    robot.hear_grant(5, FlowGrant { number, flow: 0.7 * one, until: NOW + LEASE });
     robot.take_in_requests(&mut outputs);
     let flows = [robot.links[0].held.flow, robot.links[1].held.flow];
     assert!((flows[0] / one + flows[1] / two - 1.0).abs() < 1e-9, "{flows:?}");
