@@ -36,6 +36,8 @@ mod routing;
 mod step;
 mod target;
 mod team;
+#[cfg(test)]
+mod tests;
 mod view;
 mod way;
 mod yielding;
