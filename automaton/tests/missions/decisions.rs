@@ -31,7 +31,7 @@ fn a_recruit_comes_from_the_tree_of_another_access_point() {
 
 #[test]
 fn parent_and_child_hand_over_with_two_rounds_of_messages_in_a_period() {
-    decided("tests/scenarios/found/two-rounds-a-period").services_all_within(75);
+    decided("tests/scenarios/found/two-rounds-a-period").services_all_within(80);
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn robots_whose_parent_joins_the_team_find_another() {
 
 #[test]
 fn the_cone_program_moves_robots_too() {
-    decided("tests/scenarios/found/cone-program").services_all_within(225);
+    decided("tests/scenarios/found/cone-program").services_all_within(235);
 }
 
 #[test]

@@ -84,17 +84,16 @@ fn a_holder_that_nobody_can_relieve_bids_below_all_others() {
     assert_eq!((rank(0.0), rank(limit - LITTLE), rank(limit + LITTLE)), (1, 1, 0));
 }
 
-/// A message travels for at most as many rounds as there are nodes, there and back.
+/// As long as news may be under way, there and back.
 #[test]
 fn a_robot_that_knows_no_way_looks_for_one_before_it_answers() {
-    let nodes = ROBOTS + 1;
     let mut lost = asked(east(1.0));
     lost.holds(Post::redundant(PostId(0)));
     lost.look_after_place().expect("it goes on");
-    lost.waited_rounds = 2 * nodes - 1;
+    lost.waited_rounds = 2 * lost.longest_wait() - 1;
     lost.answer_announcement();
     assert!(!lost.election.as_ref().is_some_and(|it| it.has_token(0)));
-    lost.waited_rounds = 2 * nodes;
+    lost.waited_rounds += 1;
     assert_eq!(leader_bid(&mut lost), None, "it lets the others elect");
     let mut other = asked(east(1.0));
     other.is_told(Notice::Quiet);
@@ -155,7 +154,10 @@ fn the_way_to_the_caller_leads_over_links_of_the_tree() {
         robot.answer_call();
         robot.route.is_some()
     };
-    let (wait, near) = (ROBOTS + 1, east(0.5));
+    let near = east(0.5);
+    let mut waiting = called(redundant(0, 12), false);
+    waiting.hears(knows_way(&waiting, 1, near, fixed(11, 13)));
+    let wait = waiting.longest_wait();
     assert!(finds(redundant(0, 11), fixed(11, 13), near, 0), "its parent");
     assert!(finds(fixed(20, 13), redundant(11, 20), near, 0), "its child");
     let stranger = || fixed(11, 13);
@@ -206,12 +208,11 @@ fn a_robot_that_bears_others_is_no_recruit() {
 
 #[test]
 fn a_robot_that_finds_no_way_waits_before_it_shows_where_it_could_help() {
-    let nodes = ROBOTS + 1;
     let mut robot = called(Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) }, false);
     robot.look_after_place().expect("it goes on");
-    robot.waited_rounds = 2 * nodes - 1;
+    robot.waited_rounds = 2 * robot.longest_wait() - 1;
     assert_eq!(recruit_bid(&mut robot), None, "it waits");
-    robot.waited_rounds = 2 * nodes;
+    robot.waited_rounds += 1;
     let bid = recruit_bid(&mut robot).expect("it answers").expect("it could help elsewhere");
     assert_eq!((bid.rank, bid.merit), (0, 0));
     assert!(!Robot::can_come(bid) && Robot::can_come(Bid { rank: 1, ..bid }));
@@ -221,14 +222,28 @@ fn a_robot_that_finds_no_way_waits_before_it_shows_where_it_could_help() {
     assert_eq!(recruit_bid(&mut forgetful), None, "it may have answered before it restarted");
 }
 
+/// News goes up one tree and down another, over no more links than there are nodes; five rounds are to spare.
+#[test]
+fn news_is_waited_for_by_the_deepest_place_that_is_heard_of() {
+    let mut robot = robot();
+    let wait = |depth: usize| robot_of(&hall()).site.rounds_across(depth);
+    assert_eq!([wait(0), wait(1), wait(40)], [5, ROBOTS + 1, ROBOTS + 1]);
+    assert_eq!(robot.longest_wait(), 5);
+    for (told, waits) in [(6, 6), (4, 6), (usize::MAX, ROBOTS + 1)] {
+        robot.hears(Beacon { longest_wait: told, ..beacon(1, east(0.5), fixed(11, 13), &[11]) });
+        robot.hear_notices();
+        assert_eq!((robot.longest_wait(), robot.public_state().longest_wait), (waits, waits));
+    }
+}
+
 #[test]
 fn rounds_of_an_election_are_counted_until_its_waits_are_over() {
     let mut robot = called(redundant(0, 11), false);
-    let nodes = ROBOTS + 1;
-    let due: Vec<usize> = (1..=3 * nodes).filter(|_| robot.count_round()).collect();
-    assert_eq!(due, [nodes + 1, 2 * nodes]);
+    let wait = robot.longest_wait();
+    let due: Vec<usize> = (1..=3 * wait).filter(|_| robot.count_round()).collect();
+    assert_eq!(due, [wait + 1, 2 * wait]);
     robot.mission = Current::new(Mission::Idle(super::super::super::mission::Idle));
-    assert!(!robot.count_round() && robot.waited_rounds == 3 * nodes);
+    assert!(!robot.count_round() && robot.waited_rounds == 3 * wait);
     let mut asked = asked(east(1.0));
     assert!(asked.counts_rounds());
     asked.answer_announcement();

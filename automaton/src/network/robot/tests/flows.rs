@@ -151,10 +151,12 @@ fn a_request_is_answered_once_and_an_older_one_never() {
 fn grants_end_with_their_lease() {
     let (mut robot, _) = granted(0.3);
     let mut outputs = Outputs::of(0);
-    for (later, senders) in [(LEASE, 1), (LEASE + 1, 0)] {
-        robot.period = NOW + later;
+    robot.ask_for_flows(&mut outputs);
+    let until = robot.reservations[0].until;
+    for (period, senders) in [(until, 1), (until + 1, 0)] {
+        robot.period = period;
         robot.ask_for_flows(&mut outputs);
-        assert_eq!(robot.senders().count(), senders, "{later} periods later");
+        assert_eq!(robot.senders().count(), senders, "in {period} of {until}");
     }
     let mut sender = router();
     sender.links[0].share = 0.2;
@@ -171,7 +173,36 @@ fn grants_end_with_their_lease() {
     }
 }
 
-/// An access point takes everything, as long as it has been heard in 32 periods.
+/// A grant is promised for a lease, and no longer than what carries it.
+#[test]
+fn grants_last_no_longer_than_the_flows_that_carry_them() {
+    let until = |end: u32, kept: Option<(f64, u32)>| {
+        let (mut robot, _) = granted(0.3);
+        let mut outputs = Outputs::of(0);
+        robot.links[1].held.until = end;
+        match kept {
+            Some((flow, until)) => {
+                (robot.reservations[0].flow, robot.reservations[0].until) = (flow, until);
+            }
+            None => robot.reservations.clear(),
+        }
+        let number = RequestNumber { period: NOW, number: 2 };
+        robot.hear_request(5, FlowRequest { number, held: 1.0, wanted: 0.2 });
+        robot.take_in_requests(&mut outputs);
+        let grants = grants(&mut outputs);
+        let [(_, grant)] = grants[..] else { panic!("it answers: {grants:?}") };
+        ((grant.flow * 100.0).round() / 100.0, grant.until)
+    };
+    let lease = router().lease();
+    assert_eq!(until(NOW + 99, None), (0.2, NOW + lease));
+    assert_eq!(until(NOW + 3, None), (0.2, NOW + 3));
+    assert_eq!(until(NOW + 3, Some((0.1, NOW + 2))), (0.2, NOW + 3));
+    // What has been promised for longer is not promised again, and nothing is added to it.
+    assert_eq!(until(NOW + 3, Some((0.1, NOW + 5))), (0.1, NOW + 5));
+    assert_eq!(until(NOW + 3, Some((0.0, NOW + 5))), (0.0, NOW + 5));
+}
+
+/// An access point takes everything, as long as it has been heard in two leases.
 #[test]
 fn packets_flow_to_an_access_point_that_is_not_heard_for_a_while() {
     let mut robot = router();
@@ -179,7 +210,8 @@ fn packets_flow_to_an_access_point_that_is_not_heard_for_a_while() {
     robot.links[1].share = 0.2;
     robot.ask_for_flows(&mut outputs);
     assert!(robot.sends_to(ROBOTS) && requests(&mut outputs).is_empty());
-    for (later, sends) in [(4 * LEASE, true), (4 * LEASE + 1, false)] {
+    let patience = 2 * robot.lease();
+    for (later, sends) in [(patience, true), (patience + 1, false)] {
         robot.period = NOW + later;
         robot.ask_for_flows(&mut outputs);
         assert_eq!(robot.sends_to(ROBOTS), sends, "{later}");

@@ -4,6 +4,7 @@ use pleach_continuous::network::LinkReliability as _;
 use pleach_continuous::network::acceptance::Segment;
 
 use super::super::super::message::Message;
+use super::super::super::roll::Roll;
 use super::super::reservation::{FlowGrant, RequestNumber};
 use super::*;
 use crate::node::Outputs;
@@ -317,4 +318,40 @@ fn a_robot_gives_its_move_up_at_the_last_chance() {
     elsewhere.round_count.pass(16);
     elsewhere.yield_to_objection();
     assert!(elsewhere.proposal.is_some(), "rounds of another stage do not count");
+}
+
+/// Others allow for two steps from where a robot was heard last, which was not before its roll was called.
+#[test]
+fn a_robot_that_may_not_be_heard_stays_within_two_steps_of_where_it_has_been() {
+    let ahead = |gone: f64, roll: u32| {
+        let mut robot = mover();
+        robot.roll.called = NOW - 3;
+        robot.trail = vec![(NOW - 2, west(gone))];
+        robot.hear_roll(&Roll { called: roll, ..Roll::default() });
+        proposed(&mut robot).map(|segment| (segment.to - HERE).x)
+    };
+    let close = |ahead: Option<f64>, expected: f64| {
+        let ahead = ahead.expect("it moves");
+        assert!((ahead - expected).abs() < 1e-6, "{ahead} is not {expected}");
+    };
+    close(ahead(STEP, NOW - 3), STEP);
+    close(ahead(1.5 * STEP, NOW - 3), 0.5 * STEP);
+    assert_eq!(ahead(2.1 * STEP, NOW - 3), None, "an error has led it farther");
+    close(ahead(2.1 * STEP, NOW - 1), STEP);
+    let mut robot = mover();
+    proposed(&mut robot).expect("nothing is in its way");
+    robot.set_off();
+    assert_eq!(robot.trail, [(NOW, HERE)]);
+}
+
+/// Half of a way back into the region might gain less than errors lose.
+#[test]
+fn a_move_that_begins_outside_of_its_region_is_made_in_whole_or_not_at_all() {
+    let mut robot = mover();
+    let whole = proposed(&mut robot).expect("nothing is in its way");
+    robot.yield_to_objection();
+    assert_eq!(robot.proposal, Some(whole.halved()));
+    robot.problem = None;
+    robot.yield_to_objection();
+    assert_eq!(robot.proposal, None);
 }
