@@ -56,7 +56,11 @@ fn sources() -> Vec<Source> {
     let folders = PACKAGES.iter().map(|package| Path::new(package).join("src"));
     let mut files: Vec<_> = folders.flat_map(files_below).collect();
     let is_source = |path: &Path| path.extension().is_some_and(|extension| extension == "rs");
-    files.retain(|path| is_source(path) && path.file_name().is_none_or(|name| name != "tests.rs"));
+    let is_of_tests = |path: &Path| {
+        let path = relative(path);
+        path.ends_with("/tests.rs") || path.contains("/tests/")
+    };
+    files.retain(|path| is_source(path) && !is_of_tests(path));
     files.sort();
     assert!(files.len() > 50, "the sources are not where they are looked for");
     files.iter().map(|path| Source::read(path)).collect()

@@ -21,6 +21,8 @@ mod machines;
 mod magnitudes;
 mod many_components;
 mod messages;
+#[cfg(feature = "network")]
+mod missions;
 mod models;
 #[cfg(feature = "network")]
 mod network_checks;

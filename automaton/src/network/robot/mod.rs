@@ -36,6 +36,8 @@ mod routing;
 mod step;
 mod target;
 mod team;
+#[cfg(test)]
+mod tests;
 mod view;
 mod way;
 mod yielding;
@@ -358,7 +360,7 @@ impl Robot {
     fn join_in(&mut self, period: u32) {
         self.period = period;
         if period > 1 {
-            self.is_late = true;
+            (self.is_late, self.is_quiet) = (true, false);
             self.note_change();
         }
     }

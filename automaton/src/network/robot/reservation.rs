@@ -86,7 +86,7 @@ pub(super) struct HeldFlow {
     /// Whether a request is to be made.
     is_due: bool,
     /// The last control period in which the grant holds.
-    until: u32,
+    pub until: u32,
 }
 
 /// What a receiver keeps for a sender.
@@ -94,13 +94,13 @@ pub(super) struct HeldFlow {
 pub(super) struct Reservation {
     from: NodeId,
     /// The largest F_ij that the sender may use.
-    flow: f64,
+    pub flow: f64,
     wanted: f64,
     /// The number of the last request, and whether it has been answered.
     asked: RequestNumber,
     is_answered: bool,
     /// The last control period in which the grant holds.
-    until: u32,
+    pub until: u32,
 }
 
 type Out = Outputs<Message, MissionEvent>;
@@ -300,7 +300,7 @@ impl Robot {
 
     /// Control periods for which it grants flows that last as long. A robot farther from the access points
     /// grants its own for one period less, as it hears of a renewal one period later.
-    fn lease(&self) -> u32 {
+    pub(super) fn lease(&self) -> u32 {
         LEASE.saturating_add(self.longest_wait() as u32)
     }
 

@@ -1,0 +1,339 @@
+//! To which node a robot attaches (Definition 5.2, Remark 5.6).
+
+use pleach_discrete::network::{Anchor, IdSet, PostId};
+
+use super::super::attachment::PATIENCE_WITH_UNUSED_POSTS;
+use super::*;
+
+/// To what a redundant robot wants to be attached that hears these.
+fn choice(robot: &mut Robot, heard: impl IntoIterator<Item = Beacon>) -> Option<Anchor> {
+    heard.into_iter().for_each(|beacon| robot.hears(beacon));
+    robot.keep_place().expect("its automaton goes on");
+    robot.desired_parent.expect("a redundant robot looks for a parent")
+}
+
+const fn at(post: u32) -> Option<Anchor> {
+    Some(Anchor::Post(PostId(post)))
+}
+
+#[test]
+fn a_redundant_robot_attaches_where_links_are_fewest() {
+    let heard = [
+        beacon(1, east(0.5), redundant(11, 12), &[11, 12, 13]),
+        beacon(2, east(1.1), fixed(12, 13), &[12, 13]),
+        beacon(3, west(0.7), fixed(14, 13), &[14, 15, 13]),
+    ];
+    assert_eq!(choice(&mut robot(), heard.clone()), at(12));
+    let with_access = heard.into_iter().chain([access_point(north(1.2))]);
+    assert_eq!(choice(&mut robot(), with_access), Some(Anchor::Access(0)));
+}
+
+#[test]
+fn of_equally_many_links_the_most_reliable_counts() {
+    for (one, other, best) in [(1.1, 1.2, 11), (1.2, 1.1, 12)] {
+        let heard = [
+            beacon(1, east(one), fixed(11, 13), &[11, 13]),
+            beacon(2, west(other), fixed(12, 13), &[12, 13]),
+        ];
+        assert_eq!(choice(&mut robot(), heard), at(best));
+    }
+    // Up to l all are alike: the first one heard counts.
+    let heard = [
+        beacon(1, east(0.9), fixed(11, 13), &[11, 13]),
+        beacon(2, west(0.5), fixed(12, 13), &[12, 13]),
+    ];
+    assert_eq!(choice(&mut robot(), heard), at(11));
+}
+
+#[test]
+fn links_are_made_up_to_d_build() {
+    let build = robot().build_length();
+    for (length, expected) in [(build - LITTLE, at(11)), (build + LITTLE, None)] {
+        let heard = [beacon(1, east(length), fixed(11, 13), &[11, 13])];
+        assert_eq!(choice(&mut robot(), heard), expected, "{length} of {build}");
+    }
+}
+
+/// Around the pillar the way is longer than the straight line between two robots.
+#[test]
+fn links_are_measured_along_geodesics() {
+    let mut robot = robot();
+    robot.position = Point::new(7.5, 6.9);
+    robot.arrival = robot.position;
+    let behind = Point::new(7.5, 8.1);
+    assert!((behind - robot.position).norm() < robot.build_length());
+    let heard = [beacon(1, behind, fixed(11, 13), &[11, 13])];
+    assert_eq!(choice(&mut robot, heard), None);
+}
+
+#[test]
+fn a_parent_is_kept_up_to_d_hard_and_while_no_other_has_fewer_links() {
+    let hard = robot().hard_length();
+    let rival = |posts: &[u32]| beacon(2, west(0.5), fixed(12, 13), posts);
+    let keeps = |length: f64, posts: &[u32]| {
+        let mut robot = robot();
+        robot.holds(redundant(0, 11));
+        choice(&mut robot, [beacon(1, east(length), fixed(11, 13), &[11, 13]), rival(posts)])
+    };
+    assert_eq!(keeps(hard - LITTLE, &[12, 13]), at(11), "no fewer links");
+    assert_eq!(keeps(hard - LITTLE, &[12]), at(12), "fewer links");
+    assert_eq!(keeps(hard + LITTLE, &[12, 13]), at(12), "too long");
+    assert_eq!(keeps(hard - LITTLE, &[12, 14, 13]), at(11), "more links");
+}
+
+#[test]
+fn no_robot_attaches_below_itself_nor_to_the_primary_team() {
+    let mut below = robot();
+    let heard = [beacon(1, east(0.5), redundant(11, 0), &[11, 0, 13])];
+    assert_eq!(choice(&mut below, heard), None, "its own post is on the way");
+    let heard = [beacon(1, east(0.5), primary(11, None, 13), &[11, 13])];
+    assert_eq!(choice(&mut robot(), heard), None, "the team moves");
+    let heard = [beacon(1, east(0.5), fixed(11, 13), &[])];
+    assert_eq!(choice(&mut robot(), heard), None, "it knows no way");
+}
+
+/// A robot on the way tells a way of its own: news of it is newer than what others know.
+#[test]
+fn a_way_that_a_robot_on_it_contradicts_does_not_count() {
+    let candidate = || beacon(1, east(0.5), fixed(11, 12), &[11, 12, 13]);
+    let witness = |posts: &[u32]| beacon(2, west(1.9), fixed(12, 13), posts);
+    assert_eq!(choice(&mut robot(), [candidate(), witness(&[12, 13])]), at(11));
+    assert_eq!(choice(&mut robot(), [candidate(), witness(&[12, 14])]), None);
+    assert_eq!(choice(&mut robot(), [candidate(), witness(&[])]), None);
+    let joined = beacon(2, west(1.9), primary(12, None, 13), &[12, 13]);
+    assert_eq!(choice(&mut robot(), [candidate(), joined]), None);
+}
+
+#[test]
+fn a_new_parent_has_to_be_confirmed_more_recently_than_what_was_passed_on() {
+    let mut robot = robot();
+    robot.confirmation.take_over(7);
+    let heard = Arc::new(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
+    for (confirmed, awaits) in [(None, true), (Some(7), true), (Some(8), false)] {
+        robot.hear_beacon(NOW, confirmed, &heard);
+        robot.keep_place().expect("it goes on");
+        assert_eq!(robot.awaits_confirmation, awaits, "{confirmed:?}");
+        assert_eq!(robot.desired_parent, (!awaits).then_some(at(11)), "{confirmed:?}");
+    }
+}
+
+#[test]
+fn while_a_path_is_sought_only_robots_without_a_parent_look_for_one() {
+    let heard = || beacon(1, east(0.5), fixed(11, 13), &[11, 13]);
+    let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
+    let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
+    let mut free = robot();
+    free.mission = Current::new(Mission::Shift(shift.clone()));
+    assert!(free.tree_is_frozen());
+    assert_eq!(choice(&mut free, [heard()]), at(11));
+    let mut attached = robot();
+    attached.mission = Current::new(Mission::Shift(shift));
+    attached.holds(redundant(0, 12));
+    attached.hears(heard());
+    attached.keep_place().expect("it goes on");
+    assert_eq!(attached.desired_parent, None);
+}
+
+/// Robot 0 holds a fixed post whose parent, post 21, has had no holder for `periods` control periods.
+fn orphan(periods: u32, heard: Beacon) -> Option<Option<Anchor>> {
+    let mut robot = robot();
+    robot.holds(fixed(20, 21));
+    robot.hears(heard);
+    (0..periods).for_each(|_| robot.count_orphaned_periods());
+    robot.keep_place().expect("it goes on");
+    robot.desired_parent
+}
+
+#[test]
+fn a_fixed_post_changes_its_parent_when_that_has_had_no_holder_for_long() {
+    let other = || beacon(1, east(0.5), fixed(11, 13), &[11, 13]);
+    assert_eq!(orphan(12, other()), None);
+    assert_eq!(orphan(13, other()), Some(at(11)));
+    assert_eq!(orphan(40, other()), Some(at(11)));
+    let below_lost = beacon(1, east(0.5), fixed(11, 21), &[11, 21]);
+    assert_eq!(orphan(40, below_lost), None, "what led over the lost post leads nowhere");
+    let below = beacon(1, east(0.5), fixed(11, 20), &[11, 20, 13]);
+    assert_eq!(orphan(40, below), None, "it is attached to this post");
+    let hard = robot().hard_length();
+    let far = |length: f64| beacon(1, east(length), fixed(11, 13), &[11, 13]);
+    assert_eq!(orphan(40, far(hard - LITTLE)), Some(at(11)));
+    assert_eq!(orphan(40, far(hard + LITTLE)), None);
+    let team = beacon(1, east(0.5), primary(11, None, 13), &[11, 13]);
+    assert_eq!(orphan(40, team), None);
+}
+
+#[test]
+fn periods_without_a_parent_are_counted_from_the_last_one_with_it() {
+    let mut robot = robot();
+    robot.holds(fixed(20, 11));
+    (0..5).for_each(|_| robot.count_orphaned_periods());
+    assert_eq!(robot.orphaned_periods, 5);
+    assert!(robot.is_orphan());
+    robot.hears(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
+    assert!(!robot.is_orphan());
+    robot.count_orphaned_periods();
+    assert_eq!(robot.orphaned_periods, 0);
+}
+
+/// p₁ with its parent 1.0 to the west, the task far to the east, and another node.
+fn reattached(node: Beacon) -> Option<Option<Anchor>> {
+    let mut robot = robot();
+    robot.holds(primary(30, None, 11));
+    robot.advances_to(east(4.0));
+    robot.hears(beacon(1, west(1.0), fixed(11, 13), &[11, 13]));
+    robot.hears(node);
+    robot.keep_place().expect("it goes on");
+    robot.desired_parent
+}
+
+#[test]
+fn the_first_of_the_team_attaches_to_a_node_that_is_nearer_to_the_task() {
+    let gain = 0.05 * robot().build_length();
+    let node = |away: f64| beacon(2, west(away), fixed(12, 13), &[12, 13]);
+    assert_eq!(reattached(node(1.0 - gain - LITTLE)), Some(at(12)));
+    assert_eq!(reattached(node(1.0 - gain + LITTLE)), None, "it gains too little");
+    let ahead = |away: f64| beacon(2, east(away), redundant(12, 13), &[12, 13]);
+    let build = robot().build_length();
+    assert_eq!(reattached(ahead(build - LITTLE)), Some(at(12)));
+    assert_eq!(reattached(ahead(build + LITTLE)), None, "the link would be too long");
+    let below = beacon(2, east(0.5), redundant(12, 30), &[12, 30, 11, 13]);
+    assert_eq!(reattached(below), None, "it is attached to this post");
+    let child = Beacon { parent: Some(0), ..beacon(2, east(0.5), redundant(12, 13), &[12, 13]) };
+    assert_eq!(reattached(child), None, "it is attached to this robot");
+    let lost = beacon(2, east(0.5), redundant(12, 13), &[]);
+    assert_eq!(reattached(lost), None, "it knows no way");
+}
+
+#[test]
+fn of_nodes_nearer_to_the_task_the_nearest_counts() {
+    let mut robot = robot();
+    robot.holds(primary(30, None, 11));
+    robot.advances_to(east(4.0));
+    robot.hears(beacon(1, west(1.0), fixed(11, 13), &[11, 13]));
+    for (id, away) in [(2, 0.3), (3, 0.6), (4, 0.4)] {
+        let number = 10 + id as u32;
+        robot.hears(beacon(id, east(away), fixed(number, 19), &[number, 19]));
+    }
+    robot.keep_place().expect("it goes on");
+    assert_eq!((robot.desired_parent, robot.reattaches_to), (Some(at(13)), Some(3)));
+}
+
+#[test]
+fn a_member_with_a_follower_keeps_its_parent() {
+    let mut robot = robot();
+    robot.holds(primary(30, None, 11));
+    robot.advances_to(east(4.0));
+    robot.hears(beacon(1, west(1.0), primary(11, Some(30), 13), &[11, 13]));
+    robot.hears(beacon(2, east(0.5), fixed(12, 13), &[12, 13]));
+    robot.keep_place().expect("it goes on");
+    assert_eq!(robot.desired_parent, None);
+}
+
+#[test]
+fn the_follower_attaches_to_the_newcomer_as_soon_as_the_link_may_be_made() {
+    let build = robot().build_length();
+    for (away, expected) in [(build - LITTLE, Some(at(40))), (build + LITTLE, None)] {
+        let mut robot = robot();
+        robot.holds(primary(30, None, 11));
+        robot.advances_to(east(4.0));
+        robot.is_told(Notice::Advance { joined: Some((PostId(40), PostId(30))) });
+        robot.hears(beacon(1, west(1.0), fixed(11, 13), &[11, 13]));
+        robot.hears(beacon(2, west(away), primary(40, Some(30), 11), &[40, 11, 13]));
+        robot.keep_place().expect("it goes on");
+        assert_eq!(robot.desired_parent, expected, "{away}");
+    }
+}
+
+#[test]
+fn branches_are_fixed_posts_and_the_primary_team_as_one() {
+    let mut robot = robot();
+    robot.holds(fixed(20, 13));
+    assert!(!robot.bears_branch());
+    robot.hears(beacon(1, east(0.3), redundant(11, 20), &[11, 20, 13]));
+    assert_eq!(robot.branches(), 0);
+    robot.hears(beacon(2, east(0.5), fixed(12, 20), &[12, 20, 13]));
+    robot.hears(beacon(3, east(0.6), fixed(12, 20), &[12, 20, 13]));
+    assert_eq!(robot.branches(), 1, "two robots hold one post during a hand-over");
+    robot.hears(beacon(4, west(0.5), primary(14, None, 20), &[14, 20, 13]));
+    robot.hears(beacon(5, west(0.7), primary(15, Some(14), 20), &[15, 20, 13]));
+    assert_eq!(robot.branches(), 2, "the team is one branch");
+    assert_eq!(robot.branches_of(PostId(13)), 0);
+    assert!(robot.bears_branch());
+}
+
+#[test]
+fn a_node_on_which_no_branch_depends_counts_the_periods() {
+    let count = |change: &dyn Fn(&mut Robot)| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 13));
+        robot.is_quiet = true;
+        change(&mut robot);
+        (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| robot.count_unused_periods());
+        (robot.unused_periods, robot.is_quiet)
+    };
+    assert_eq!(count(&|_| {}), (2, false));
+    assert_eq!(count(&|robot| robot.holds(redundant(20, 13))), (0, true));
+    assert_eq!(count(&|robot| robot.holds(Post { task: Some(0), ..fixed(20, 13) })), (0, true));
+    let branch = |robot: &mut Robot| robot.hears(beacon(1, east(0.5), fixed(11, 20), &[11, 20]));
+    assert_eq!(count(&branch), (0, true));
+    let frozen = |robot: &mut Robot| {
+        let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
+        let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
+        robot.mission = Current::new(Mission::Shift(shift));
+    };
+    assert_eq!(count(&frozen), (0, true));
+    let mut robot = robot();
+    robot.holds(fixed(20, 13));
+    (robot.unused_periods, robot.is_quiet) = (0, true);
+    robot.count_unused_periods();
+    assert!(robot.is_quiet, "once is not for long");
+}
+
+#[test]
+fn a_redundant_robot_can_detach_if_another_way_does_not_lead_over_its_parent() {
+    let detaches = |other: Beacon| {
+        let mut robot = robot();
+        robot.holds(redundant(0, 11));
+        robot.hears(beacon(1, west(0.5), redundant(11, 13), &[11, 13]));
+        robot.hears(other);
+        robot.look_after_place().expect("it goes on");
+        robot.can_detach
+    };
+    assert!(detaches(beacon(2, east(0.5), fixed(12, 13), &[12, 13])));
+    assert!(!detaches(beacon(2, east(0.5), redundant(12, 11), &[12, 11, 13])));
+    let mut rooted = robot();
+    let own = Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) };
+    rooted.holds(own);
+    rooted.look_after_place().expect("it goes on");
+    assert!(rooted.can_detach, "access points stay");
+    rooted.holds(Post { parent: Some(Anchor::Access(0)), ..fixed(0, 0) });
+    rooted.look_after_place().expect("it goes on");
+    assert!(!rooted.can_detach, "a fixed post keeps its parent");
+}
+
+#[test]
+fn an_access_point_hears_of_whom_a_branch_reports() {
+    let set = |robots: &[usize]| -> Arc<IdSet> { Arc::new(robots.iter().copied().collect()) };
+    let mut robot = robot();
+    robot.holds(Post { task: Some(3), ..fixed(20, 13) });
+    robot.hears(beacon(1, west(0.9), fixed(13, 14), &[13, 14]));
+    let child = Beacon {
+        below: set(&[2, 4]),
+        serves: set(&[1]),
+        ..beacon(2, east(0.5), fixed(12, 20), &[12, 20, 13, 14])
+    };
+    robot.hears(child);
+    robot.hears(beacon(3, north(0.5), redundant(16, 17), &[]));
+    let other =
+        Beacon { below: set(&[5]), ..beacon(5, south(0.5), redundant(15, 13), &[15, 13, 14]) };
+    robot.hears(other);
+    robot.look_after_place().expect("it goes on");
+    assert_eq!(*robot.below, *set(&[0, 2, 4]), "itself and what its children report");
+    assert_eq!(*robot.strays, *set(&[3]), "one that knows no way");
+    assert_eq!(*robot.serves, *set(&[1, 3]));
+    assert_eq!(robot.parent, Some(1));
+    // One that has not been heard in this period or the one before is not reported.
+    robot.period = NOW + 2;
+    robot.look_after_place().expect("it goes on");
+    assert_eq!((&*robot.below, &*robot.strays), (&*set(&[0]), &*set(&[])));
+}

@@ -1,0 +1,271 @@
+//! Bids in the elections of leaders and recruits, and the way to the robot that calls (Algorithm 1,
+//! Remarks 5.3 and 5.4).
+
+use pleach_discrete::network::{Bid, Election};
+
+use super::super::super::mission::{LeaderElection, RecruitElection};
+use super::*;
+
+/// Robot 0 hears that the task at `place` is announced; its way leads to the access point.
+fn asked(place: Point) -> Robot {
+    let mut robot = robot();
+    robot.holds(Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) });
+    robot.look_after_place().expect("it goes on");
+    robot.is_told(Notice::Quiet);
+    robot.knows_task(place);
+    robot.mission = Current::new(Mission::LeaderElection(LeaderElection));
+    robot.election = Some(Arc::new(Election::new(robot.notice_id())));
+    robot
+}
+
+fn leader_bid(robot: &mut Robot) -> Option<Bid> {
+    robot.answer_announcement();
+    assert!(robot.election.as_ref().is_some_and(|it| it.has_token(0)), "it places its token");
+    robot.bid
+}
+
+/// In units of 10⁻⁶ of the length up to which links are made.
+#[test]
+fn the_nearer_to_the_task_the_better_the_bid_of_a_leader() {
+    let merit = |away: f64| leader_bid(&mut asked(east(away))).expect("it competes").merit;
+    let unit = 1e-6 * robot().site.usual.build;
+    for away in [0.5, 1.0, 3.0] {
+        assert_eq!(merit(away), -(away / unit).round() as i64, "{away}");
+    }
+    // Round the pillar the way is longer than the distance.
+    let mut behind = asked(Point::new(8.5, 7.5));
+    behind.position = Point::new(6.5, 7.5);
+    let bid = leader_bid(&mut behind).expect("it competes");
+    assert!(-bid.merit > (2.0 / unit) as i64);
+}
+
+#[test]
+fn a_task_in_a_wall_is_bid_for_only_if_a_robot_can_come_near_enough() {
+    let inside = |deep: f64| leader_bid(&mut asked(Point::new(5.0, 10.0 - CLEARANCE + deep)));
+    assert!(inside(SERVICE_RADIUS - 1e-3).is_some());
+    assert!(inside(SERVICE_RADIUS + 1e-3).is_none());
+}
+
+#[test]
+fn who_takes_part_and_belongs_to_an_eligible_tree_competes() {
+    let without = |roster: &[NodeId], eligible: &[usize]| {
+        let mut robot = asked(east(1.0));
+        let (id, mut announcement) = {
+            let (id, known) = robot.announced.as_ref().expect("it knows the task");
+            (*id, (**known).clone())
+        };
+        announcement.roster = Arc::new(roster.iter().copied().collect());
+        announcement.eligible = Arc::new(eligible.iter().copied().collect());
+        robot.announced = Some((id, Shared::new(announcement)));
+        leader_bid(&mut robot).is_some()
+    };
+    assert!(without(&[0, 1], &[0, 1]));
+    assert!(!without(&[1, 2], &[0, 1]), "it is not on the roster");
+    assert!(!without(&[0, 1], &[1]), "its tree is not eligible");
+}
+
+/// 2.1ρ beside the holder another robot has to be within δ of the task, too.
+#[test]
+fn a_holder_that_nobody_can_relieve_bids_below_all_others() {
+    let rank = |away: f64| {
+        let mut robot = asked(east(1.0));
+        let (id, mut known) = {
+            let (id, known) = robot.announced.as_ref().expect("it knows the task");
+            (*id, (**known).clone())
+        };
+        (known.task, known.before) = (1, Arc::from([east(away)]));
+        robot.announced = Some((id, Shared::new(known)));
+        let held = Post { parent: Some(Anchor::Access(0)), task: Some(0), ..fixed(0, 0) };
+        robot.holds(held);
+        robot.look_after_place().expect("it goes on");
+        leader_bid(&mut robot).expect("it competes").rank
+    };
+    let limit = (SERVICE_RADIUS.powi(2) - (2.1 * CLEARANCE).powi(2)).sqrt();
+    assert_eq!((rank(0.0), rank(limit - LITTLE), rank(limit + LITTLE)), (1, 1, 0));
+}
+
+/// As long as news may be under way, there and back.
+#[test]
+fn a_robot_that_knows_no_way_looks_for_one_before_it_answers() {
+    let mut lost = asked(east(1.0));
+    lost.holds(Post::redundant(PostId(0)));
+    lost.look_after_place().expect("it goes on");
+    lost.waited_rounds = 2 * lost.longest_wait() - 1;
+    lost.answer_announcement();
+    assert!(!lost.election.as_ref().is_some_and(|it| it.has_token(0)));
+    lost.waited_rounds += 1;
+    assert_eq!(leader_bid(&mut lost), None, "it lets the others elect");
+    let mut other = asked(east(1.0));
+    other.is_told(Notice::Quiet);
+    other.answer_announcement();
+    assert!(!other.election.as_ref().is_some_and(|it| it.has_token(0)), "it is another election");
+}
+
+/// Robot 0 hears that robot 5 calls for a recruit, and its tree neighbour 1 knows the way.
+fn called(own: Post, releases_leader: bool) -> Robot {
+    let mut robot = robot();
+    robot.holds(own);
+    robot.is_told(Notice::Call { caller: 5, releases_leader });
+    robot.knows_task(east(3.0));
+    robot.mission =
+        Current::new(Mission::RecruitElection(RecruitElection { before: None, standstill: None }));
+    robot.election = Some(Arc::new(Election::new(robot.notice_id())));
+    robot
+}
+
+fn knows_way(robot: &Robot, id: NodeId, at: Point, held: Post) -> Beacon {
+    let hop = super::super::super::duty::Hop {
+        robot: id,
+        post: held,
+        place: super::super::super::duty::PathPlace { reference: at, position: at },
+        crossing: Vec::new(),
+    };
+    Beacon { route: Some((robot.notice_id(), Shared::new(vec![hop]))), ..beacon(id, at, held, &[]) }
+}
+
+fn recruit_bid(robot: &mut Robot) -> Option<Option<Bid>> {
+    robot.answer_call();
+    let has_token = robot.election.as_ref().is_some_and(|it| it.has_token(0));
+    has_token.then_some(robot.bid)
+}
+
+#[test]
+fn a_redundant_robot_bids_its_residual_and_then_the_shorter_path() {
+    let bid = |residual: f64| {
+        let mut robot = called(redundant(0, 11), false);
+        robot.residual = residual;
+        robot.hears(knows_way(&robot, 1, east(0.5), fixed(11, 13)));
+        let bid = recruit_bid(&mut robot).expect("it answers").expect("it competes");
+        let route = &robot.route.as_ref().expect("it knows its way").1;
+        assert_eq!(route.iter().map(|hop| hop.robot).collect::<Vec<_>>(), [0, 1]);
+        (bid.rank, bid.merit, bid.economy)
+    };
+    assert_eq!(bid(0.0204), (2, 20, -2));
+    assert_eq!(bid(0.0206), (2, 21, -2), "in thousandths");
+    assert_eq!(bid(-0.01), (2, -10, -2));
+}
+
+#[test]
+fn the_way_to_the_caller_leads_over_links_of_the_tree() {
+    let finds = |own: Post, held: Post, at: Point, waited: usize| {
+        let mut robot = called(own, false);
+        robot.waited_rounds = waited;
+        robot.hears(knows_way(&robot, 1, at, held));
+        robot.answer_call();
+        robot.route.is_some()
+    };
+    let near = east(0.5);
+    let mut waiting = called(redundant(0, 12), false);
+    waiting.hears(knows_way(&waiting, 1, near, fixed(11, 13)));
+    let wait = waiting.longest_wait();
+    assert!(finds(redundant(0, 11), fixed(11, 13), near, 0), "its parent");
+    assert!(finds(fixed(20, 13), redundant(11, 20), near, 0), "its child");
+    let stranger = || fixed(11, 13);
+    assert!(!finds(redundant(0, 12), stranger(), near, wait));
+    assert!(finds(redundant(0, 12), stranger(), near, wait + 1), "trees that are not connected");
+    assert!(!finds(redundant(0, 12), primary(11, None, 13), near, wait + 1));
+    let build = robot().build_length();
+    assert!(!finds(redundant(0, 12), stranger(), east(build + LITTLE), wait + 1));
+    let mut rooted = called(Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) }, false);
+    let known = knows_way(&rooted, 1, near, stranger()).route;
+    rooted.hears(Beacon { route: known, ..access_point(west(0.5)) });
+    rooted.answer_call();
+    assert!(rooted.route.is_some(), "the access point that it is attached to");
+}
+
+#[test]
+fn a_robot_that_bears_others_is_no_recruit() {
+    let class = |change: &dyn Fn(&mut Robot)| {
+        let mut robot = called(redundant(0, 11), false);
+        robot.hears(knows_way(&robot, 1, east(0.5), fixed(11, 13)));
+        change(&mut robot);
+        recruit_bid(&mut robot).expect("it answers").map(|bid| bid.rank)
+    };
+    assert_eq!(class(&|_| {}), Some(2));
+    let bears = |robot: &mut Robot| robot.hears(beacon(2, west(0.5), redundant(12, 0), &[]));
+    assert_eq!(class(&bears), None);
+    let unknown = |robot: &mut Robot| robot.announced = None;
+    assert_eq!(class(&unknown), None, "it does not take part");
+    // A relay that bears the caller alone can go with it, if no other robot can come.
+    let relay = |robot: &mut Robot| {
+        robot.holds(fixed(20, 11));
+        robot.hears(beacon(5, west(0.5), primary(30, None, 20), &[]));
+    };
+    assert_eq!(class(&relay), Some(1));
+    let two = |robot: &mut Robot| {
+        relay(robot);
+        robot.hears(beacon(3, north(0.5), redundant(33, 20), &[]));
+    };
+    assert_eq!(class(&two), None);
+    let releases = |robot: &mut Robot| {
+        relay(robot);
+        robot.is_told(Notice::Call { caller: 5, releases_leader: true });
+        robot.election = Some(Arc::new(Election::new(robot.notice_id())));
+        robot.hears(knows_way(robot, 1, east(0.5), fixed(11, 13)));
+    };
+    assert_eq!(class(&releases), None, "the leader has past duties");
+}
+
+#[test]
+fn a_robot_that_finds_no_way_waits_before_it_shows_where_it_could_help() {
+    let mut robot = called(Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) }, false);
+    robot.look_after_place().expect("it goes on");
+    robot.waited_rounds = 2 * robot.longest_wait() - 1;
+    assert_eq!(recruit_bid(&mut robot), None, "it waits");
+    robot.waited_rounds += 1;
+    let bid = recruit_bid(&mut robot).expect("it answers").expect("it could help elsewhere");
+    assert_eq!((bid.rank, bid.merit), (0, 0));
+    assert!(!Robot::can_come(bid) && Robot::can_come(Bid { rank: 1, ..bid }));
+    let mut forgetful = called(redundant(0, 11), false);
+    forgetful.forgetful = Arc::new([0].into_iter().collect());
+    forgetful.hears(knows_way(&forgetful, 1, east(0.5), fixed(11, 13)));
+    assert_eq!(recruit_bid(&mut forgetful), None, "it may have answered before it restarted");
+}
+
+/// News goes up one tree and down another, over no more links than there are nodes; five rounds are to spare.
+#[test]
+fn news_is_waited_for_by_the_deepest_place_that_is_heard_of() {
+    let mut robot = robot();
+    let wait = |depth: usize| robot_of(&hall()).site.rounds_across(depth);
+    assert_eq!([wait(0), wait(1), wait(40)], [5, ROBOTS + 1, ROBOTS + 1]);
+    assert_eq!(robot.longest_wait(), 5);
+    for (told, waits) in [(6, 6), (4, 6), (usize::MAX, ROBOTS + 1)] {
+        robot.hears(Beacon { longest_wait: told, ..beacon(1, east(0.5), fixed(11, 13), &[11]) });
+        robot.hear_notices();
+        assert_eq!((robot.longest_wait(), robot.public_state().longest_wait), (waits, waits));
+    }
+}
+
+#[test]
+fn rounds_of_an_election_are_counted_until_its_waits_are_over() {
+    let mut robot = called(redundant(0, 11), false);
+    let wait = robot.longest_wait();
+    let due: Vec<usize> = (1..=3 * wait).filter(|_| robot.count_round()).collect();
+    assert_eq!(due, [wait + 1, 2 * wait]);
+    robot.mission = Current::new(Mission::Idle(super::super::super::mission::Idle));
+    assert!(!robot.count_round() && robot.waited_rounds == 3 * wait);
+    let mut asked = asked(east(1.0));
+    assert!(asked.counts_rounds());
+    asked.answer_announcement();
+    assert!(!asked.counts_rounds(), "it has answered");
+}
+
+#[test]
+fn the_newest_announcement_by_which_others_go_is_learnt() {
+    let mut robot = asked(east(1.0));
+    assert!(robot.newer_announcement().is_none());
+    let known = robot.announced.clone().expect("it knows the task");
+    robot.hears(Beacon {
+        announced: Some(known.clone()),
+        ..beacon(1, east(0.5), redundant(11, 13), &[])
+    });
+    assert!(robot.newer_announcement().is_none(), "it goes by that one");
+    for (id, times) in [(2, 1), (3, 2)] {
+        let newer = (0..times).fold(known.0, |newest, _| newest.next(4));
+        let place = if id == 2 { west(0.5) } else { north(0.5) };
+        let announced = Some((newer, known.1.clone()));
+        robot.hears(Beacon { announced, ..beacon(id, place, redundant(10 + id as u32, 13), &[]) });
+    }
+    let newest = known.0.next(4).next(4);
+    assert_eq!(robot.newer_announcement().map(|(id, _)| *id), Some(newest));
+}

@@ -1,0 +1,211 @@
+//! What a robot makes of errors of its position and its moves.
+
+use super::super::super::duty::{Hop, PathPlace};
+use super::*;
+
+const POSITION_ERROR: f64 = 0.01;
+const MOTION_ERROR: f64 = 0.02;
+
+fn unsure() -> Robot {
+    let mut hall = hall();
+    hall.control.position_error = Some(POSITION_ERROR);
+    hall.control.motion_error = Some(MOTION_ERROR);
+    robot_of(&hall)
+}
+
+/// It stays where it has measured itself before unless it has moved, is farther off than two errors of
+/// position, or wants to go on and has not for some periods.
+#[test]
+fn a_robot_that_has_not_moved_stays_where_it_has_measured_itself() {
+    let corrects = |off: f64, change: &dyn Fn(&mut Robot)| {
+        let mut robot = unsure();
+        change(&mut robot);
+        robot.correct_position(east(off));
+        assert_eq!(robot.position, robot.arrival);
+        robot.position != HERE
+    };
+    let within = 2.0 * POSITION_ERROR;
+    assert!(!corrects(within, &|_| {}) && corrects(within + LITTLE, &|_| {}));
+    assert!(corrects(0.001, &|robot| robot.velocity = Vector::new(0.1, 0.0)));
+    for (still, tries) in [(0, false), (2, false), (3, true), (4, false), (7, true)] {
+        let wants = |robot: &mut Robot| {
+            (robot.waypoint, robot.still_periods) = (Some(east(1.0)), still);
+        };
+        assert_eq!(corrects(0.001, &wants), tries, "{still}");
+        let rests = |robot: &mut Robot| robot.still_periods = still;
+        assert!(!corrects(0.001, &rests), "it wants to go nowhere");
+    }
+}
+
+#[test]
+fn a_robot_has_strayed_where_errors_have_led_it_out_of_the_free_space() {
+    let at = |mut robot: Robot, position: Point| {
+        robot.position = position;
+        (robot.has_strayed(), robot.free_place())
+    };
+    let kept = CLEARANCE + POSITION_ERROR + MOTION_ERROR;
+    let outside = Point::new(5.0, kept - 0.01);
+    let (has_strayed, place) = at(unsure(), outside);
+    assert!(has_strayed && (place - Point::new(5.0, kept)).norm() < 1e-4, "{place}");
+    assert!(!at(unsure(), Point::new(5.0, kept + 0.01)).0);
+    assert!(!at(robot(), Point::new(5.0, CLEARANCE / 2.0)).0, "there are no errors");
+}
+
+/// One that finds itself outside of its constraints goes back into them if its way gets shorter.
+#[test]
+fn a_robot_outside_of_its_constraints_returns_towards_its_goal_or_stays() {
+    let moved = |goal: Point| {
+        let mut robot = unsure();
+        robot.holds(primary(30, None, 13));
+        robot.advances_to(goal);
+        robot.roll.called = NOW;
+        robot.position = Point::new(5.0, CLEARANCE + POSITION_ERROR + MOTION_ERROR - 0.01);
+        robot.arrival = robot.position;
+        robot.measures();
+        robot.propose().expect("its guards have values");
+        robot.proposal.map(|segment| segment.to - segment.from)
+    };
+    let back = moved(Point::new(5.0, 3.0)).expect("the way in is the way to its goal");
+    assert!(back.y >= 0.01 - 1e-6, "{back}");
+}
+
+#[test]
+fn errors_make_clearances_larger_and_settled_places_wider() {
+    let robot = unsure();
+    assert!((robot.clearance() - (CLEARANCE + POSITION_ERROR + MOTION_ERROR)).abs() < 1e-12);
+    assert!((robot.stray() - (2.0 * POSITION_ERROR + MOTION_ERROR)).abs() < 1e-12);
+    let settled = 0.02 * robot.clearance() + robot.stray();
+    assert!(!robot.is_off(east(settled - LITTLE)) && robot.is_off(east(settled + LITTLE)));
+}
+
+/// A link that may be as long as it is, with errors, is kept: a parent may measure itself 2 (2e + m) farther.
+#[test]
+fn a_parent_is_kept_as_far_off_as_both_may_stray() {
+    let keeps = |length: f64| {
+        let mut robot = unsure();
+        robot.holds(redundant(0, 11));
+        robot.hears(beacon(1, east(length), fixed(11, 13), &[11, 13]));
+        robot.keep_place().expect("it goes on");
+        robot.desired_parent == Some(Some(Anchor::Post(PostId(11))))
+    };
+    let robot = unsure();
+    let limit = robot.hard_length() + 2.0 * robot.stray();
+    assert!(keeps(limit - LITTLE) && !keeps(limit + LITTLE));
+}
+
+/// The path of robots 0, 1 and 2, the second of which has arrived at its place.
+fn shifting(gap: f64, arrived: bool) -> Robot {
+    let mut robot = robot();
+    let hop = |number: u32, at: Point| Hop {
+        robot: number as usize,
+        post: fixed(number, 13),
+        place: PathPlace { reference: at, position: at },
+        crossing: Vec::new(),
+    };
+    let hops = vec![hop(0, west(1.0)), hop(1, east(1.0)), hop(2, east(2.0)), hop(3, east(3.0))];
+    let path = Arc::new(Path { hops, releases_leader: false });
+    let subgroups = pleach_discrete::network::path::subgroups(&[0, 3]).collect();
+    robot.mission = Current::new(Mission::Shift(Shift { path, subgroups, arrived: 0 }));
+    robot.duty = Current::new(Duty::Shifting(Shifting { place: 0, left: None }));
+    let mut agreement = pleach_discrete::network::Agreement::new(robot.notice_id());
+    if arrived {
+        agreement.arrive(1);
+    }
+    robot.agreement = Some(agreement);
+    let ahead = Duty::Shifting(Shifting { place: 1, left: None });
+    robot.hears(Beacon { duty: Some(ahead), ..Beacon::silent(1, east(gap)) });
+    robot
+}
+
+/// Eq. (26): within δ of its place, or right behind the next of its subgroup that has arrived.
+#[test]
+fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
+    let queue = 2.2 * CLEARANCE;
+    assert!(shifting(queue - LITTLE, true).has_arrived());
+    assert!(!shifting(queue + LITTLE, true).has_arrived(), "it is not right behind");
+    assert!(!shifting(queue - LITTLE, false).has_arrived(), "that one has not arrived");
+    let near = |away: f64| {
+        let mut robot = shifting(0.5, false);
+        robot.position = east(1.0 - away);
+        robot.has_arrived()
+    };
+    assert!(near(SERVICE_RADIUS - LITTLE) && !near(SERVICE_RADIUS + LITTLE));
+    assert_eq!(shifting(0.5, false).next_hop().map(|hop| hop.robot), Some(1));
+    assert!(!robot().has_arrived(), "it is on no path");
+    let mut last = shifting(queue - LITTLE, true);
+    last.duty = Current::new(Duty::Shifting(Shifting { place: 2, left: None }));
+    assert!(!last.has_arrived(), "the break point at the end is of another subgroup");
+}
+
+#[test]
+fn a_robot_under_way_is_attached_to_the_next_of_the_chain() {
+    let mut robot = shifting(0.5, true);
+    assert_eq!(robot.tree_parent(), Some(1));
+    assert_eq!(robot.active_subgroup().map(|active| active.places()), Some(0..3));
+    assert_eq!(robot.robots_at(robot.active_subgroup().expect("it is active")), [0, 1, 2]);
+    assert!(robot.has_reported(1) && !robot.has_reported(0) && !robot.has_reported(2));
+    robot.report_arrival();
+    assert!(!robot.has_reported(0), "it is far from its place");
+    robot.position = east(1.0);
+    robot.report_arrival();
+    assert!(robot.has_reported(0));
+}
+
+/// From where a link is longer than errors explain, each end that moves makes it shorter by as much as its
+/// move may be off.
+#[test]
+fn a_link_that_is_far_too_long_truly_gets_no_longer() {
+    use pleach_continuous::network::acceptance::Segment;
+    let far = unsure().hard_length() + 2.0 * unsure().stray();
+    let accepts = |length: f64, own: f64, other: f64| {
+        let mut robot = unsure();
+        robot.holds(fixed(20, 13));
+        robot.hears(beacon(5, west(length), fixed(13, 14), &[13, 14]));
+        robot.remember_parent();
+        robot.begin_negotiation();
+        if other > 0.0 {
+            robot.hear_proposal(5, Segment { from: west(length), to: west(length - other) });
+        }
+        let proposal = (own > 0.0).then(|| Segment { from: HERE, to: west(own) });
+        robot.proposal = proposal;
+        robot.judge_moves(&mut crate::node::Outputs::of(0));
+        robot.proposal == proposal && !robot.must_judge_moves
+    };
+    let (near, long) = (far - LITTLE, far + LITTLE);
+    let (enough, short) = (MOTION_ERROR + LITTLE, MOTION_ERROR - LITTLE);
+    assert!(accepts(long, enough, 0.0) && !accepts(long, short, 0.0));
+    assert!(accepts(near, short, 0.0), "errors explain its length");
+    assert!(accepts(long, 0.0, enough) && !accepts(long, 0.0, short));
+    assert!(accepts(long, enough, enough) && !accepts(long, enough, short));
+}
+
+/// Where a robot may be within a disc, a sender reckons with the farthest place.
+#[test]
+fn a_sender_reckons_with_where_its_receiver_may_measure_itself() {
+    use pleach_continuous::network::LinkReliability as _;
+    use pleach_continuous::network::acceptance::Segment;
+    let objects = |share: f64, move_to: f64, parked: bool| {
+        let mut robot = unsure();
+        robot.holds(fixed(20, 99));
+        robot.hears(Beacon { parked, ..beacon(5, west(1.2), fixed(13, 14), &[13, 14]) });
+        robot.survey_links();
+        robot.links[0].share = share;
+        robot.links[0].held.flow = share * robot.links[0].reliability;
+        robot.begin_negotiation();
+        robot.hear_proposal(5, Segment { from: west(1.2), to: west(move_to) });
+        let mut outputs = crate::node::Outputs::of(0);
+        robot.judge_moves(&mut outputs);
+        outputs.drain_sent().count() > 0
+    };
+    let link = |away: f64| unsure().site.link.reliability(away);
+    // The share at which the load is 1 at this distance.
+    let full = |away: f64| link(away) / link(1.2);
+    let stray = 2.0 * POSITION_ERROR + MOTION_ERROR;
+    let farthest = 1.25 + stray;
+    assert!(!objects(full(farthest) - 1e-4, 1.25, true));
+    assert!(objects(full(farthest) + 1e-4, 1.25, true));
+    // One that rests is where it is known to be; one that is not parked may measure itself anew.
+    assert!(!objects(full(1.2) - 1e-4, 1.2, true));
+    let anew = full(1.2 + 2.0 * POSITION_ERROR);
+    assert!(!objects(anew - 1e-4, 1.2, false) && objects(anew + 1e-4, 1.2, false));
+}

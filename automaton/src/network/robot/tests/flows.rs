@@ -1,0 +1,372 @@
+//! Which flows a robot plans, asks for, grants and uses (reservation), and how it routes.
+
+use pleach_continuous::network::LinkReliability as _;
+
+use super::super::super::message::Message;
+use super::super::MissionEvent;
+use super::super::reservation::{FlowGrant, FlowRequest, RequestNumber};
+use super::*;
+use crate::node::{Destination, Outputs};
+
+const LEASE: u32 = 8;
+
+type Out = Outputs<Message, MissionEvent>;
+
+/// Robot 0 with links to the access point, 1.2 away, and to robot 5, 1.0 away.
+fn router() -> Robot {
+    let mut robot = robot();
+    robot.holds(Post { parent: Some(Anchor::Access(0)), ..fixed(20, 0) });
+    robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
+    robot.hears(access_point(east(1.2)));
+    robot.remember_parent();
+    robot.survey_links();
+    assert_eq!(robot.links.iter().map(|link| link.to).collect::<Vec<_>>(), [5, ROBOTS]);
+    robot
+}
+
+fn sent(outputs: &mut Out) -> Vec<(Destination, Message)> {
+    outputs.drain_sent().map(|envelope| (envelope.to, envelope.message)).collect()
+}
+
+fn requests(outputs: &mut Out) -> Vec<(Destination, FlowRequest)> {
+    let asks = |(to, message)| match message {
+        Message::AskFlow(request) => Some((to, request)),
+        _ => None,
+    };
+    sent(outputs).into_iter().filter_map(asks).collect()
+}
+
+fn grants(outputs: &mut Out) -> Vec<(Destination, FlowGrant)> {
+    let grants = |(to, message)| match message {
+        Message::GrantFlow(grant) => Some((to, grant)),
+        _ => None,
+    };
+    sent(outputs).into_iter().filter_map(grants).collect()
+}
+
+/// A link that a step of both ends could break carries nothing unless it belongs to the tree; one with a flow
+/// stays until that has ended.
+#[test]
+fn links_are_those_that_are_reliable_enough_or_of_the_tree() {
+    let far = |robot: &Robot| robot.site.link.distance_at(0.3);
+    let links = |away: f64, attached: bool, flow: f64| {
+        let mut robot = router();
+        robot.links[0].held.flow = flow;
+        let held = if attached { fixed(13, 20) } else { fixed(13, 14) };
+        let parent = attached.then_some(0);
+        robot.hears(Beacon { parent, ..beacon(5, west(away), held, &[13, 14]) });
+        robot.survey_links();
+        robot.links.iter().find(|link| link.to == 5).map(|link| link.is_retiring)
+    };
+    let limit = far(&robot());
+    assert_eq!(links(limit - 1e-3, false, 0.0), Some(false));
+    assert_eq!(links(limit + 1e-3, false, 0.0), None);
+    assert_eq!(links(limit + 1e-3, true, 0.0), Some(false), "a link of the tree");
+    assert_eq!(links(limit + 1e-3, false, 0.1), Some(true), "its flow has to end first");
+    assert_eq!(links(2.0, false, 0.1), None, "no packets get there");
+}
+
+/// F_ij up to what is planned and granted, and for all the time that the sender has.
+#[test]
+fn a_flow_is_raised_to_what_is_planned_and_granted() {
+    let flow = |wanted: f64, granted: f64, busy: f64| {
+        let mut robot = router();
+        let mut outputs = Outputs::of(0);
+        let reliability = robot.links[0].reliability;
+        robot.links[0].share = wanted / reliability;
+        robot.links[1].share = busy;
+        robot.ask_for_flows(&mut outputs);
+        let asked = requests(&mut outputs);
+        let [(Destination::One(5), request)] = asked[..] else { panic!("{asked:?}") };
+        robot
+            .hear_grant(5, FlowGrant { number: request.number, flow: granted, until: NOW + LEASE });
+        robot.take_in_requests(&mut outputs);
+        (robot.links[0].held.flow, robot.links[1].load())
+    };
+    let close = |(one, two): (f64, f64), (first, second): (f64, f64)| {
+        assert!((one - first).abs() < 1e-9 && (two - second).abs() < 1e-9, "{one} and {two}");
+    };
+    close(flow(0.3, 0.5, 0.2), (0.3, 0.2));
+    close(flow(0.5, 0.3, 0.2), (0.3, 0.2));
+}
+
+/// Robot 5 asks for a flow of 0.2; this robot sends 0.1 + `spare` to the access point, 0.1 of it its own.
+fn granted(spare: f64) -> (Robot, Vec<(Destination, FlowGrant)>) {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    let reliability = robot.links[1].reliability;
+    robot.links[1].share = (0.1 + spare) / reliability;
+    robot.ask_for_flows(&mut outputs);
+    sent(&mut outputs);
+    let number = RequestNumber { period: NOW, number: 1 };
+    robot.hear_request(5, FlowRequest { number, held: 0.0, wanted: 0.2 });
+    robot.take_in_requests(&mut outputs);
+    let grants = grants(&mut outputs);
+    (robot, grants)
+}
+
+/// Σ_j F_ij − Σ_j (granted to j) − r_i ≥ 0.
+#[test]
+fn no_more_is_granted_than_is_forwarded() {
+    for (spare, expected) in [(0.0, 0.0), (0.15, 0.15), (0.3, 0.2)] {
+        let (mut robot, grants) = granted(spare);
+        let [(Destination::One(5), grant)] = grants[..] else { panic!("it answers: {grants:?}") };
+        assert!((grant.flow - expected).abs() < 1e-9, "{} of {spare}", grant.flow);
+        robot.adopt_flows();
+        assert!((robot.residual - (spare - expected)).abs() < 1e-9, "{}", robot.residual);
+        assert_eq!(robot.senders().count(), usize::from(expected > 0.0));
+        assert!((robot.inflow - expected).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_request_is_answered_once_and_an_older_one_never() {
+    let (mut robot, _) = granted(0.3);
+    let mut outputs = Outputs::of(0);
+    for _ in 0..2 {
+        grants(&mut outputs);
+        robot.has_flow_news = true;
+        robot.take_in_requests(&mut outputs);
+    }
+    assert!(grants(&mut outputs).is_empty(), "nothing has changed");
+    let request = |number, held, wanted| FlowRequest {
+        number: RequestNumber { period: NOW, number },
+        held,
+        wanted,
+    };
+    robot.hear_request(5, request(1, 0.0, 0.0));
+    robot.take_in_requests(&mut outputs);
+    assert!(grants(&mut outputs).is_empty(), "it is the same again");
+    // A new request voids the grant but for what is in use.
+    robot.hear_request(5, request(2, 0.05, 0.05));
+    robot.take_in_requests(&mut outputs);
+    let answered = grants(&mut outputs);
+    assert!(
+        matches!(answered[..], [(_, grant)] if (grant.flow - 0.05).abs() < 1e-9),
+        "{answered:?}"
+    );
+}
+
+#[test]
+fn grants_end_with_their_lease() {
+    let (mut robot, _) = granted(0.3);
+    let mut outputs = Outputs::of(0);
+    robot.ask_for_flows(&mut outputs);
+    let until = robot.reservations[0].until;
+    for (period, senders) in [(until, 1), (until + 1, 0)] {
+        robot.period = period;
+        robot.ask_for_flows(&mut outputs);
+        assert_eq!(robot.senders().count(), senders, "in {period} of {until}");
+    }
+    let mut sender = router();
+    sender.links[0].share = 0.2;
+    sender.ask_for_flows(&mut outputs);
+    let asked = requests(&mut outputs);
+    let FlowRequest { number, wanted: flow, .. } = asked.first().expect("it asks").1;
+    sender.hear_grant(5, FlowGrant { number, flow, until: NOW + LEASE });
+    sender.take_in_requests(&mut outputs);
+    assert!(sender.sends_to(5) && sender.requests_are_answered());
+    for (later, sends) in [(LEASE, true), (LEASE + 1, false)] {
+        sender.period = NOW + later;
+        sender.ask_for_flows(&mut outputs);
+        assert_eq!(sender.sends_to(5), sends, "{later} periods later");
+    }
+}
+
+/// A grant is promised for a lease, and no longer than what carries it.
+#[test]
+fn grants_last_no_longer_than_the_flows_that_carry_them() {
+    let until = |end: u32, kept: Option<(f64, u32)>| {
+        let (mut robot, _) = granted(0.3);
+        let mut outputs = Outputs::of(0);
+        robot.links[1].held.until = end;
+        match kept {
+            Some((flow, until)) => {
+                (robot.reservations[0].flow, robot.reservations[0].until) = (flow, until);
+            }
+            None => robot.reservations.clear(),
+        }
+        let number = RequestNumber { period: NOW, number: 2 };
+        robot.hear_request(5, FlowRequest { number, held: 1.0, wanted: 0.2 });
+        robot.take_in_requests(&mut outputs);
+        let grants = grants(&mut outputs);
+        let [(_, grant)] = grants[..] else { panic!("it answers: {grants:?}") };
+        ((grant.flow * 100.0).round() / 100.0, grant.until)
+    };
+    let lease = router().lease();
+    assert_eq!(until(NOW + 99, None), (0.2, NOW + lease));
+    assert_eq!(until(NOW + 3, None), (0.2, NOW + 3));
+    assert_eq!(until(NOW + 3, Some((0.1, NOW + 2))), (0.2, NOW + 3));
+    // What has been promised for longer is not promised again, and nothing is added to it.
+    assert_eq!(until(NOW + 3, Some((0.1, NOW + 5))), (0.1, NOW + 5));
+    assert_eq!(until(NOW + 3, Some((0.0, NOW + 5))), (0.0, NOW + 5));
+}
+
+/// An access point takes everything, as long as it has been heard in two leases.
+#[test]
+fn packets_flow_to_an_access_point_that_is_not_heard_for_a_while() {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    robot.links[1].share = 0.2;
+    robot.ask_for_flows(&mut outputs);
+    assert!(robot.sends_to(ROBOTS) && requests(&mut outputs).is_empty());
+    let patience = 2 * robot.lease();
+    for (later, sends) in [(patience, true), (patience + 1, false)] {
+        robot.period = NOW + later;
+        robot.ask_for_flows(&mut outputs);
+        assert_eq!(robot.sends_to(ROBOTS), sends, "{later}");
+    }
+}
+
+#[test]
+fn an_answer_to_an_older_request_counts_for_nothing() {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    robot.links[0].share = 0.2;
+    robot.ask_for_flows(&mut outputs);
+    let number = requests(&mut outputs)[0].1.number;
+    let older = RequestNumber { number: number.number - 1, ..number };
+    robot.hear_grant(5, FlowGrant { number: older, flow: 0.5, until: NOW + LEASE });
+    robot.take_in_requests(&mut outputs);
+    assert!(!robot.sends_to(5) && !robot.requests_are_answered());
+    assert!(robot.has_asked(5) && !robot.has_asked(ROBOTS) && !robot.has_asked(4));
+}
+
+/// After eight rounds without an answer it asks again, with another number.
+#[test]
+fn a_request_without_an_answer_is_made_again() {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    robot.links[0].share = 0.2;
+    robot.ask_for_flows(&mut outputs);
+    let first = requests(&mut outputs)[0].1.number;
+    robot.round_count.restart();
+    let mut again = Vec::new();
+    for round in 1..=16 {
+        robot.round_count.pass(1);
+        robot.take_in_requests(&mut outputs);
+        again
+            .extend(requests(&mut outputs).into_iter().map(|(_, request)| (round, request.number)));
+    }
+    let number = |more| RequestNumber { number: first.number + more, ..first };
+    assert_eq!(again, [(8, number(1)), (16, number(2))]);
+    robot.period += 1;
+    robot.ask_for_flows(&mut outputs);
+    assert_eq!(requests(&mut outputs)[0].1.number, RequestNumber { period: NOW + 1, number: 1 });
+}
+
+/// A plan that becomes smaller lowers a flow as far as the rest still carries rate and grants.
+#[test]
+fn a_flow_is_lowered_where_the_rest_carries_what_is_needed() {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    let reliability = robot.links[1].reliability;
+    robot.links[1].share = 0.4 / reliability;
+    robot.ask_for_flows(&mut outputs);
+    assert!((robot.links[1].held.flow - 0.4).abs() < 1e-9);
+    for (planned, held) in [(0.25, 0.25), (0.05, 0.1)] {
+        robot.links[1].share = planned / reliability;
+        robot.ask_for_flows(&mut outputs);
+        assert!((robot.links[1].held.flow - held).abs() < 1e-9, "its rate of 0.1 is carried");
+    }
+}
+
+/// λ and what its neighbours report: the accelerated iteration goes where c = η.
+#[test]
+fn a_multiplier_rises_while_less_leaves_than_comes_in() {
+    let mut robot = router();
+    assert_eq!(robot.multiplier(), 0.0);
+    robot.dual_step();
+    assert!(robot.multiplier() > 0.0, "nothing leaves yet");
+    let before = robot.multiplier();
+    robot.primal_step();
+    assert!(robot.links[1].share > 0.0, "it sends to the access point, whose multiplier is 0");
+    robot.hear_flow(5, 0.3);
+    robot.dual_step();
+    assert!(robot.multiplier() > before);
+    assert!((robot.inflow - 0.3).abs() < 1e-12);
+    robot.hear_flow(5, 0.0);
+    robot.settle_residual();
+    let out: f64 = robot.links.iter().map(|link| link.flow()).sum();
+    assert!((robot.residual - (out - 0.1)).abs() < 1e-12, "c = out − in − r");
+}
+
+#[test]
+fn flows_are_told_where_they_have_changed() {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    robot.links[0].share = 0.2;
+    robot.links[1].share = 0.3;
+    robot.tell_flows(&mut outputs);
+    let told = sent(&mut outputs);
+    assert!(matches!(told[..], [(Destination::One(5), Message::Flow(_))]), "{told:?}");
+    robot.has_untold_flows = true;
+    robot.tell_flows(&mut outputs);
+    assert!(sent(&mut outputs).is_empty());
+    robot.links[0].share = 0.1;
+    robot.tell_flows(&mut outputs);
+    assert!(sent(&mut outputs).is_empty(), "nothing has happened that could change it");
+    robot.has_untold_flows = true;
+    robot.tell_flows(&mut outputs);
+    assert_eq!(sent(&mut outputs).len(), 1);
+}
+
+/// Demands go up the tree once all children have told theirs.
+#[test]
+fn a_robot_passes_on_the_demand_that_it_does_not_meet() {
+    let mut robot = robot();
+    robot.holds(fixed(20, 13));
+    robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
+    robot.hears(Beacon { parent: Some(0), ..beacon(1, east(1.0), fixed(11, 20), &[]) });
+    robot.hears(Beacon { parent: Some(0), ..beacon(2, north(1.0), fixed(12, 20), &[]) });
+    robot.remember_parent();
+    robot.survey_links();
+    let report = pleach_continuous::network::routing::adal::NeighbourReport {
+        multiplier: 0.0,
+        mismatch: 0.0,
+        crowding: 1.0,
+    };
+    for (from, parent) in [(1, Some(0)), (2, Some(0)), (5, Some(4))] {
+        robot.hear_multiplier(from, report, parent);
+    }
+    assert_eq!(robot.demands.iter().map(|(child, _)| *child).collect::<Vec<_>>(), [1, 2]);
+    let mut outputs = Outputs::of(0);
+    robot.begin_sweep(&mut outputs);
+    robot.hear_demand(1, 0.1, &mut outputs);
+    assert!(sent(&mut outputs).is_empty(), "it waits for the other one");
+    robot.hear_demand(2, 0.2, &mut outputs);
+    let told = sent(&mut outputs);
+    let [(Destination::One(5), Message::Demand(more))] = told[..] else { panic!("{told:?}") };
+    // Its own rate, what flows in, and the reserve.
+    let needed = 0.1 + 0.3 + robot.site.settings.routing_reserve;
+    assert!((more - needed).abs() < 1e-9, "{more} of {needed}");
+    robot.hear_demand(1, 0.05, &mut outputs);
+    let told = sent(&mut outputs);
+    assert!(
+        matches!(told[..], [(_, Message::Demand(more))] if (more - 0.05).abs() < 1e-9),
+        "{told:?}"
+    );
+}
+
+/// Two flows that are granted share the time of their sender.
+#[test]
+fn flows_take_no_more_than_all_the_time_of_a_sender() {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    let [one, two] = [0, 1].map(|at| robot.links[at].reliability);
+    (robot.links[0].share, robot.links[1].share) = (0.7, 0.7);
+    robot.ask_for_flows(&mut outputs);
+    let number = requests(&mut outputs)[0].1.number;
+    robot.hear_grant(5, FlowGrant { number, flow: 0.7 * one, until: NOW + LEASE });
+    robot.take_in_requests(&mut outputs);
+    let flows = [robot.links[0].held.flow, robot.links[1].held.flow];
+    assert!((flows[0] / one + flows[1] / two - 1.0).abs() < 1e-9, "{flows:?}");
+    // What the first gives up the other one takes.
+    (robot.links[0].share, robot.links[1].share) = (0.1, 0.7);
+    robot.ask_for_flows(&mut outputs);
+    let flows = [robot.links[0].held.flow, robot.links[1].held.flow];
+    assert!(
+        (flows[0] - 0.1 * one).abs() < 1e-9 && (flows[1] - 0.7 * two).abs() < 1e-9,
+        "{flows:?}"
+    );
+}

@@ -1,0 +1,194 @@
+//! What becomes of what a robot hears, and of those that it does not hear any more.
+
+use super::super::hearing::{PATIENCE_WITH_CHILDREN, ROUNDS_TO_BE_HEARD};
+use super::*;
+
+/// A round passes in which robots send, and this robot hears nobody.
+fn silent_rounds(robot: &mut Robot, rounds: usize) {
+    for _ in 0..rounds {
+        robot.round_count.restart();
+        robot.round_count.pass(1);
+        robot.end_round();
+    }
+}
+
+fn hears(robot: &Robot) -> Vec<NodeId> {
+    robot.audible().map(|(id, _)| id).collect()
+}
+
+fn watch_radius(robot: &Robot) -> f64 {
+    let is_near = |at: &f64| robot.site.is_near(*at);
+    (0..20_000).map(|step| f64::from(step) * 1e-4).take_while(is_near).last().expect("it watches")
+}
+
+#[test]
+fn a_robot_far_away_that_falls_silent_is_out_of_range_after_three_rounds() {
+    let mut robot = robot();
+    let far = watch_radius(&robot) + 0.1;
+    robot.hears(beacon(1, east(far), redundant(11, 12), &[]));
+    silent_rounds(&mut robot, 1); // the round in which it was heard
+    silent_rounds(&mut robot, ROUNDS_TO_BE_HEARD - 1);
+    assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, ROUNDS_TO_BE_HEARD as u8 - 1)]);
+    robot.has_news = false;
+    silent_rounds(&mut robot, 1);
+    assert!(hears(&robot).is_empty());
+    assert!(robot.has_news, "it is news that a robot is out of range");
+    assert_eq!(robot.out_of_sight.iter().map(|seen| seen.robot).collect::<Vec<_>>(), [1]);
+}
+
+#[test]
+fn a_robot_nearby_that_falls_silent_is_taken_to_stay() {
+    let mut robot = robot();
+    robot.hears(beacon(1, east(0.2), redundant(11, 12), &[]));
+    robot.hears(access_point(west(0.2)));
+    silent_rounds(&mut robot, 10);
+    assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, ROUNDS_TO_BE_HEARD as u8)]);
+    assert!(robot.neighbour(1).expect("it is kept").is_silent());
+}
+
+#[test]
+fn a_robot_attached_to_this_one_is_waited_for_for_some_periods() {
+    let mut robot = robot();
+    robot.holds(fixed(20, 13));
+    let far = watch_radius(&robot) + 0.1;
+    robot.hears(beacon(1, east(far), redundant(11, 20), &[]));
+    silent_rounds(&mut robot, 10);
+    robot.period = NOW + PATIENCE_WITH_CHILDREN;
+    silent_rounds(&mut robot, 1);
+    assert_eq!(hears(&robot), [1]);
+    robot.period += 1;
+    silent_rounds(&mut robot, 1);
+    assert!(hears(&robot).is_empty());
+}
+
+#[test]
+fn silence_counts_only_in_rounds_in_which_all_send() {
+    let mut robot = robot();
+    robot.hears(beacon(1, east(1.9), redundant(11, 12), &[]));
+    for _ in 0..10 {
+        robot.round_count.restart();
+        robot.round_count.pass(ROUNDS_TO_BE_HEARD + 1);
+        robot.end_round();
+    }
+    assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, 0)]);
+    for _ in 0..2 {
+        robot.round_count.restart();
+        robot.round_count.pass(ROUNDS_TO_BE_HEARD);
+        robot.end_round();
+    }
+    assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, 2)]);
+}
+
+#[test]
+fn a_robot_that_has_gone_out_of_range_is_forgotten_at_once() {
+    let mut robot = robot();
+    robot.hears(beacon(1, east(1.5), redundant(11, 12), &[]));
+    silent_rounds(&mut robot, 1);
+    robot.position = west(0.6);
+    silent_rounds(&mut robot, 1);
+    assert!(hears(&robot).is_empty(), "2.1 away, and links reach 2");
+}
+
+#[test]
+fn old_messages_are_ignored() {
+    let mut robot = robot();
+    let old = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
+    robot.hear_beacon(NOW - 1, None, &old);
+    assert!(hears(&robot).is_empty(), "it was sent in an earlier period");
+    let new = Beacon { offers_made: 2, ..beacon(1, east(0.6), redundant(11, 12), &[]) };
+    robot.hears(new);
+    robot.hear_beacon(NOW, None, &old);
+    let known = robot.neighbour(1).expect("it is heard");
+    assert_eq!(known.beacon.offers_made, 2, "a newer one has been heard");
+    assert!((known.distance - 0.6).abs() < 1e-12);
+}
+
+#[test]
+fn a_robot_that_begins_later_than_others_learns_which_period_this_is() {
+    let mut late = robot();
+    (late.period, late.is_new) = (0, true);
+    let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
+    late.hear_beacon(7, None, &heard);
+    assert_eq!((late.period, late.is_late), (7, true));
+    let mut first = robot();
+    (first.period, first.is_new) = (0, true);
+    first.hear_beacon(1, None, &heard);
+    assert_eq!((first.period, first.is_late), (1, false), "all begin together");
+    let mut running = robot();
+    running.hear_beacon(NOW + 1, None, &heard);
+    assert_eq!((running.period, running.is_late), (NOW, false), "a clock is a little ahead");
+    running.hear_beacon(NOW + 2, None, &Arc::new(beacon(2, west(0.5), redundant(12, 13), &[])));
+    assert_eq!((running.period, running.is_late), (NOW + 2, true));
+}
+
+#[test]
+fn the_same_beacon_again_is_no_news_unless_its_sender_was_absent_or_brings_a_confirmation() {
+    let mut robot = robot();
+    let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
+    let is_news = |robot: &mut Robot, period: u32, confirmed: Option<u32>, hint: usize| {
+        robot.period = period;
+        (robot.has_news, robot.heard_up_to) = (false, hint);
+        robot.hear_beacon(period, confirmed, &heard);
+        robot.has_news
+    };
+    assert!(is_news(&mut robot, NOW, None, 0), "the first one");
+    for hint in [0, 1] {
+        let now = robot.period;
+        assert!(!is_news(&mut robot, now, None, hint));
+        assert!(!is_news(&mut robot, now + 1, None, hint), "heard in the period before");
+        assert!(is_news(&mut robot, now + 3, None, hint), "it was absent");
+        assert!(!is_news(&mut robot, now + 3, Some(now), hint), "nothing awaits it");
+        robot.awaits_confirmation = true;
+        assert!(!is_news(&mut robot, now + 3, Some(now), hint), "it is not newer");
+        assert!(is_news(&mut robot, now + 3, Some(now + 1), hint));
+        robot.awaits_confirmation = false;
+        let known = robot.neighbour(1).expect("it is heard");
+        assert_eq!((known.confirmed, known.heard_in), (Some(now + 1), now + 3));
+        assert!(!is_news(&mut robot, now + 3, Some(now), hint));
+        assert_eq!(robot.neighbour(1).expect("it is heard").confirmed, Some(now + 1));
+    }
+}
+
+#[test]
+fn a_robot_moves_only_if_it_has_heard_all_that_are_near_in_this_period() {
+    let mut robot = robot();
+    robot.roll.called = NOW;
+    let near = watch_radius(&robot);
+    assert!(robot.may_leave_place());
+    robot.hears(beacon(1, east(near + 0.01), redundant(11, 12), &[]));
+    robot.hears(access_point(west(0.2)));
+    robot.period += 1;
+    assert!(robot.may_leave_place(), "neither can get in its way");
+    robot.hears(beacon(2, east(near - 0.01), redundant(12, 13), &[]));
+    assert!(robot.may_leave_place());
+    robot.period += 1;
+    assert!(!robot.may_leave_place(), "one nearby has not been heard since");
+    robot.hears(beacon(2, east(near - 0.01), redundant(12, 13), &[]));
+    robot.period += robot.site.roll_validity();
+    robot.neighbours.clear();
+    assert!(!robot.may_leave_place(), "the roll is not valid any more");
+}
+
+#[test]
+fn the_holder_of_a_post_is_the_robot_that_has_not_promised_it() {
+    let mut robot = robot();
+    let reply = pleach_discrete::network::Reply { to: 2, number: 1, accepted: None };
+    robot.hears(Beacon { reply: Some(reply), ..beacon(1, east(0.5), fixed(11, 13), &[11, 13]) });
+    assert_eq!(robot.holder(PostId(11)).map(|it| it.id()), Some(1));
+    robot.hears(beacon(2, east(0.6), fixed(11, 13), &[11, 13]));
+    assert_eq!(robot.holder(PostId(11)).map(|it| it.id()), Some(2));
+    assert!(robot.holder(PostId(12)).is_none());
+    robot.hears(access_point(west(0.5)));
+    assert_eq!(robot.neighbour_at(Anchor::Access(0)).map(|it| it.id()), Some(ROBOTS));
+    assert!(robot.neighbour_at(Anchor::Access(1)).is_none());
+}
+
+#[test]
+fn children_are_those_whose_posts_are_attached_to_the_post_of_this_robot() {
+    let mut robot = robot();
+    robot.holds(fixed(20, 13));
+    robot.hears(beacon(1, east(0.5), fixed(11, 20), &[11, 20, 13]));
+    robot.hears(beacon(2, east(0.6), fixed(12, 11), &[12, 11, 20, 13]));
+    assert_eq!(robot.children().map(|it| it.id()).collect::<Vec<_>>(), [1]);
+    assert_eq!(robot.children_of(PostId(11)).map(|it| it.id()).collect::<Vec<_>>(), [2]);
+}

@@ -1,0 +1,189 @@
+//! The rules of robots, one at a time: a robot, the beacons of its neighbours, and what it makes of them.
+
+mod attachment;
+mod elections;
+mod errors;
+mod flows;
+mod hearing;
+mod moves;
+mod partner;
+mod seen;
+mod team;
+mod ways;
+mod yielding;
+
+use std::sync::Arc;
+
+use pleach_continuous::{Point, Vector};
+use pleach_discrete::network::{Anchor, Lineage, NodeId, Post, PostId, PostKind};
+use serde_json::json;
+
+use super::super::beacon::{Announcement, Beacon, Notice};
+use super::super::duty::{Duty, Following, Held, Leading, Path, Relay, Shifting, Standby, Station};
+use super::super::mission::{Advance, Mission, Shift};
+use super::super::scenario::Scenario;
+use super::super::shared::Shared;
+use super::super::site::Site;
+use super::Robot;
+use crate::located::Current;
+
+/// ρ.
+const CLEARANCE: f64 = 0.04;
+/// δ.
+const SERVICE_RADIUS: f64 = 0.2;
+/// σ.
+const STEP: f64 = 0.1;
+/// The robots of the hall; the only access point is node `ROBOTS`.
+const ROBOTS: usize = 6;
+/// Where robot 0 stands.
+const HERE: Point = Point::new(5.0, 5.0);
+/// The control period.
+const NOW: u32 = 50;
+/// Anything that is surely on one side of a bound.
+const LITTLE: f64 = 1e-6;
+
+/// A hall of 10 × 10 with a pillar in the north-east, far from robot 0.
+fn hall() -> Scenario {
+    let robots: Vec<_> =
+        (0..ROBOTS).map(|at| json!({"position": [1.0 + at as f64, 1.0], "rate": 0.1})).collect();
+    serde_json::from_value(json!({
+        "name": "hall",
+        "workspace": {
+            "boundary": [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]],
+            "holes": [[[7.0, 7.0], [8.0, 7.0], [8.0, 8.0], [7.0, 8.0]]],
+        },
+        "link": {"full_range": 1.0, "max_range": 2.0},
+        "control": {
+            "clearance": CLEARANCE, "service_radius": SERVICE_RADIUS, "step_radius": STEP,
+            "tree_reliability": 0.1, "period": 0.5,
+        },
+        "access_point": [{"position": [1.0, 2.0]}],
+        "robot": robots,
+        "task": [{"position": [9.0, 9.0]}],
+    }))
+    .expect("it is a scenario")
+}
+
+fn robot_of(scenario: &Scenario) -> Robot {
+    let site = Arc::new(Site::new(scenario).expect("its numbers make sense"));
+    let mut robot = Robot::new(0, HERE, 0.1, site);
+    (robot.period, robot.is_new) = (NOW, false);
+    robot
+}
+
+/// Robot 0 in the hall: redundant, attached to nothing.
+fn robot() -> Robot {
+    robot_of(&hall())
+}
+
+fn post(id: u32, kind: PostKind, parent: Option<u32>) -> Post {
+    let parent = parent.map(|parent| Anchor::Post(PostId(parent)));
+    Post { kind, parent, ..Post::redundant(PostId(id)) }
+}
+
+/// The post of a redundant robot, attached to post `parent`.
+fn redundant(id: u32, parent: u32) -> Post {
+    post(id, PostKind::Redundant, Some(parent))
+}
+
+/// A fixed post, attached to post `parent`.
+fn fixed(id: u32, parent: u32) -> Post {
+    post(id, PostKind::Fixed, Some(parent))
+}
+
+/// A post of the primary team.
+fn primary(id: u32, follows: Option<u32>, parent: u32) -> Post {
+    post(id, PostKind::Primary { follows: follows.map(PostId) }, Some(parent))
+}
+
+/// What a robot does that holds this post at `reference`.
+fn holding(post: Post, reference: Point) -> Duty {
+    let held = Held { station: Station { post, reference }, left: None };
+    match post.kind {
+        PostKind::Redundant => Duty::Standby(Standby(held)),
+        PostKind::Fixed => Duty::Relay(Relay(held)),
+        PostKind::Primary { follows: None } => Duty::Leading(Leading(held)),
+        PostKind::Primary { follows: Some(_) } => Duty::Following(Following(held)),
+    }
+}
+
+/// The way over these posts, the first one's own, to the access point.
+fn way(posts: &[u32]) -> Option<Arc<Lineage>> {
+    let root = Lineage::of_access_point(0);
+    let extended = |way: Lineage, post: &u32| way.extended_by(PostId(*post)).expect("they differ");
+    Some(Arc::new(posts.iter().rev().fold(root, extended)))
+}
+
+fn east(distance: f64) -> Point {
+    HERE + Vector::new(distance, 0.0)
+}
+
+fn west(distance: f64) -> Point {
+    east(-distance)
+}
+
+fn north(distance: f64) -> Point {
+    HERE + Vector::new(0.0, distance)
+}
+
+fn south(distance: f64) -> Point {
+    north(-distance)
+}
+
+/// The beacon of a robot that holds a post where it stands; its way leads over these posts.
+fn beacon(id: NodeId, position: Point, post: Post, posts: &[u32]) -> Beacon {
+    Beacon {
+        duty: Some(holding(post, position)),
+        parked: !post.is_primary(),
+        lineage: if posts.is_empty() { None } else { way(posts) },
+        ..Beacon::silent(id, position)
+    }
+}
+
+/// The beacon of the access point, if that stood here.
+fn access_point(position: Point) -> Beacon {
+    Beacon { lineage: way(&[]), ..Beacon::silent(ROBOTS, position) }
+}
+
+impl Robot {
+    /// It hears a beacon in this control period.
+    fn hears(&mut self, beacon: Beacon) {
+        self.hear_beacon(self.period, None, &Arc::new(beacon));
+    }
+
+    /// It holds this post where it stands.
+    fn holds(&mut self, post: Post) {
+        self.duty = Current::new(holding(post, self.position));
+    }
+
+    /// The primary team is the active team, and goes to the task at `place`.
+    fn advances_to(&mut self, place: Point) {
+        self.mission = Current::new(Mission::Advance(Advance { path: None }));
+        self.knows_task(place);
+        self.target = Some(place);
+    }
+
+    /// The task announced is at `place`, and all take part.
+    fn knows_task(&mut self, place: Point) {
+        let announcement = Announcement {
+            task: 0,
+            position: place,
+            before: Arc::default(),
+            roster: Arc::new((0..ROBOTS).collect()),
+            eligible: Arc::new([0].into_iter().collect()),
+        };
+        let announcement = Shared::new(announcement);
+        self.announced = Some((self.notice_id(), announcement));
+    }
+
+    /// What it is told by the newest notice.
+    fn is_told(&mut self, notice: Notice) {
+        self.bulletin = self.bulletin.next(1, Shared::new(notice));
+    }
+
+    /// It measures what its guards ask of it.
+    fn measures(&mut self) {
+        self.note_change();
+        self.measure();
+    }
+}

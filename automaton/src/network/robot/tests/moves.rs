@@ -1,0 +1,357 @@
+//! Where a robot may move: its region, its links, and the consent of others (Sec. IV).
+
+use pleach_continuous::network::LinkReliability as _;
+use pleach_continuous::network::acceptance::Segment;
+
+use super::super::super::message::Message;
+use super::super::super::roll::Roll;
+use super::super::reservation::{FlowGrant, RequestNumber};
+use super::*;
+use crate::node::Outputs;
+
+/// The leader on its way to the east, called by the roll.
+fn mover() -> Robot {
+    let mut robot = robot();
+    robot.holds(primary(30, None, 13));
+    robot.advances_to(east(3.0));
+    robot.roll.called = NOW;
+    robot
+}
+
+fn proposed(robot: &mut Robot) -> Option<Segment> {
+    robot.measures();
+    robot.propose().expect("its guards have values");
+    robot.proposal
+}
+
+#[test]
+fn a_robot_alone_goes_a_step_straight_to_its_goal() {
+    let mut robot = mover();
+    let segment = proposed(&mut robot).expect("nothing is in its way");
+    assert_eq!(segment.from, HERE);
+    assert!((segment.to - east(STEP)).norm() < 1e-6, "{segment:?}");
+    robot.advances_to(HERE);
+    assert_eq!(proposed(&mut robot), None, "it is there");
+    robot.advances_to(east(3.0));
+    robot.roll.called = 0;
+    assert_eq!(proposed(&mut robot), None, "it may not leave its place");
+}
+
+/// Each of two robots keeps ρ from the line half-way between them.
+#[test]
+fn two_robots_stay_on_their_sides_of_the_line_between_them() {
+    let gap = 0.15;
+    let mut robot = mover();
+    robot.hears(beacon(1, east(gap), primary(31, Some(30), 30), &[]));
+    let segment = proposed(&mut robot).expect("there is some room");
+    let room = gap / 2.0 - CLEARANCE;
+    let ahead = (segment.to - HERE).x;
+    assert!(ahead <= room && ahead > room - 1e-3, "{ahead} of {room}");
+}
+
+/// Robots farther apart than 2 (σ + ρ) cannot meet in one step; nearer ones can.
+#[test]
+fn a_robot_nearer_than_two_steps_and_clearances_limits_a_move() {
+    let kept = CLEARANCE * (1.0 + 1e-4);
+    let cell = |away: f64| {
+        let mut robot = mover();
+        robot.hears(beacon(1, north(away), primary(31, Some(30), 30), &[]));
+        proposed(&mut robot).expect("it moves east");
+        robot.problem.expect("it has moved by its problem").half_planes.len()
+    };
+    let near = 2.0 * (STEP + kept);
+    assert_eq!(cell(near - LITTLE), cell(near + LITTLE) + 1);
+}
+
+#[test]
+fn a_link_of_the_tree_ends_a_move_at_its_limit() {
+    let mut robot = mover();
+    let build = robot.build_length();
+    robot.hears(beacon(5, west(build - 0.03), fixed(13, 14), &[13, 14]));
+    let segment = proposed(&mut robot).expect("there is some room");
+    let ahead = (segment.to - HERE).x;
+    assert!((ahead - 0.03).abs() < 1e-5, "{ahead}");
+    robot.hears(beacon(5, west(build + 0.5), fixed(13, 14), &[13, 14]));
+    let back = proposed(&mut robot).map_or(0.0, |segment| (segment.to - HERE).x);
+    assert!(back <= 1e-6, "a link that is too long gets no longer: {back}");
+}
+
+/// The reference of its post lies ahead, and its task behind.
+#[test]
+fn the_holder_of_a_fixed_post_stays_within_reach_of_its_task() {
+    let moved = |behind: f64| {
+        let mut robot = robot();
+        robot.roll.called = NOW;
+        robot.knows_task(west(behind));
+        let place = Post { task: Some(0), ..fixed(20, 13) };
+        robot.duty = Current::new(holding(place, east(0.09)));
+        proposed(&mut robot).map_or(0.0, |segment| (segment.to - HERE).x)
+    };
+    let ahead = moved(SERVICE_RADIUS - 0.05);
+    assert!((ahead - 0.05).abs() < 1e-5, "{ahead}");
+    assert!((moved(0.0) - 0.09).abs() < 1e-5, "it returns to its post");
+    let outside = moved(2.0 * SERVICE_RADIUS);
+    assert!(outside < 1e-6, "it gets no farther from its task: {outside}");
+}
+
+/// To first order its load h = F/R(d) stays below 1.
+#[test]
+fn a_move_keeps_the_load_below_all_its_time_to_first_order() {
+    let mut robot = mover();
+    let away = 1.5;
+    robot.hears(access_point(west(away)));
+    robot.survey_links();
+    let link = &mut robot.links[0];
+    let reliability = robot.site.link.reliability(away);
+    assert!((link.reliability - reliability).abs() < 1e-12);
+    link.share = 0.99;
+    let segment = proposed(&mut robot).expect("there is a little room");
+    // h = F/R(d), h' = −h R'/R: room is (1 − h)/h'.
+    let steepness = 0.99 * -robot.site.link.slope(away) / reliability;
+    let ahead = (segment.to - HERE).x;
+    assert!((ahead - 0.01 / steepness).abs() < 1e-6, "{ahead}, not {}", 0.01 / steepness);
+}
+
+#[test]
+fn a_robot_that_gets_nowhere_counts_the_periods() {
+    let mut robot = mover();
+    let still = 0.3 * CLEARANCE;
+    let mut goes = |ahead: f64, expected: u32| {
+        robot.proposal = Some(Segment { from: robot.position, to: east(ahead) });
+        robot.set_off();
+        robot.position = robot.arrival;
+        assert_eq!(robot.still_periods, expected, "{ahead}");
+    };
+    goes(still - LITTLE, 1);
+    goes(still + LITTLE, 0);
+    goes(0.0, 1); // it has been there
+    goes(2.0 * still + 1e-3, 0);
+    goes(3.0 * still + 2e-3, 0);
+    goes(still, 1);
+    goes(-1.5 * still, 0);
+    robot.proposal = None;
+    robot.set_off();
+    assert_eq!((robot.still_periods, robot.velocity), (1, Vector::zeros()));
+    robot.proposal =
+        Some(Segment { from: robot.position, to: robot.position + Vector::new(0.1, 0.0) });
+    robot.set_off();
+    assert!((robot.velocity - Vector::new(0.1, 0.0) / robot.site.settings.period).norm() < 1e-12);
+    robot.stay();
+    assert_eq!((robot.velocity, robot.arrival), (Vector::zeros(), robot.position));
+}
+
+#[test]
+fn a_robot_has_settled_within_a_fiftieth_of_its_clearance() {
+    let robot = robot();
+    let settled = 0.02 * CLEARANCE;
+    assert!(!robot.is_off(east(settled - LITTLE)) && robot.is_off(east(settled + LITTLE)));
+}
+
+#[test]
+fn the_end_of_a_flow_is_where_its_move_ends() {
+    let mut robot = mover();
+    robot.proposal = Some(Segment { from: HERE, to: east(0.07) });
+    robot.restart_clock();
+    assert_eq!(robot.period, NOW + 1);
+    robot.set_off();
+    let period = robot.site.settings.period;
+    robot.advance(period / 2.0);
+    assert!((robot.position - east(0.035)).norm() < 1e-12);
+    robot.advance(period / 2.0);
+    assert_eq!(robot.position, east(0.07));
+}
+
+fn sent(outputs: &mut Outputs<Message, super::super::MissionEvent>) -> Vec<Message> {
+    outputs.drain_sent().map(|envelope| envelope.message).collect()
+}
+
+/// A robot that relies on this one has to consent; without that it stays.
+#[test]
+fn a_robot_moves_with_the_consent_of_all_that_rely_on_it() {
+    let relied_on = |consents: &[NodeId]| {
+        let mut robot = mover();
+        robot.hears(Beacon {
+            parent: Some(0),
+            ..beacon(1, west(0.5), primary(31, Some(30), 30), &[])
+        });
+        proposed(&mut robot).expect("nothing is in its way");
+        consents.iter().for_each(|&from| robot.hear_consent(from));
+        robot.stay_without_consent();
+        robot.proposal.is_some()
+    };
+    assert!(!relied_on(&[]) && !relied_on(&[2]) && relied_on(&[1]) && relied_on(&[2, 1, 1]));
+}
+
+#[test]
+fn a_proposal_is_told_until_all_have_consented_and_whenever_it_changes() {
+    let mut robot = mover();
+    robot.hears(Beacon { parent: Some(0), ..beacon(1, west(0.5), primary(31, Some(30), 30), &[]) });
+    proposed(&mut robot).expect("nothing is in its way");
+    let told = |robot: &mut Robot| {
+        let mut outputs = Outputs::of(0);
+        robot.tell_proposal(&mut outputs);
+        sent(&mut outputs).len()
+    };
+    assert_eq!((told(&mut robot), told(&mut robot)), (1, 1));
+    robot.hear_consent(1);
+    assert_eq!(told(&mut robot), 0);
+    robot.yield_to_objection();
+    assert_eq!((told(&mut robot), told(&mut robot)), (1, 0));
+}
+
+#[test]
+fn an_objection_halves_a_move() {
+    let mut robot = mover();
+    let before = proposed(&mut robot).expect("nothing is in its way");
+    robot.must_judge_moves = false;
+    robot.yield_to_objection();
+    let after = robot.proposal.expect("half of it is left");
+    assert!((after.length() - before.length() / 2.0).abs() < 1e-12 && robot.must_judge_moves);
+}
+
+/// Robot 0 is attached to robot 5, 3 cm short of what its link allows.
+#[test]
+fn a_child_objects_to_a_move_of_its_parent_that_overstretches_their_link() {
+    let judged = |ahead: f64| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 13));
+        let hard = robot.hard_length();
+        robot.hears(beacon(5, west(hard - 0.03), fixed(13, 14), &[13, 14]));
+        robot.remember_parent();
+        robot.begin_negotiation();
+        let from = west(hard - 0.03);
+        robot.hear_proposal(5, Segment { from, to: from - Vector::new(ahead, 0.0) });
+        let mut outputs = Outputs::of(0);
+        robot.judge_moves(&mut outputs);
+        sent(&mut outputs)
+    };
+    let consents = |said: Vec<Message>| matches!(said[..], [Message::Consent { period: NOW }]);
+    let objects = |said: Vec<Message>| matches!(said[..], [Message::Objection { period: NOW }]);
+    assert!(consents(judged(0.03 - LITTLE)) && objects(judged(0.03 + LITTLE)));
+}
+
+/// Robot 0 sends nearly all of its time to robot 5, which moves away.
+#[test]
+fn a_sender_objects_to_a_move_of_its_receiver_that_overloads_it() {
+    let judged = |share: f64, ahead: f64| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 99));
+        robot.hears(beacon(5, west(1.2), fixed(13, 14), &[13, 14]));
+        robot.survey_links();
+        robot.links[0].share = share;
+        robot.links[0].held.flow = share * robot.links[0].reliability;
+        robot.begin_negotiation();
+        robot.hear_proposal(5, Segment { from: west(1.2), to: west(1.2 + ahead) });
+        let mut outputs = Outputs::of(0);
+        robot.judge_moves(&mut outputs);
+        sent(&mut outputs)
+    };
+    assert!(matches!(judged(0.99, 0.1)[..], [Message::Objection { .. }]));
+    assert!(judged(0.5, 0.1).is_empty(), "it has never asked that one for a flow");
+    let load = |away: f64| {
+        let link = &robot().site.link;
+        0.9 * link.reliability(1.2) / link.reliability(away)
+    };
+    let limit = (0..2000)
+        .map(|step| f64::from(step) * 1e-4)
+        .take_while(|ahead| load(1.2 + ahead) < 1.0)
+        .last()
+        .expect("it moves");
+    assert!(judged(0.9, limit).is_empty());
+    assert!(matches!(judged(0.9, limit + 2e-4)[..], [Message::Objection { .. }]));
+}
+
+#[test]
+fn moves_that_are_heard_only_shrink() {
+    let mut robot = robot();
+    let to = |ahead: f64| Segment { from: west(1.0), to: west(1.0 - ahead) };
+    robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
+    robot.begin_negotiation();
+    robot.hear_proposal(5, to(0.08));
+    robot.must_judge_moves = false;
+    robot.hear_proposal(5, to(0.09));
+    assert_eq!((robot.heard_moves[0].1, robot.must_judge_moves), (to(0.08), false));
+    robot.hear_proposal(5, to(0.04));
+    assert_eq!((robot.heard_moves[0].1, robot.must_judge_moves), (to(0.04), true));
+    assert_eq!(robot.heard_moves.len(), 1);
+}
+
+/// It has asked node 5 for a flow over its link, and relies on it from then on.
+#[test]
+fn a_sender_relies_on_its_receiver_and_answers_it() {
+    let mut robot = robot();
+    robot.holds(fixed(20, 99));
+    robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
+    robot.survey_links();
+    robot.links[0].share = 0.2;
+    let mut outputs = Outputs::of(0);
+    robot.ask_for_flows(&mut outputs);
+    let asked = sent(&mut outputs);
+    let [Message::AskFlow(request)] = asked[..] else { panic!("it asks: {asked:?}") };
+    assert!((request.wanted - 0.2 * robot.links[0].reliability).abs() < 1e-12);
+    assert_eq!((request.held, request.number), (0.0, RequestNumber { period: NOW, number: 1 }));
+    robot.hear_grant(5, FlowGrant { number: request.number, flow: 0.15, until: NOW + 8 });
+    robot.take_in_requests(&mut outputs);
+    assert!((robot.links[0].held.flow - 0.15).abs() < 1e-12, "no more than is granted");
+    robot.begin_negotiation();
+    robot.hear_proposal(5, Segment { from: west(1.0), to: west(0.95) });
+    let mut outputs = Outputs::of(0);
+    robot.judge_moves(&mut outputs);
+    assert!(matches!(sent(&mut outputs)[..], [Message::Consent { period: NOW }]));
+}
+
+/// In the last round of a negotiation a robot that still hears an objection stays.
+#[test]
+fn a_robot_gives_its_move_up_at_the_last_chance() {
+    use super::super::super::control::{Control, Negotiation};
+    for (rounds, moves) in [(15, true), (16, false)] {
+        let mut robot = mover();
+        proposed(&mut robot).expect("nothing is in its way");
+        robot.control = Current::new(Control::Negotiation(Negotiation {}));
+        robot.round_count.restart();
+        robot.round_count.pass(rounds);
+        robot.yield_to_objection();
+        assert_eq!(robot.proposal.is_some(), moves, "{rounds}");
+    }
+    let mut elsewhere = mover();
+    proposed(&mut elsewhere).expect("nothing is in its way");
+    elsewhere.round_count.pass(16);
+    elsewhere.yield_to_objection();
+    assert!(elsewhere.proposal.is_some(), "rounds of another stage do not count");
+}
+
+/// Others allow for two steps from where a robot was heard last, which was not before its roll was called.
+#[test]
+fn a_robot_that_may_not_be_heard_stays_within_two_steps_of_where_it_has_been() {
+    let ahead = |gone: f64, roll: u32| {
+        let mut robot = mover();
+        robot.roll.called = NOW - 3;
+        robot.trail = vec![(NOW - 2, west(gone))];
+        robot.hear_roll(&Roll { called: roll, ..Roll::default() });
+        proposed(&mut robot).map(|segment| (segment.to - HERE).x)
+    };
+    let close = |ahead: Option<f64>, expected: f64| {
+        let ahead = ahead.expect("it moves");
+        assert!((ahead - expected).abs() < 1e-6, "{ahead} is not {expected}");
+    };
+    close(ahead(STEP, NOW - 3), STEP);
+    close(ahead(1.5 * STEP, NOW - 3), 0.5 * STEP);
+    assert_eq!(ahead(2.1 * STEP, NOW - 3), None, "an error has led it farther");
+    close(ahead(2.1 * STEP, NOW - 1), STEP);
+    let mut robot = mover();
+    proposed(&mut robot).expect("nothing is in its way");
+    robot.set_off();
+    assert_eq!(robot.trail, [(NOW, HERE)]);
+}
+
+/// Half of a way back into the region might gain less than errors lose.
+#[test]
+fn a_move_that_begins_outside_of_its_region_is_made_in_whole_or_not_at_all() {
+    let mut robot = mover();
+    let whole = proposed(&mut robot).expect("nothing is in its way");
+    robot.yield_to_objection();
+    assert_eq!(robot.proposal, Some(whole.halved()));
+    robot.problem = None;
+    robot.yield_to_objection();
+    assert_eq!(robot.proposal, None);
+}

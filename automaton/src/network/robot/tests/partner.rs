@@ -1,0 +1,212 @@
+//! With which robot in its way a mover exchanges duties.
+
+use pleach_discrete::network::{Offer, Reply};
+
+use super::*;
+
+/// The leader, which has not got on for this long, 0.09 west of a parked robot that bears `held`; the
+/// task is far to the east.
+fn stuck(periods: u32) -> Robot {
+    let mut robot = robot();
+    robot.holds(primary(30, None, 13));
+    robot.advances_to(east(3.0));
+    robot.still_periods = periods;
+    robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
+    robot
+}
+
+fn partner(robot: &mut Robot) -> Option<NodeId> {
+    robot.measures();
+    robot.consider_exchange();
+    robot.partner
+}
+
+fn parked(away: f64) -> Beacon {
+    beacon(1, east(away), redundant(11, 13), &[11, 13, 14])
+}
+
+/// As near as two robots come.
+const BESIDE: f64 = 2.0 * CLEARANCE;
+
+#[test]
+fn a_mover_that_gets_on_or_has_waited_too_little_looks_for_no_partner() {
+    for (periods, expected) in [(0, None), (1, None), (2, Some(1)), (30, Some(1))] {
+        let mut robot = stuck(periods);
+        robot.hears(parked(BESIDE));
+        assert_eq!(partner(&mut robot), expected, "{periods}");
+    }
+}
+
+#[test]
+fn partners_are_in_contact() {
+    let contact = 2.6 * CLEARANCE;
+    for (away, expected) in [(contact - LITTLE, Some(1)), (contact + LITTLE, None)] {
+        let mut robot = stuck(5);
+        robot.hears(parked(away));
+        assert_eq!(partner(&mut robot), expected, "{away}");
+    }
+}
+
+/// The goal is far to the east, so that a robot in the north is nearer by as much as it is farther east.
+#[test]
+fn a_partner_is_nearer_to_the_goal_or_at_last_a_little_farther() {
+    let gain = |nearer: f64| {
+        let goal = east(3.0);
+        // On the circle about the goal.
+        let turn = BESIDE / (3.0 - nearer);
+        goal + Vector::new(-turn.cos(), turn.sin()) * (3.0 - nearer)
+    };
+    let finds = |periods: u32, nearer: f64| {
+        let mut robot = stuck(periods);
+        let at = gain(nearer);
+        assert!((at - HERE).norm() < 2.6 * CLEARANCE);
+        robot.hears(beacon(1, at, redundant(11, 13), &[11, 13, 14]));
+        partner(&mut robot).is_some()
+    };
+    let least = 0.05 * CLEARANCE;
+    assert!(finds(5, least + LITTLE) && !finds(5, least - LITTLE));
+    assert!(!finds(9, -0.01) && finds(10, -0.01), "a last resort");
+    let mut robot = stuck(10);
+    robot.hears(beacon(1, west(2.5 * CLEARANCE), redundant(11, 13), &[11, 13, 14]));
+    assert_eq!(partner(&mut robot), Some(1), "four clearances farther are conceded");
+}
+
+#[test]
+fn of_two_the_nearer_to_the_goal_is_the_partner() {
+    for (one, other, expected) in [(BESIDE, 0.09, 2), (0.09, BESIDE, 1)] {
+        let mut robot = stuck(5);
+        robot.hears(beacon(1, east(one), redundant(11, 13), &[11, 13, 14]));
+        robot.hears(beacon(2, east(other), redundant(12, 13), &[12, 13, 14]));
+        assert_eq!(partner(&mut robot), Some(expected));
+    }
+}
+
+/// It goes back to the robot with which it has just exchanged only where that is nearer.
+#[test]
+fn no_robot_exchanges_back_to_where_it_came_from() {
+    let back = |last: Option<NodeId>| {
+        let mut robot = stuck(10);
+        robot.last_partner = last;
+        robot.hears(beacon(1, west(BESIDE), redundant(11, 13), &[11, 13, 14]));
+        partner(&mut robot)
+    };
+    assert_eq!((back(None), back(Some(2)), back(Some(1))), (Some(1), Some(1), None));
+    let mut robot = stuck(10);
+    robot.last_partner = Some(1);
+    robot.hears(parked(BESIDE));
+    assert_eq!(partner(&mut robot), Some(1), "it is nearer");
+}
+
+#[test]
+fn a_partner_is_parked_and_has_no_exchange_of_its_own() {
+    let duty = holding(redundant(11, 13), east(BESIDE));
+    let reply = Reply { to: 3, number: 1, accepted: None };
+    let busy = [
+        Beacon { parked: false, ..parked(BESIDE) },
+        Beacon { offer: Some(Offer { to: 3, number: 1, duty }), ..parked(BESIDE) },
+        Beacon { reply: Some(reply), ..parked(BESIDE) },
+        Beacon { duty: None, ..parked(BESIDE) },
+    ];
+    for beacon in busy {
+        let mut robot = stuck(5);
+        robot.hears(beacon.clone());
+        assert_eq!(partner(&mut robot), None, "{beacon:?}");
+    }
+}
+
+/// A fixed post is taken over only within δ of it, and of the task that is serviced there.
+#[test]
+fn a_mover_could_do_what_the_parked_robot_does() {
+    let takes = |reference: Point, task: Option<usize>| {
+        let mut robot = stuck(5);
+        let place = Post { task, ..fixed(11, 13) };
+        let duty = Some(holding(place, reference));
+        robot.hears(Beacon { duty, ..parked(BESIDE) });
+        partner(&mut robot).is_some()
+    };
+    assert!(takes(east(SERVICE_RADIUS - LITTLE), None));
+    assert!(!takes(east(SERVICE_RADIUS + LITTLE), None));
+    assert!(!takes(east(BESIDE), Some(0)), "the task is far");
+    let mut robot = stuck(5);
+    robot.hears(Beacon {
+        duty: Some(holding(redundant(11, 13), east(4.0 * SERVICE_RADIUS))),
+        ..parked(BESIDE)
+    });
+    assert_eq!(partner(&mut robot), Some(1), "a redundant robot may be anywhere");
+}
+
+#[test]
+fn links_of_both_hold_when_they_have_exchanged() {
+    let hard = robot().hard_length();
+    let with = |own_parent: f64, parent: f64, child: f64| {
+        let mut robot = robot();
+        robot.holds(primary(30, None, 13));
+        robot.advances_to(east(3.0));
+        robot.still_periods = 5;
+        robot.hears(beacon(5, north(own_parent), fixed(13, 14), &[13, 14]));
+        robot.hears(beacon(4, south(parent), fixed(15, 14), &[15, 14]));
+        robot.hears(beacon(1, east(BESIDE), redundant(11, 15), &[11, 15, 14]));
+        robot.hears(beacon(2, west(child), redundant(12, 11), &[12, 11, 15, 14]));
+        partner(&mut robot).is_some()
+    };
+    assert!(with(1.0, hard - LITTLE, 1.0));
+    assert!(!with(1.0, hard + LITTLE, 1.0), "its parent is too far from the mover");
+    assert!(with(1.0, 1.0, hard - LITTLE));
+    assert!(!with(1.0, 1.0, hard + LITTLE), "its child is too far from the mover");
+    let diagonal = |away: f64| (away * away - BESIDE * BESIDE).sqrt();
+    assert!(with(diagonal(hard - LITTLE), 1.0, 1.0));
+    assert!(!with(diagonal(hard + LITTLE), 1.0, 1.0), "the mover's parent is too far from it");
+    let mut lost = stuck(5);
+    lost.hears(beacon(1, east(BESIDE), redundant(11, 99), &[11, 99]));
+    assert_eq!(partner(&mut lost), None, "nobody holds the post of its parent");
+}
+
+#[test]
+fn only_robots_on_a_way_hand_their_duty_over() {
+    let mut posted = stuck(5);
+    posted.hears(parked(BESIDE));
+    posted.holds(fixed(30, 13));
+    assert_eq!(partner(&mut posted), None);
+    let mut resting = stuck(5);
+    resting.hears(parked(BESIDE));
+    resting.mission = Current::new(Mission::Idle(super::super::super::mission::Idle));
+    assert_eq!(partner(&mut resting), None, "the team does not move now");
+    let mut follower = stuck(5);
+    follower.hears(beacon(3, east(1.0), primary(31, None, 30), &[31, 30]));
+    follower.hears(parked(BESIDE));
+    follower.holds(primary(30, Some(31), 13));
+    assert_eq!(partner(&mut follower), Some(1));
+}
+
+#[test]
+fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
+    let relieved = |change: &dyn Fn(&mut Robot, &mut Beacon)| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 13));
+        robot.knows_task(east(3.0));
+        let duty = holding(primary(30, None, 13), west(BESIDE));
+        let mut mover = beacon(1, west(BESIDE), primary(30, None, 13), &[30, 13]);
+        mover.offer = Some(Offer { to: 0, number: 1, duty });
+        mover.announced = robot.announced.clone();
+        change(&mut robot, &mut mover);
+        robot.hears(mover);
+        robot.may_be_relieved()
+    };
+    assert!(relieved(&|_, _| {}));
+    assert!(!relieved(&|_, mover| mover.announced = None), "it goes by no announcement");
+    assert!(!relieved(&|robot, _| robot.announced = None), "this one goes by none");
+    assert!(!relieved(&|robot, _| robot.facts.path_announced = true), "it has yet to learn Σ");
+    let moves = |robot: &mut Robot, _: &mut Beacon| {
+        robot.holds(primary(20, None, 13));
+        robot.mission = Current::new(Mission::Advance(Advance { path: None }));
+    };
+    assert!(!relieved(&moves), "it moves itself");
+    let on_path = |_: &mut Robot, mover: &mut Beacon| {
+        let duty = Duty::Shifting(Shifting { place: 0, left: None });
+        mover.offer = Some(Offer { to: 0, number: 1, duty });
+        mover.agreement = Some(pleach_discrete::network::Agreement::new(mover.bulletin.id()));
+    };
+    assert!(!relieved(&on_path), "they are on different paths");
+    let offer = relieved(&|_, mover| mover.offer = None);
+    assert!(offer, "nobody asks");
+}

@@ -1,0 +1,163 @@
+//! The primary team: its order, its targets, and what it knows when it gets no farther (Sec. V-A).
+
+use super::super::super::beacon::TeamReport;
+use super::*;
+
+fn leader() -> Robot {
+    let mut robot = robot();
+    robot.holds(primary(30, None, 13));
+    robot.advances_to(east(3.0));
+    robot
+}
+
+#[test]
+fn the_first_of_the_team_is_followed_by_nobody() {
+    let mut robot = leader();
+    assert!(robot.is_first() && robot.leads());
+    robot.hears(beacon(1, west(0.3), primary(31, Some(29), 13), &[31, 13]));
+    assert!(robot.is_first(), "that one follows another post");
+    robot.hears(beacon(2, west(0.5), primary(32, Some(30), 13), &[32, 13]));
+    assert!(!robot.is_first());
+    robot.note_follower();
+    robot.neighbours.clear();
+    robot.note_follower();
+    assert!(!robot.is_first(), "one that falls silent follows all the same");
+    robot.holds(primary(33, None, 13));
+    robot.note_follower();
+    assert!(robot.is_first(), "it was another post that was followed");
+    robot.holds(fixed(30, 13));
+    assert!(!robot.is_first(), "it is not of the team");
+    let mut joined = leader();
+    joined.is_told(Notice::Advance { joined: Some((PostId(40), PostId(30))) });
+    assert!(!joined.is_first(), "a robot has joined to follow it");
+    assert_eq!(joined.awaited_parent(), Some(PostId(40)));
+    joined.holds(primary(30, None, 40));
+    assert_eq!(joined.awaited_parent(), None, "it is attached to the newcomer");
+    joined.is_told(Notice::Advance { joined: Some((PostId(40), PostId(29))) });
+    assert_eq!(joined.awaited_parent(), None, "that one follows another post");
+}
+
+#[test]
+fn members_go_to_the_robot_ahead_and_the_leader_to_the_task() {
+    let mut robot = leader();
+    assert_eq!(robot.team_goal(), Some(east(3.0)));
+    robot.measures();
+    assert_eq!(robot.goal(), Some(east(3.0)));
+    robot.holds(primary(30, Some(31), 13));
+    assert_eq!(robot.team_goal(), None, "the robot ahead is not heard");
+    robot.hears(beacon(1, north(0.7), primary(31, None, 30), &[31, 30]));
+    assert_eq!(robot.team_goal(), Some(north(0.7)));
+    robot.holds(fixed(30, 13));
+    assert_eq!(robot.team_goal(), None);
+}
+
+/// δ − 2.2ρ, so that a robot 2ρ behind is within δ; farther where the target is off the task.
+#[test]
+fn the_leader_stops_where_a_robot_behind_it_is_within_reach_as_well() {
+    let mut robot = leader();
+    assert!((robot.reach() - (SERVICE_RADIUS - 2.2 * CLEARANCE)).abs() < 1e-12);
+    robot.knows_task(east(3.0) + Vector::new(0.15, 0.0));
+    assert!((robot.reach() - (0.15 + 0.1 * CLEARANCE)).abs() < 1e-9, "{}", robot.reach());
+    robot.knows_task(east(3.0) + Vector::new(SERVICE_RADIUS, 0.0));
+    assert!((robot.reach() - SERVICE_RADIUS).abs() < 1e-12, "never farther than δ");
+}
+
+fn report(still: u32, slack: Option<NodeId>, saturated: Option<NodeId>) -> TeamReport {
+    TeamReport { still, slack, saturated, remaining: 1.5 }
+}
+
+/// A report goes from the leader back to p₁: the member that moved last, and the first that has room.
+#[test]
+fn the_team_knows_how_long_it_has_stood_still_and_who_has_room() {
+    let mut robot = leader();
+    robot.still_periods = 4;
+    robot.review_team();
+    let own = robot.team.expect("it leads");
+    assert_eq!((own.still, own.slack, own.saturated), (4, None, None), "its parent is not heard");
+    assert!((own.remaining - 3.0).abs() < 1e-9);
+    robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
+    robot.review_team();
+    assert_eq!(robot.team.and_then(|team| team.slack), Some(0), "its link is short");
+
+    let follows = |front: TeamReport, still: u32| {
+        let mut robot = leader();
+        robot.holds(primary(30, Some(31), 13));
+        robot.still_periods = still;
+        let ahead = beacon(1, east(1.0), primary(31, None, 30), &[31, 30]);
+        robot.hears(Beacon { team: Some(front), ..ahead });
+        robot.review_team();
+        robot.team.expect("the robot ahead has told")
+    };
+    assert_eq!(follows(report(7, None, None), 9), report(7, None, None));
+    assert_eq!(follows(report(7, Some(3), Some(2)), 5), report(5, Some(3), Some(2)));
+
+    robot.mission = Current::new(Mission::Idle(super::super::super::mission::Idle));
+    robot.review_team();
+    assert_eq!(robot.team, None, "the team does not move");
+    let mut posted = leader();
+    posted.holds(fixed(20, 13));
+    posted.review_team();
+    assert_eq!(posted.team, None, "it is not of the team");
+}
+
+/// A member whose link is shorter than 0.95 d_build has room to move.
+#[test]
+fn a_link_is_slack_below_its_length_by_a_twentieth() {
+    let slack = |length: f64| {
+        let mut robot = leader();
+        robot.hears(beacon(5, west(length), fixed(13, 14), &[13, 14]));
+        robot.review_team();
+        robot.team.expect("it leads").slack
+    };
+    let bound = 0.95 * leader().build_length();
+    assert_eq!((slack(bound - LITTLE), slack(bound + LITTLE)), (Some(0), None));
+}
+
+/// More room would not help a follower that is bunched behind the robot ahead.
+#[test]
+fn a_follower_right_behind_the_next_has_no_use_for_room() {
+    let slack = |gap: f64| {
+        let mut robot = leader();
+        robot.holds(primary(30, Some(31), 13));
+        robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
+        let ahead = beacon(1, east(gap), primary(31, None, 30), &[31, 30]);
+        robot.hears(Beacon { team: Some(report(3, None, None)), ..ahead });
+        robot.review_team();
+        robot.team.expect("the robot ahead has told").slack
+    };
+    let bunched = 2.6 * CLEARANCE;
+    assert_eq!((slack(bunched - LITTLE), slack(bunched + LITTLE)), (None, Some(0)));
+}
+
+#[test]
+fn a_link_of_the_tree_is_limited_by_what_hangs_on_it() {
+    let mut robot = leader();
+    robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
+    let child = |id, at, post| Beacon { parent: Some(0), ..beacon(id, at, post, &[]) };
+    robot.hears(child(1, north(0.5), primary(31, Some(30), 30)));
+    robot.hears(child(2, south(0.5), redundant(32, 30)));
+    let (build, hard) = (robot.build_length(), robot.hard_length());
+    assert!(build < hard);
+    let limits: Vec<(NodeId, f64)> =
+        robot.tree_links().into_iter().map(|link| (link.to, link.limit)).collect();
+    assert_eq!(limits, [(5, build), (1, build), (2, hard)]);
+    robot.holds(fixed(30, 13));
+    assert_eq!(robot.parent_link().map(|link| link.limit), Some(hard));
+    robot.stretched = true;
+    assert!(robot.hard_length() > hard && robot.build_length() > build);
+}
+
+#[test]
+fn a_parent_that_is_not_heard_is_the_one_before() {
+    let mut robot = robot();
+    robot.holds(redundant(0, 11));
+    robot.hears(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
+    robot.remember_parent();
+    assert_eq!(robot.tree_parent(), Some(1));
+    robot.holds(redundant(0, 12));
+    assert_eq!(robot.tree_parent(), Some(1), "nobody holds post 12");
+    robot.neighbours.clear();
+    assert_eq!(robot.tree_parent(), None, "the former parent is not heard either");
+    robot.holds(Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) });
+    assert_eq!(robot.tree_parent(), Some(ROBOTS));
+}

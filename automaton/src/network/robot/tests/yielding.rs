@@ -1,0 +1,130 @@
+//! When a robot asks for way, and where a parked one steps aside.
+
+use super::*;
+
+/// A mover west of robot 0 that wants to go past it to the east.
+fn asking(away: f64) -> Beacon {
+    let mover = beacon(1, west(away), primary(30, None, 13), &[30, 13]);
+    Beacon { way: Some(east(3.0)), ..mover }
+}
+
+fn posted() -> Robot {
+    let mut robot = robot();
+    robot.holds(fixed(20, 13));
+    robot
+}
+
+#[test]
+fn a_mover_asks_for_way_when_it_has_been_stuck_for_long() {
+    let mut mover = robot();
+    mover.holds(primary(30, None, 13));
+    mover.advances_to(east(3.0));
+    mover.waypoint = Some(east(3.0));
+    for (periods, asks) in [(0, false), (15, false), (16, true), (17, true)] {
+        mover.still_periods = periods;
+        assert_eq!(mover.way_asked_for().is_some(), asks, "{periods}");
+    }
+    mover.waypoint = None;
+    assert_eq!(mover.way_asked_for(), None, "it wants to go nowhere");
+    let mut parked = posted();
+    (parked.waypoint, parked.still_periods) = (Some(east(0.1)), 20);
+    assert_eq!(parked.way_asked_for(), None, "it stands where it should");
+    parked.hears(asking(0.1));
+    assert_eq!(parked.way_asked_for(), Some(east(0.1)), "it steps aside and cannot");
+}
+
+#[test]
+fn a_robot_clears_the_stretch_ahead_of_a_mover() {
+    let passing = 2.2 * CLEARANCE;
+    for (aside, clears) in [(0.0, true), (passing - LITTLE, true), (passing + LITTLE, false)] {
+        let mut robot = posted();
+        let mover = Beacon {
+            way: Some(east(3.0) + Vector::new(0.0, aside)),
+            position: west(0.1) + Vector::new(0.0, aside),
+            ..asking(0.1)
+        };
+        robot.hears(mover);
+        assert_eq!(robot.way_to_clear().is_some(), clears, "{aside}");
+    }
+    // Four clearances ahead, and those beside the end of that.
+    let reach = 4.0 * CLEARANCE + passing;
+    for (away, clears) in [(reach - LITTLE, true), (reach + LITTLE, false)] {
+        let mut robot = posted();
+        robot.hears(asking(away));
+        assert_eq!(robot.way_to_clear().is_some(), clears, "{away}");
+    }
+    // A target nearer than that is where the way ends.
+    for (ahead, clears) in [(passing - LITTLE, true), (passing + LITTLE, false)] {
+        let mut robot = posted();
+        robot.hears(Beacon { way: Some(west(ahead)), ..asking(ahead + 0.02) });
+        assert_eq!(robot.way_to_clear().is_some(), clears, "{ahead}");
+    }
+    let mut robot = posted();
+    robot.hears(Beacon { way: None, ..asking(0.1) });
+    assert_eq!(robot.way_to_clear(), None, "it does not ask");
+}
+
+#[test]
+fn it_steps_aside_as_far_as_it_takes_and_no_farther_than_its_leash() {
+    let mut robot = posted();
+    robot.hears(asking(0.1));
+    let place = robot.place_aside().expect("there is room beside the way");
+    let aside = (place - HERE).y.abs();
+    assert!(aside > 2.0 * CLEARANCE, "{place}: two paces straight aside are not far enough");
+    let paces = (place - HERE).norm() / CLEARANCE;
+    assert!((paces - 3.0).abs() < 1e-9, "{paces}");
+    assert!((place - HERE).norm() <= robot.site.settings.leash_radius());
+    // Where the leash ends two clearances to the north and south it goes as far as that.
+    let mut short = posted();
+    short.position = north(SERVICE_RADIUS - 2.0 * CLEARANCE);
+    short.arrival = short.position;
+    short.hears(Beacon {
+        way: Some(short.position + Vector::new(3.0, 0.0)),
+        position: short.position - Vector::new(0.1, 0.0),
+        ..asking(0.1)
+    });
+    let place = short.place_aside().expect("it may go south");
+    assert!((place - HERE).norm() <= SERVICE_RADIUS + LITTLE, "{place}");
+    assert!(place.y < short.position.y, "{place}");
+}
+
+#[test]
+fn a_robot_at_a_wall_steps_to_the_free_side() {
+    let mut robot = posted();
+    robot.position = Point::new(5.0, 0.05);
+    robot.arrival = robot.position;
+    robot.holds(fixed(20, 13));
+    let at = robot.position;
+    robot.hears(Beacon {
+        position: at - Vector::new(0.1, 0.0),
+        way: Some(at + Vector::new(3.0, 0.0)),
+        ..asking(0.1)
+    });
+    let place = robot.place_aside().expect("there is room to the north");
+    assert!(place.y > at.y + 2.0 * CLEARANCE, "{place}");
+}
+
+#[test]
+fn a_robot_beside_the_way_stays_where_no_place_is_better() {
+    let mut robot = posted();
+    let aside = 2.2 * CLEARANCE - 0.05 * CLEARANCE;
+    let position = west(0.1) + Vector::new(0.0, aside);
+    robot.hears(Beacon { way: Some(east(3.0) + Vector::new(0.0, aside)), position, ..asking(0.1) });
+    assert!(robot.way_to_clear().is_some());
+    assert_eq!(robot.place_aside(), None, "less than a tenth of ρ would be won");
+}
+
+#[test]
+fn nobody_settles_beside_a_mover_that_gets_on() {
+    let courtesy = 4.0 * CLEARANCE;
+    let moving = |away: f64| Beacon { way: None, ..asking(away) };
+    let near = |beacon: Beacon| {
+        let mut robot = posted();
+        robot.hears(beacon);
+        robot.is_near_mover()
+    };
+    assert!(near(moving(courtesy - LITTLE)) && !near(moving(courtesy + LITTLE)));
+    assert!(!near(asking(0.1)), "it may be waiting for just that");
+    assert!(!near(Beacon { parked: true, ..moving(0.1) }));
+    assert!(!near(access_point(east(0.1))));
+}
