@@ -176,7 +176,8 @@ impl<M, N: RobotNode> Network<M, N> {
         self.times
     }
 
-    /// k: the number of the current control period.
+    /// k: the number of the current control period; where clocks are not aligned, of the stretches of time
+    /// between two samples of any nodes.
     pub const fn step(&self) -> usize {
         self.step
     }

@@ -26,9 +26,9 @@ pub fn end_heard() -> Guard {
     named("end heard", proposition("hears_end"))
 }
 
-/// Robots have gathered: their roster has not changed for a while.
+/// Robots have gathered: all have been heard of or waited for, and their roster has not changed for a while.
 fn settled() -> Predicate {
-    variable("settled").at_least(variable("settling"))
+    variable("settled").at_least(variable("settling")) & !proposition("awaits_robots")
 }
 
 fn first(name: &str, predicate: Predicate) -> Guard {
