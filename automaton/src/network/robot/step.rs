@@ -2,7 +2,7 @@
 //!
 //! A control period is a sequence of stages that takes no time. The robot counts its own rounds: at
 //! a tick it processes what it has received since the last one, and sends. Then it waits for the
-//! messages of the others, up to the next tick. When it has set off, its next tick is at τ = Δt.
+//! messages of the others, up to the next tick. When it has set off, its next tick is at the next sample.
 
 use std::collections::VecDeque;
 

@@ -178,9 +178,7 @@ pub fn ride_watched(
     let Log { judge, events, .. } = log;
     let last_motion = judge.last_motion();
     let (violations, unheard) = judge.into_violations();
-    // Where clocks are not aligned, a control period has several steps.
-    let periods = (ending.at.t / scenario.settings().period).round() as usize;
-    Ok(Verdict { end, periods, violations, unheard, last_motion, events })
+    Ok(Verdict { end, periods: network.step(), violations, unheard, last_motion, events })
 }
 
 /// Only a cycle of jumps that takes no time reaches it.

@@ -134,7 +134,7 @@ fn a_control_period_begins_when_the_first_clock_is_due() {
     let place = robot.position;
     let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
     robot.hear_beacon(NOW, None, &heard);
-    assert_eq!(robot.time_to_tick(), Some(0.75));
+    assert_eq!(robot.time_to_tick(), Some(0.25));
     robot.hear_beacon(NOW + 1, None, &heard);
     assert_eq!(robot.time_to_tick(), Some(0.0));
     robot.tick(0, &mut Outputs::of(0)).expect("it goes on");
