@@ -26,9 +26,9 @@ pub fn end_heard() -> Guard {
     named("end heard", proposition("hears_end"))
 }
 
-/// Robots have gathered: all have been heard of or waited for, and their roster has not changed for a while.
+/// Robots have gathered: their roster has not changed for a while.
 fn settled() -> Predicate {
-    variable("settled").at_least(variable("settling")) & !proposition("awaits_robots")
+    variable("settled").at_least(variable("settling"))
 }
 
 fn first(name: &str, predicate: Predicate) -> Guard {
@@ -44,7 +44,8 @@ fn can_announce() -> Predicate {
 }
 
 fn lacks_robots() -> Predicate {
-    proposition("task_left") & !has_robots() & !proposition("may_return")
+    let may_come = proposition("awaits_robots") | proposition("may_return");
+    proposition("task_left") & !has_robots() & !may_come
 }
 
 /// Robots have gathered, and there is a task.
