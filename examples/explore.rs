@@ -19,8 +19,15 @@ fn main() -> Result<ExitCode, CampaignError> {
     let campaigns = if thorough { THOROUGH } else { QUICK };
     words.drain(..usize::from(thorough));
     let wanted = words.join(" ");
+    let chosen = campaigns.iter().filter(|campaign| campaign.name.contains(&wanted));
+    let chosen: Vec<&Campaign> = chosen.collect();
+    if chosen.is_empty() {
+        eprintln!("no campaign has '{wanted}' in its name; there are:");
+        campaigns.iter().for_each(|campaign| eprintln!("    {}", campaign.name));
+        return Ok(ExitCode::from(2));
+    }
     let (mut all_met, mut all) = (true, Findings::default());
-    for campaign in campaigns.iter().filter(|campaign| campaign.name.contains(&wanted)) {
+    for campaign in chosen {
         let findings = report(campaign)?;
         all_met &= campaign.is_met_by(&findings);
         all = all.and(findings);

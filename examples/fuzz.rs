@@ -5,25 +5,30 @@
 #[path = "../tests/fuzzing/mod.rs"]
 mod fuzzing;
 
+use clap::Parser;
 use fuzzing::{Reader, read};
-use std::error::Error;
 use std::process::ExitCode;
 
-fn main() -> Result<ExitCode, Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (count, seed): (u64, u64) = match &arguments[..] {
-        [count] => (count.parse()?, 1),
-        [count, seed] => (count.parse()?, seed.parse()?),
-        _ => return Err("usage: fuzz COUNT [SEED]".into()),
-    };
+/// Has every reader read texts that are wrong in every way
+#[derive(Parser)]
+struct Arguments {
+    /// The number of inputs for all readers together
+    count: u64,
+    /// What the inputs are drawn from
+    #[arg(default_value_t = 1)]
+    seed: u64,
+}
+
+fn main() -> ExitCode {
+    let Arguments { count, seed } = Arguments::parse();
     for reader in Reader::ALL {
         match read(reader, seed, count / Reader::ALL.len() as u64) {
             Ok(tally) => println!("{reader:?}: {} read, {} refused", tally.read, tally.refused),
             Err(panic) => {
                 println!("{panic}");
-                return Ok(ExitCode::FAILURE);
+                return ExitCode::FAILURE;
             }
         }
     }
-    Ok(ExitCode::SUCCESS)
+    ExitCode::SUCCESS
 }

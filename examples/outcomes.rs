@@ -16,6 +16,7 @@
 #[path = "../tests/floor_plans/mod.rs"]
 mod floor_plans;
 
+use clap::Parser;
 use floor_plans::{Family, scenario};
 use pleach::automaton::network::record::{MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::ValidScenario;
@@ -24,15 +25,23 @@ use pleach::mission::{Watcher, run};
 use pleach::verify::network::Spans;
 use std::error::Error;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Runs random missions and tells what became of them, family by family
+#[derive(Parser)]
+struct Arguments {
+    /// How many of each family, and a tenth as many of the halls
+    missions: u64,
+    /// Where scenarios that are not serviced are written
+    folder: Option<PathBuf>,
+}
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [missions, folder @ ..] = &arguments[..] else {
-        return Err("usage: outcomes MISSIONS [FOLDER]".into());
-    };
-    let missions: u64 = missions.parse()?;
-    let folder = folder.first().map(Path::new);
+    let Arguments { missions, folder } = Arguments::parse();
+    if let Some(folder) = &folder {
+        std::fs::create_dir_all(folder)?;
+    }
+    let folder = folder.as_deref();
     println!(
         "family        missions serviced proved unproved  bad   robots median worst   time median worst"
     );

@@ -2,7 +2,8 @@
 //! positions and moves have errors.
 //!
 //! `cargo run --release --example storm -- COUNT [FIRST_SEED]` runs as many missions, of all kinds
-//! and on all plans in turn, and tells the first that breaks a promise of safety, shrunk.
+//! and on all plans in turn, and tells the first that breaks a promise of safety, shrunk; it ends with
+//! status 1 if there is one.
 //! `cargo run --release --example storm -- seed SEED` tells the mission of that seed.
 //! `cargo run --release --example storm -- table SEEDS [KIND]` prints a table of what becomes of
 //! missions under each kind of storm.
@@ -10,6 +11,8 @@
 #[path = "../tests/floor_plans/mod.rs"]
 mod floor_plans;
 
+use clap::builder::PossibleValuesParser;
+use clap::{Parser, Subcommand};
 use floor_plans::in_storms::{SHIPPED, mission_in_storm, shipped};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::ValidScenario;
@@ -19,30 +22,66 @@ use pleach::verify::network::storm::{
 };
 use rayon::prelude::*;
 use std::error::Error;
+use std::process::ExitCode;
 use std::time::Instant;
 
 /// Control periods after which a mission is given up.
 const MOST_PERIODS: usize = 3_000;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    match &arguments[..] {
-        [word, name, kind, seed] if word == "one" => one(name, kind, seed.parse()?),
-        [word, seed] if word == "seed" => {
-            let seed = seed.parse()?;
+#[derive(Parser)]
+#[command(about = "Runs missions in storms", args_conflicts_with_subcommands = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// How many missions, of all kinds and on all plans in turn
+    #[arg(required = true)]
+    missions: Option<u64>,
+    /// The seed of the first
+    #[arg(default_value_t = 0)]
+    first: u64,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Tells the mission of a seed
+    Seed { seed: u64 },
+    /// Tells the mission of a shipped scenario in a kind of storm
+    One {
+        #[arg(value_parser = PossibleValuesParser::new(SHIPPED))]
+        scenario: String,
+        #[arg(value_parser = kind)]
+        kind: Kind,
+        seed: u64,
+    },
+    /// Prints what becomes of shipped scenarios under each kind of storm
+    Table {
+        /// Storms of each kind for each scenario
+        seeds: u64,
+        /// Only kinds with this in their name
+        kind: Option<String>,
+    },
+}
+
+fn kind(name: &str) -> Result<Kind, String> {
+    let known = Kind::ALL.iter().find(|kind| kind.name() == name);
+    known.copied().ok_or_else(|| {
+        let names: Vec<String> = Kind::ALL.iter().map(|kind| kind.name()).collect();
+        format!("no kind of storm has this name; there are: {}", names.join(", "))
+    })
+}
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
+    let Arguments { command, missions, first } = Arguments::parse();
+    match command {
+        Some(Command::One { scenario, kind, seed }) => one(&scenario, kind, seed)?,
+        Some(Command::Seed { seed }) => {
             let (scenario, storm) = mission_in_storm(seed);
-            tell_in_full(&scenario, seed, &storm, MOST_PERIODS)
+            tell_in_full(&scenario, seed, &storm, MOST_PERIODS)?;
         }
-        [word, seeds, kind @ ..] if word == "table" => table(seeds.parse()?, kind.first()),
-        [count, first @ ..] => {
-            let first = first.first().map_or(Ok(0), |first| first.parse())?;
-            many(first, count.parse()?)
-        }
-        _ => {
-            Err("usage: storm COUNT [FIRST_SEED] | storm seed SEED | storm table SEEDS [KIND]"
-                .into())
-        }
+        Some(Command::Table { seeds, kind }) => table(seeds, kind.as_deref())?,
+        None => return many(first, missions.unwrap_or_default()),
     }
+    Ok(ExitCode::SUCCESS)
 }
 
 fn is_serviced(verdict: &Verdict) -> bool {
@@ -50,7 +89,7 @@ fn is_serviced(verdict: &Verdict) -> bool {
 }
 
 /// What becomes of missions under each kind of storm.
-fn table(seeds: u64, only: Option<&String>) -> Result<(), Box<dyn Error>> {
+fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
     let mut missions = Vec::new();
     for name in SHIPPED {
         let scenario = shipped(name);
@@ -131,13 +170,11 @@ fn report(scenario: &ValidScenario, seed: u64, verdict: &Verdict) {
 }
 
 /// Tells one mission.
-fn one(name: &str, kind: &str, seed: u64) -> Result<(), Box<dyn Error>> {
+fn one(name: &str, kind: Kind, seed: u64) -> Result<(), Box<dyn Error>> {
     let scenario = shipped(name);
     let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
-    let named = |known: &&Kind| known.name() == kind;
-    let kind = Kind::ALL.iter().find(named).ok_or("no such kind")?;
-    let scenario = allowing_for(*kind, &scenario)?;
-    let storm = draw(*kind, seed, &scenario, calm.periods as f64);
+    let scenario = allowing_for(kind, &scenario)?;
+    let storm = draw(kind, seed, &scenario, calm.periods as f64);
     tell_in_full(&scenario, seed, &storm, MOST_PERIODS.min(3 * calm.periods))
 }
 
@@ -191,7 +228,7 @@ fn count(broken: &mut Vec<(String, usize)>, name: &str) {
 }
 
 /// Runs missions on all cores, and tells the first that breaks a promise.
-fn many(first: u64, missions: u64) -> Result<(), Box<dyn Error>> {
+fn many(first: u64, missions: u64) -> Result<ExitCode, Box<dyn Error>> {
     let start = Instant::now();
     let (mut serviced, mut broken) = (0, Vec::new());
     let seeds: Vec<u64> = (first..first + missions).collect();
@@ -221,7 +258,7 @@ fn many(first: u64, missions: u64) -> Result<(), Box<dyn Error>> {
         start.elapsed().as_secs_f64(),
         broken.len(),
     );
-    Ok(())
+    Ok(if broken.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// Missions that run side by side before progress is told.

@@ -6,13 +6,14 @@
 #[path = "../tests/floor_plans/mod.rs"]
 mod floor_plans;
 
+use clap::Parser;
 use floor_plans::{Family, scenario};
 use pleach::automaton::network::record::{MissionEvent, Outcome, Snapshot};
 use pleach::discrete::network::Role;
 use pleach::mission::{Watcher, run};
 use std::error::Error;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Remembers how things stand.
@@ -35,18 +36,43 @@ impl Watcher for LastSight {
     }
 }
 
+/// Runs random missions and prints a line for each
+#[derive(Parser)]
+struct Arguments {
+    /// The name of a family, or `all`
+    #[arg(value_parser = families)]
+    families: Families,
+    /// The seed of the first mission
+    first: u64,
+    /// How many missions of each family
+    count: u64,
+    /// Where scenarios that are not serviced are written
+    folder: Option<PathBuf>,
+}
+
+#[derive(Clone)]
+struct Families(Vec<Family>);
+
+fn families(name: &str) -> Result<Families, String> {
+    let named = |known: &Family| name == "all" || name == known.name();
+    let found: Vec<Family> = Family::ALL.into_iter().filter(named).collect();
+    match found.is_empty() {
+        false => Ok(Families(found)),
+        true => {
+            let names = Family::ALL.map(|family| family.name());
+            Err(format!("no family has this name; there are: all, {}", names.join(", ")))
+        }
+    }
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [family, first, count, folder @ ..] = &arguments[..] else {
-        return Err("usage: stress FAMILY FIRST_SEED COUNT [FOLDER]".into());
-    };
-    let families: Vec<Family> = (Family::ALL.into_iter())
-        .filter(|known| family == "all" || family == known.name())
-        .collect();
-    let (first, count): (u64, u64) = (first.parse()?, count.parse()?);
+    let Arguments { families: Families(families), first, count, folder } = Arguments::parse();
+    if let Some(folder) = &folder {
+        std::fs::create_dir_all(folder)?;
+    }
     for family in families {
-        for seed in first..first + count {
-            mission(family, seed, folder.first().map(Path::new))?;
+        for seed in first..first.saturating_add(count) {
+            mission(family, seed, folder.as_deref())?;
         }
     }
     Ok(())

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // a test that panics has failed
 
+#[path = "../automaton/tests/missions/best_routes.rs"]
+mod best_routes;
 mod common;
 mod floor_plans;
 mod fuzz;

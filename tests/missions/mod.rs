@@ -4,6 +4,7 @@
 
 mod medium;
 
+use crate::floor_plans::in_storms;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, ValidScenario};
 use pleach::automaton::network::{Message, Network, Site};
@@ -11,11 +12,10 @@ use pleach::automaton::node::Medium;
 use pleach::automaton::{Executor, HybridTime, Observer, Reason};
 use pleach::continuous::Point;
 use pleach::mission::{self, Completed, Watcher};
+use pleach::story;
 use pleach::verify::network::Extremes;
-use pleach::{scenario_file, story};
 use std::io;
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::sync::Arc;
 
 pub use medium::{Arrival, AskedTwice, Filtered, Noted, Written};
@@ -48,8 +48,7 @@ pub fn shipped_names() -> Vec<String> {
 
 /// The scenario of that name among those that are shipped.
 pub fn shipped(name: &str) -> Scenario {
-    let path = format!("scenarios/{name}.toml");
-    scenario_file::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}")).into_scenario()
+    in_storms::shipped(name).into_scenario()
 }
 
 /// The scenario, from which a mission can start.

@@ -147,8 +147,7 @@ impl<M, N: RobotNode> Network<M, N> {
     /// The observers' view of this instant, just before the robots move.
     pub fn snapshot(&self) -> Snapshot {
         let snapshot = Snapshot::of_reports(self.step, self.site.settings.period, &self.reports());
-        let nodes =
-            self.nodes.nodes().iter().take(self.site.robots + self.site.access_points.len());
+        let nodes = self.nodes.nodes().iter().take(self.site.nodes());
         let absent = nodes.enumerate().filter(|(_, node)| !node.is_running()).map(|(id, _)| id);
         match absent.collect::<Vec<_>>() {
             absent if absent.is_empty() => snapshot,

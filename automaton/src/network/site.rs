@@ -200,6 +200,11 @@ impl Site {
         (2 * depth + ROUNDS_TO_SPARE).min(self.nodes())
     }
 
+    /// The longest wait of a node that is told of another; no longer than that among as many nodes as there are.
+    pub fn longer_wait(&self, known: usize, told: usize) -> usize {
+        known.max(told.min(self.nodes()))
+    }
+
     /// How many robots and access points there are.
     pub const fn nodes(&self) -> usize {
         self.robots + self.access_points.len()

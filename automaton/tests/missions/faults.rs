@@ -20,14 +20,8 @@ fn weathers(name: &str, path: &str, kind: Kind, seeds: u64) {
             allowing_for(kind, &valid(scenario(path))).expect("there is room for errors");
         let storm = draw(kind, seed, &scenario, DURATION);
         let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
-        let promised = |property| {
-            use Property::{Clearance, Load, Residual, RootedTree, Separation, Shares, TreeRange};
-            [Separation, Clearance, Residual, Shares, Load, TreeRange, RootedTree]
-                .contains(&property)
-        };
-        if let Some(broken) = verdict.violations.iter().find(|it| promised(it.property)) {
-            panic!("{path}, {}, seed {seed}: {broken}", kind.name());
-        }
+        let broken = verdict.broken(&Property::KEPT_UNDER_LOSS);
+        assert_eq!(broken, None, "{path}, {}, seed {seed}", kind.name());
         let outcome = verdict.end.map_or(Outcome::StepLimit, |end| end.outcome);
         let told = story(verdict.events.iter().map(|(_, event)| event));
         insta::assert_snapshot!(format!("{name}-{seed}"), format!("{told}\n{}", outcome.name()));

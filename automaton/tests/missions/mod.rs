@@ -4,6 +4,7 @@
 //! What robots decided, event by event, is in `tests/snapshots`: who leads, who is recruited along which
 //! path, who exchanges duties with whom.
 
+mod best_routes;
 mod decisions;
 mod faults;
 mod routes;

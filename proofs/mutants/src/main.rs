@@ -41,7 +41,7 @@ struct Arguments {
     /// Tests with this in their name are not run
     #[arg(long)]
     skip: Vec<String>,
-    /// A sample: the first of every so many mutants
+    /// Runs a sample, one mutant in this many
     #[arg(long, default_value_t = 1)]
     one_in: usize,
     /// Only the mutants whose names stand at the ends of lines of this file

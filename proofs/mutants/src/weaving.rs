@@ -301,12 +301,8 @@ mod tests {
             mutant(Genre::BinaryOperator, line, "+", "-", 1),
             mutant(Genre::UnaryOperator, line, "-b", "b", 2),
         ];
-        let minus = Mutant {
-            span: Span { start: mutants[1].span.start, ..mutants[1].span },
-            ..mutants[1].clone()
-        };
         assert_eq!(
-            text(line, &[mutants[0].clone(), minus]),
+            text(line, &mutants),
             "fn f(a: i8, b: i8) -> i8 { (if none(&[1]) { a + (if none(&[2]) { -b } else { b }) } \
              else { a - -b }) }"
         );

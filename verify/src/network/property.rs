@@ -110,6 +110,17 @@ impl Property {
         Property::Outcome,
     ];
 
+    /// What no loss of messages breaks.
+    pub const KEPT_UNDER_LOSS: [Property; 7] = [
+        Property::Separation,
+        Property::Clearance,
+        Property::Residual,
+        Property::Shares,
+        Property::Load,
+        Property::TreeRange,
+        Property::RootedTree,
+    ];
+
     /// The name used in messages and documents.
     pub const fn name(self) -> &'static str {
         match self {

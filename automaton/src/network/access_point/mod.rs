@@ -253,7 +253,7 @@ impl AccessPoint {
     /// The first access point sends the user the newest notice.
     fn tell_user(&self, outputs: &mut Outputs<Message, MissionEvent>) {
         if self.number == 0 {
-            let user = self.site.robots + self.site.access_points.len();
+            let user = self.site.nodes();
             outputs.send(user, Message::News(self.bulletin.clone()));
         }
     }
@@ -269,7 +269,7 @@ impl AccessPoint {
         }
         for beacon in &self.heard {
             self.stretched |= beacon.stretched;
-            self.longest_wait = self.longest_wait.max(beacon.longest_wait.min(self.site.nodes()));
+            self.longest_wait = self.site.longer_wait(self.longest_wait, beacon.longest_wait);
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
                 merge_election(own, heard);
             }

@@ -58,19 +58,24 @@ impl Robot {
         self.roll.absent.locate(&mut self.wrecks, seen);
     }
 
+    /// How far a robot that is not heard any more may be from where it was heard last.
+    fn farthest_astray(&self) -> f64 {
+        ASTRAY * self.site.settings.step_radius
+    }
+
     /// Where the robot stays, in case that it is not heard any more: near each place where it has been since
     /// its newest roll was called.
     pub(super) fn discs_of_trail(&self) -> impl Iterator<Item = Disc> {
-        let leash = ASTRAY * self.site.settings.step_radius;
+        let astray = self.farthest_astray();
         self.trail.iter().map(move |&(_, center)| Disc {
             center,
-            radius: leash.max((center - self.position).norm()),
+            radius: astray.max((center - self.position).norm()),
         })
     }
 
     /// Whether it is there; a move that was off may have led it farther.
     pub(super) fn is_near_trail(&self) -> bool {
-        let leash = ASTRAY * self.site.settings.step_radius * (1.0 + ROUNDING);
+        let leash = self.farthest_astray() * (1.0 + ROUNDING);
         self.trail.iter().all(|(_, place)| (place - self.position).norm() <= leash)
     }
 
@@ -83,7 +88,7 @@ impl Robot {
 
     /// The discs that no way leads through.
     pub(super) fn keep_out_discs(&self, clearance: f64) -> impl Iterator<Item = Disc> {
-        let radius = clearance + ASTRAY * self.site.settings.step_radius;
+        let radius = clearance + self.farthest_astray();
         self.obstacles().map(move |center| Disc { center, radius })
     }
 
@@ -91,7 +96,7 @@ impl Robot {
     pub(super) fn sides_of_wrecks(&self) -> impl Iterator<Item = HalfPlane> {
         let Settings { clearance, step_radius: step, errors, .. } = self.site.settings;
         let kept = errors.planning_clearance(clearance * (1.0 + MARGIN));
-        let radius = 2.0 * kept + ASTRAY * step;
+        let radius = 2.0 * kept + self.farthest_astray();
         self.obstacles().filter_map(move |place| {
             let ahead = place - self.position;
             let away = ahead.norm();

@@ -124,8 +124,8 @@ impl Robot {
     pub(super) fn hear_notices(&mut self) {
         self.longest_wait = self.longest_wait();
         for neighbour in &self.neighbours {
-            let wait = neighbour.beacon.longest_wait.min(self.site.nodes());
-            self.longest_wait = self.longest_wait.max(wait);
+            let told = neighbour.beacon.longest_wait;
+            self.longest_wait = self.site.longer_wait(self.longest_wait, told);
             self.stretched |= neighbour.beacon.stretched;
             self.bulletin.merge(&neighbour.beacon.bulletin);
             if let (Some(own), Some(heard)) = (&mut self.election, &neighbour.beacon.election) {

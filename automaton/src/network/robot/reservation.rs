@@ -28,8 +28,8 @@ use crate::node::Outputs;
 /// Control periods for which a grant holds at the least as long as no message is lost. Every flow is asked for
 /// again in each of them.
 const LEASE: u32 = 8;
-/// Packets flow to an access point that is not heard for so many leases: it promises nothing, so that nothing
-/// ends but its service.
+/// How many leases long packets flow to an access point that is not heard. It promises nothing to anyone, so
+/// that nothing ends but its service.
 const PATIENCE_WITH_ACCESS_POINTS: u32 = 2;
 /// Flows that differ by less are the same.
 const SAME_FLOW: f64 = 1e-12;
@@ -272,16 +272,16 @@ impl Robot {
                 self.ask(at, outputs);
             }
         }
-        self.grant_flows(needed, outputs);
+        self.grant_flows(needed, promised, outputs);
     }
 
     /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
     /// granted for as long as these last.
-    fn grant_flows(&mut self, needed: f64, outputs: &mut Out) {
+    fn grant_flows(&mut self, needed: f64, promised: u32, outputs: &mut Out) {
         let wanted = self.reservations.iter().map(|kept| (kept.wanted - kept.flow).max(0.0));
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
         let until = self.lasts_until(carried).min(self.period.saturating_add(self.lease()));
-        let mut spare = self.lasting_outflow(until.max(self.promised_until())) - needed;
+        let mut spare = self.lasting_outflow(until.max(promised)) - needed;
         let may_grant = self.round_count.is_for_grants();
         for kept in &mut self.reservations {
             let flow = kept.wanted.min(kept.flow + spare.max(0.0));

@@ -21,7 +21,7 @@ use pleach_automaton::node::{Medium, Unreliable, Weather};
 use pleach_automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use pleach_continuous::Point;
 
-use super::Violation;
+use super::{Property, Violation};
 pub use draw::{Kind, allowing_for, draw};
 pub use judge::Judge;
 pub use shrink::shrink;
@@ -84,6 +84,13 @@ pub struct Verdict {
     pub last_motion: usize,
     /// What happened, each with its control period.
     pub events: Vec<(usize, MissionEvent)>,
+}
+
+impl Verdict {
+    /// The first violation of one of these properties.
+    pub fn broken(&self, properties: &[Property]) -> Option<&Violation> {
+        self.violations.iter().find(|violation| properties.contains(&violation.property))
+    }
 }
 
 /// The network of a scenario in a storm.

@@ -226,8 +226,8 @@ fn a_robot_that_finds_no_way_waits_before_it_shows_where_it_could_help() {
 #[test]
 fn news_is_waited_for_by_the_deepest_place_that_is_heard_of() {
     let mut robot = robot();
-    let wait = |depth: usize| robot_of(&hall()).site.rounds_across(depth);
-    assert_eq!([wait(0), wait(1), wait(40)], [5, ROBOTS + 1, ROBOTS + 1]);
+    let waits = [0, 1, 40].map(|depth| robot.site.rounds_across(depth));
+    assert_eq!(waits, [5, ROBOTS + 1, ROBOTS + 1]);
     assert_eq!(robot.longest_wait(), 5);
     for (told, waits) in [(6, 6), (4, 6), (usize::MAX, ROBOTS + 1)] {
         robot.hears(Beacon { longest_wait: told, ..beacon(1, east(0.5), fixed(11, 13), &[11]) });

@@ -44,6 +44,16 @@ fn grants(outputs: &mut Out) -> Vec<(Destination, FlowGrant)> {
     sent(outputs).into_iter().filter_map(grants).collect()
 }
 
+/// The router asks robot 5 for a flow of 0.2 R.
+fn asking() -> (Robot, FlowRequest) {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    robot.links[0].share = 0.2;
+    robot.ask_for_flows(&mut outputs);
+    let request = requests(&mut outputs).first().expect("it asks").1;
+    (robot, request)
+}
+
 /// A link that a step of both ends could break carries nothing unless it belongs to the tree; one with a flow
 /// stays until that has ended.
 #[test]
@@ -158,11 +168,7 @@ fn grants_end_with_their_lease() {
         robot.ask_for_flows(&mut outputs);
         assert_eq!(robot.senders().count(), senders, "in {period} of {until}");
     }
-    let mut sender = router();
-    sender.links[0].share = 0.2;
-    sender.ask_for_flows(&mut outputs);
-    let asked = requests(&mut outputs);
-    let FlowRequest { number, wanted: flow, .. } = asked.first().expect("it asks").1;
+    let (mut sender, FlowRequest { number, wanted: flow, .. }) = asking();
     sender.hear_grant(5, FlowGrant { number, flow, until: NOW + LEASE });
     sender.take_in_requests(&mut outputs);
     assert!(sender.sends_to(5) && sender.requests_are_answered());
@@ -220,11 +226,8 @@ fn packets_flow_to_an_access_point_that_is_not_heard_for_a_while() {
 
 #[test]
 fn an_answer_to_an_older_request_counts_for_nothing() {
-    let mut robot = router();
+    let (mut robot, FlowRequest { number, .. }) = asking();
     let mut outputs = Outputs::of(0);
-    robot.links[0].share = 0.2;
-    robot.ask_for_flows(&mut outputs);
-    let number = requests(&mut outputs)[0].1.number;
     let older = RequestNumber { number: number.number - 1, ..number };
     robot.hear_grant(5, FlowGrant { number: older, flow: 0.5, until: NOW + LEASE });
     robot.take_in_requests(&mut outputs);
@@ -235,11 +238,8 @@ fn an_answer_to_an_older_request_counts_for_nothing() {
 /// After eight rounds without an answer it asks again, with another number.
 #[test]
 fn a_request_without_an_answer_is_made_again() {
-    let mut robot = router();
+    let (mut robot, FlowRequest { number: first, .. }) = asking();
     let mut outputs = Outputs::of(0);
-    robot.links[0].share = 0.2;
-    robot.ask_for_flows(&mut outputs);
-    let first = requests(&mut outputs)[0].1.number;
     robot.round_count.restart();
     let mut again = Vec::new();
     for round in 1..=16 {
