@@ -139,6 +139,12 @@ pub const USES: &[Use] = &[
         "automaton/src/network/access_point/attendance.rs",
         "guards::rolls_expired()",
     ),
+    (
+        "readmitted",
+        "guards/src/network/attendance.rs",
+        "automaton/src/network/access_point/attendance.rs",
+        "guards::readmitted()",
+    ),
     ("and", VERDICT, TENSION, "forced.or(self.invariants"),
     ("opposite", VERDICT, TENSION, "self.invariants(state)?.opposite()"),
     ("judge", VERDICT, "guards/src/predicate.rs", ".judge("),
