@@ -38,6 +38,16 @@ fn a_robot_that_has_not_moved_stays_where_it_has_measured_itself() {
 }
 
 #[test]
+fn a_position_that_is_measured_again_is_no_news() {
+    let mut robot = robot();
+    (robot.has_news, robot.is_unmeasured) = (false, false);
+    robot.correct_position(HERE);
+    assert!(!robot.has_news && !robot.is_unmeasured);
+    robot.correct_position(east(LITTLE));
+    assert!(robot.has_news && robot.is_unmeasured);
+}
+
+#[test]
 fn a_robot_has_strayed_where_errors_have_led_it_out_of_the_free_space() {
     let at = |mut robot: Robot, position: Point| {
         robot.position = position;
