@@ -161,6 +161,24 @@ fn a_robot_under_way_is_attached_to_the_next_of_the_chain() {
     assert!(robot.has_reported(0));
 }
 
+/// The robot at the end of the subgroup holds the post that the one before it comes to take.
+#[test]
+fn a_subgroup_has_arrived_when_the_robot_at_its_end_has_given_its_post_up() {
+    let arrived = |places: &[usize], is_given_up: bool| {
+        let mut robot = shifting(0.5, false);
+        let agreement = robot.agreement.as_mut().expect("it is on a path");
+        places.iter().for_each(|&place| agreement.arrive(place));
+        if is_given_up {
+            agreement.give_up(3);
+        }
+        robot.measures();
+        robot.facts.subgroup_arrived
+    };
+    assert!(arrived(&[0, 1, 2], true));
+    assert!(!arrived(&[0, 1, 2], false), "two would hold the post");
+    assert!(!arrived(&[0, 2], true), "one is on its way");
+}
+
 /// From where a link is longer than errors explain, each end that moves makes it shorter by as much as its
 /// move may be off.
 #[test]
