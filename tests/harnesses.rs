@@ -3,283 +3,92 @@
 //! `PLEACH_UPDATE_DOCS=1 cargo test --test it harnesses` writes the table in docs/proofs.md anew.
 
 use crate::generated::{keep_up_to_date, read};
-use crate::sources::{files_below, lines_of_code, relative};
+use crate::sources::{code, files_below, relative};
+use crate::uses::{FOR_USERS, uses_of};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A harness, the function or table that it is about, the file of that, the file that uses it, and how.
-type Proof = (&'static str, &'static str, &'static str, &'static str, &'static str);
+/// A harness, the function or table that it is about, and the file of that.
+type Proof = (&'static str, &'static str, &'static str);
 
 const ACCEPTANCE: &str = "continuous/src/network/acceptance.rs";
+const RELIABILITY: &str = "continuous/src/network/reliability.rs";
+const DUAL: &str = "continuous/src/network/routing/dual.rs";
+const LOCAL: &str = "continuous/src/network/routing/local.rs";
 const ACTIVITY: &str = "discrete/src/network/activity.rs";
 const AGREEMENT: &str = "discrete/src/network/agreement.rs";
 const BULLETIN: &str = "discrete/src/network/bulletin.rs";
-const CELL: &str = "continuous/src/geometry/cell.rs";
-const CROSSING: &str = "guards/src/crossing.rs";
-const DUAL: &str = "continuous/src/network/routing/dual.rs";
-const DUTY: &str = "verify/src/network/duty.rs";
 const ELECTION: &str = "discrete/src/network/election.rs";
-const ID_SET: &str = "discrete/src/network/id_set.rs";
-const LINEAGE: &str = "discrete/src/network/lineage.rs";
-const LOCAL: &str = "continuous/src/network/routing/local.rs";
-const MOTION: &str = "continuous/src/network/motion/mod.rs";
-const OFFERS: &str = "discrete/src/network/offers.rs";
 const PATH: &str = "discrete/src/network/path.rs";
-const RELIABILITY: &str = "continuous/src/network/reliability.rs";
 const TABLES: &str = "discrete/src/network/tables.rs";
-const TREE: &str = "verify/src/network/tree.rs";
+const CROSSING: &str = "guards/src/crossing.rs";
 const VERDICT: &str = "guards/src/predicate/verdict.rs";
-
-const INSTANT: &str = "verify/src/network/instant.rs";
-const PERIOD: &str = "verify/src/network/period.rs";
-const PREDICATE: &str = "guards/src/predicate.rs";
-const TENSION: &str = "automaton/src/composition/tension.rs";
-const ROBOT_DUTIES: &str = "automaton/src/network/robot/duties.rs";
-const ROBOT_EXCHANGE: &str = "automaton/src/network/robot/exchange.rs";
-const ROBOT_FACTS: &str = "automaton/src/network/robot/facts.rs";
-const ROBOT_HEARING: &str = "automaton/src/network/robot/hearing.rs";
-const ROBOT_LEADER: &str = "automaton/src/network/robot/leader.rs";
-const ROBOT_MISSION: &str = "automaton/src/network/robot/mission.rs";
-const ROBOT_PATH: &str = "automaton/src/network/robot/path.rs";
+const DUTY: &str = "verify/src/network/duty.rs";
+const TREE: &str = "verify/src/network/tree.rs";
 
 /// In the order of the files.
 const PROOFS: &[Proof] = &[
     (
         "points_in_their_own_half_planes_are_two_clearances_apart",
         "own_side",
-        CELL,
-        CELL,
-        "Some(own_side(bisector, position, clearance))",
+        "continuous/src/geometry/cell.rs",
     ),
-    ("no_corner_is_worse_than_the_worst", "worst_corner", ACCEPTANCE, ACCEPTANCE, CORNERS),
-    ("smaller_terms_have_no_worse_corner", "worst_corner", ACCEPTANCE, ACCEPTANCE, CORNERS),
+    ("no_corner_is_worse_than_the_worst", "worst_corner", ACCEPTANCE),
+    ("smaller_terms_have_no_worse_corner", "worst_corner", ACCEPTANCE),
     (
         "what_is_admitted_meets_every_constraint",
         "is_admitted",
-        MOTION,
-        MOTION,
-        "is_admitted(self.smallest_margin(point))",
+        "continuous/src/network/motion/mod.rs",
     ),
-    ("reliability_is_flat_outside_of_the_transition", "reliability", RELIABILITY, ROBOT_HEARING, R),
-    ("reliability_falls_from_one_to_zero", "reliability", RELIABILITY, ROBOT_HEARING, R),
-    (
-        "a_projected_multiplier_is_never_negative",
-        "projected",
-        DUAL,
-        DUAL,
-        "multiplier: projected(extrapolated)",
-    ),
-    (
-        "a_multiplier_rises_while_the_reserve_is_missed",
-        "dual_step",
-        DUAL,
-        DUAL,
-        "let stepped = dual_step(self.multiplier, step, residual, reserve);",
-    ),
-    (
-        "a_positive_part_is_never_negative",
-        "positive_part",
-        LOCAL,
-        LOCAL,
-        "positive_part((link.value(multiplier) - budget_price)",
-    ),
-    (
-        "the_local_minimiser_is_feasible_and_pays_for_used_time_only",
-        "budget_price",
-        LOCAL,
-        LOCAL,
-        "let budget_price = budget_price(multiplier, links, budget);",
-    ),
-    (
-        "an_activity_answers_every_event_in_one_way",
-        "DUTIES",
-        ACTIVITY,
-        ROBOT_DUTIES,
-        "Automaton::builder(DUTIES,",
-    ),
-    (
-        "a_robot_leaves_a_fixed_post_when_it_is_replaced",
-        "DUTIES",
-        ACTIVITY,
-        ROBOT_DUTIES,
-        "Automaton::builder(DUTIES,",
-    ),
-    (
-        "settled_views_tell_every_vote",
-        "is_settled",
-        AGREEMENT,
-        AGREEMENT,
-        "self.is_settled(places)",
-    ),
-    ("a_vote_stands", "vote", AGREEMENT, ROBOT_PATH, "agreement.vote(place,"),
-    (
-        "arrivals_are_known_together_if_each_is_known",
-        "have_arrived",
-        AGREEMENT,
-        ROBOT_PATH,
-        "agreement.have_arrived(subgroup.places())",
-    ),
-    (
-        "a_view_of_another_path_changes_nothing",
-        "merge",
-        AGREEMENT,
-        ROBOT_MISSION,
-        "own.merge(heard)",
-    ),
-    ("the_newest_notice_wins_in_any_order", "merge", BULLETIN, ROBOT_MISSION, NOTICES),
-    (
-        "identities_are_totally_ordered",
-        "is_newer_than",
-        BULLETIN,
-        BULLETIN,
-        "heard.id.is_newer_than(self.id)",
-    ),
-    ("merging_views_is_taking_a_maximum", "merge", ELECTION, ROBOT_MISSION, VIEWS),
-    ("a_view_of_another_election_changes_nothing", "merge", ELECTION, ROBOT_MISSION, VIEWS),
-    (
-        "bids_are_ordered_by_rank_first_and_ties_go_to_the_higher_index",
-        "best",
-        ELECTION,
-        ROBOT_LEADER,
-        "self.election.as_ref()?.best()",
-    ),
-    ("a_merge_is_the_union", "merge", ID_SET, ELECTION, "self.tokens.merge(&heard.tokens)"),
-    (
-        "an_exchange_conserves_duties_at_every_step",
-        "conclude",
-        OFFERS,
-        ROBOT_EXCHANGE,
-        "offers.conclude(offer, offers_made)",
-    ),
-    (
-        "the_recruit_the_last_and_both_sides_of_a_crossing_break",
-        "is_break_point",
-        PATH,
-        ROBOT_PATH,
-        "path.is_break_point(place, ties)",
-    ),
-    (
-        "every_place_before_the_last_break_point_is_in_one_subgroup",
-        "subgroups",
-        PATH,
-        ROBOT_PATH,
-        "subgroups(&points)",
-    ),
-    ("a_phase_answers_every_step_in_one_way", "MISSION", TABLES, ROBOT_MISSION, PHASES),
-    ("every_phase_is_reached", "MISSION", TABLES, ROBOT_MISSION, PHASES),
-    ("the_end_is_heard_and_final", "MISSION", TABLES, ROBOT_MISSION, PHASES),
-    ("crossings_alternate", "between_margins", CROSSING, FOR_USERS, ""),
-    ("a_switch_keeps_its_state_within_the_band_only", "update", CROSSING, FOR_USERS, ""),
-    (
-        "logic_keeps_margins_and_verdicts_together",
-        "and",
-        VERDICT,
-        TENSION,
-        "forced.or(self.invariants",
-    ),
-    (
-        "negation_follows_de_morgan",
-        "opposite",
-        VERDICT,
-        TENSION,
-        "self.invariants(state)?.opposite()",
-    ),
-    ("comparisons_agree_with_their_margins", "judge", VERDICT, PREDICATE, ".judge("),
-    (
-        "duties_are_conserved_exactly_by_permutations",
-        "are_conserved",
-        DUTY,
-        PERIOD,
-        "duty::are_conserved(&before, &kept)",
-    ),
-    (
-        "a_shift_along_the_path_keeps_break_points_held",
-        "last_break_point",
-        PATH,
-        ROBOT_FACTS,
-        "shift.path.last_break_point()",
-    ),
-    ("after_each_round_a_robot_knows_one_link_more", "merge", ELECTION, ROBOT_MISSION, VIEWS),
-    (
-        "robots_that_hear_each_other_elect_the_best_bidder",
-        "is_complete",
-        ELECTION,
-        ROBOT_FACTS,
-        "election.is_complete(roster)",
-    ),
-    (
-        "an_observer_may_see_what_the_table_allows",
-        "is_reachable",
-        DUTY,
-        PERIOD,
-        "duty::is_reachable(relation, from, to)",
-    ),
-    (
-        "a_gap_is_found_where_there_is_one",
-        "first_gap",
-        "verify/src/network/motion.rs",
-        PERIOD,
-        "first_gap(&mut intervals)",
-    ),
-    (
-        "robots_that_have_heard_every_vote_form_the_same_subgroups",
-        "is_break_point",
-        AGREEMENT,
-        AGREEMENT,
-        "self.is_break_point(place)",
-    ),
-    (
-        "the_subgroups_of_any_votes_partition_the_path",
-        "subgroups",
-        PATH,
-        ROBOT_PATH,
-        "subgroups(&points)",
-    ),
-    ("the_subgroups_of_any_votes_are_teams", "subgroups", PATH, ROBOT_PATH, "subgroups(&points)"),
+    ("reliability_is_flat_outside_of_the_transition", "reliability", RELIABILITY),
+    ("reliability_falls_from_one_to_zero", "reliability", RELIABILITY),
+    ("a_projected_multiplier_is_never_negative", "projected", DUAL),
+    ("a_multiplier_rises_while_the_reserve_is_missed", "dual_step", DUAL),
+    ("a_positive_part_is_never_negative", "positive_part", LOCAL),
+    ("the_local_minimiser_is_feasible_and_pays_for_used_time_only", "budget_price", LOCAL),
+    ("an_activity_answers_every_event_in_one_way", "DUTIES", ACTIVITY),
+    ("a_robot_leaves_a_fixed_post_when_it_is_replaced", "DUTIES", ACTIVITY),
+    ("settled_views_tell_every_vote", "is_settled", AGREEMENT),
+    ("a_vote_stands", "vote", AGREEMENT),
+    ("arrivals_are_known_together_if_each_is_known", "have_arrived", AGREEMENT),
+    ("a_view_of_another_path_changes_nothing", "merge", AGREEMENT),
+    ("the_newest_notice_wins_in_any_order", "merge", BULLETIN),
+    ("identities_are_totally_ordered", "is_newer_than", BULLETIN),
+    ("merging_views_is_taking_a_maximum", "merge", ELECTION),
+    ("a_view_of_another_election_changes_nothing", "merge", ELECTION),
+    ("bids_are_ordered_by_rank_first_and_ties_go_to_the_higher_index", "best", ELECTION),
+    ("a_merge_is_the_union", "merge", "discrete/src/network/id_set.rs"),
+    ("an_exchange_conserves_duties_at_every_step", "conclude", "discrete/src/network/offers.rs"),
+    ("the_recruit_the_last_and_both_sides_of_a_crossing_break", "is_break_point", PATH),
+    ("every_place_before_the_last_break_point_is_in_one_subgroup", "subgroups", PATH),
+    ("a_phase_answers_every_step_in_one_way", "MISSION", TABLES),
+    ("every_phase_is_reached", "MISSION", TABLES),
+    ("the_end_is_heard_and_final", "MISSION", TABLES),
+    ("crossings_alternate", "between_margins", CROSSING),
+    ("a_switch_keeps_its_state_within_the_band_only", "update", CROSSING),
+    ("logic_keeps_margins_and_verdicts_together", "and", VERDICT),
+    ("negation_follows_de_morgan", "opposite", VERDICT),
+    ("comparisons_agree_with_their_margins", "judge", VERDICT),
+    ("duties_are_conserved_exactly_by_permutations", "are_conserved", DUTY),
+    ("a_shift_along_the_path_keeps_break_points_held", "last_break_point", PATH),
+    ("after_each_round_a_robot_knows_one_link_more", "merge", ELECTION),
+    ("robots_that_hear_each_other_elect_the_best_bidder", "is_complete", ELECTION),
+    ("an_observer_may_see_what_the_table_allows", "is_reachable", DUTY),
+    ("a_gap_is_found_where_there_is_one", "first_gap", "verify/src/network/motion.rs"),
+    ("robots_that_have_heard_every_vote_form_the_same_subgroups", "is_break_point", AGREEMENT),
+    ("the_subgroups_of_any_votes_partition_the_path", "subgroups", PATH),
+    ("the_subgroups_of_any_votes_are_teams", "subgroups", PATH),
     (
         "a_robot_that_avoids_its_own_lineage_keeps_the_tree",
         "closes_cycle",
-        LINEAGE,
-        LINEAGE,
-        "closes_cycle(&self.posts, post)",
+        "discrete/src/network/lineage.rs",
     ),
     // That a tree stays one when a leaf is taken away, and when two names are exchanged, is a lemma on
     // trees; the robots' own steps are explored.
-    ("a_robot_without_children_may_leave", "leads_to_access_point", TREE, INSTANT, ROOTED),
-    (
-        "an_exchange_of_duties_keeps_the_tree",
-        "is_rooted",
-        TREE,
-        "exploration/src/network/properties.rs",
-        "tree::is_rooted(&parents(protocol, state))",
-    ),
-    (
-        "edges_give_parents_unless_a_robot_has_two",
-        "parents_of",
-        TREE,
-        INSTANT,
-        "tree::parents_of(&snapshot.tree, &mut parents)",
-    ),
-    (
-        "the_connected_are_those_with_a_way_out",
-        "mark_connected",
-        TREE,
-        INSTANT,
-        "tree::mark_connected(&links, &mut connected)",
-    ),
+    ("a_robot_without_children_may_leave", "leads_to_access_point", TREE),
+    ("an_exchange_of_duties_keeps_the_tree", "is_rooted", TREE),
+    ("edges_give_parents_unless_a_robot_has_two", "parents_of", TREE),
+    ("the_connected_are_those_with_a_way_out", "mark_connected", TREE),
 ];
-
-/// Offered to users of the framework; no automaton of the network uses it.
-const FOR_USERS: &str = "";
-const CORNERS: &str = "worst_corner(ends(&own.axis).map(terms_from))";
-const R: &str = "site.link.reliability(distance)";
-const NOTICES: &str = "self.bulletin.merge(&neighbour.beacon.bulletin)";
-const VIEWS: &str = "merge_election(own, heard)";
-const PHASES: &str = "Automaton::builder(MISSION,";
-const ROOTED: &str = "tree::leads_to_access_point(&parents, robot)";
-
-fn code(path: &str) -> String {
-    lines_of_code(&read(path)).map(|(_, line)| line).collect::<Vec<_>>().join("\n")
-}
 
 /// The words of a text.
 fn words(text: &str) -> BTreeSet<&str> {
@@ -336,16 +145,9 @@ fn every_harness_is_about_something_that_the_product_uses() {
     let listed: BTreeSet<&str> = PROOFS.iter().map(|proof| proof.0).collect();
     let known: BTreeSet<&str> = harnesses.keys().map(String::as_str).collect();
     assert_eq!(listed, known, "every harness is listed, and nothing else");
-    for &(harness, subject, file, user, usage) in PROOFS {
+    for &(harness, subject, file) in PROOFS {
         assert!(harnesses[harness].contains(subject), "{harness} does not mention {subject}");
-        let text = code(file);
-        let is_declared = [format!("fn {subject}"), format!("const {subject}:")]
-            .iter()
-            .any(|it| text.contains(it));
-        assert!(is_declared, "{file} has no {subject}, which {harness} is about");
-        if user != FOR_USERS {
-            assert!(code(user).contains(usage), "{user} does not say: {usage}, for {harness}");
-        }
+        assert!(uses_of(subject, file).next().is_some(), "USES lacks {subject} of {file}");
     }
     let begin =
         "<!-- begin of the subjects: PLEACH_UPDATE_DOCS=1 cargo test --test it harnesses -->";
@@ -355,7 +157,8 @@ fn every_harness_is_about_something_that_the_product_uses() {
     let (_, after) = rest.split_once(end).unwrap();
     let rows: String = PROOFS
         .iter()
-        .map(|(harness, subject, file, user, _)| {
+        .map(|(harness, subject, file)| {
+            let (.., user, _) = uses_of(subject, file).next().unwrap();
             let user = match *user {
                 FOR_USERS => "for users; no automaton of the network uses it".to_owned(),
                 user => format!("[{}](../{user})", user.rsplit_once("src/").unwrap().1),

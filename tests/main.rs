@@ -12,6 +12,7 @@ mod generated;
 mod missions;
 mod oracle;
 mod sources;
+mod uses;
 
 mod absurd_numbers;
 mod book;

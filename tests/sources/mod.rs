@@ -29,6 +29,11 @@ pub fn lines_of_code(source: &str) -> impl Iterator<Item = (usize, &str)> {
     numbered.filter(|(_, line)| !line.starts_with("#[cfg(test)]"))
 }
 
+/// The code of a file: without comments, and without the tests at its end.
+pub fn code(path: &str) -> String {
+    lines_of_code(&read(path)).map(|(_, line)| line).collect::<Vec<_>>().join("\n")
+}
+
 fn without_comment(line: &str) -> &str {
     line.find("//").map_or(line, |at| &line[..at])
 }

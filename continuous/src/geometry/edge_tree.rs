@@ -236,3 +236,24 @@ impl Bounds {
         along.perp(&center).abs() <= reach + rounding
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_are_as_far_apart_as_their_nearest_points() {
+        let bounds = |low: (f64, f64), high: (f64, f64)| Bounds {
+            low: Point::new(low.0, low.1),
+            high: Point::new(high.0, high.1),
+        };
+        let own = bounds((0.0, 0.0), (1.0, 1.0));
+        for (other, gap) in [
+            (bounds((4.0, 5.0), (6.0, 6.0)), 5.0),
+            (bounds((-3.0, 0.5), (-2.0, 0.6)), 2.0),
+            (bounds((0.5, 0.5), (2.0, 2.0)), 0.0),
+        ] {
+            assert_eq!((own.gap(&other), other.gap(&own)), (gap, gap));
+        }
+    }
+}

@@ -106,3 +106,21 @@ fn without_negligible(mut ring: Vec<Point>, negligible: f64) -> Vec<Point> {
     }
     if ring.len() < 3 { Vec::new() } else { ring }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vertices_that_hardly_bend_a_ring_are_left_out() {
+        let ring = |points: &[(f64, f64)]| -> Vec<Point> {
+            points.iter().map(|&(x, y)| Point::new(x, y)).collect()
+        };
+        let square = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)];
+        let bent = |by: f64| ring(&[&square[..1], &[(1.0, -by)], &square[1..]].concat());
+        assert_eq!(without_negligible(bent(0.01), 0.02), ring(&square));
+        assert_eq!(without_negligible(bent(0.03), 0.02), bent(0.03));
+        let flat = ring(&[(0.0, 0.0), (1.0, 0.01), (2.0, 0.0)]);
+        assert!(without_negligible(flat, 0.02).is_empty(), "nothing is left of it");
+    }
+}

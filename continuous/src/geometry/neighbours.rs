@@ -129,3 +129,25 @@ impl Grid {
         (((y - self.low.y) / self.width) as usize).min(self.rows - 1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cell is as wide as the distance, or wider where there would be more than two for each point.
+    #[test]
+    fn there_are_not_many_more_cells_than_points() {
+        let numbered = |places: Vec<Point>| -> Vec<(Point, usize)> {
+            places.into_iter().enumerate().map(|(at, place)| (place, at)).collect()
+        };
+        let row = (0..10).map(|at| Point::new(2.0 + 1.5 * f64::from(at), 3.0)).collect();
+        let row = numbered(row);
+        let grid = Grid::around(&row, 1.5);
+        assert_eq!((grid.width, grid.columns, grid.rows), (1.5, 10, 1));
+        assert!(row.iter().map(|&(place, _)| grid.column(place.x)).eq(0..10));
+        let square = (0..9).map(|at| Point::new(4.0 * f64::from(at % 3), 4.0 * f64::from(at / 3)));
+        let grid = Grid::around(&numbered(square.collect()), 0.1);
+        // 8/√19 = 1.84
+        assert_eq!((grid.columns, grid.rows), (5, 5));
+    }
+}

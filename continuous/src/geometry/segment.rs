@@ -154,3 +154,20 @@ pub fn side(from: Point, to: Point, point: Point) -> f64 {
     let coord = |p: Point| robust::Coord { x: p.x, y: p.y };
     robust::orient2d(coord(from), coord(to), coord(point))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_cross_where_both_have_ends_on_either_side() {
+        let segment =
+            |a: (f64, f64), b: (f64, f64)| Segment::new(Point::new(a.0, a.1), Point::new(b.0, b.1));
+        let flat = segment((0.0, 1.0), (4.0, 1.0));
+        let crossing = |b: (f64, f64)| flat.crossing_point(&segment((1.0, 0.0), b));
+        assert_eq!(crossing((1.0, 4.0)), Some(Point::new(1.0, 1.0)));
+        assert_eq!(crossing((3.0, 2.0)), Some(Point::new(2.0, 1.0)));
+        assert_eq!(crossing((1.0, 1.0)), None, "it ends there");
+        assert_eq!(crossing((9.0, 2.0)), None, "it passes beside");
+    }
+}

@@ -152,6 +152,21 @@ mod tests {
     use super::*;
     use crate::geometry::{FreeSpace, Workspace};
 
+    #[test]
+    fn ways_into_an_obstacle_do_not_touch_its_corner() {
+        let corner = Corner {
+            at: Point::origin(),
+            before: Point::new(1.0, 1.0),
+            after: Point::new(1.0, -1.0),
+        };
+        let is_between =
+            |right, left| corner.is_between(Vector::from(right), Vector::from(left), 0.01);
+        assert!(is_between([1.0, -0.5], [1.0, 0.5]), "into the obstacle");
+        assert!(is_between([-1.0, 0.5], [-1.0, -0.5]), "away from its inside");
+        assert!(!is_between([1.0, 0.5], [0.5, 1.0]), "one leads in, and one past");
+        assert!(!is_between([0.5, 1.0], [-0.5, 1.0]), "both lead past");
+    }
+
     /// A hall with square pillars, each turned by its number times `turn`, and free places between.
     fn hall(pillars: usize, turn: f64) -> (FreeSpace, Vec<Point>) {
         let side = (pillars as f64).sqrt().ceil();

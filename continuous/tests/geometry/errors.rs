@@ -1,4 +1,4 @@
-use pleach_continuous::geometry::{Disc, Errors, HalfPlane};
+use pleach_continuous::geometry::{Disc, Errors, HalfPlane, Workspace};
 use pleach_continuous::network::motion::MotionProblem;
 use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;
@@ -130,4 +130,27 @@ fn without_errors_nothing_changes() {
         let plain = voronoi_half_planes(here, &others, kept);
         assert_eq!(Errors::default().voronoi_half_planes(here, &others, 0.01, kept), plain);
     }
+}
+
+#[test]
+fn errors_of_places_and_of_moves_add_up() {
+    let errors = |position, motion| Errors { position, motion };
+    assert!(errors(0.0, 0.0).are_none());
+    assert!(!errors(0.1, 0.0).are_none() && !errors(0.0, 0.1).are_none());
+    assert_eq!(errors(0.25, 0.125).stray(), 0.625);
+    assert_eq!(errors(0.25, 0.125).planning_clearance(1.0), 1.375);
+}
+
+/// A robot may come as near to a wall as ρ + e + m by what it knows.
+#[test]
+fn a_wall_leaves_the_room_in_front_of_it() {
+    let [a, b, c, d] =
+        [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(x, y)| Point::new(x, y));
+    let room = Workspace::new(vec![a, b, c, d], Vec::new()).unwrap();
+    let errors = Errors { position: 0.02, motion: 0.03 };
+    let here = Point::new(2.0, 3.5);
+    let walls = errors.wall_half_planes(&room, here, 1.0, 0.1);
+    assert_eq!(walls.len(), 1, "the others are too far");
+    assert!((walls[0].margin(here) - (0.5 - 0.15)).abs() < ROUNDING);
+    assert!((walls[0].margin(here + Vector::new(1.0, 0.2)) - (0.3 - 0.15)).abs() < ROUNDING);
 }

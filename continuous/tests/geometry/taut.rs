@@ -35,6 +35,13 @@ fn a_way_there_and_back_comes_to_nothing() {
     assert!(space.taut(from, &waypoints).length < 1e-9);
 }
 
+#[test]
+fn a_place_that_comes_twice_is_told_once() {
+    let space = space_round_hole();
+    let (from, to) = (Point::new(0.5, 0.5), Point::new(0.5, 1.5));
+    assert_eq!(space.taut(from, &[from, to, to, to]).waypoints, [to]);
+}
+
 /// There and back from the corner of one hole straight towards that of the other.
 #[test]
 fn a_way_there_and_back_in_line_with_corners_comes_to_nothing() {

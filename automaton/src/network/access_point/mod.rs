@@ -15,6 +15,8 @@ use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, Node
 mod attendance;
 mod rounds;
 mod service;
+#[cfg(test)]
+mod tests;
 
 use super::beacon::{Announced, Beacon, Bulletin, LastBeacon, Notice, Reports};
 use super::duty::Hop;

@@ -2,8 +2,8 @@
 //! something has changed.
 //!
 //! That is right if doing it would change nothing. Builds with debug assertions look wherever guards,
-//! facts or a beacon are left out; explorers ask of every state of a robot whether processing messages
-//! again, on a copy, would change anything.
+//! facts or a beacon are left out; with the feature `abstraction`, also whether processing messages again, on a
+//! copy, would change anything. Explorers ask that of every state of a robot.
 
 use super::Robot;
 use crate::located::Place as _;

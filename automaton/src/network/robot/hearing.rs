@@ -210,8 +210,9 @@ impl Robot {
     fn miss(&mut self, at: usize) -> usize {
         let (own, period) = (self.duty.post().map(|post| post.id), self.period);
         let known = &mut self.neighbours[at];
+        let (was_silent, has_moved) = (known.is_silent(), known.measured_at != self.position);
         let silent_rounds = known.silent_rounds.saturating_add(1).min(ROUNDS_TO_BE_HEARD as u8);
-        if known.measured_at != self.position {
+        if has_moved {
             *known = known.seen_from(self.position, &self.site);
         }
         known.silent_rounds = silent_rounds;
@@ -227,6 +228,9 @@ impl Robot {
             self.lose_sight_of(&lost);
             self.receive_news();
             return at;
+        }
+        if has_moved || is_silent && !was_silent {
+            self.receive_news();
         }
         at + 1
     }

@@ -497,6 +497,8 @@ impl Robot {
     /// Processes what it has received if that contains news, or if it is due anyway.
     fn process_news(&mut self, is_due: bool) -> Result<(), TransitionError> {
         if !std::mem::take(&mut self.has_news) && !is_due {
+            #[cfg(feature = "abstraction")]
+            debug_assert_eq!(self.overlooked(), None, "robot {} overlooks something", self.id);
             return Ok(());
         }
         self.process_messages()

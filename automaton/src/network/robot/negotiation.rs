@@ -145,7 +145,7 @@ impl Robot {
     }
 
     /// Whether it does not know where a robot is on which it relies.
-    fn is_unsure(&self) -> bool {
+    pub(super) fn is_unsure(&self) -> bool {
         let relied_on = self.routes().map(|link| link.to).chain(self.tree_parent());
         relied_on.filter(|&node| node < self.site.robots).any(|node| !self.knows_place_of(node))
     }

@@ -292,6 +292,15 @@ mod tests {
         })
     }
 
+    /// e_i = c_i − η − s_i and q_i = 1 + Σ R_ij.
+    #[test]
+    fn a_robot_reports_what_it_measures() {
+        let mut robot = AdalRobot { slack: 0.125, ..AdalRobot::default() };
+        robot.measure(0.5, 0.25, [0.5, 0.25]);
+        let NeighbourReport { multiplier, mismatch, crowding } = robot.report();
+        assert_eq!((multiplier, mismatch, crowding), (robot.multiplier(), 0.125, 1.75));
+    }
+
     /// The local augmented Lagrangian, by its definition.
     fn lagrangian(
         robot: &AdalRobot,

@@ -123,6 +123,33 @@ mod tests {
         assert_eq!(state.multiplier(), dual_step(1.0, 0.5, -0.5, 0.02));
     }
 
+    /// Nesterov's sequence: t' = (1 + √(1 + 4t²))/2, from t = 1, and (t − 1)/t' of the progress is added.
+    #[test]
+    fn further_steps_carry_on_what_the_last_one_gained() {
+        let (step, residual) = (0.125, -1.0);
+        let first = DualState::new(0.0).step(step, residual, 0.0);
+        let second = first.step(step, residual, 0.0);
+        let t1 = (1.0 + 5.0_f64.sqrt()) / 2.0;
+        let t2 = (1.0 + (1.0 + 4.0 * t1 * t1).sqrt()) / 2.0;
+        let expected = 0.25 + (t1 - 1.0) / t2 * 0.125;
+        assert!((second.multiplier() - expected).abs() < 1e-12, "{second:?}, not {expected}");
+        // A step back begins anew.
+        let back = second.step(step, 1.0, 0.0);
+        let third = back.step(step, residual, 0.0);
+        assert!(third.multiplier() <= back.multiplier() + step + 0.125);
+    }
+
+    #[test]
+    fn a_step_is_safe_for_the_curvature_of_all_links() {
+        let link = |reliability, weight, to_access_point| LinkCurvature {
+            reliability,
+            weight,
+            to_access_point,
+        };
+        // 0.25/0.5 to a robot and half of 0.0625/0.25 to an access point.
+        assert_eq!(safe_step([link(0.5, 0.5, false), link(0.25, 0.25, true)]), 1.0 / 0.625);
+    }
+
     #[test]
     fn without_links_the_multiplier_stays() {
         assert_eq!(safe_step([]), 0.0);

@@ -148,6 +148,22 @@ mod tests {
     }
 
     #[test]
+    fn a_link_that_carries_nothing_gets_no_time() {
+        let link = |reliability, share| Share { reliability, share };
+        let mut links = [link(0.0, 0.0), link(0.5, 0.25)];
+        assert_eq!(meet_demand(0.5, &mut links, 0), 0.375);
+        assert_eq!(links.map(|link| link.share), [0.0, 0.25]);
+    }
+
+    #[test]
+    fn unused_time_is_taken_first_and_no_more_than_needed() {
+        let link = |reliability, share| Share { reliability, share };
+        let mut links = [link(0.5, 0.25), link(0.25, 0.25)];
+        assert_eq!(meet_demand(0.3125, &mut links, 0), 0.0);
+        assert_eq!(links.map(|link| link.share), [0.5, 0.25]);
+    }
+
+    #[test]
     fn a_demand_that_is_met_changes_nothing() {
         let mut links = [Share { reliability: 0.9, share: 0.5 }];
         assert_eq!(meet_demand(0.4, &mut links, 0), 0.0);

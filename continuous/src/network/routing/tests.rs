@@ -199,3 +199,38 @@ fn numbers_that_make_no_problem_are_refused() {
     let reserve = RoutingProblem::new(vec![link(sink, 1.0)], vec![0.1], f64::INFINITY);
     assert!(matches!(reserve, Err(ProblemError::Reserve { .. })));
 }
+
+/// Two robots that send to an access point, one of them to the other as well.
+fn pair(reserve: f64) -> RoutingProblem {
+    let link = |sender, receiver, reliability, weight| DirectedLink {
+        sender,
+        receiver,
+        reliability,
+        weight,
+    };
+    let links = vec![
+        link(0, Receiver::Robot(1), 0.5, 2.0),
+        link(0, Receiver::AccessPoint(0), 0.25, 4.0),
+        link(1, Receiver::AccessPoint(0), 1.0, 1.0),
+    ];
+    RoutingProblem::new(links, vec![0.125, 0.25], reserve).unwrap()
+}
+
+#[test]
+fn cost_residuals_and_time_are_sums_over_links() {
+    let (problem, shares) = (pair(0.0), [0.5, 0.25, 0.75]);
+    assert_eq!(problem.objective(&shares), 2.0 * 0.25 + 4.0 * 0.0625 + 0.5625);
+    assert_eq!(problem.residuals(&shares), [0.25 + 0.0625 - 0.125, 0.75 - 0.25 - 0.25]);
+    assert_eq!(problem.used_time(&shares), [0.75, 0.75]);
+}
+
+/// If robot 0 sends to robot 1 for a share T of its time, and to the access point for the rest, then
+/// c₀ = 1/2 T + 1/4 (1 − T) − 1/8 and c₁ = 1 − 1/2 T − 1/4: both are 1/3 with T = 5/6.
+#[test]
+fn the_widest_reserve_is_where_the_two_have_as_much() {
+    let widest = widest_reserve(&pair(0.0)).unwrap();
+    assert!(feasible(&pair(widest), 1e-6).unwrap());
+    assert!(feasible(&pair(widest + 5e-7), 1e-6).unwrap());
+    assert!(!feasible(&pair(widest + 5e-6), 1e-6).unwrap());
+    assert!((widest - 1.0 / 3.0).abs() < 1e-6, "{widest}");
+}

@@ -1,7 +1,8 @@
 //! To which node a robot attaches (Definition 5.2, Remark 5.6).
 
-use pleach_discrete::network::{Anchor, IdSet, PostId};
+use pleach_discrete::network::{Anchor, IdSet, PostId, Role};
 
+use super::super::super::duty::Waiting;
 use super::super::attachment::PATIENCE_WITH_UNUSED_POSTS;
 use super::*;
 
@@ -115,6 +116,28 @@ fn a_new_parent_has_to_be_confirmed_more_recently_than_what_was_passed_on() {
         assert_eq!(robot.awaits_confirmation, awaits, "{confirmed:?}");
         assert_eq!(robot.desired_parent, (!awaits).then_some(at(11)), "{confirmed:?}");
     }
+}
+
+/// A robot that hands its post over or waits on Σ passes on nothing newer than before.
+#[test]
+fn a_confirmation_is_passed_on_by_robots_that_keep_their_posts() {
+    let passes_on = |change: &dyn Fn(&mut Robot)| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 11));
+        let parent = Arc::new(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
+        robot.hear_beacon(NOW, Some(NOW - 1), &parent);
+        change(&mut robot);
+        robot.pass_on_confirmation()
+    };
+    assert_eq!(passes_on(&|_| {}), Some(NOW - 1));
+    assert_eq!(passes_on(&|robot| robot.awaits_confirmation = true), None);
+    let waits = |robot: &mut Robot| {
+        let station = Station { post: fixed(20, 11), reference: HERE };
+        let held = Held { station, left: None };
+        let waiting = Waiting { held, place: 1, role: Role::Node };
+        robot.duty = Current::new(Duty::Waiting(waiting));
+    };
+    assert_eq!(passes_on(&waits), None);
 }
 
 #[test]

@@ -38,6 +38,16 @@ fn a_robot_that_has_not_moved_stays_where_it_has_measured_itself() {
 }
 
 #[test]
+fn a_position_that_is_measured_again_is_no_news() {
+    let mut robot = robot();
+    (robot.has_news, robot.is_unmeasured) = (false, false);
+    robot.correct_position(HERE);
+    assert!(!robot.has_news && !robot.is_unmeasured);
+    robot.correct_position(east(LITTLE));
+    assert!(robot.has_news && robot.is_unmeasured);
+}
+
+#[test]
 fn a_robot_has_strayed_where_errors_have_led_it_out_of_the_free_space() {
     let at = |mut robot: Robot, position: Point| {
         robot.position = position;
@@ -149,6 +159,24 @@ fn a_robot_under_way_is_attached_to_the_next_of_the_chain() {
     robot.position = east(1.0);
     robot.report_arrival();
     assert!(robot.has_reported(0));
+}
+
+/// The robot at the end of the subgroup holds the post that the one before it comes to take.
+#[test]
+fn a_subgroup_has_arrived_when_the_robot_at_its_end_has_given_its_post_up() {
+    let arrived = |places: &[usize], is_given_up: bool| {
+        let mut robot = shifting(0.5, false);
+        let agreement = robot.agreement.as_mut().expect("it is on a path");
+        places.iter().for_each(|&place| agreement.arrive(place));
+        if is_given_up {
+            agreement.give_up(3);
+        }
+        robot.measures();
+        robot.facts.subgroup_arrived
+    };
+    assert!(arrived(&[0, 1, 2], true));
+    assert!(!arrived(&[0, 1, 2], false), "two would hold the post");
+    assert!(!arrived(&[0, 2], true), "one is on its way");
 }
 
 /// From where a link is longer than errors explain, each end that moves makes it shorter by as much as its

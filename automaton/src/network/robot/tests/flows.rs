@@ -370,3 +370,38 @@ fn flows_take_no_more_than_all_the_time_of_a_sender() {
         "{flows:?}"
     );
 }
+
+/// What is raised first leaves less room for the next.
+#[test]
+fn flows_that_are_raised_together_share_the_time_that_is_left() {
+    let mut robot = router();
+    let mut outputs = Outputs::of(0);
+    let [one, two] = [0, 1].map(|at| robot.links[at].reliability);
+    (robot.links[0].share, robot.links[1].share) = (0.6, 0.0);
+    robot.ask_for_flows(&mut outputs);
+    let number = requests(&mut outputs)[0].1.number;
+    robot.hear_grant(5, FlowGrant { number, flow: 0.6 * one, until: NOW + LEASE });
+    robot.links[1].share = 0.8;
+    robot.ask_for_flows(&mut outputs);
+    let flows = [robot.links[0].held.flow, robot.links[1].held.flow];
+    assert!(
+        (flows[0] - 0.6 * one).abs() < 1e-9 && (flows[1] - 0.4 * two).abs() < 1e-9,
+        "{flows:?}"
+    );
+}
+
+/// Demands that go round in a cycle end.
+#[test]
+fn no_more_demands_are_passed_on_in_a_sweep_than_there_are_robots() {
+    let mut robot = robot();
+    robot.holds(fixed(20, 13));
+    robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
+    robot.remember_parent();
+    robot.survey_links();
+    let mut outputs = Outputs::of(0);
+    robot.begin_sweep(&mut outputs);
+    (0..2 * ROBOTS).for_each(|_| robot.hear_demand(1, 0.01, &mut outputs));
+    let demands = sent(&mut outputs).into_iter();
+    let demands = demands.filter(|(_, message)| matches!(message, Message::Demand(_)));
+    assert_eq!(demands.count(), ROBOTS);
+}

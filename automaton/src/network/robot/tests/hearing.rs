@@ -82,6 +82,24 @@ fn silence_counts_only_in_rounds_in_which_all_send() {
     assert_eq!(robot.audible().collect::<Vec<_>>(), [(1, 2)]);
 }
 
+/// The robot stands elsewhere than when it measured the link, or takes the other one to have stopped.
+#[test]
+fn silence_is_news_where_it_changes_what_the_robot_knows() {
+    let mut robot = robot();
+    robot.hears(beacon(1, east(0.2), redundant(11, 12), &[]));
+    silent_rounds(&mut robot, 1);
+    let is_news = |robot: &mut Robot| {
+        robot.has_news = false;
+        silent_rounds(robot, 1);
+        robot.has_news
+    };
+    assert!(!is_news(&mut robot), "it was heard a round ago");
+    robot.position = west(0.1);
+    assert!(is_news(&mut robot), "the link is longer now");
+    assert!(is_news(&mut robot), "it is silent now");
+    assert!(!is_news(&mut robot), "it has been silent before");
+}
+
 #[test]
 fn a_robot_that_has_gone_out_of_range_is_forgotten_at_once() {
     let mut robot = robot();

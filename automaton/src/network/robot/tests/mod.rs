@@ -10,6 +10,7 @@ mod partner;
 mod seen;
 mod team;
 mod ways;
+mod wrecks;
 mod yielding;
 
 use std::sync::Arc;

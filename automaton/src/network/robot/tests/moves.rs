@@ -112,6 +112,32 @@ fn a_move_keeps_the_load_below_all_its_time_to_first_order() {
     assert!((ahead - 0.01 / steepness).abs() < 1e-6, "{ahead}, not {}", 0.01 / steepness);
 }
 
+/// The load does not depend on where it stands as long as all that it sends arrives.
+#[test]
+fn a_move_is_free_where_its_load_does_not_change() {
+    let mut robot = mover();
+    robot.hears(access_point(HERE));
+    robot.survey_links();
+    robot.links[0].share = 0.99;
+    let segment = proposed(&mut robot).expect("nothing is in its way");
+    assert!((segment.to - east(STEP)).norm() < 1e-6, "{segment:?}");
+}
+
+/// An access point does not move.
+#[test]
+fn a_robot_relies_on_robots_that_it_has_heard_in_this_period() {
+    let is_unsure = |heard: Beacon| {
+        let mut robot = mover();
+        robot.hears(heard);
+        robot.survey_links();
+        robot.links[0].share = 0.1;
+        robot.period += 1;
+        robot.is_unsure()
+    };
+    assert!(!is_unsure(access_point(west(1.0))));
+    assert!(is_unsure(beacon(5, west(1.0), fixed(13, 14), &[13, 14])));
+}
+
 #[test]
 fn a_robot_that_gets_nowhere_counts_the_periods() {
     let mut robot = mover();

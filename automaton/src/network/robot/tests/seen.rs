@@ -46,4 +46,8 @@ fn observers_see_a_robot_as_it_is() {
     assert_eq!(view.audible().collect::<Vec<_>>(), [(5, 0)]);
     assert_eq!(view.beacons().map(|it| it.sender).collect::<Vec<_>>(), [5]);
     assert!(view.facts().first && view.facts().distance == 3.0);
+    let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
+    let shift = Shift { path, subgroups: Arc::default(), arrived: 2 };
+    robot.mission = Current::new(Mission::Shift(shift));
+    assert_eq!(robot.view().subgroups_done(), 2);
 }

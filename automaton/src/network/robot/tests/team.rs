@@ -161,3 +161,39 @@ fn a_parent_that_is_not_heard_is_the_one_before() {
     robot.holds(Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) });
     assert_eq!(robot.tree_parent(), Some(ROBOTS));
 }
+
+/// What the team waits for in vain counts for p₁ alone, and only where it could move or waits for p₁.
+#[test]
+fn the_first_of_the_team_counts_for_how_long_it_stands_still_without_need() {
+    let stalled = |length: f64, has_follower: bool| {
+        let mut robot = leader();
+        robot.still_periods = 4;
+        robot.hears(beacon(5, west(length), fixed(13, 14), &[13, 14]));
+        if has_follower {
+            robot.hears(beacon(2, west(0.5), primary(32, Some(30), 13), &[32, 13]));
+        }
+        robot.review_team();
+        robot.measures();
+        robot.facts.stalled
+    };
+    let bound = 0.96 * leader().build_length();
+    assert_eq!((stalled(0.5, false), stalled(0.5, true)), (4.0, 0.0));
+    assert_eq!((stalled(bound, false), stalled(bound, true)), (0.0, 0.0));
+}
+
+#[test]
+fn only_the_newcomer_is_on_its_way_to_the_robot_that_it_joined() {
+    let is_pending = |newcomer: u32, held: Option<Post>| {
+        let mut robot = leader();
+        robot.is_told(Notice::Advance { joined: Some((PostId(newcomer), PostId(29))) });
+        if let Some(post) = held {
+            robot.hears(beacon(1, west(0.5), post, &[29, 13]));
+        }
+        robot.measures();
+        robot.facts.pending
+    };
+    assert!(is_pending(30, None), "the robot that it joined is not heard");
+    assert!(is_pending(30, Some(primary(29, None, 13))), "that one is not attached to it");
+    assert!(!is_pending(30, Some(primary(29, None, 30))));
+    assert!(!is_pending(40, None), "another robot is on its way");
+}

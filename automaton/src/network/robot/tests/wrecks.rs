@@ -1,0 +1,68 @@
+//! Robots that do not take part: where others keep off, and where one stays that may be taken for gone.
+
+use super::super::super::roll::{Absent, Wreck};
+use super::*;
+
+/// Robot 1 is gone, and was heard last so far to the east.
+fn beside_wreck(away: f64) -> Robot {
+    let mut robot = robot();
+    let gone = [1].into_iter().collect();
+    robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
+    robot.wrecks = Arc::new(vec![Wreck { robot: 1, place: east(away), heard_in: NOW - 9 }]);
+    robot
+}
+
+/// A wreck may be two steps from where it was heard last, and both keep ρ.
+#[test]
+fn a_robot_that_can_meet_a_wreck_in_a_step_keeps_to_its_side() {
+    let kept = CLEARANCE * (1.0 + 1e-4);
+    let radius = 2.0 * kept + 2.0 * STEP;
+    let room = |away: f64| {
+        let robot = beside_wreck(away);
+        let sides: Vec<_> = robot.sides_of_wrecks().collect();
+        assert!(sides.len() < 2);
+        sides.first().map(|side| (side.margin(HERE), side.margin(east(0.01))))
+    };
+    let close = |room: Option<(f64, f64)>, expected: f64| {
+        let (here, ahead) = room.expect("it is in reach");
+        assert!((here - expected).abs() < 1e-9, "{here} is not {expected}");
+        assert!((here - ahead - 0.01).abs() < 1e-9, "the wreck is to the east");
+    };
+    close(room(radius + STEP - LITTLE), STEP - LITTLE);
+    close(room(radius + 0.3 * STEP), 0.3 * STEP);
+    close(room(0.5 * radius), 0.0);
+    assert_eq!(room(radius + STEP + LITTLE), None, "it is farther than a step");
+    assert_eq!(room(0.0), None, "there is no side");
+}
+
+#[test]
+fn a_wreck_that_is_heard_is_a_robot_like_any_other() {
+    let mut robot = beside_wreck(0.2);
+    assert_eq!(robot.keep_out_discs(CLEARANCE).count(), 1);
+    robot.hears(beacon(1, east(0.3), redundant(11, 12), &[]));
+    assert_eq!(robot.keep_out_discs(CLEARANCE).count(), 0);
+    robot.period += 1;
+    assert_eq!(robot.keep_out_discs(CLEARANCE).count(), 1);
+}
+
+/// Others allow for two steps from each place where it has been since its roll was called.
+#[test]
+fn a_robot_that_an_error_has_led_too_far_stays() {
+    let may_move = |gone: f64| {
+        let mut robot = robot();
+        robot.roll.called = NOW;
+        robot.trail = vec![(NOW, HERE), (NOW, west(gone))];
+        robot.may_leave_place()
+    };
+    assert!(may_move(2.0 * STEP) && !may_move(2.0 * STEP + LITTLE));
+}
+
+/// Numbers of posts that robots begin with are small.
+#[test]
+fn new_posts_are_none_that_a_robot_begins_with() {
+    for bit in 0..32 {
+        let mut robot = robot();
+        robot.period = 1 << bit;
+        assert!(robot.new_post().id.0 >= 1 << 31, "in control period {}", robot.period);
+    }
+}

@@ -1,0 +1,170 @@
+//! What harnesses and planted faults are about, and where the product uses it.
+
+/// A function or table, its file, the file that uses it, and how.
+pub type Use = (&'static str, &'static str, &'static str, &'static str);
+
+const TENSION: &str = "automaton/src/composition/tension.rs";
+const ROBOT_ABSENCE: &str = "automaton/src/network/robot/absence.rs";
+const ROBOT_EXCHANGE: &str = "automaton/src/network/robot/exchange.rs";
+const ROBOT_FACTS: &str = "automaton/src/network/robot/facts.rs";
+const ROBOT_LEADER: &str = "automaton/src/network/robot/leader.rs";
+const ROBOT_MISSION: &str = "automaton/src/network/robot/mission.rs";
+const ROBOT: &str = "automaton/src/network/robot/mod.rs";
+const ROBOT_MOTION: &str = "automaton/src/network/robot/motion.rs";
+const ROBOT_PARTNER: &str = "automaton/src/network/robot/partner.rs";
+const ROBOT_PATH: &str = "automaton/src/network/robot/path.rs";
+const ROBOT_ROUTING: &str = "automaton/src/network/robot/routing.rs";
+const ROLL: &str = "automaton/src/network/roll.rs";
+const CELL: &str = "continuous/src/geometry/cell.rs";
+const ERRORS: &str = "continuous/src/geometry/errors.rs";
+const ACCEPTANCE: &str = "continuous/src/network/acceptance.rs";
+const MOTION: &str = "continuous/src/network/motion/mod.rs";
+const DUAL: &str = "continuous/src/network/routing/dual.rs";
+const LOCAL: &str = "continuous/src/network/routing/local.rs";
+const AGREEMENT: &str = "discrete/src/network/agreement.rs";
+const BULLETIN: &str = "discrete/src/network/bulletin.rs";
+const ELECTION: &str = "discrete/src/network/election.rs";
+const ID_SET: &str = "discrete/src/network/id_set.rs";
+const LINEAGE: &str = "discrete/src/network/lineage.rs";
+const OFFERS: &str = "discrete/src/network/offers.rs";
+const PATH: &str = "discrete/src/network/path.rs";
+const CROSSING: &str = "guards/src/crossing.rs";
+const VERDICT: &str = "guards/src/predicate/verdict.rs";
+const DUTY: &str = "verify/src/network/duty.rs";
+const INSTANT: &str = "verify/src/network/instant.rs";
+const PERIOD: &str = "verify/src/network/period.rs";
+const TREE: &str = "verify/src/network/tree.rs";
+const ZONOTOPE: &str = "verify/src/reach/zonotope.rs";
+
+/// Offered to users of the framework; no automaton of the network uses it.
+pub const FOR_USERS: &str = "";
+
+/// By file. Of an item that is used in several ways, harnesses are about the first.
+pub const USES: &[Use] = &[
+    ("locate", ROLL, ROBOT_ABSENCE, "absent.locate(&mut self.wrecks, seen)"),
+    (
+        "lets_move",
+        ROLL,
+        ROBOT_ABSENCE,
+        "self.roll.lets_move(self.id, self.period, self.site.roll_validity())",
+    ),
+    (
+        "enclose",
+        "continuous/src/flow/piece.rs",
+        "automaton/src/composition/solver.rs",
+        "piece.enclose(from, to, &mut self.enclosures)",
+    ),
+    ("own_side", CELL, CELL, "Some(own_side(bisector, position, clearance))"),
+    ("planning_clearance", ERRORS, ROBOT_MOTION, "errors.planning_clearance(kept)"),
+    ("wall_half_planes", ERRORS, ROBOT_MOTION, "errors.wall_half_planes(&site.workspace"),
+    ("worst_corner", ACCEPTANCE, ACCEPTANCE, "worst_corner(ends(&own.axis).map(terms_from))"),
+    ("is_admitted", MOTION, MOTION, "is_admitted(self.smallest_margin(point))"),
+    ("smallest", MOTION, MOTION, "smallest(lines.chain(circles))"),
+    (
+        "reliability",
+        "continuous/src/network/reliability.rs",
+        "automaton/src/network/robot/hearing.rs",
+        "site.link.reliability(distance)",
+    ),
+    ("dual_step", DUAL, DUAL, "let stepped = dual_step(self.multiplier, step, residual, reserve);"),
+    ("dual_step", DUAL, ROBOT_ROUTING, "dual_step(state.multiplier(), step, residual, reserve)"),
+    ("new", DUAL, ROBOT_ROUTING, "DualState::new("),
+    ("multiplier", DUAL, ROBOT_ROUTING, "state.multiplier()"),
+    ("projected", DUAL, DUAL, "multiplier: projected(extrapolated)"),
+    ("projected", DUAL, DUAL, "projected(multiplier - step * (residual - reserve))"),
+    ("positive_part", LOCAL, LOCAL, "positive_part((link.value(multiplier) - budget_price)"),
+    ("budget_price", LOCAL, LOCAL, "let budget_price = budget_price(multiplier, links, budget);"),
+    (
+        "DUTIES",
+        "discrete/src/network/activity.rs",
+        "automaton/src/network/robot/duties.rs",
+        "Automaton::builder(DUTIES,",
+    ),
+    ("new", AGREEMENT, ROBOT_PATH, "Agreement::new(id)"),
+    ("id", AGREEMENT, ROBOT_FACTS, "agreement.id()"),
+    ("vote", AGREEMENT, ROBOT_PATH, "agreement.vote(place,"),
+    ("arrive", AGREEMENT, ROBOT_PATH, "agreement.arrive(place)"),
+    ("give_up", AGREEMENT, ROBOT_PATH, "agreement.give_up(place)"),
+    ("has_given_up", AGREEMENT, ROBOT_PATH, "agreement.has_given_up(place)"),
+    ("merge", AGREEMENT, ROBOT_MISSION, "(&mut self.agreement, &neighbour.beacon.agreement)"),
+    ("is_settled", AGREEMENT, AGREEMENT, "self.is_settled(places)"),
+    ("is_break_point", AGREEMENT, AGREEMENT, "self.is_break_point(place)"),
+    ("break_points", AGREEMENT, ROBOT_PATH, ".break_points(self.mission.path()?.len())"),
+    ("have_arrived", AGREEMENT, ROBOT_PATH, "agreement.have_arrived(subgroup.places())"),
+    ("new", BULLETIN, BULLETIN, "NoticeId::new(0, 0)"),
+    ("next", BULLETIN, ROBOT_MISSION, "self.bulletin.next(self.id, Shared::new(notice))"),
+    ("id", BULLETIN, ROBOT_FACTS, "self.bulletin.id()"),
+    ("is_newer_than", BULLETIN, BULLETIN, "heard.id.is_newer_than(self.id)"),
+    ("merge", BULLETIN, ROBOT_MISSION, "self.bulletin.merge(&neighbour.beacon.bulletin)"),
+    (
+        "admits",
+        "discrete/src/network/confirmation.rs",
+        "automaton/src/network/robot/confirmation.rs",
+        "self.confirmation.admits(neighbour.confirmed)",
+    ),
+    ("new", ELECTION, ROBOT_LEADER, "Election::new(robot.notice_id())"),
+    ("place", ELECTION, ROBOT_LEADER, "Arc::make_mut(election).place(self.id, bid)"),
+    ("merge", ELECTION, ROBOT_MISSION, "merge_election(own, heard)"),
+    ("best", ELECTION, ROBOT_LEADER, "self.election.as_ref()?.best()"),
+    ("is_complete", ELECTION, ROBOT_FACTS, "election.is_complete(roster)"),
+    ("has_token", ELECTION, ROBOT_LEADER, "!election.has_token(self.id)"),
+    ("new", ID_SET, ELECTION, "tokens: IdSet::new()"),
+    ("insert", ID_SET, ELECTION, "self.tokens.insert(robot)"),
+    ("contains", ID_SET, ELECTION, "self.tokens.contains(robot)"),
+    ("merge", ID_SET, ELECTION, "self.tokens.merge(&heard.tokens)"),
+    ("includes", ID_SET, ELECTION, "self.tokens.includes(roster)"),
+    ("closes_cycle", LINEAGE, LINEAGE, "closes_cycle(&self.posts, post)"),
+    ("new", OFFERS, ROBOT, "Offers::new()"),
+    ("make_offer", OFFERS, ROBOT_EXCHANGE, "offers.make_offer(robot.partner?"),
+    ("answer", OFFERS, ROBOT_EXCHANGE, "offers.answer(mover, offer, given)"),
+    ("hear", OFFERS, ROBOT_EXCHANGE, "offers.hear(robot.id, reply)"),
+    ("conclude", OFFERS, ROBOT_EXCHANGE, "offers.conclude(offer, offers_made)"),
+    ("asks", OFFERS, ROBOT_PARTNER, "offer.asks(self.id, answered)"),
+    ("is_heard", OFFERS, OFFERS, "reply.is_heard(offer)"),
+    ("has_heard_reply", OFFERS, ROBOT_PARTNER, ".has_heard_reply(offer, made)"),
+    ("are_under_way", OFFERS, ROBOT_PARTNER, "self.offers().are_under_way()"),
+    ("offer", OFFERS, ROBOT_PARTNER, "self.offers().offer()"),
+    ("offers_made", OFFERS, ROBOT, ".offers_made()"),
+    ("reply", OFFERS, ROBOT, "self.offers().reply()"),
+    ("is_break_point", PATH, ROBOT_PATH, "path.is_break_point(place, ties)"),
+    ("last_break_point", PATH, ROBOT_FACTS, "shift.path.last_break_point()"),
+    ("subgroups", PATH, ROBOT_PATH, "subgroups(&points)"),
+    ("places", PATH, ROBOT_PATH, "agreement.have_arrived(subgroup.places())"),
+    ("MISSION", "discrete/src/network/tables.rs", ROBOT_MISSION, "Automaton::builder(MISSION,"),
+    ("between_margins", CROSSING, FOR_USERS, ""),
+    ("update", CROSSING, FOR_USERS, ""),
+    (
+        "rolls_expired",
+        "guards/src/network/attendance.rs",
+        "automaton/src/network/access_point/attendance.rs",
+        "guards::rolls_expired()",
+    ),
+    (
+        "readmitted",
+        "guards/src/network/attendance.rs",
+        "automaton/src/network/access_point/attendance.rs",
+        "guards::readmitted()",
+    ),
+    ("and", VERDICT, TENSION, "forced.or(self.invariants"),
+    ("opposite", VERDICT, TENSION, "self.invariants(state)?.opposite()"),
+    ("judge", VERDICT, "guards/src/predicate.rs", ".judge("),
+    ("are_conserved", DUTY, PERIOD, "duty::are_conserved(&before, &kept)"),
+    ("is_reachable", DUTY, PERIOD, "duty::is_reachable(relation, from, to)"),
+    ("first_gap", "verify/src/network/motion.rs", PERIOD, "first_gap(&mut intervals)"),
+    ("leads_to_access_point", TREE, INSTANT, "tree::leads_to_access_point(&parents, robot)"),
+    (
+        "is_rooted",
+        TREE,
+        "exploration/src/network/properties.rs",
+        "tree::is_rooted(&parents(protocol, state))",
+    ),
+    ("parents_of", TREE, INSTANT, "tree::parents_of(&snapshot.tree, &mut parents)"),
+    ("mark_connected", TREE, INSTANT, "tree::mark_connected(&links, &mut connected)"),
+    ("advance", "verify/src/reach/affine.rs", "verify/src/reach/flow.rs", "steps.advance(track)"),
+    ("widen", ZONOTOPE, ZONOTOPE, "sum.widen(&self.slack)"),
+];
+
+/// How the product uses an item of a file.
+pub fn uses_of(item: &str, file: &str) -> impl Iterator<Item = &'static Use> {
+    USES.iter().filter(move |it| (it.0, it.1) == (item, file))
+}
