@@ -135,6 +135,19 @@ fn missions_are_serviced_although_clocks_are_not_aligned() {
     }
 }
 
+/// All robots begin some control periods after the access point and the user.
+#[test]
+fn an_access_point_waits_for_robots_that_begin_after_it() {
+    let scenario = shipped("redundant-node");
+    let late = Trouble { joins: Some(4.0), ..Trouble::default() };
+    let troubles = (0..scenario.robot.len()).map(|robot| (robot, late.clone())).collect();
+    let storm = Storm { troubles, ..Storm::default() };
+    let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
+    assert_eq!(verdict.violations, []);
+    let end = verdict.end.expect("it ends in time");
+    assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
+}
+
 /// Positions and moves are off by as much as the scenario says that they may be.
 #[test]
 fn errors_of_position_and_motion_that_are_allowed_for_do_no_harm() {
