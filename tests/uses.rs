@@ -147,6 +147,12 @@ pub const USES: &[Use] = &[
     ),
     ("and", VERDICT, TENSION, "forced.or(self.invariants"),
     ("opposite", VERDICT, TENSION, "self.invariants(state)?.opposite()"),
+    (
+        "sample_due",
+        "guards/src/network/control.rs",
+        "automaton/src/network/robot/control.rs",
+        "guards::sample_due()",
+    ),
     ("judge", VERDICT, "guards/src/predicate.rs", ".judge("),
     ("are_conserved", DUTY, PERIOD, "duty::are_conserved(&before, &kept)"),
     ("is_reachable", DUTY, PERIOD, "duty::is_reachable(relation, from, to)"),

@@ -19,10 +19,14 @@ pub fn shipped(name: &str) -> ValidScenario {
     scenario_file::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The mission of a seed, and its storm.
+/// The mission of a seed, and its storm: kinds and plans take turns.
 pub fn mission_in_storm(seed: u64) -> (ValidScenario, Storm) {
-    let kind = Kind::ALL[seed as usize % Kind::ALL.len()];
-    let turn = seed as usize / Kind::ALL.len();
+    let kinds = Kind::ALL.len();
+    mission_of_turn(seed as usize / kinds, Kind::ALL[seed as usize % kinds], seed)
+}
+
+/// The mission on the plan whose turn it is, in a storm of this kind.
+pub fn mission_of_turn(turn: usize, kind: Kind, seed: u64) -> (ValidScenario, Storm) {
     let families: Vec<Family> =
         Family::ALL.into_iter().filter(|&family| family != Family::Hall).collect();
     let scenario = match turn % (SHIPPED.len() + families.len()) {

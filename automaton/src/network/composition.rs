@@ -61,11 +61,16 @@ impl KernelTimes {
     }
 }
 
+/// Times that differ by this share of a control period are the same: elapsed time is a sum.
+const SAME: f64 = 1e-6;
+
 /// The network of robots. Its nodes are [`Member`]s, or [`Frail`](super::Frail) ones.
 pub struct Network<M = Radio, N: RobotNode = Member> {
     pub(super) site: Arc<Site>,
     pub(super) nodes: Ensemble<N, M>,
     pub(super) events: Vec<MissionEvent>,
+    /// Seconds since the beginning.
+    elapsed: f64,
     pub(super) step: usize,
     /// Whether the current control period is over.
     has_flowed: bool,
@@ -158,6 +163,7 @@ impl<M: Medium<Message, Point>, N: RobotNode> Network<M, N> {
             site,
             nodes,
             events: Vec::new(),
+            elapsed: 0.0,
             step: 0,
             has_flowed: false,
             times: KernelTimes::default(),
@@ -176,7 +182,7 @@ impl<M, N: RobotNode> Network<M, N> {
         self.times
     }
 
-    /// k: the number of the current control period.
+    /// k: how many control periods have passed since the first node could begin.
     pub const fn step(&self) -> usize {
         self.step
     }
@@ -257,7 +263,8 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
 
     fn flow(&mut self, duration: f64) -> Result<(), NetworkError> {
         self.nodes.flow(duration)?;
-        self.step += 1;
+        self.elapsed += duration;
+        self.step = (self.elapsed / self.site.settings.period + SAME).floor() as usize;
         self.has_flowed = true;
         Ok(())
     }

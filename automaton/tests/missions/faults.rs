@@ -63,6 +63,11 @@ fn robots_join_late() {
 }
 
 #[test]
+fn clocks_are_not_aligned() {
+    weathers("clocks", "scenarios/leaf-leader", Kind::Clocks, 2);
+}
+
+#[test]
 fn places_and_moves_are_off() {
     weathers("errors", "scenarios/redundant-node", Kind::Errors(0.25), 1);
     weathers("motion", "scenarios/redundant-node", Kind::Motion(0.3), 1);

@@ -32,7 +32,7 @@ vocabulary! {
 
     /// What takes a robot from one stage of its control period to another.
     pub enum StageEvent: Event {
-        /// τ = Δt.
+        /// τ = Δt, or another node has begun the next control period.
         SampleDue = "sample due",
         /// A round of beacons is over, and another one follows.
         NextRound = "next round",
@@ -82,7 +82,7 @@ vocabulary! {
 
     /// What takes an access point from round to round.
     pub enum RoundEvent: Event {
-        /// τ = Δt.
+        /// τ = Δt, or another node has begun the next control period.
         SampleDue = "sample due",
         /// A round of beacons is over, and another one follows.
         NextRound = "next round",

@@ -260,11 +260,13 @@ impl Nodes {
         self.locals.is_empty()
     }
 
-    /// The mission begins with this node: where control periods count, in the present one.
+    /// The mission begins with this node: where control periods count, in the present one, and otherwise
+    /// with all robots that there are.
     pub(super) fn date(&self, node: &mut Node) {
         match node {
             Node::Robot(robot) if self.periods_count => robot.count_periods(PRESENT_PERIOD),
             Node::AccessPoint(point) if self.periods_count => point.count_periods(PRESENT_PERIOD),
+            Node::AccessPoint(point) => point.await_nobody(),
             _ => {}
         }
     }

@@ -2,9 +2,10 @@
 
 use crate::{Guard, Predicate, always, proposition, variable};
 
-/// τ = Δt.
+/// τ = Δt, or another node has begun the next control period.
 pub fn sample_due() -> Guard {
-    Guard::new("sample due", variable("clock").at_least(variable("period")))
+    let is_over = variable("clock").at_least(variable("period"));
+    Guard::new("sample due", is_over.or(proposition("behind")))
 }
 
 fn last_round() -> Predicate {

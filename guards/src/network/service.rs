@@ -44,7 +44,8 @@ fn can_announce() -> Predicate {
 }
 
 fn lacks_robots() -> Predicate {
-    proposition("task_left") & !has_robots() & !proposition("may_return")
+    let may_come = proposition("awaits_robots") | proposition("may_return");
+    proposition("task_left") & !has_robots() & !may_come
 }
 
 /// Robots have gathered, and there is a task.

@@ -40,6 +40,11 @@ impl AccessPoint {
         self.serve()
     }
 
+    /// No time passes: no robot is waited for that has not begun.
+    pub fn await_nobody(&mut self) {
+        self.attendees.iter_mut().for_each(Attendee::has_been_awaited);
+    }
+
     /// From now on control periods count: this one has the number `now`.
     pub fn count_periods(&mut self, now: u32) {
         (self.period, self.roll.called) = (now, now);
@@ -74,7 +79,7 @@ impl AccessPoint {
         let patience = self.patience_with_tasks() + 1;
         let tasks: Vec<u32> = self.tasks_serviced.iter().map(|&it| it.min(patience)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
-        let told = (self.period, &self.roll, reports, self.is_new);
+        let told = (self.period, &self.roll, reports, (self.is_new, self.is_behind));
         format!("{}{:?}", self.account(), (told, attendees, tasks))
     }
 
@@ -112,6 +117,7 @@ impl AccessPoint {
             rounds: _,
             acts: _,
             is_new: _,
+            is_behind: _,
             last_beacon: _,
             log: _,
             // The explorer stands for time; without it no robot is missed, and no task, and none restarts.

@@ -127,6 +127,17 @@ impl Attendee {
         self.silence.is_some()
     }
 
+    /// Whether it may not have begun yet: it has never been heard of, for a short time.
+    pub(super) fn may_begin(&self) -> bool {
+        !self.is_known() && self.age < PATIENCE
+    }
+
+    /// It is not waited for any more.
+    #[cfg(feature = "abstraction")]
+    pub(super) fn has_been_awaited(&mut self) {
+        self.age = self.age.max(PATIENCE);
+    }
+
     /// Whether it has been heard of in this control period.
     pub(super) fn is_heard_of(&self) -> bool {
         self.silence == Some(0)
@@ -180,6 +191,12 @@ impl AccessPoint {
             self.roll = Roll { called: self.period, absent };
         }
         Ok(())
+    }
+
+    /// Whether robots are not in its roster that may not have begun yet.
+    pub(super) fn awaits_robots(&self) -> bool {
+        let mut attendees = self.attendees.iter().enumerate();
+        attendees.any(|(robot, attendee)| attendee.may_begin() && !self.roster.contains(robot))
     }
 
     /// It has begun, or begun again, while others went by this roll: who does not take part by it does

@@ -97,6 +97,8 @@ pub struct AccessPoint {
     /// The remaining acts of the row that was taken last.
     acts: RoundActs,
     is_new: bool,
+    /// Another node has begun the next control period.
+    is_behind: bool,
     clock: f64,
     /// How many control periods have begun.
     period: u32,
@@ -140,6 +142,7 @@ impl AccessPoint {
             rounds: Current::new(Rounds::Resting(Resting)),
             acts: &[],
             is_new: true,
+            is_behind: false,
             clock: period,
             period: 0,
             last_beacon: LastBeacon::default(),
@@ -214,8 +217,9 @@ impl AccessPoint {
         if period < self.period {
             return;
         }
-        if self.is_new {
-            self.period = period;
+        if period > self.period {
+            self.is_behind = !self.is_new;
+            self.period = period - u32::from(self.is_behind);
         }
         self.silent.remove(&beacon.sender);
         match self.heard.binary_search_by_key(&beacon.sender, |held| held.sender) {
@@ -457,8 +461,10 @@ impl Node for AccessPoint {
 
     fn time_to_tick(&self) -> Option<f64> {
         Some(match *self.rounds {
-            Rounds::Listening(_) => 0.0,
-            Rounds::Resting(_) => (self.site.settings.period - self.clock).max(0.0),
+            Rounds::Resting(_) if !self.is_behind => {
+                (self.site.settings.period - self.clock).max(0.0)
+            }
+            _ => 0.0,
         })
     }
 

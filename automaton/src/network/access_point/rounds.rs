@@ -88,7 +88,7 @@ impl AccessPoint {
         for act in std::mem::take(&mut self.acts) {
             match act {
                 RoundAct::RestartClock => {
-                    self.clock = 0.0;
+                    (self.clock, self.is_behind) = (0.0, false);
                     self.period = self.period.saturating_add(1);
                     self.expect_all();
                 }

@@ -51,11 +51,15 @@ crate::observed! {
         attempts: ATTEMPTS_TO_ELECT,
     }
     propositions {
+        /// Another node has begun the next control period.
+        behind: point.is_behind,
         /// A robot that takes part in the elections for its task is gone, or has forgotten what became of
         /// them.
         misses_elector: point.misses_elector(),
         /// A robot that takes part in the elections for its task has not been heard of.
         expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
+        /// A robot of which it has never heard may not have begun yet.
+        awaits_robots: point.awaits_robots(),
         /// A robot that does not take part is not gone yet, or is coming back.
         may_return: point.attendees.iter().any(Attendee::may_return),
         /// The newest notice received announces a task, or calls for a recruit.

@@ -201,7 +201,7 @@ impl Robot {
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
         let told = (self.period, &self.roll, self.confirmation, reports);
-        let waits = (self.orphaned_periods, self.is_late, self.is_new);
+        let waits = (self.orphaned_periods, self.is_late, self.is_new, self.is_behind);
         format!("{}{:?}", self.account(), (told, waits, seen, heard))
     }
 
@@ -250,6 +250,7 @@ impl Robot {
             round_count: _,
             acts: _,
             is_new: _,
+            is_behind: _,
             heard_way: _,
             is_displaced: _,
             is_late: _,

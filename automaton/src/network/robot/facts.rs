@@ -132,6 +132,8 @@ facts! {
             iterations: robot.site.settings.routing_iterations as f64,
         }
         propositions {
+            /// Another node has begun the next control period.
+            behind: robot.is_behind,
             /// Its post has a parent.
             names_parent: robot.heard_way != HeardWay::NoParent,
             /// Its parent tells a way to an access point that leads through its own post.

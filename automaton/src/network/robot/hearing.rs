@@ -133,6 +133,9 @@ impl Robot {
         if period < self.period {
             return;
         }
+        if period > self.period {
+            self.hear_of_later_period(period);
+        }
         // Beacons of a round mostly come in the order of their senders, and have no news.
         let expected = self.neighbours.get_mut(self.heard_up_to);
         if let Some(known) = expected
@@ -150,10 +153,6 @@ impl Robot {
 
     #[inline(never)]
     fn hear_news(&mut self, period: u32, confirmed: Option<u32>, beacon: &Arc<Beacon>) {
-        // Clocks may be a little apart; more than that, it has begun later than others.
-        if period > self.period + u32::from(!self.is_new) {
-            self.join_in(period);
-        }
         let known = self.neighbours.binary_search_by_key(&beacon.sender, Neighbour::id);
         match known {
             Ok(at) => self.renew(at, period, confirmed, beacon),

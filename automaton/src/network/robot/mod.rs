@@ -128,6 +128,8 @@ pub struct Robot {
     round_count: Rounds,
     acts: Acts,
     is_new: bool,
+    /// Another node has begun the next control period.
+    is_behind: bool,
 
     // Where robots were that it does not hear any more, and those that are gone.
     out_of_sight: Sightings,
@@ -266,6 +268,7 @@ impl Robot {
             round_count: Rounds::default(),
             acts: &[],
             is_new: true,
+            is_behind: false,
             position,
             velocity: Vector::zeros(),
             clock: site.settings.period,
@@ -356,7 +359,19 @@ impl Robot {
         }
     }
 
-    /// Control periods begin together: a robot that begins later learns from the others which one this is.
+    /// Another node has begun a control period that this robot has not. Control periods begin together: a robot
+    /// that has just begun learns which one this is, and any other begins it as soon as its own is over but for
+    /// the move.
+    fn hear_of_later_period(&mut self, period: u32) {
+        if self.is_new {
+            return self.join_in(period);
+        }
+        self.is_behind = true;
+        if period > self.period + 1 {
+            self.join_in(period - 1);
+        }
+    }
+
     fn join_in(&mut self, period: u32) {
         self.period = period;
         if period > 1 {

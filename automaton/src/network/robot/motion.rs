@@ -306,6 +306,6 @@ impl Robot {
         self.period = self.period.saturating_add(1);
         self.posts_made = 0;
         self.velocity = Vector::zeros();
-        self.clock = 0.0;
+        (self.clock, self.is_behind) = (0.0, false);
     }
 }

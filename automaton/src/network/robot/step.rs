@@ -2,7 +2,7 @@
 //!
 //! A control period is a sequence of stages that takes no time. The robot counts its own rounds: at
 //! a tick it processes what it has received since the last one, and sends. Then it waits for the
-//! messages of the others, up to the next tick. When it has set off, its next tick is at τ = Δt.
+//! messages of the others, up to the next tick. When it has set off, its next tick is at the next sample.
 
 use std::collections::VecDeque;
 
@@ -157,11 +157,11 @@ impl Robot {
         self.control.location()
     }
 
-    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; at the sample the robot is where
+    /// Between jumps: ẋ = u, τ̇ = 1 (eq. 23), integrated exactly; after Δt the robot is where
     /// its certified move ends, to the last bit.
     pub(super) fn advance(&mut self, duration: f64) {
         self.clock += duration;
-        self.position = match self.time_to_sample() > 0.0 {
+        self.position = match self.time_to_arrival() > 0.0 {
             true => self.position + self.velocity * duration,
             false => self.arrival,
         };
@@ -172,8 +172,16 @@ impl Robot {
         self.clock
     }
 
-    /// Time until the clock calls for the next sample.
+    /// Time until the next sample is due.
     fn time_to_sample(&self) -> f64 {
+        match self.is_behind {
+            true => 0.0,
+            false => self.time_to_arrival(),
+        }
+    }
+
+    /// Time until the move is over.
+    fn time_to_arrival(&self) -> f64 {
         (self.site.settings.period - self.clock).max(0.0)
     }
 

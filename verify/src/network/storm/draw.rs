@@ -39,6 +39,8 @@ pub enum Kind {
     Position(f64),
     /// Positions and moves each have an error, this share of the clearance ρ.
     Errors(f64),
+    /// The clock of each node is behind, by up to a control period.
+    Clocks,
     /// All that can happen to messages, at once.
     Radio,
     /// Everything at once.
@@ -69,6 +71,7 @@ impl Kind {
         Kind::Position(0.001),
         Kind::Position(0.003),
         Kind::Errors(0.25),
+        Kind::Clocks,
         Kind::Everything,
     ];
 
@@ -154,6 +157,7 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
                 Trouble { position_error: position, motion_error: motion, ..Trouble::default() };
             storm.troubles = (0..robots).map(|robot| (robot, trouble.clone())).collect();
         }
+        Kind::Clocks => shift_clocks(&mut storm, &mut draws, scenario),
         Kind::Everything => {
             *weather = foul(&mut draws, robots, duration);
             for _ in 0..1 + draws.below(3) {
@@ -163,9 +167,23 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
                     storm.troubles.push(trouble);
                 }
             }
+            if draws.below(2) == 0 {
+                shift_clocks(&mut storm, &mut draws, scenario);
+            }
         }
     }
     storm
+}
+
+/// The clock of each node is behind, by up to a control period.
+fn shift_clocks(storm: &mut Storm, draws: &mut Draws, scenario: &ValidScenario) {
+    for node in 0..scenario.robot.len() + scenario.access_point.len() {
+        let shift = draws.between(0.0, scenario.settings().period);
+        match storm.troubles.iter_mut().find(|(troubled, _)| *troubled == node) {
+            Some((_, trouble)) => trouble.shift = shift,
+            None => storm.troubles.push((node, Trouble { shift, ..Trouble::default() })),
+        }
+    }
 }
 
 fn foul(draws: &mut Draws, robots: usize, duration: f64) -> Weather {

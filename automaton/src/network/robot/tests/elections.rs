@@ -269,3 +269,20 @@ fn the_newest_announcement_by_which_others_go_is_learnt() {
     let newest = known.0.next(4).next(4);
     assert_eq!(robot.newer_announcement().map(|(id, _)| *id), Some(newest));
 }
+
+/// A robot that has been cut off hears of the announcement that has superseded its task, and of the notices by
+/// it: these say that the task goes on without it.
+#[test]
+fn an_announcement_is_learnt_after_the_notices_by_it() {
+    let mut robot = asked(east(1.0));
+    let (id, announcement) = robot.announced.clone().expect("it knows the task");
+    let bulletin = robot.bulletin.superseding(11, Shared::new(Notice::Quiet));
+    let announced = Some((bulletin.id(), announcement));
+    assert!(bulletin.id().epoch() > id.epoch());
+    robot.hears(Beacon { announced, bulletin, ..beacon(1, east(0.5), redundant(11, 13), &[]) });
+    assert!(robot.newer_announcement().is_none(), "the notice has not been read");
+    robot.hear_notices();
+    assert!(robot.newer_announcement().is_some());
+    robot.measures();
+    assert!(robot.facts.overtaken && !robot.facts.announcement_heard);
+}

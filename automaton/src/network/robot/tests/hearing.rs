@@ -1,7 +1,10 @@
 //! What becomes of what a robot hears, and of those that it does not hear any more.
 
 use super::super::hearing::{PATIENCE_WITH_CHILDREN, ROUNDS_TO_BE_HEARD};
+use pleach_discrete::network::Stage;
+
 use super::*;
+use crate::node::{Node as _, Outputs};
 
 /// A round passes in which robots send, and this robot hears nobody.
 fn silent_rounds(robot: &mut Robot, rounds: usize) {
@@ -134,9 +137,27 @@ fn a_robot_that_begins_later_than_others_learns_which_period_this_is() {
     assert_eq!((first.period, first.is_late), (1, false), "all begin together");
     let mut running = robot();
     running.hear_beacon(NOW + 1, None, &heard);
-    assert_eq!((running.period, running.is_late), (NOW, false), "a clock is a little ahead");
+    assert_eq!((running.period, running.is_late), (NOW, false), "it is in the period before");
     running.hear_beacon(NOW + 2, None, &Arc::new(beacon(2, west(0.5), redundant(12, 13), &[])));
-    assert_eq!((running.period, running.is_late), (NOW + 2, true));
+    assert_eq!((running.period, running.is_late), (NOW + 1, true), "it has missed one");
+}
+
+/// A robot whose clock is behind takes its sample when it hears that another has begun the period, wherever its
+/// move has taken it.
+#[test]
+fn a_control_period_begins_when_the_first_clock_is_due() {
+    let mut robot = robot();
+    (robot.clock, robot.velocity) = (0.0, east(0.1) - HERE);
+    robot.flow(0.25);
+    let place = robot.position;
+    let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
+    robot.hear_beacon(NOW, None, &heard);
+    assert_eq!(robot.time_to_tick(), Some(0.25));
+    robot.hear_beacon(NOW + 1, None, &heard);
+    assert_eq!(robot.time_to_tick(), Some(0.0));
+    robot.tick(0, &mut Outputs::of(0)).expect("it goes on");
+    assert_eq!((robot.period, robot.stage(), robot.position), (NOW + 1, Stage::Beacons, place));
+    assert!(!robot.is_behind && robot.time_since_sample() == 0.0);
 }
 
 #[test]
