@@ -23,7 +23,16 @@ pub fn service_heard() -> Guard {
 
 /// It hears that the mission has ended.
 pub fn end_heard() -> Guard {
-    named("end heard", proposition("hears_end"))
+    named("end heard", proposition("hears_end") & !overrules())
+}
+
+/// It hears that the mission has ended, and a robot takes part now that did not when the task was announced.
+pub fn end_overruled() -> Guard {
+    named("end overruled", proposition("hears_end") & overrules())
+}
+
+fn overrules() -> Predicate {
+    pursues() & proposition("has_newcomer")
 }
 
 /// Robots have gathered: their roster has not changed for a while.
@@ -134,6 +143,13 @@ pub fn prepared() -> Guard {
 /// A control period is over.
 pub fn another_period() -> Guard {
     named("period over", period_over())
+}
+
+/// A control period is over, and the first access point has been silent for longer than robots move
+/// without it.
+pub fn access_point_missed() -> Guard {
+    let missed = variable("silence").at_least(variable("patience"));
+    named("access point missed", period_over() & missed)
 }
 
 fn period_over() -> Predicate {

@@ -21,8 +21,8 @@ use super::motion::ROUNDING;
 /// p₁ changes its parent only if that brings it nearer to its target by this share of d_build.
 const REATTACHMENT_GAIN: f64 = 0.05;
 
-/// A robot looks for another parent when no robot has held the post of its own for this many control
-/// periods.
+/// A robot looks for another parent when it has heard nobody that stands for the one that it has for this many
+/// control periods.
 const PATIENCE_WITH_ORPHANED_POSTS: u32 = 12;
 
 /// A node without a branch becomes redundant after this many control periods.
@@ -63,10 +63,12 @@ impl Robot {
         Ok(())
     }
 
-    /// Once a period: for how long no branch has depended on the post, Remark 5.6 (ii).
+    /// Once a period: for how long no branch has depended on the post, Remark 5.6 (ii). A robot that does not
+    /// hear its parent may be cut off from its branches, too.
     pub(super) fn count_unused_periods(&mut self) {
         let unused = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
             && !self.bears_branch()
+            && !self.is_orphan()
             && !self.tree_is_frozen()
             && !self.is_engaged()
             && !self.duty.is_bound();
@@ -108,12 +110,17 @@ impl Robot {
         length <= self.build_length() * (1.0 + ROUNDING)
     }
 
-    /// Whether no robot that it hears holds the post that its own is attached to.
+    /// Whether it hears nobody that stands for what its post is attached to: no robot that holds that post, or
+    /// not the access point.
     pub(super) fn is_orphan(&self) -> bool {
-        matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none()
+        match self.anchor() {
+            Some(Anchor::Post(_)) => self.named_parent().is_none(),
+            Some(anchor @ Anchor::Access(_)) => self.neighbour_at(anchor).is_none(),
+            None => false,
+        }
     }
 
-    /// Once a period: for how long no robot has held the post that its own is attached to.
+    /// Once a period: for how long it has been an orphan.
     pub(super) fn count_orphaned_periods(&mut self) {
         let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
         self.orphaned_periods = if self.is_orphan() { longer } else { 0 };
@@ -129,9 +136,12 @@ impl Robot {
         }
         let limit = self.hard_length() * (1.0 + ROUNDING);
         let leads_elsewhere = |lineage: &Lineage| {
-            !lineage.contains(post)
-                && !matches!(lost, Some(Anchor::Post(lost)) if lineage.contains(lost))
-                && self.confirms(lineage)
+            let leads_through_lost = match lost {
+                Some(Anchor::Post(lost)) => lineage.contains(lost),
+                Some(Anchor::Access(lost)) => lineage.root() == lost,
+                None => false,
+            };
+            !lineage.contains(post) && !leads_through_lost && self.confirms(lineage)
         };
         let ways = self.neighbours.iter().filter_map(|neighbour| {
             let lineage = neighbour.beacon.lineage.as_ref()?;

@@ -185,6 +185,30 @@ fn a_fixed_post_changes_its_parent_when_that_has_had_no_holder_for_long() {
     assert_eq!(orphan(40, team), None);
 }
 
+/// Robot 0 holds a fixed post that is attached to access point 0, which has been silent for `periods` control
+/// periods; robot 1 leads to access point `root`.
+fn orphan_of_access_point(periods: u32, root: usize) -> Option<Option<Anchor>> {
+    let mut robot = robot();
+    robot.holds(Post { parent: Some(Anchor::Access(0)), ..fixed(20, 0) });
+    let lineage = Lineage::of_access_point(root).extended_by(PostId(11)).map(Arc::new);
+    robot.hears(Beacon { lineage, ..beacon(1, east(0.5), fixed(11, 13), &[]) });
+    (0..periods).for_each(|_| robot.count_orphaned_periods());
+    robot.keep_place().expect("it goes on");
+    robot.desired_parent
+}
+
+#[test]
+fn a_fixed_post_changes_its_parent_when_its_access_point_is_not_heard_for_long() {
+    assert_eq!(orphan_of_access_point(12, 1), None);
+    assert_eq!(orphan_of_access_point(13, 1), Some(at(11)));
+    assert_eq!(orphan_of_access_point(40, 0), None, "it leads to the one that is not heard");
+    let mut robot = robot();
+    robot.holds(Post { parent: Some(Anchor::Access(0)), ..fixed(20, 0) });
+    assert!(robot.is_orphan());
+    robot.hears(access_point(east(1.0)));
+    assert!(!robot.is_orphan());
+}
+
 #[test]
 fn periods_without_a_parent_are_counted_from_the_last_one_with_it() {
     let mut robot = robot();
