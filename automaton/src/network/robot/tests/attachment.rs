@@ -310,10 +310,19 @@ fn branches_are_fixed_posts_and_the_primary_team_as_one() {
 
 #[test]
 fn a_node_on_which_no_branch_depends_counts_the_periods() {
-    let count = |change: &dyn Fn(&mut Robot)| {
+    let cut_off = || {
         let mut robot = robot();
         robot.holds(fixed(20, 13));
         robot.is_quiet = true;
+        robot
+    };
+    let node = || {
+        let mut robot = cut_off();
+        robot.hears(beacon(3, west(0.5), fixed(13, 14), &[13, 14]));
+        robot
+    };
+    let count = |change: &dyn Fn(&mut Robot)| {
+        let mut robot = node();
         change(&mut robot);
         (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| robot.count_unused_periods());
         (robot.unused_periods, robot.is_quiet)
@@ -329,11 +338,12 @@ fn a_node_on_which_no_branch_depends_counts_the_periods() {
         robot.mission = Current::new(Mission::Shift(shift));
     };
     assert_eq!(count(&frozen), (0, true));
-    let mut robot = robot();
-    robot.holds(fixed(20, 13));
-    (robot.unused_periods, robot.is_quiet) = (0, true);
-    robot.count_unused_periods();
-    assert!(robot.is_quiet, "once is not for long");
+    let mut once = node();
+    once.count_unused_periods();
+    assert!(once.is_quiet, "once is not for long");
+    let mut cut_off = cut_off();
+    (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| cut_off.count_unused_periods());
+    assert_eq!(cut_off.unused_periods, 0, "its branches may be cut off from it as well");
 }
 
 #[test]
