@@ -177,9 +177,6 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             ),
             None,
         ),
-        MissionEvent::TaskReannounced { task, gone } if gone.is_empty() => {
-            (format!("other robots take part now: task {task} is announced again"), None)
-        }
         MissionEvent::TaskReannounced { task, gone } => (
             format!("robots {gone:?} do not answer any more: task {task} is announced again"),
             None,

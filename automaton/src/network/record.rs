@@ -169,8 +169,8 @@ pub enum MissionEvent {
     Reattached { robot: usize, parent: usize },
     /// The leader's tree has no recruit left; the election is repeated among the others.
     ElectionRepeated { task: usize },
-    /// Robots are gone that take part in the elections for the task, or serviced it, or its leader gives up and
-    /// others take part now: it is announced again to those that do.
+    /// Robots are gone that take part in the elections for the task, or serviced it: it is announced again
+    /// to those that are left.
     TaskReannounced { task: usize, gone: Vec<usize> },
 }
 

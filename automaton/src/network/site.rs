@@ -16,9 +16,6 @@ use crate::builder::BuildError;
 /// could come into contact.
 const WATCHED_STEPS: f64 = 8.0;
 
-/// Control periods after which a robot that no access point hears of is missed.
-pub const PATIENCE: u32 = 8;
-
 /// Control periods for which a roll is valid at the least.
 const ROLL_MARGIN: u32 = 6;
 
@@ -195,11 +192,6 @@ impl Site {
     /// messages being lost. Beacons that stay the same carry it over three links in a period.
     pub fn roll_validity(&self) -> u32 {
         ROLL_MARGIN + 2 * self.nodes().div_ceil(ROUNDS_TO_BE_HEARD) as u32
-    }
-
-    /// Control periods after which a robot that nobody hears any more is called gone.
-    pub fn periods_until_gone(&self) -> u32 {
-        PATIENCE + self.roll_validity()
     }
 
     /// For how many rounds news is under way, without losses, between nodes of trees that are no deeper than

@@ -28,9 +28,6 @@ vocabulary! {
         ServiceHeard = "service heard",
         /// It hears that the mission has ended.
         EndHeard = "end heard",
-        /// It hears that the mission has ended, and a robot takes part now that did not when the task was
-        /// announced: it announces the task again.
-        EndOverruled = "end overruled",
         /// It announces the next task.
         Announces = "announces",
         /// A robot that takes part in its elections is gone: it announces the task again.
@@ -101,7 +98,6 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(0, Electing, On::ProgressHeard, UnderWay),
         row(0, Electing, On::ServiceHeard, Serviced),
         row(0, Electing, On::EndHeard, Over),
-        row(0, Electing, On::EndOverruled, Electing),
         row(1, Electing, On::AnnouncesAgain, Electing),
         row(1, Electing, On::NoRobot, Over),
         row(1, Electing, On::NoBid, Over),
@@ -110,7 +106,6 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(0, UnderWay, On::ProgressHeard, UnderWay),
         row(0, UnderWay, On::ServiceHeard, Serviced),
         row(0, UnderWay, On::EndHeard, Over),
-        row(0, UnderWay, On::EndOverruled, Electing),
         row(1, UnderWay, On::AnnouncesAgain, Electing),
         row(1, UnderWay, On::NoRobot, Over),
         row(0, Serviced, On::ElectionHeard, Electing),

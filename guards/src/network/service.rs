@@ -23,16 +23,7 @@ pub fn service_heard() -> Guard {
 
 /// It hears that the mission has ended.
 pub fn end_heard() -> Guard {
-    named("end heard", proposition("hears_end") & !overrules())
-}
-
-/// It hears that the mission has ended, and a robot takes part now that did not when the task was announced.
-pub fn end_overruled() -> Guard {
-    named("end overruled", proposition("hears_end") & overrules())
-}
-
-fn overrules() -> Predicate {
-    pursues() & proposition("has_newcomer")
+    named("end heard", proposition("hears_end"))
 }
 
 /// Robots have gathered: their roster has not changed for a while.

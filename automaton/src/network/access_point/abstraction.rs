@@ -76,7 +76,7 @@ impl AccessPoint {
     /// The [`account`](Self::account) of an access point where control periods count.
     pub fn account_in_time(&self) -> String {
         let attendees: Vec<_> = self.attendees.iter().map(Attendee::account).collect();
-        let patience = self.site.periods_until_gone() + 1;
+        let patience = self.patience_with_tasks() + 1;
         let tasks: Vec<u32> = self.tasks_serviced.iter().map(|&it| it.min(patience)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
         let told = (self.period, &self.roll, reports, (self.is_new, self.is_behind));

@@ -14,8 +14,10 @@ use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Transfer};
 
 use super::super::roll::{Absent, Roll};
-use super::super::site::PATIENCE;
 use super::AccessPoint;
+
+/// Control periods after which a robot that is not heard of is missed.
+const PATIENCE: u32 = 8;
 
 /// The automaton of a robot's attendance.
 pub type AttendanceAutomaton = Automaton<Attendance, AttendanceEvent, Attendee>;
@@ -214,8 +216,12 @@ impl AccessPoint {
     /// The first task that has been serviced, and has not been for as long as it takes to give a robot
     /// up.
     pub(super) fn abandoned_task(&self) -> Option<usize> {
-        let patience = self.site.periods_until_gone();
+        let patience = self.patience_with_tasks();
         self.tasks_serviced.iter().position(|&silence| silence > patience)
+    }
+
+    pub(super) fn patience_with_tasks(&self) -> u32 {
+        PATIENCE + self.site.roll_validity()
     }
 
     fn absent(&self) -> Absent {

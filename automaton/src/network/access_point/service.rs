@@ -58,8 +58,6 @@ crate::observed! {
         misses_elector: point.misses_elector(),
         /// A robot that takes part in the elections for its task has not been heard of.
         expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
-        /// A robot takes part that did not when its task was announced.
-        has_newcomer: point.has_newcomer(),
         /// A robot of which it has never heard may not have begun yet.
         awaits_robots: point.awaits_robots(),
         /// A robot that does not take part is not gone yet, or is coming back.
@@ -153,12 +151,6 @@ impl AccessPoint {
 
     fn misses_elector(&self) -> bool {
         self.electors().any(Attendee::is_gone) || self.forgetful_electors().next().is_some()
-    }
-
-    /// Whether a robot takes part that did not when its task was announced.
-    fn has_newcomer(&self) -> bool {
-        let is_new = |at: &Announced| self.roster.iter().any(|robot| !at.roster.contains(robot));
-        self.announced().is_some_and(is_new)
     }
 
     /// The robots that take part in the elections for its task, and have restarted since it was announced.
@@ -311,39 +303,15 @@ fn announce_again<A: Knows>(
     effects: &mut Effects,
 ) -> Option<Electing> {
     let Announced { task, roster, unanswered } = place.announced()?;
+    let notice = point.task_notice(task)?;
     let is_unanswered = !point.misses_elector();
     let gone = match is_unanswered {
         true => point.unanswering(&roster),
         false => point.gone().into_iter().chain(point.forgetful_electors()).collect(),
     };
-    begin_anew(point, effects, task, gone)?;
-    Some(point.electing(task, unanswered + u32::from(is_unanswered)))
-}
-
-/// The task is announced to all that take part, whatever others have issued meanwhile.
-fn begin_anew(
-    point: &AccessPoint,
-    effects: &mut Effects,
-    task: usize,
-    gone: Vec<NodeId>,
-) -> Option<()> {
-    let notice = point.task_notice(task)?;
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone }));
     effects.push(ServiceEffect::Supersede(notice));
-    Some(())
-}
-
-/// The mission does not end for a reason that was found without all robots that take part now: the task is
-/// announced to all of them.
-fn overrule_end<A: Knows>(
-    place: &A,
-    point: &AccessPoint,
-    effects: &mut Effects,
-) -> Option<Electing> {
-    take_up(point, effects)?;
-    let task = place.announced()?.task;
-    begin_anew(point, effects, task, point.gone())?;
-    Some(point.electing(task, 0))
+    Some(point.electing(task, unanswered + u32::from(is_unanswered)))
 }
 
 /// The mission ends. Robots that are missed may know later notices than the access point.
@@ -422,11 +390,6 @@ fn end_heard<A: DataOf<Serving>>() -> Row {
     Transfer::where_known(ServiceEvent::EndHeard, guard, name, hear_end::<A>)
 }
 
-fn end_overruled<A: DataOf<Serving> + Knows>() -> Row {
-    let (guard, name) = (guards::end_overruled(), "announce the task again");
-    Transfer::where_known(ServiceEvent::EndOverruled, guard, name, overrule_end::<A>)
-}
-
 fn announces<A: DataOf<Serving>>(guard: Guard) -> Row {
     Transfer::where_known(ServiceEvent::Announces, guard, "announce the next task", announce::<A>)
 }
@@ -471,8 +434,6 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(end_heard::<Electing>())
         .carried_out(end_heard::<UnderWay>())
         .carried_out(end_heard::<Serviced>())
-        .carried_out(end_overruled::<Electing>())
-        .carried_out(end_overruled::<UnderWay>())
         .carried_out(announces::<Gathering>(guards::announces_first()))
         .carried_out(announces::<Serviced>(guards::announces_next()))
         .carried_out(announces_again::<Electing>(guards::elects_again()))

@@ -3,15 +3,13 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{Anchor, IdSet, NodeId, Post, PostId};
+use pleach_discrete::network::{NodeId, Post, PostId};
 use serde_json::json;
 
-use super::super::beacon::{Beacon, Notice};
+use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Held, Standby, Station};
-use super::super::record::Outcome;
 use super::super::roll::{Absent, Roll, Wreck};
 use super::super::scenario::Scenario;
-use super::super::shared::Shared;
 use super::super::site::Site;
 use super::AccessPoint;
 
@@ -67,42 +65,4 @@ fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
     let heard = Beacon { wrecks, ..beacon(0, west) };
     assert_eq!(told(3, &without_one, vec![heard]), [wreck(1, farther, 2)]);
     assert_eq!(told(4, &roll(4, &[]), vec![beacon(0, west)]), [], "it takes part again");
-}
-
-/// A leader gives up: robots that did not take part when the task was announced have not been asked.
-#[test]
-fn it_does_not_end_the_mission_before_all_robots_that_take_part_have_been_asked() {
-    let becomes_of = |later: &[NodeId]| {
-        let mut point = access_point();
-        let places = [Point::new(4.0, 5.0), Point::new(6.0, 5.0)];
-        let attached = |robot: NodeId| {
-            let mut beacon = beacon(robot, places[robot]);
-            let Some(Duty::Standby(Standby(held))) = &mut beacon.duty else { unreachable!() };
-            held.station.post.parent = Some(Anchor::Access(0));
-            Arc::new(Beacon { below: Arc::new(IdSet::singleton(robot)), ..beacon })
-        };
-        point.requested = Some(Arc::from([Point::new(9.0, 9.0)]));
-        for _ in 0..20 {
-            point.hear(1, &Roll::default(), &attached(0));
-            point.deliberate().expect("guards have values");
-            point.serve().expect("guards have values");
-        }
-        assert!(matches!(point.notice(), Notice::Task(_)), "{:?}", point.notice());
-        later.iter().for_each(|&robot| point.hear(1, &Roll::default(), &attached(robot)));
-        point.deliberate().expect("guards have values");
-        let reason = "it needs another recruit".into();
-        let ended = Notice::Ended { outcome: Outcome::InsufficientRobots, reason, task: Some(0) };
-        let bulletin = point.bulletin.next(0, Shared::new(ended));
-        let leader = Beacon { bulletin, ..(*attached(0)).clone() };
-        point.hear(1, &Roll::default(), &Arc::new(leader));
-        point.deliberate().expect("guards have values");
-        point.bulletin.notice().clone()
-    };
-    assert!(matches!(&*becomes_of(&[]), Notice::Ended { .. }));
-    match &*becomes_of(&[1]) {
-        Notice::Task(announcement) => {
-            assert_eq!(announcement.roster.iter().collect::<Vec<_>>(), [0, 1]);
-        }
-        other => panic!("{other:?}"),
-    }
 }

@@ -15,6 +15,7 @@ use super::super::beacon::Beacon;
 use super::super::duty::Path;
 use super::super::roll::{Roll, Wreck};
 use super::facts::STATIONARY_WINDOW;
+use super::hearing::PATIENCE_WITH_CHILDREN;
 use super::{FIRST_NEW_POST, POSTS_OF_A_PERIOD, Robot, RobotError, RobotView};
 
 /// Where control periods count, confirmations that are older than this many count as this old: robots
@@ -173,11 +174,11 @@ impl Robot {
         self.period += u32::from(is_next);
         self.posts_made = 0;
         let numbers = Numbers { now: self.period, passed: u32::from(!is_next) };
-        let (validity, until_gone) = (self.site.roll_validity(), self.site.periods_until_gone());
+        let validity = self.site.roll_validity();
         self.roll.called = numbers.of(self.roll.called, validity + 1);
         self.confirmation = self.confirmation.renumbered(|it| numbers.of(it, OLDEST_CONFIRMATION));
         for known in &mut self.neighbours {
-            known.heard_in = numbers.of(known.heard_in, until_gone + 1);
+            known.heard_in = numbers.of(known.heard_in, PATIENCE_WITH_CHILDREN + 1);
             known.confirmed = known.confirmed.map(|it| numbers.of(it, OLDEST_CONFIRMATION));
         }
         self.stand_at(self.position, still_periods);

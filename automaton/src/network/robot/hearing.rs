@@ -37,6 +37,9 @@ pub(super) struct Neighbour {
 /// of the rounds in which all robots send is out of range.
 pub(in super::super) const ROUNDS_TO_BE_HEARD: usize = 3;
 
+/// Control periods for which a robot counts as attached that is not heard.
+pub(super) const PATIENCE_WITH_CHILDREN: u32 = 8;
+
 impl Neighbour {
     /// A node as heard from `own`.
     fn new(
@@ -202,8 +205,8 @@ impl Robot {
     /// A neighbour that the robot knows is not heard; returns the index of the next one. One that was
     /// near when it was heard last is not out of range: it stays where it is taken to be, and this
     /// robot does not leave its place meanwhile. Nor is one to which packets flow, as long as it has
-    /// granted them, nor, until it should be gone, one that is attached to this robot's post: a branch is not
-    /// cut off because its messages are lost. A robot that is gone is not waited for, once no packets flow to it.
+    /// granted them, nor, for a while, one that is attached to this robot's post: a branch is not cut off
+    /// because its messages are lost. A robot that is gone is not waited for, once no packets flow to it.
     fn miss(&mut self, at: usize) -> usize {
         let (own, period) = (self.duty.post().map(|post| post.id), self.period);
         let known = &mut self.neighbours[at];
@@ -215,7 +218,7 @@ impl Robot {
         known.silent_rounds = silent_rounds;
         let is_silent = known.is_silent();
         let is_kept = known.is_attached_to(own)
-            && period <= known.heard_in.saturating_add(self.site.periods_until_gone());
+            && period <= known.heard_in.saturating_add(PATIENCE_WITH_CHILDREN);
         let is_lost = is_silent && (known.is_access_point() || !self.site.is_near(known.distance));
         let (id, reliability) = (known.id(), known.reliability);
         let is_gone = is_silent && self.is_gone(id);

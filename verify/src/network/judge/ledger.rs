@@ -162,12 +162,10 @@ impl Ledger {
         Ok(())
     }
 
-    /// Robots are gone: the task that is pursued begins anew, or one that was serviced is pursued again. Or its
-    /// leader gives up, and other robots take part.
+    /// Robots are gone: the task that is pursued begins anew, or one that was serviced is pursued again.
     fn reannounce(&mut self, task: usize, gone: &[usize]) -> Result<(), Dispute> {
         let is_pursued = self.task().is_none_or(|pursued| pursued == task);
-        let has_reason = !gone.is_empty() || self.leader.is_some();
-        if task >= self.announced || !is_pursued || !has_reason {
+        if task >= self.announced || !is_pursued || gone.is_empty() {
             let sentence = format!(
                 "task {task} is announced again without robots {gone:?}, while task {:?} is pursued \
                  and {} tasks have been announced",

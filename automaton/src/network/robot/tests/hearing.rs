@@ -1,6 +1,6 @@
 //! What becomes of what a robot hears, and of those that it does not hear any more.
 
-use super::super::hearing::ROUNDS_TO_BE_HEARD;
+use super::super::hearing::{PATIENCE_WITH_CHILDREN, ROUNDS_TO_BE_HEARD};
 use pleach_discrete::network::Stage;
 
 use super::*;
@@ -50,13 +50,13 @@ fn a_robot_nearby_that_falls_silent_is_taken_to_stay() {
 }
 
 #[test]
-fn a_robot_attached_to_this_one_is_waited_for_until_it_should_be_gone() {
+fn a_robot_attached_to_this_one_is_waited_for_for_some_periods() {
     let mut robot = robot();
     robot.holds(fixed(20, 13));
     let far = watch_radius(&robot) + 0.1;
     robot.hears(beacon(1, east(far), redundant(11, 20), &[]));
     silent_rounds(&mut robot, 10);
-    robot.period = NOW + robot.site.periods_until_gone();
+    robot.period = NOW + PATIENCE_WITH_CHILDREN;
     silent_rounds(&mut robot, 1);
     assert_eq!(hears(&robot), [1]);
     robot.period += 1;
