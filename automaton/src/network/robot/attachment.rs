@@ -68,7 +68,7 @@ impl Robot {
     pub(super) fn count_unused_periods(&mut self) {
         let unused = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
             && !self.bears_branch()
-            && !self.is_orphan()
+            && !self.hears_no_parent()
             && !self.tree_is_frozen()
             && !self.is_engaged()
             && !self.duty.is_bound();
@@ -110,20 +110,24 @@ impl Robot {
         length <= self.build_length() * (1.0 + ROUNDING)
     }
 
+    /// Whether no robot that it hears holds the post that its own is attached to.
+    pub(super) fn is_orphan(&self) -> bool {
+        matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none()
+    }
+
     /// Whether it hears nobody that stands for what its post is attached to: no robot that holds that post, or
     /// not the access point.
-    pub(super) fn is_orphan(&self) -> bool {
+    fn hears_no_parent(&self) -> bool {
         match self.anchor() {
-            Some(Anchor::Post(_)) => self.named_parent().is_none(),
             Some(anchor @ Anchor::Access(_)) => self.neighbour_at(anchor).is_none(),
-            None => false,
+            _ => self.is_orphan(),
         }
     }
 
-    /// Once a period: for how long it has been an orphan.
+    /// Once a period: for how long it has not heard its parent.
     pub(super) fn count_orphaned_periods(&mut self) {
         let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
-        self.orphaned_periods = if self.is_orphan() { longer } else { 0 };
+        self.orphaned_periods = if self.hears_no_parent() { longer } else { 0 };
     }
 
     /// Another parent, where no robot has held the post for long that its own is attached to, or it is

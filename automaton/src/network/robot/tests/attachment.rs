@@ -204,9 +204,9 @@ fn a_fixed_post_changes_its_parent_when_its_access_point_is_not_heard_for_long()
     assert_eq!(orphan_of_access_point(40, 0), None, "it leads to the one that is not heard");
     let mut robot = robot();
     robot.holds(Post { parent: Some(Anchor::Access(0)), ..fixed(20, 0) });
-    assert!(robot.is_orphan());
+    assert!(robot.hears_no_parent());
     robot.hears(access_point(east(1.0)));
-    assert!(!robot.is_orphan());
+    assert!(!robot.hears_no_parent());
 }
 
 #[test]
