@@ -142,7 +142,7 @@ fn functions_have_no_product() {
         composition.product().map(|_| ()).map_err(|error| error.to_string())
     };
     let rest = || Flow::from(Charge::coordinates().charge.rate(0.0));
-    let function = Flow::field("rest", |state: &Charge| state.clone());
+    let function = Flow::field("rest", |state: &Charge| *state);
     let reset = Reset::new("empty", |state: &mut Charge| state.charge = 0.0);
     assert_eq!(composed(rest(), Reset::identity()), Ok(()));
     assert_eq!(

@@ -152,9 +152,9 @@ mod tests {
     #[test]
     fn formulas_have_kinks_and_jumps_where_their_parts_do() {
         let [x, y] = NAMES.map(variable);
-        let told = |formula: Expression| -> Vec<(f64, Vec<(usize, f64)>, bool)> {
-            let all = kinks(&formula).into_vec().into_iter();
-            all.map(|one| (one.constant, one.coefficients.to_vec(), one.are_jumps)).collect()
+        let told = |formula: Expression| {
+            let told = |one: &Kinks| (one.constant, one.coefficients.to_vec(), one.are_jumps);
+            kinks(&formula).iter().map(told).collect::<Vec<_>>()
         };
         assert_eq!(told((2.0 * &x - 1.0).abs()), [(-1.0, vec![(0, 2.0)], false)]);
         assert_eq!(told((2.0 * &x - 1.0).sign()), [(-1.0, vec![(0, 2.0)], true)]);
@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn the_points_of_a_table_are_passed_in_the_order_of_the_way() {
         let table = Table::linear([(0.0, 1.0), (1.0, 3.0), (3.0, 2.0)]);
-        let table = only(&table.expect("its points are in order").at(&variable("x")));
+        let table = only(&table.expect("its points are in order").at(variable("x")));
         let passed = |start: f64, rate: f64| ends(&table, [(start, rate), (0.0, 0.0)]);
         assert_eq!(passed(-1.0, 0.5), [2.0, 4.0, 8.0]);
         assert_eq!(passed(0.5, 0.5), [1.0, 5.0]);
