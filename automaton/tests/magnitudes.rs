@@ -143,6 +143,11 @@ fn spikes_of_rates_are_not_stepped_over() {
             assert!((found - exact).abs() < 1e-7 * exact, "{found} {exact} {width}");
         }
     }
+    // What is brief for a small variable is as much of it as for a large one.
+    let spike = (-((&clock - 50.0) / 1e-3).power(2.0)).exp();
+    let trajectory = run(body([1e-4, 0.0], [1e-3 * spike, constant(0.0)]), 100.0);
+    let found = trajectory.value("x", 100.0).expect("it lasts");
+    assert!((found - 1e-4 - 1e-6 * PI.sqrt()).abs() < 1e-8, "{found}");
     // A Lorentzian: its integral from far away is π.
     let lorentz = 1e4 / (1.0 + (1e4 * (&clock - 50.0)).power(2.0));
     let trajectory = run(body([0.0, 0.0], [lorentz, constant(0.0)]), 100.0);

@@ -27,9 +27,11 @@ mod models;
 #[cfg(feature = "network")]
 mod network_checks;
 mod pictures;
+mod products;
 mod records;
 mod sampled_rooms;
 mod semantics;
 mod sets;
 mod sliding;
+mod steps;
 mod two_forms;

@@ -1,7 +1,7 @@
 //! Pictures are well-formed, complete, and nothing in them lies on anything else.
 
 use crate::common::classics::{Ball, ball, gears, house, thermostat};
-use pleach_automaton::{Automaton, Trajectory, diagram, from};
+use pleach_automaton::{Automaton, Composition, Name, Record, Trajectory, diagram, from};
 use pleach_discrete::{self as discrete, Location};
 use pleach_guards::always;
 use proptest::prelude::*;
@@ -305,4 +305,21 @@ fn pictures_are_the_same_every_time() {
     for (one, other) in runs().iter().zip(&runs()) {
         assert_eq!(diagram::plot(one), diagram::plot(other));
     }
+}
+
+#[test]
+fn a_connection_shows_what_its_reader_calls_what_it_reads() {
+    let part = |coordinate: &str| {
+        let state = Record::new([(coordinate, 0.0)]).expect("there is one");
+        let only = Name::new("only");
+        let built = Automaton::<Name, Name, Record>::starting_in(only).initially(state).build();
+        built.expect("it is sound")
+    };
+    let read_as = |name: &str| {
+        let parts = Composition::builder().add("one", &part("T")).add("other", &part(name));
+        let pair = parts.connect("one.T", &format!("other.{name}")).build();
+        diagram::composition_mermaid(&pair.expect("the parts fit"))
+    };
+    assert!(read_as("T").contains("c0 == \"T\" ==> c1"), "{}", read_as("T"));
+    assert!(read_as("seen").contains("c0 == \"T → seen\" ==> c1"), "{}", read_as("seen"));
 }

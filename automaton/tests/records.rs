@@ -4,7 +4,7 @@
 
 use std::io::{self, Write};
 
-use pleach_automaton::composition::Method;
+use pleach_automaton::composition::{Method, ReplayError};
 use pleach_automaton::{
     Automaton, Builder, Composition, Failure, Flow, Reason, Settings, Trajectory, Why, coordinates,
     from,
@@ -72,6 +72,25 @@ fn rates_that_are_a_function_are_a_doubt_on_record() {
     let [doubt] = trajectory.doubts() else { panic!("{:?}", trajectory.doubts()) };
     assert_eq!((doubt.why, doubt.from, doubt.to), (Why::Field, 0.0, 3.0));
     assert!(doubt.to_string().contains("rates are a function"), "{doubt}");
+}
+
+/// A solution that turns fifty times as fast as time is followed in pieces that polynomials fit.
+#[test]
+fn events_of_a_fast_solution_are_found() {
+    let Plane { px, .. } = Plane::coordinates();
+    let turn = Flow::exact("turn", |state: &mut Plane, time| {
+        let (sine, cosine) = (50.0 * time).sin_cos();
+        let Plane { px, py } = *state;
+        (state.px, state.py) = (cosine * px - sine * py, sine * px + cosine * py);
+    });
+    let back = from(Running).on(Stop).to(Waiting).must(px.at_most(-0.5));
+    let turning = parts(Plane { px: 1.0, py: 0.0 }).flow(Running, turn).transition(back);
+    let trajectory = run_by(Method::Automatic, turning, 10.0);
+    let [jump] = trajectory.jumps() else { panic!("{:?}", trajectory.jumps()) };
+    let exact = std::f64::consts::TAU / 150.0;
+    assert!((jump.at.t - exact).abs() < 1e-9, "{} is not {exact}", jump.at.t);
+    let [doubt] = trajectory.doubts() else { panic!("{:?}", trajectory.doubts()) };
+    assert_eq!((doubt.why, doubt.from), (Why::Solution, 0.0));
 }
 
 /// After 2.5 s of waiting comes a flow that ends: ẏ = y² at 1 ÷ y₀ later, ẏ = √(1 − x) a second later.
@@ -154,4 +173,38 @@ fn doubts_name_their_components() {
     let trajectory = pair.run(1.0).unwrap();
     assert!(trajectory.doubts().iter().all(|doubt| doubt.components == [1]));
     assert_eq!(trajectory.doubts().len(), 1);
+}
+
+/// A record is replayed by the composition that it is of, down to the last bit.
+#[test]
+fn a_record_of_another_composition_is_not_replayed() {
+    let Plane { px, py } = Plane::coordinates();
+    let composed = |names: [&str; 2], start: f64| {
+        let moving =
+            parts(Plane { px: start, py: 0.0 }).flow(Running, [px.rate(1.0), py.rate(&px)]);
+        let moving = moving.build().unwrap();
+        let empty = Composition::builder().add(names[0], &moving);
+        empty.add(names[1], &moving).build().unwrap()
+    };
+    let record = composed(["a", "b"], 0.0).run(2.0).unwrap();
+    assert_eq!(composed(["a", "b"], 0.0).replay(&record), Ok(()));
+    let other = composed(["a", "c"], 0.0).replay(&record);
+    assert_eq!(other, Err(ReplayError::OtherComposition("variables")));
+    let differs = composed(["a", "b"], 1e-300).replay(&record);
+    assert!(matches!(differs, Err(ReplayError::Diverged { at }) if at.t == 0.0), "{differs:?}");
+    let still = |name: &str| {
+        let still =
+            Automaton::<Place, Cue, ()>::starting_in(Running).initially(()).build().unwrap();
+        Composition::builder().add(name, &still).build().unwrap()
+    };
+    let record = still("a").run(2.0).unwrap();
+    assert_eq!(still("a").replay(&record), Ok(()));
+    assert_eq!(still("b").replay(&record), Err(ReplayError::OtherComposition("components")));
+    let bare = Composition::builder().add("a", &common_place()).build().unwrap();
+    assert_eq!(bare.replay(&record), Err(ReplayError::OtherComposition("locations")));
+}
+
+/// An automaton with no variable and one location.
+fn common_place() -> Automaton<crate::common::classics::Motion, Cue, ()> {
+    Automaton::starting_in(crate::common::classics::Motion::Falling).initially(()).build().unwrap()
 }

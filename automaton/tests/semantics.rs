@@ -290,3 +290,17 @@ fn a_component_may_begin_with_its_inputs() {
         assert!(total.is_some_and(|total| (total - 2.25).abs() < 1e-12), "{total:?}");
     }
 }
+
+/// What only may be taken waits for the end of an invariant, not for what has to be taken.
+#[test]
+fn what_has_to_be_taken_right_after_an_instant_goes_before_what_may_be_taken_at_it() {
+    let Clock { time, .. } = Clock::coordinates();
+    let machine = built(
+        clock()
+            .transition(from(Here).on(Go).to(There).may(time.at_most(1.0)))
+            .transition(from(Here).on(Stay).to(Beyond).must(time.more_than(1.0))),
+    );
+    let settings = Settings { policy: Policy::Late, ..Settings::default() };
+    let trajectory = machine.run_with(settings, 2.0).expect("the machine can be run");
+    assert_eq!(labels(&trajectory), [(1f64.next_up(), 0, "stay")]);
+}

@@ -56,6 +56,19 @@ fn tells(trajectory: &Trajectory, expected: &[(f64, &str)], tolerance: f64) {
     }
 }
 
+/// Jumps back and forth are sliding only where both flows lead to the boundary.
+#[test]
+fn jumps_back_and_forth_along_one_flow_are_no_sliding() {
+    let Point { x } = Point::coordinates();
+    let reason = |there: f64, back: f64| {
+        let parts = sides(Point { x: -1.0 }, x.at_least(0.0), x.at_most(0.0));
+        let both = parts.flow(Before, x.rate(there)).flow(Behind, x.rate(back));
+        both.build().expect("it is sound").run(2.0).expect("it can be run").ending().reason.clone()
+    };
+    assert!(matches!(reason(1.0, -1.0), Reason::Sliding(_)));
+    assert_eq!(reason(1.0, 1.0), Reason::JumpLimit);
+}
+
 #[test]
 fn the_opposite_of_the_sign_comes_to_rest_with_closed_and_with_strict_guards() {
     let Point { x } = Point::coordinates();

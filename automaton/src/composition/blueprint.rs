@@ -292,3 +292,42 @@ fn place_of(names: &[&'static str], name: &str) -> Result<usize, EvaluationError
     let unknown = || EvaluationError::UnknownVariable { variable: name.to_owned() };
     names.iter().position(|listed| *listed == name).ok_or_else(unknown)
 }
+
+#[cfg(test)]
+mod tests {
+    use pleach_guards::{Table, constant, piecewise, variable};
+
+    use super::*;
+
+    #[test]
+    fn what_may_grow_without_bound_are_logarithms_tangents_and_quotients() {
+        let [x, y] = ["x", "y"].map(variable);
+        let table = Table::linear([(0.0, 1.0), (1.0, 2.0)]).expect("its points are in order");
+        let cases = |then: Expression, otherwise: &Expression| {
+            piecewise([(x.at_most(0.0), then)], otherwise).expect("there is a comparison")
+        };
+        let bounded = [
+            constant(1.0),
+            x.sin() * y.exp() - x.min(&y),
+            x.power(2.0) + x.power(0.5) + x.power(0.0),
+            &x / 2.0,
+            table.at(1.0 / &x),
+            cases(y.power(3.0), &x),
+        ];
+        let unbounded = [x.ln(), x.tan(), 1.0 / &x, &x / 0.0, x.power(-1.0)];
+        assert!(!bounded.iter().any(may_be_unbounded));
+        for formula in &unbounded {
+            let around = [
+                formula.clone(),
+                formula.sin(),
+                formula.power(2.0),
+                formula / 2.0,
+                &x + formula,
+                formula * &x,
+                cases(formula.clone(), &x),
+                cases(x.clone(), formula),
+            ];
+            assert!(around.iter().all(may_be_unbounded), "{formula}");
+        }
+    }
+}

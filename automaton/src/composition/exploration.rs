@@ -350,6 +350,7 @@ mod tests {
         let forced = automaton(always());
         assert_eq!((forced.states().len(), forced.transitions()), (2, 1));
         assert!(forced.find(|state| state.location(0) == Some("there")).is_none());
+        assert!(forced.find(|state| state.location(0) == Some("nowhere")).is_some());
         let free = automaton(never());
         assert_eq!((free.states().len(), free.transitions()), (2, 1));
         assert!(free.find(|state| state.location(0) == Some("nowhere")).is_none());

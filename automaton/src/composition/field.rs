@@ -319,11 +319,10 @@ impl<'a> Field<'a> {
     /// Whether there are rates of which the next kink has to be asked for.
     pub(super) fn has_known_kinks(&self) -> bool {
         let has_kinks = |rate: &RateProgram| !rate.kinks.is_empty();
-        self.hold.is_none()
-            && self.moving.iter().any(|(_, mode)| match &mode.motion {
-                ModeMotion::Rates(rates) => rates.iter().any(has_kinks),
-                ModeMotion::Field(_) | ModeMotion::Exact(_) => false,
-            })
+        self.moving.iter().any(|(_, mode)| match &mode.motion {
+            ModeMotion::Rates(rates) => rates.iter().any(has_kinks),
+            ModeMotion::Field(_) | ModeMotion::Exact(_) => false,
+        })
     }
 
     /// Rates that could grow without bound, with where their variables are.

@@ -116,3 +116,91 @@ impl Kinks {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pleach_guards::{Table, variable};
+
+    use super::*;
+
+    const NAMES: [&str; 2] = ["x", "y"];
+
+    /// The kinks of a formula of x and y.
+    fn kinks(formula: &Expression) -> Box<[Kinks]> {
+        Kinks::of(formula, &NAMES).expect("it is of x and y alone")
+    }
+
+    /// Its only kinks.
+    fn only(formula: &Expression) -> Kinks {
+        let [only] = <[Kinks; 1]>::try_from(kinks(formula).into_vec())
+            .unwrap_or_else(|all| panic!("{} kinks", all.len()));
+        only
+    }
+
+    /// All times at which steps end where x and y begin and move so.
+    fn ends(kinks: &Kinks, motion: [(f64, f64); 2]) -> Vec<f64> {
+        let mut ends = Vec::new();
+        while let Some(next) =
+            kinks.next(ends.last().copied().unwrap_or(0.0), |at| Some(motion[at]))
+        {
+            ends.push(next);
+            assert!(ends.len() < 10, "steps go on");
+        }
+        ends
+    }
+
+    #[test]
+    fn formulas_have_kinks_and_jumps_where_their_parts_do() {
+        let [x, y] = NAMES.map(variable);
+        let told = |formula: Expression| {
+            let told = |one: &Kinks| (one.constant, one.coefficients.to_vec(), one.are_jumps);
+            kinks(&formula).iter().map(told).collect::<Vec<_>>()
+        };
+        assert_eq!(told((2.0 * &x - 1.0).abs()), [(-1.0, vec![(0, 2.0)], false)]);
+        assert_eq!(told((2.0 * &x - 1.0).sign()), [(-1.0, vec![(0, 2.0)], true)]);
+        let apart = [(0.0, vec![(0, 1.0), (1, -3.0)], false)];
+        assert_eq!(told(x.min(3.0 * &y)), apart);
+        assert_eq!(told(x.max(3.0 * &y).power(2.0).sin()), apart);
+        assert!(told(&x * &y + x.sin()).is_empty() && told((&x * &y).abs()).is_empty());
+        assert_eq!(told(x.abs() + y.sign()).len(), 2);
+    }
+
+    /// 2x − 3y + 1 begins at −3 and rises by 1.75 a second.
+    #[test]
+    fn steps_end_at_a_kink_and_on_both_sides_of_a_jump() {
+        let [x, y] = NAMES.map(variable);
+        let line = 2.0 * &x - 3.0 * &y + 1.0;
+        let motion = [(1.0, 0.5), (2.0, -0.25)];
+        let (time, size) = (3.0 / 1.75, 9.0);
+        let found = ends(&only(&line.abs()), motion);
+        assert!(matches!(found[..], [end] if (end - time).abs() < 1e-15), "{found:?}");
+        let found = ends(&only(&line.sign()), motion);
+        let [before, after] = found[..] else { panic!("{found:?}") };
+        let beside = BESIDE * (time + size / 1.75);
+        assert!(((before + after) / 2.0 - time).abs() < 1e-15, "{found:?}");
+        assert!(((after - before) / 2.0 / beside - 1.0).abs() < 0.01, "{found:?}");
+        assert!(ends(&only(&line.abs()), [(3.0, 0.5), (2.0, -0.25)]).is_empty(), "it is passed");
+        assert!(ends(&only(&line.abs()), [(1.0, 1.5), (2.0, 1.0)]).is_empty(), "it stands still");
+        assert_eq!(only(&line.abs()).next(0.0, |at| (at == 0).then_some((1.0, 0.5))), None);
+    }
+
+    #[test]
+    fn the_points_of_a_table_are_passed_in_the_order_of_the_way() {
+        let table = Table::linear([(0.0, 1.0), (1.0, 3.0), (3.0, 2.0)]);
+        let table = only(&table.expect("its points are in order").at(variable("x")));
+        let passed = |start: f64, rate: f64| ends(&table, [(start, rate), (0.0, 0.0)]);
+        assert_eq!(passed(-1.0, 0.5), [2.0, 4.0, 8.0]);
+        assert_eq!(passed(0.5, 0.5), [1.0, 5.0]);
+        assert_eq!(passed(4.0, -2.0), [0.5, 1.5, 2.0]);
+        assert_eq!(passed(1.0, -1.0), [1.0], "it begins on a point");
+        assert!(passed(4.0, 1.0).is_empty() && passed(-1.0, -1.0).is_empty());
+    }
+
+    #[test]
+    fn kinks_are_known_where_all_that_decides_moves_along_lines() {
+        let [x, y] = NAMES.map(variable);
+        let both = only(&(&x + &y).abs());
+        assert!(both.are_known(|_| true) && !both.are_known(|at| at == 0));
+        assert!(only(&x.abs()).are_known(|at| at == 0));
+    }
+}

@@ -124,8 +124,8 @@ pub(super) struct Tension<'a> {
     conditions: Conditions<'a>,
     /// By component of the group: what is known of its invariant, then of its transitions.
     known: Vec<Vec<Box<[Knowledge]>>>,
-    /// The open span of time, in seconds since the start of the flow, that is looked at.
-    window: (Moment, Moment),
+    /// Where the span of time begins that is looked at, up to the next switch; since the start of the flow.
+    window: Moment,
     /// The margins that are polynomials, on the piece of the flow that was looked at last.
     margins: Option<Margins>,
     /// The span of time of that piece in which they are looked at now.
@@ -172,7 +172,7 @@ impl<'a> Tension<'a> {
             let others = transitions.map(|leaving| knowledge(index, &leaving.guard, 0.0));
             std::iter::once(first).chain(others).collect()
         });
-        let window = (Moment::default(), Moment::default());
+        let window = Moment::default();
         Tension { conditions, known: known.collect(), window, margins: None, span: None }
     }
 
@@ -189,9 +189,9 @@ impl<'a> Tension<'a> {
         switches
     }
 
-    /// Looks at the open span between these times from now on, in which nothing switches.
-    pub(super) fn set_window(&mut self, from: Moment, to: Moment) {
-        self.window = (from, to);
+    /// Looks at the open span from this time up to the next switch from now on.
+    pub(super) fn set_window(&mut self, from: Moment) {
+        self.window = from;
     }
 
     /// What is known of the tension in the window without following any curve.
@@ -272,7 +272,6 @@ impl<'a> Tension<'a> {
         context: &Follow<'_>,
     ) -> Course {
         let known = &self.known[number][condition];
-        let (from, to) = self.window;
         let slots = self.conditions.standing.slots(component);
         let course = |comparison: usize| match known.get(comparison)? {
             Knowledge::Nothing if context.slack == 0.0 => {
@@ -282,9 +281,8 @@ impl<'a> Tension<'a> {
             }
             Knowledge::Nothing => None,
             Knowledge::Fixed(holds) => Some((*holds).into()),
-            Knowledge::Switch(time, after) if *time <= from => Some((*after).into()),
-            Knowledge::Switch(time, after) if *time >= to => Some((!*after).into()),
-            Knowledge::Switch(..) => None,
+            // Nothing switches within the window.
+            Knowledge::Switch(time, after) => Some((*after == (*time <= self.window)).into()),
         };
         tracker.course(context.states, slots, context.half_width, context.slack, &course)
     }

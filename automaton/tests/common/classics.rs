@@ -1,6 +1,6 @@
 //! Small models as textbooks show them, for everything that is drawn.
 
-use pleach_automaton::{Automaton, Composition, coordinates, from};
+use pleach_automaton::{Automaton, Composition, CompositionBuilder, coordinates, from};
 use pleach_discrete::vocabulary;
 use pleach_guards::always;
 
@@ -57,6 +57,11 @@ pub fn thermostat() -> Automaton<Heater, Switch, Room> {
 
 /// A heater that only does as it is told, and a controller that sees the temperature.
 pub fn house() -> Composition {
+    house_parts().build().expect("the parts fit")
+}
+
+/// The same, for more to be added.
+pub fn house_parts() -> CompositionBuilder {
     use Heater::{Off, On};
     use Switch::{TurnOff, TurnOn};
     let Room { temperature } = Room::coordinates();
@@ -82,8 +87,6 @@ pub fn house() -> Composition {
         .connect("heater.T", "controller.T")
         .label("turn on")
         .label("turn off")
-        .build()
-        .expect("the parts fit")
 }
 
 /// Four gears with transitions of every kind: between neighbours, over several locations, loops,

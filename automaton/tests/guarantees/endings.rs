@@ -4,7 +4,7 @@ use pleach_automaton::{Automaton, Failure, Limit, Reason, Settings, from};
 
 use super::Cue::{Go, Rest};
 use super::Place::{Here, There};
-use super::{Machine, Plane, ball_and_table, built, go, metronome, ramp, run, times, x};
+use super::{Body, Machine, One, Plane, ball_and_table, built, go, metronome, ramp, run, times, x};
 
 #[test]
 fn a_flow_ends_where_it_is_singular() {
@@ -83,6 +83,58 @@ fn limits_end_a_run_with_instant_and_reason() {
     assert_eq!(trajectory.ending().reason, Reason::Limit(Limit::Steps(100)));
     let at = trajectory.ending().at.t;
     assert!(at < 1e6 && trajectory.value("x", at).is_some_and(|x| (x - at).abs() < 1e-9));
+}
+
+/// Limits count in long flows, too, also where nothing but a clock ends them.
+#[test]
+fn limits_end_a_flow_without_jumps() {
+    let Body { h, v, clock } = Body::coordinates();
+    let swing: Machine<Body> = built(
+        Automaton::starting_in(Here)
+            .initially(Body { h: 1.0, v: 0.0, clock: 0.0 })
+            .flow(Here, [h.rate(&v), v.rate(-h.power(3.0)), clock.rate(1.0)])
+            .transition(from(Here).on(Go).to(There).must(clock.at_least(1e6))),
+    );
+    for (settings, limit) in [
+        (Settings { step_limit: 100, ..Settings::default() }, Limit::Steps(100)),
+        (Settings { memory_limit: 100_000, ..Settings::default() }, Limit::Memory(100_000)),
+    ] {
+        let trajectory = swing.run_with(settings, 2e6).expect("it can be run");
+        assert_eq!(trajectory.ending().reason, Reason::Limit(limit));
+        assert!(trajectory.ending().at.t < 1e5, "{:?}", trajectory.ending());
+    }
+}
+
+/// What is infinite from the start on is no overflow, of this variable or another.
+#[test]
+fn a_variable_may_be_infinite_from_the_start_on() {
+    let Plane { px, py } = Plane::coordinates();
+    let beside: Machine<Plane> = built(
+        Automaton::starting_in(Here)
+            .initially(Plane { px: 0.0, py: 1.0 })
+            .flow(Here, [px.rate(0.0), py.rate(-1.0 * &py)]),
+    );
+    let start = Plane { px: f64::INFINITY, py: 1.0 };
+    let trajectory = beside.run_from(start, 3.0).expect("it can be run");
+    assert_eq!(trajectory.ending().reason, Reason::Horizon);
+    assert_eq!(trajectory.value("x", 2.0), Some(f64::INFINITY));
+    assert!(trajectory.value("y", 3.0).is_some_and(|y| (y - (-3f64).exp()).abs() < 1e-9));
+}
+
+/// Where the state is coarser than time, an invariant ends many numbers of seconds before it is violated.
+#[test]
+fn a_flow_ends_at_the_last_instant_within_an_invariant() {
+    let from = 1e6;
+    let ramp: Machine<One> = built(
+        Automaton::starting_in(Here)
+            .initially(One { x: from })
+            .flow(Here, x().rate(1.0))
+            .invariant(Here, x().at_most(from + 1.0)),
+    );
+    let trajectory = run(&ramp, 3.0);
+    assert_eq!(trajectory.ending().reason, Reason::Blocked);
+    let end = trajectory.ending().at.t;
+    assert!(from + end <= from + 1.0 && from + end.next_up() > from + 1.0, "{end}");
 }
 
 /// Where no time can pass from the start on, the ending says which invariant is in the way.

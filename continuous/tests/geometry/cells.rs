@@ -53,7 +53,8 @@ fn ways_may_touch_corners_of_the_sight_set() {
     let edges = plain::edges(workspace.polygons());
     let sight_offset = 0.125 + free_space.tolerance() / 2.0;
     let mut touching = 0;
-    for (step, gap) in (1..60).zip([0.0, 2e-16, 1e-15, 1e-13].into_iter().cycle()) {
+    let gaps = [0.0, 2e-16, 1e-15, 1e-13, 1e-9, 1e-6, 5e-4].into_iter();
+    for (step, gap) in (1..60).zip(gaps.cycle()) {
         let corner = Point::new(1.0 - sight_offset - gap, 1.0 - sight_offset - gap);
         let slope = f64::from(step % 7 + 1) / 4.0;
         let along = Vector::new(-1.0, slope).normalize() * (f64::from(step) * 0.003);

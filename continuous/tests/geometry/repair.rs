@@ -125,6 +125,18 @@ fn what_crosses_or_overlaps_stays_an_error() {
     assert!(matches!(Workspace::repaired(infinite, vec![]), Err(WorkspaceError::NotFinite { .. })));
 }
 
+#[test]
+fn what_is_wrong_besides_contact_is_told_of_the_map_as_it_was_given() {
+    let mut twice = room();
+    twice.insert(1, twice[0]);
+    let outside = vec![ring(&[(9.0, 9.0), (10.0, 9.0), (10.0, 10.0), (9.0, 10.0)])];
+    let refused = Workspace::repaired(twice.clone(), outside);
+    assert!(matches!(refused, Err(WorkspaceError::HoleOutside { hole: 0, .. })), "{refused:?}");
+    twice[4].y = f64::INFINITY;
+    let refused = Workspace::repaired(twice, vec![]);
+    assert!(matches!(refused, Err(WorkspaceError::NotFinite { vertex: 4, .. })), "{refused:?}");
+}
+
 proptest! {
     /// What is right is left as it is; with a hole shifted onto the wall, points keep their distance.
     #[test]

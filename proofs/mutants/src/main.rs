@@ -44,6 +44,9 @@ struct Arguments {
     /// Runs a sample, one mutant in this many
     #[arg(long, default_value_t = 1)]
     one_in: usize,
+    /// How many mutants come before the first one of the sample
+    #[arg(long, default_value_t = 0)]
+    after: usize,
     /// Only the mutants whose names stand at the ends of lines of this file
     #[arg(long)]
     only: Option<PathBuf>,
@@ -89,7 +92,8 @@ fn chosen(root: &Path, arguments: &Arguments) -> Result<Vec<Mutant>, Error> {
         let names = fs::read_to_string(only)?;
         mutants.retain(|mutant| names.lines().any(|line| line.ends_with(&mutant.name)));
     }
-    let mutants: Vec<Mutant> = mutants.into_iter().step_by(arguments.one_in.max(1)).collect();
+    let sample = mutants.into_iter().skip(arguments.after).step_by(arguments.one_in.max(1));
+    let mutants: Vec<Mutant> = sample.collect();
     if mutants.is_empty() { Err(Error::Nothing(arguments.package.clone())) } else { Ok(mutants) }
 }
 

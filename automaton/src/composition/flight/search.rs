@@ -100,7 +100,7 @@ impl<'a> Search<'a, '_> {
         let mut from = zero;
         for to in switches.into_iter().filter(|time| *time <= last).chain([last]) {
             if to > from {
-                self.tension.set_window(from, to);
+                self.tension.set_window(from);
                 match self.tension.known_course() {
                     Course::Never => {}
                     // No time can pass: what can be taken is taken at this very instant.
@@ -295,7 +295,7 @@ impl<'a> Search<'a, '_> {
 
     /// Takes note of it if, at the time at which the run ends, it is undecided whether something happens.
     pub(super) fn doubt_last(&mut self, time: f64) -> Result<(), Stop> {
-        self.tension.set_window(Moment::from(time), Moment::from(time));
+        self.tension.set_window(Moment::from(time));
         if self.tension.known_course() == Course::Never {
             return Ok(());
         }

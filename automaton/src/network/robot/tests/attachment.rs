@@ -222,6 +222,23 @@ fn periods_without_a_parent_are_counted_from_the_last_one_with_it() {
     assert_eq!(robot.orphaned_periods, 0);
 }
 
+/// A way through its own post leads nowhere; a parent that is silent is waited for.
+#[test]
+fn a_robot_follows_the_way_of_its_parent() {
+    let after = |told: &[u32]| {
+        let mut robot = robot();
+        robot.holds(redundant(0, 11));
+        for posts in [&[11, 13], told] {
+            robot.hears(beacon(1, east(0.5), fixed(11, 13), posts));
+            robot.trace_lineage().expect("its guards have values");
+        }
+        robot.lineage().cloned()
+    };
+    assert_eq!(after(&[11, 14]), way(&[0, 11, 14]));
+    assert_eq!(after(&[11, 0, 13]), None);
+    assert_eq!(after(&[]), way(&[0, 11, 13]));
+}
+
 /// p₁ with its parent 1.0 to the west, the task far to the east, and another node.
 fn reattached(node: Beacon) -> Option<Option<Anchor>> {
     let mut robot = robot();

@@ -1,6 +1,9 @@
 //! What a robot makes of errors of its position and its moves.
 
+use pleach_discrete::network::MissionStep;
+
 use super::super::super::duty::{Hop, PathPlace};
+use super::super::duties::Label;
 use super::*;
 
 const POSITION_ERROR: f64 = 0.01;
@@ -145,6 +148,47 @@ fn a_robot_has_arrived_near_its_place_or_behind_one_that_has() {
     let mut last = shifting(queue - LITTLE, true);
     last.duty = Current::new(Duty::Shifting(Shifting { place: 2, left: None }));
     assert!(!last.has_arrived(), "the break point at the end is of another subgroup");
+}
+
+/// One that queues behind the next holds the post where it stands.
+#[test]
+fn a_post_is_held_at_its_place_by_a_robot_that_has_come_there() {
+    let reference = |away: f64| {
+        let mut robot = shifting(0.5, true);
+        robot.position = east(1.0 - away);
+        robot.measures();
+        let jump = robot.jump_duty(Label::Mission(MissionStep::SubgroupArrived));
+        assert!(jump.expect("its guards have values").is_some());
+        robot.duty.station().expect("it holds a post").reference
+    };
+    let (near, far) = (SERVICE_RADIUS - LITTLE, SERVICE_RADIUS + LITTLE);
+    assert_eq!((reference(near), reference(far)), (east(1.0), east(1.0 - far)));
+}
+
+/// A robot whose task is announced again goes back to the post that it left, unless the robot behind takes
+/// that; one that has reported its arrival takes the post ahead if the robot there has done so, too.
+#[test]
+fn a_path_that_is_given_up_leaves_each_robot_a_post_of_its_own() {
+    let coming = |place: usize, left: Option<u32>, reported: &[usize], arrived: usize| {
+        let mut robot = shifting(0.5, false);
+        robot.duty = Current::new(Duty::Shifting(Shifting { place, left: left.map(PostId) }));
+        let agreement = robot.agreement.as_mut().expect("it is on a path");
+        reported.iter().for_each(|&place| agreement.arrive(place));
+        if let Mission::Shift(shift) = &*robot.mission {
+            robot.mission = Current::new(Mission::Shift(Shift { arrived, ..shift.clone() }));
+        }
+        assert_eq!(robot.coming_post().map(|post| post.id), Some(PostId(place as u32 + 1)));
+        robot.label = Label::Mission(MissionStep::Announced);
+        let post = robot.coming_post().expect("it is on its way");
+        (post.id != robot.new_post().id).then_some(post.id.0)
+    };
+    assert_eq!(coming(0, None, &[], 0), Some(0), "it is the recruit: nobody is behind it");
+    assert_eq!(coming(0, Some(0), &[], 0), None, "the robot behind comes from another subgroup");
+    assert_eq!(coming(1, Some(1), &[], 0), Some(1), "the robot behind waits for its report");
+    assert_eq!(coming(1, Some(1), &[], 1), None, "its subgroup has arrived");
+    assert_eq!(coming(0, None, &[0, 1], 0), Some(1));
+    assert_eq!(coming(0, None, &[0], 0), None, "the robot ahead may come back");
+    assert_eq!(coming(2, Some(2), &[2, 3], 0), None, "the post ahead is of another subgroup");
 }
 
 #[test]

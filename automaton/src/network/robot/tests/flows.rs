@@ -125,6 +125,7 @@ fn no_more_is_granted_than_is_forwarded() {
         robot.adopt_flows();
         assert!((robot.residual - (spare - expected)).abs() < 1e-9, "{}", robot.residual);
         assert_eq!(robot.senders().count(), usize::from(expected > 0.0));
+        assert_eq!(robot.inflows.len(), robot.senders().count());
         assert!((robot.inflow - expected).abs() < 1e-9);
     }
 }
