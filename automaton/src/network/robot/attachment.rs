@@ -117,7 +117,7 @@ impl Robot {
 
     /// Whether it hears nobody that stands for what its post is attached to: no robot that holds that post, or
     /// not the access point.
-    fn hears_no_parent(&self) -> bool {
+    pub(super) fn hears_no_parent(&self) -> bool {
         match self.anchor() {
             Some(anchor @ Anchor::Access(_)) => self.neighbour_at(anchor).is_none(),
             _ => self.is_orphan(),
