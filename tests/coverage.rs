@@ -58,7 +58,6 @@ const REASONS: &[([&str; 4], &str)] = &[
         "another access point has gone on although this one has not heard of it",
     ),
     (["user", "asking", "missed", ""], "the first access point stops before it announces a task"),
-    (["user", "deserted", "", ""], "the mission is over then"),
     (["user", "", "", ""], "the message from the access point is late or repeated"),
 ];
 
