@@ -57,6 +57,7 @@ const REASONS: &[([&str; 4], &str)] = &[
         ["service", "", "heard", ""],
         "another access point has gone on although this one has not heard of it",
     ),
+    (["user", "asking", "missed", ""], "the first access point stops before it announces a task"),
     (["user", "", "", ""], "the message from the access point is late or repeated"),
 ];
 
@@ -128,6 +129,7 @@ const STORMS: &[(&str, Kind, u64)] = &[
     ("study-2", Kind::Everything, 0),
     ("study-2", Kind::Everything, 1),
     ("corridor", Kind::Everything, 2),
+    ("corridor", Kind::AccessPoint, 1),
 ];
 const DURATION_OF_STORMS: f64 = 300.0;
 const HORIZON_OF_STORMS: f64 = 900.0;

@@ -219,6 +219,29 @@ fn the_mission_goes_on_when_the_first_access_point_restarts() {
     }
 }
 
+/// Where another access point is in reach, robots attach to that; without the first one, the user is told.
+#[test]
+fn an_access_point_that_stops_is_replaced_by_another_or_named() {
+    let scenario = shipped("study-2");
+    let robots = scenario.robot.len();
+    let becomes_of = |access_point: usize, time| {
+        let crash = Some(Crash { time, inputs: 0, back: None });
+        let trouble = Trouble { crash, ..Trouble::default() };
+        let troubles = vec![(robots + access_point, trouble)];
+        let storm = Storm { troubles, ..Storm::default() };
+        let verdict = ride(&scenario, &storm, 1_500).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "access point {access_point}, {time} s");
+        verdict.end.unwrap_or_else(|| panic!("access point {access_point}, {time} s: no end"))
+    };
+    for time in [30.0, 150.0, 300.0] {
+        let end = becomes_of(1, time);
+        assert_eq!(end.outcome, Outcome::Serviced, "{time} s: {}", end.reason);
+        let end = becomes_of(0, time);
+        assert_eq!(end.outcome, Outcome::Blocked, "{time} s: {}", end.reason);
+        assert!(end.reason.contains("access point 0 has not been heard of"), "{}", end.reason);
+    }
+}
+
 /// A robot that stops is given up, and nothing breaks. The others go round it and service all tasks, but
 /// where it stands in the only way.
 #[test]

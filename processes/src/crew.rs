@@ -99,8 +99,8 @@ impl Seat {
     }
 
     /// How the mission has ended, if it is the user and knows it.
-    pub fn announced_end(&self) -> Option<End> {
-        self.member.view().user()?.announced_end()
+    pub fn known_end(&self) -> Option<End> {
+        self.member.view().user()?.known_end()
     }
 }
 

@@ -451,7 +451,7 @@ impl<'a> Process<'a> {
                 step: period as usize,
                 robot: seat.robot_report(),
                 events: std::mem::take(events),
-                end: seat.announced_end().map(Into::into),
+                end: seat.known_end().map(Into::into),
                 tally,
             };
             sender.report(serde_json::to_vec(&report).map_err(internal)?);

@@ -197,8 +197,8 @@ impl<M, N: RobotNode> Network<M, N> {
     }
 
     /// How the mission has ended, as the user knows it.
-    fn announced_end(&self) -> Option<End> {
-        self.members().find_map(|member| member.view().user())?.announced_end()
+    fn known_end(&self) -> Option<End> {
+        self.members().find_map(|member| member.view().user())?.known_end()
     }
 }
 
@@ -235,10 +235,10 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
         }
         let limit = self.site.settings.max_steps;
         let running = || self.nodes.nodes().iter().filter(|node| node.is_running());
-        let is_active = |robot: RobotView<'_>| robot.is_active();
+        let may_move = |robot: RobotView<'_>| robot.is_active() && robot.is_called();
         let is_at_rest =
-            || !running().any(|node| node.member().view().robot().is_some_and(is_active));
-        self.announced_end()
+            || !running().any(|node| node.member().view().robot().is_some_and(may_move));
+        self.known_end()
             .filter(|_| is_at_rest())
             .or_else(|| (self.step >= limit).then(|| End::at_step_limit(limit)))
     }

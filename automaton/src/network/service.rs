@@ -95,6 +95,8 @@ crate::places_of! {
         Waiting(Waiting),
         /// It knows that the mission has ended.
         Informed(Informed),
+        /// The first access point counts as stopped.
+        Deserted(Deserted),
     }
 }
 
@@ -113,3 +115,7 @@ pub struct Waiting;
 /// The data of [`Request::Informed`]: none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Informed;
+
+/// The data of [`Request::Deserted`]: none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Deserted;

@@ -12,9 +12,9 @@ use super::act::{Act, acting};
 use super::beacon::{Bulletin, Notice};
 use super::member::Sense;
 use super::message::Message;
-use super::record::{End, MissionEvent};
+use super::record::{End, MissionEvent, Outcome};
 use super::robot::{RobotError, RobotFault};
-use super::service::{Asked, Asking, Informed, Preparing, Waiting};
+use super::service::{Asked, Asking, Deserted, Informed, Preparing, Waiting};
 use super::shared::Shared;
 use super::site::Site;
 use crate::located::{Current, DataOf, Holds, Place as _};
@@ -24,7 +24,8 @@ use crate::{Automaton, BuildError, Flow, Transfer};
 /// A user sends its tasks to the first access point and receives notices from it.
 ///
 /// The network is given one control period to connect. The user then repeats its request in every
-/// period until the mission ends: an access point that restarts has forgotten it.
+/// period until the mission ends: an access point that restarts has forgotten it. If the access point
+/// stops for good, the mission ends for the user.
 #[derive(Clone, Debug)]
 pub struct User {
     site: Arc<Site>,
@@ -34,7 +35,13 @@ pub struct User {
     tasks: Arc<[Point]>,
     news: Bulletin,
     clock: f64,
+    /// Control periods that are over since the first access point was heard.
+    silence: u32,
 }
+
+/// Control periods after which the first access point counts as stopped, beside those for which robots may
+/// still move.
+const PATIENCE: u32 = 100;
 
 /// What a user does when it takes a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +49,8 @@ pub struct User {
 pub enum UserAct {
     /// τ := 0.
     RestartClock,
+    /// Another control period without news.
+    CountSilence,
     /// It sends its tasks to the first access point.
     Ask,
 }
@@ -61,6 +70,10 @@ crate::observed! {
         clock: user.clock,
         /// Δt: seconds from sample to sample.
         period: user.site.settings.period,
+        /// Control periods that are over since the first access point was heard.
+        silence: f64::from(user.silence),
+        /// Control periods after which it counts as stopped: no robot moves any more.
+        patience: f64::from(user.patience()),
     }
     propositions {
         /// The first access point has answered its request.
@@ -90,6 +103,7 @@ impl Act for UserAct {
     fn name(self) -> &'static str {
         match self {
             UserAct::RestartClock => "τ := 0",
+            UserAct::CountSilence => "count the silence",
             UserAct::Ask => "ask for the tasks",
         }
     }
@@ -110,8 +124,9 @@ fn row<A: DataOf<Asked>, B: DataOf<Asked>>(
 /// Never with the table and guards of this crate; they are checked all the same.
 pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
     use RequestEvent as On;
-    use UserAct::{Ask, RestartClock};
-    use guards::{another_period, answer_heard, prepared, request_over};
+    use UserAct::{Ask, CountSilence, RestartClock};
+    use guards::{access_point_missed, another_period, answer_heard, prepared, request_over};
+    const ANOTHER_PERIOD: UserActs = &[RestartClock, CountSilence, Ask];
     let builder = Automaton::builder(REQUESTS, Request::Preparing).observing();
     let builder = Request::ALL.iter().fold(builder, |builder, &location| {
         let flow = Flow::exact("τ̇ = 1", |user: &mut User, duration| user.clock += duration);
@@ -121,17 +136,18 @@ pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
         .carried_out(row(On::Prepared, prepared(), &[RestartClock], |_: &Preparing| Asking))
         .carried_out(row(On::AnswerHeard, answer_heard(), &[], |_: &Preparing| Waiting))
         .carried_out(row(On::EndHeard, request_over(), &[], |_: &Preparing| Informed))
-        .carried_out(row(On::PeriodOver, another_period(), &[RestartClock, Ask], |_: &Asking| {
-            Asking
-        }))
+        .carried_out(row(On::PeriodOver, another_period(), ANOTHER_PERIOD, |_: &Asking| Asking))
         .carried_out(row(On::AnswerHeard, answer_heard(), &[], |_: &Asking| Waiting))
         .carried_out(row(On::EndHeard, request_over(), &[], |_: &Asking| Informed))
-        .carried_out(row(On::PeriodOver, another_period(), &[RestartClock, Ask], |_: &Waiting| {
-            Waiting
-        }))
+        .carried_out(row(On::Missed, access_point_missed(), &[], |_: &Asking| Deserted))
+        .carried_out(row(On::PeriodOver, another_period(), ANOTHER_PERIOD, |_: &Waiting| Waiting))
         .carried_out(row(On::EndHeard, request_over(), &[], |_: &Waiting| Informed))
+        .carried_out(row(On::Missed, access_point_missed(), &[], |_: &Waiting| Deserted))
         .carried_out(row(On::PeriodOver, another_period(), &[RestartClock], |_: &Informed| {
             Informed
+        }))
+        .carried_out(row(On::PeriodOver, another_period(), &[RestartClock], |_: &Deserted| {
+            Deserted
         }))
         .build()
 }
@@ -145,6 +161,7 @@ impl User {
             tasks: Arc::from([]),
             news: Bulletin::first(Shared::new(Notice::Quiet)),
             clock: site.settings.period,
+            silence: 0,
             site,
         }
     }
@@ -159,14 +176,28 @@ impl User {
         self.news.notice()
     }
 
-    /// How the mission has ended, once it has heard so.
-    pub fn announced_end(&self) -> Option<End> {
-        match self.notice() {
-            Notice::Ended { outcome, reason, task } => {
+    /// How the mission has ended, once it has heard so or misses the first access point.
+    pub fn known_end(&self) -> Option<End> {
+        match (&*self.request, self.notice()) {
+            (Asked::Deserted(_), _) => Some(self.end_without_access_point()),
+            (_, Notice::Ended { outcome, reason, task }) => {
                 Some(End { outcome: *outcome, reason: reason.to_string(), task: *task })
             }
             _ => None,
         }
+    }
+
+    fn end_without_access_point(&self) -> End {
+        let reason = format!(
+            "access point 0 has not been heard of for {} control periods: without it no task is \
+             announced and no robot moves",
+            self.patience()
+        );
+        End { outcome: Outcome::Blocked, reason, task: None }
+    }
+
+    fn patience(&self) -> u32 {
+        PATIENCE + self.site.roll_validity()
     }
 
     /// Takes a row, if one is enabled.
@@ -176,6 +207,7 @@ impl User {
         for act in std::mem::take(&mut self.acts) {
             match act {
                 UserAct::RestartClock => self.clock = 0.0,
+                UserAct::CountSilence => self.silence = self.silence.saturating_add(1),
                 UserAct::Ask => {
                     outputs.send(self.desk(), Message::Request(Arc::clone(&self.tasks)))
                 }
@@ -201,6 +233,7 @@ impl Node for User {
             Input::Sensed(Sense::Tasks(tasks)) => self.tasks = tasks,
             Input::Heard { message: Message::News(news), .. } => {
                 self.news.merge(news);
+                self.silence = 0;
                 self.jump(outputs)?;
             }
             Input::Tick { .. } => self.jump(outputs)?,
@@ -227,5 +260,80 @@ impl Node for User {
     /// It stands at the first access point.
     fn body(&self) -> Point {
         self.site.access_points.first().copied().unwrap_or_else(Point::origin)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::super::scenario::Scenario;
+    use super::*;
+
+    fn user() -> User {
+        let hall: Scenario = serde_json::from_value(json!({
+            "name": "hall",
+            "workspace": {"boundary": [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]]},
+            "link": {"full_range": 1.0, "max_range": 2.0},
+            "control": {"clearance": 0.04, "service_radius": 0.2, "step_radius": 0.1},
+            "access_point": [{"position": [5.0, 5.0]}],
+            "robot": [{"position": [4.0, 5.0], "rate": 0.1}],
+            "task": [{"position": [8.0, 8.0]}],
+        }))
+        .expect("it is a scenario");
+        User::new(Arc::new(Site::new(&hall).expect("its numbers make sense")))
+    }
+
+    impl User {
+        /// The control periods of a user who hears this news at the beginning of some of them, until it
+        /// knows how the mission has ended.
+        fn waits_for_end(&mut self, news: &Bulletin, hears: impl Fn(u32) -> bool) -> u32 {
+            let (node, mut outputs) = (self.site.robots, Outputs::of(self.site.nodes()));
+            for period in 0..1_000 {
+                if hears(period) {
+                    let message = Message::News(news.clone());
+                    let heard = Input::Heard { from: node, message: &message };
+                    self.step(heard, &mut outputs).expect("it goes on");
+                }
+                for _ in 0..2 {
+                    self.step(Input::Tick { passed: 0 }, &mut outputs).expect("it goes on");
+                }
+                self.flow(self.time_to_tick().expect("it has a clock"));
+                if self.known_end().is_some() {
+                    return period;
+                }
+            }
+            1_000
+        }
+    }
+
+    #[test]
+    fn the_mission_ends_when_the_first_access_point_is_missed_for_long() {
+        let quiet = Bulletin::first(Shared::new(Notice::Quiet));
+        let patience = user().patience();
+        assert!(patience > user().site.roll_validity() + 60);
+        let ends_after = |hears: &dyn Fn(u32) -> bool| user().waits_for_end(&quiet, hears);
+        assert_eq!(ends_after(&|_| false), patience + 1, "one is for the network to connect");
+        assert_eq!(ends_after(&|period| period == 50), 50 + patience);
+        assert_eq!(ends_after(&|period| period % (patience - 1) == 0), 1_000);
+        let mut deserted = user();
+        deserted.waits_for_end(&quiet, |_| false);
+        let end = deserted.known_end().expect("it is over");
+        assert_eq!(end.outcome, Outcome::Blocked);
+        assert!(
+            end.reason.starts_with("access point 0 has not been heard of for"),
+            "{}",
+            end.reason
+        );
+    }
+
+    #[test]
+    fn a_user_that_has_heard_the_end_misses_nobody() {
+        let ended = Notice::Ended { outcome: Outcome::Serviced, reason: "done".into(), task: None };
+        let mut user = user();
+        let news = user.news.next(user.site.robots, Shared::new(ended));
+        assert_eq!(user.waits_for_end(&news, |period| period == 0), 0);
+        user.waits_for_end(&news, |_| false);
+        assert_eq!(user.known_end().map(|end| end.outcome), Some(Outcome::Serviced));
     }
 }

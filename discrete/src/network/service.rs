@@ -52,6 +52,8 @@ vocabulary! {
         Waiting = "waiting",
         /// It knows that the mission has ended.
         Informed = "informed",
+        /// The first access point has been silent for so long that it counts as stopped.
+        Deserted = "deserted",
     }
 
     /// What changes it.
@@ -64,6 +66,8 @@ vocabulary! {
         AnswerHeard = "answer heard",
         /// The newest notice says that the mission has ended.
         EndHeard = "end heard",
+        /// A control period is over, and the first access point is missed.
+        Missed = "missed",
     }
 }
 
@@ -125,20 +129,23 @@ const fn request(
 
 /// The table of the user.
 ///
-/// Priority 0: what it receives. Priority 1: its clock.
+/// Priority 0: what it receives. Priority 1: that it receives nothing. Priority 2: its clock.
 pub const REQUESTS: TransitionTable<Request, RequestEvent> = {
     use Request::*;
     use RequestEvent as On;
     TransitionTable::new(&[
-        request(1, Preparing, On::Prepared, Asking),
+        request(2, Preparing, On::Prepared, Asking),
         request(0, Preparing, On::AnswerHeard, Waiting),
         request(0, Preparing, On::EndHeard, Informed),
-        request(1, Asking, On::PeriodOver, Asking),
+        request(2, Asking, On::PeriodOver, Asking),
         request(0, Asking, On::AnswerHeard, Waiting),
         request(0, Asking, On::EndHeard, Informed),
-        request(1, Waiting, On::PeriodOver, Waiting),
+        request(1, Asking, On::Missed, Deserted),
+        request(2, Waiting, On::PeriodOver, Waiting),
         request(0, Waiting, On::EndHeard, Informed),
-        request(1, Informed, On::PeriodOver, Informed),
+        request(1, Waiting, On::Missed, Deserted),
+        request(2, Informed, On::PeriodOver, Informed),
+        request(2, Deserted, On::PeriodOver, Deserted),
     ])
 };
 
@@ -163,7 +170,9 @@ mod tests {
     #[test]
     fn the_end_is_final() {
         assert!(SERVICE.rows().iter().all(|row| row.source != Service::Over));
-        let mut informed = REQUESTS.rows().iter().filter(|row| row.source == Request::Informed);
-        assert!(informed.all(|row| row.target == Request::Informed));
+        for end in [Request::Informed, Request::Deserted] {
+            let mut rows = REQUESTS.rows().iter().filter(|row| row.source == end);
+            assert!(rows.all(|row| row.target == end));
+        }
     }
 }

@@ -136,6 +136,13 @@ pub fn another_period() -> Guard {
     named("period over", period_over())
 }
 
+/// A control period is over, and the first access point has been silent for longer than robots move
+/// without it.
+pub fn access_point_missed() -> Guard {
+    let missed = variable("silence").at_least(variable("patience"));
+    named("access point missed", period_over() & missed)
+}
+
 fn period_over() -> Predicate {
     variable("clock").at_least(variable("period"))
 }

@@ -21,8 +21,8 @@ use super::motion::ROUNDING;
 /// p₁ changes its parent only if that brings it nearer to its target by this share of d_build.
 const REATTACHMENT_GAIN: f64 = 0.05;
 
-/// A robot looks for another parent when no robot has held the post of its own for this many control
-/// periods.
+/// A robot looks for another parent when it has heard nobody that stands for the one that it has for this many
+/// control periods.
 const PATIENCE_WITH_ORPHANED_POSTS: u32 = 12;
 
 /// A node without a branch becomes redundant after this many control periods.
@@ -63,10 +63,12 @@ impl Robot {
         Ok(())
     }
 
-    /// Once a period: for how long no branch has depended on the post, Remark 5.6 (ii).
+    /// Once a period: for how long no branch has depended on the post, Remark 5.6 (ii). A robot that does not
+    /// hear its parent may be cut off from its branches, too.
     pub(super) fn count_unused_periods(&mut self) {
         let unused = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
             && !self.bears_branch()
+            && !self.hears_no_parent()
             && !self.tree_is_frozen()
             && !self.is_engaged()
             && !self.duty.is_bound();
@@ -113,10 +115,19 @@ impl Robot {
         matches!(self.anchor(), Some(Anchor::Post(_))) && self.named_parent().is_none()
     }
 
-    /// Once a period: for how long no robot has held the post that its own is attached to.
+    /// Whether it hears nobody that stands for what its post is attached to: no robot that holds that post, or
+    /// not the access point.
+    pub(super) fn hears_no_parent(&self) -> bool {
+        match self.anchor() {
+            Some(anchor @ Anchor::Access(_)) => self.neighbour_at(anchor).is_none(),
+            _ => self.is_orphan(),
+        }
+    }
+
+    /// Once a period: for how long it has not heard its parent.
     pub(super) fn count_orphaned_periods(&mut self) {
         let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
-        self.orphaned_periods = if self.is_orphan() { longer } else { 0 };
+        self.orphaned_periods = if self.hears_no_parent() { longer } else { 0 };
     }
 
     /// Another parent, where no robot has held the post for long that its own is attached to, or it is
@@ -129,9 +140,12 @@ impl Robot {
         }
         let limit = self.hard_length() * (1.0 + ROUNDING);
         let leads_elsewhere = |lineage: &Lineage| {
-            !lineage.contains(post)
-                && !matches!(lost, Some(Anchor::Post(lost)) if lineage.contains(lost))
-                && self.confirms(lineage)
+            let leads_through_lost = match lost {
+                Some(Anchor::Post(lost)) => lineage.contains(lost),
+                Some(Anchor::Access(lost)) => lineage.root() == lost,
+                None => false,
+            };
+            !lineage.contains(post) && !leads_through_lost && self.confirms(lineage)
         };
         let ways = self.neighbours.iter().filter_map(|neighbour| {
             let lineage = neighbour.beacon.lineage.as_ref()?;

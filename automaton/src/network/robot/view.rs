@@ -158,6 +158,11 @@ impl<'a> RobotView<'a> {
         self.0.is_active()
     }
 
+    /// Whether it takes part by a roll that is valid: otherwise it does not move.
+    pub fn is_called(self) -> bool {
+        self.0.is_called()
+    }
+
     /// Whether it stands still unless it is asked for; robots that settle on their post count as
     /// parked.
     pub fn is_parked(self) -> bool {

@@ -1,5 +1,7 @@
 //! Storms by seed, kind by kind.
 
+use std::ops::Range;
+
 use pleach_automaton::network::scenario::{InvalidScenario, Settings, ValidScenario};
 use pleach_automaton::network::{Crash, Trouble};
 use pleach_automaton::node::{Partition, Weather};
@@ -43,6 +45,8 @@ pub enum Kind {
     Clocks,
     /// All that can happen to messages, at once.
     Radio,
+    /// An access point stops, and in every other mission comes back; in some, messages fail too.
+    AccessPoint,
     /// Everything at once.
     Everything,
 }
@@ -72,6 +76,7 @@ impl Kind {
         Kind::Position(0.003),
         Kind::Errors(0.25),
         Kind::Clocks,
+        Kind::AccessPoint,
         Kind::Everything,
     ];
 
@@ -83,6 +88,7 @@ impl Kind {
             Kind::Motion(share) => format!("motion {}% of a step", share * 100.0),
             Kind::Position(share) => format!("position {}% of u", share * 100.0),
             Kind::Errors(share) => format!("position and motion {}% of ρ", share * 100.0),
+            Kind::AccessPoint => "access point".to_owned(),
             other => format!("{other:?}").to_lowercase(),
         }
     }
@@ -145,7 +151,7 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
         Kind::Partition => weather.partitions = partitions(&mut draws, robots, duration),
         Kind::Radio => *weather = foul(&mut draws, robots, duration),
         Kind::Crash | Kind::Restart => {
-            storm.troubles = vec![crash(&mut draws, robots, duration, kind == Kind::Restart)];
+            storm.troubles = vec![crash(&mut draws, 0..robots, duration, kind == Kind::Restart)];
         }
         Kind::Late => {
             let joins = Some(draws.between(5.0, duration / 2.0));
@@ -158,11 +164,19 @@ pub fn draw(kind: Kind, seed: u64, scenario: &ValidScenario, duration: f64) -> S
             storm.troubles = (0..robots).map(|robot| (robot, trouble.clone())).collect();
         }
         Kind::Clocks => shift_clocks(&mut storm, &mut draws, scenario),
+        Kind::AccessPoint => {
+            if draws.below(2) == 0 {
+                *weather = foul(&mut draws, robots, duration);
+            }
+            let access_points = robots..robots + scenario.access_point.len();
+            let comes_back = seed.is_multiple_of(2);
+            storm.troubles = vec![crash(&mut draws, access_points, duration, comes_back)];
+        }
         Kind::Everything => {
             *weather = foul(&mut draws, robots, duration);
             for _ in 0..1 + draws.below(3) {
                 let comes_back = draws.below(2) == 0;
-                let trouble = crash(&mut draws, robots, duration, comes_back);
+                let trouble = crash(&mut draws, 0..robots, duration, comes_back);
                 if storm.troubles.iter().all(|(node, _)| *node != trouble.0) {
                     storm.troubles.push(trouble);
                 }
@@ -211,9 +225,15 @@ fn partitions(draws: &mut Draws, robots: usize, duration: f64) -> Vec<Partition>
         .collect()
 }
 
-fn crash(draws: &mut Draws, robots: usize, duration: f64, comes_back: bool) -> (usize, Trouble) {
+/// One of these nodes stops.
+fn crash(
+    draws: &mut Draws,
+    nodes: Range<usize>,
+    duration: f64,
+    comes_back: bool,
+) -> (usize, Trouble) {
     let time = draws.between(1.0, duration);
     let back = comes_back.then(|| time + draws.between(1.0, 60.0));
     let crash = Crash { time, inputs: draws.below(400) as u32, back };
-    (draws.below(robots), Trouble { crash: Some(crash), ..Trouble::default() })
+    (nodes.start + draws.below(nodes.len()), Trouble { crash: Some(crash), ..Trouble::default() })
 }

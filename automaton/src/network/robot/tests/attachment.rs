@@ -185,6 +185,30 @@ fn a_fixed_post_changes_its_parent_when_that_has_had_no_holder_for_long() {
     assert_eq!(orphan(40, team), None);
 }
 
+/// Robot 0 holds a fixed post that is attached to access point 0, which has been silent for `periods` control
+/// periods; robot 1 leads to access point `root`.
+fn orphan_of_access_point(periods: u32, root: usize) -> Option<Option<Anchor>> {
+    let mut robot = robot();
+    robot.holds(Post { parent: Some(Anchor::Access(0)), ..fixed(20, 0) });
+    let lineage = Lineage::of_access_point(root).extended_by(PostId(11)).map(Arc::new);
+    robot.hears(Beacon { lineage, ..beacon(1, east(0.5), fixed(11, 13), &[]) });
+    (0..periods).for_each(|_| robot.count_orphaned_periods());
+    robot.keep_place().expect("it goes on");
+    robot.desired_parent
+}
+
+#[test]
+fn a_fixed_post_changes_its_parent_when_its_access_point_is_not_heard_for_long() {
+    assert_eq!(orphan_of_access_point(12, 1), None);
+    assert_eq!(orphan_of_access_point(13, 1), Some(at(11)));
+    assert_eq!(orphan_of_access_point(40, 0), None, "it leads to the one that is not heard");
+    let mut robot = robot();
+    robot.holds(Post { parent: Some(Anchor::Access(0)), ..fixed(20, 0) });
+    assert!(robot.hears_no_parent());
+    robot.hears(access_point(east(1.0)));
+    assert!(!robot.hears_no_parent());
+}
+
 #[test]
 fn periods_without_a_parent_are_counted_from_the_last_one_with_it() {
     let mut robot = robot();
@@ -303,10 +327,19 @@ fn branches_are_fixed_posts_and_the_primary_team_as_one() {
 
 #[test]
 fn a_node_on_which_no_branch_depends_counts_the_periods() {
-    let count = |change: &dyn Fn(&mut Robot)| {
+    let cut_off = || {
         let mut robot = robot();
         robot.holds(fixed(20, 13));
         robot.is_quiet = true;
+        robot
+    };
+    let node = || {
+        let mut robot = cut_off();
+        robot.hears(beacon(3, west(0.5), fixed(13, 14), &[13, 14]));
+        robot
+    };
+    let count = |change: &dyn Fn(&mut Robot)| {
+        let mut robot = node();
         change(&mut robot);
         (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| robot.count_unused_periods());
         (robot.unused_periods, robot.is_quiet)
@@ -322,11 +355,12 @@ fn a_node_on_which_no_branch_depends_counts_the_periods() {
         robot.mission = Current::new(Mission::Shift(shift));
     };
     assert_eq!(count(&frozen), (0, true));
-    let mut robot = robot();
-    robot.holds(fixed(20, 13));
-    (robot.unused_periods, robot.is_quiet) = (0, true);
-    robot.count_unused_periods();
-    assert!(robot.is_quiet, "once is not for long");
+    let mut once = node();
+    once.count_unused_periods();
+    assert!(once.is_quiet, "once is not for long");
+    let mut cut_off = cut_off();
+    (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| cut_off.count_unused_periods());
+    assert_eq!(cut_off.unused_periods, 0, "its branches may be cut off from it as well");
 }
 
 #[test]
