@@ -1,11 +1,11 @@
 //! Building automata.
 
-mod checks;
+mod draft;
 mod error;
 
 use std::ops::RangeInclusive;
 
-use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
+use petgraph::graph::{DiGraph, NodeIndex};
 use pleach_discrete::{Event, Location, Row, TransitionTable};
 use pleach_guards::{Guard, Predicate, Valuation};
 
@@ -19,6 +19,7 @@ use crate::law::{Command, Laws};
 use crate::located::Transfer;
 use crate::observed::{Observed, Watch};
 use crate::reset::Reset;
+use draft::Origin;
 
 /// An [`Automaton`] under construction.
 ///
@@ -43,7 +44,7 @@ pub struct Builder<L, E, S> {
     /// Names that stand for numbers, with these.
     parameters: Vec<(String, f64)>,
     /// What changes alike in all locations.
-    throughout: Vec<Rate<S>>,
+    throughout: Vec<Rate>,
     /// Propositions of which at most one is true at a time.
     exclusive: Vec<Vec<String>>,
     /// What is chosen at samples.
@@ -118,35 +119,21 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     ///
     /// The first [`BuildError`] found: in the vocabularies, the table, the guards, then in what
     /// is said about the locations.
-    pub fn build(mut self) -> Result<Automaton<L, E, S>, BuildError> {
-        self.check_vocabulary()?;
-        self.check_table()?;
-        self.match_transfers()?;
-        self.check_parts()?;
-        self.check_intervals()?;
-        self.spread_rates()?;
-        if let Some(names) = &self.known {
-            let is_parameter = |name: &str| self.parameters.iter().any(|(known, _)| known == name);
-            self.check_parameters(names)?;
-            self.check_variables(|name| names.contains(&name) || is_parameter(name))?;
-            self.check_initial_state(names)?;
-        }
-        if let Some((variables, propositions)) = self.observed {
-            self.check_variables(|name| variables.contains(&name))?;
-            self.check_propositions(propositions)?;
-        }
+    pub fn build(self) -> Result<Automaton<L, E, S>, BuildError> {
         let (locations, events) = (self.locations(), self.events());
+        let mut draft = self.draft(&locations, &events)?;
+        draft.check()?;
         let mut graph = DiGraph::with_capacity(locations.len(), self.rows.len());
-        for &location in &locations {
+        let (mut modes, mut leaving) = (Vec::new(), Vec::new());
+        for (number, &location) in locations.iter().enumerate() {
             graph.add_node(location);
+            modes.push(self.mode(location, draft.rates(number)));
+            leaving.push(draft.leaving(number));
         }
         for (number, row) in self.rows.iter().enumerate() {
-            let source = listed(&locations, row.source)?;
-            let target = listed(&locations, row.target)?;
-            graph.add_edge(source, target, self.transition_of(number, row)?);
+            let [source, target] = draft.ends(number).map(NodeIndex::new);
+            graph.add_edge(source, target, self.transition_of(row, draft.origin(number))?);
         }
-        let leaving = locations.iter().map(|&location| self.leaving(location)).collect();
-        let modes = locations.iter().map(|&location| self.mode(location)).collect();
         let Builder { rows, initial, initial_state, ranges, known, parameters, exclusive, .. } =
             self;
         Ok(Automaton {
@@ -174,38 +161,9 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
     ///
     /// Those of [`build`](Self::build), and [`BuildError::UnknownVariable`].
     pub fn build_for(self, example: &S) -> Result<Automaton<L, E, S>, BuildError> {
-        self.check_variables(|name| example.value(name).is_some())?;
+        let draft = self.draft(&self.locations(), &self.events())?;
+        draft.check_variables(&|name| example.value(name).is_some())?;
         self.build()
-    }
-
-    /// Finds the row of every transfer, and a transfer for every row if there are any.
-    fn match_transfers(&mut self) -> Result<(), BuildError> {
-        for transfer in std::mem::take(&mut self.transfers) {
-            let Transfer { source, event, target, guard, reset } = transfer;
-            let fits =
-                |row: &Row<L, E>| (row.source, row.event, row.target) == (source, event, target);
-            let row = self.rows.iter().position(fits).ok_or(BuildError::TransferWithoutRow {
-                source_location: source.name(),
-                event: event.name(),
-                target: target.name(),
-            })?;
-            if self.edges.iter().any(|(given, ..)| *given == row) {
-                return Err(BuildError::GivenTwice { place: event.name(), part: "transfer" });
-            }
-            self.edges.push((row, guard, reset));
-        }
-        let lacks = |number: &usize| {
-            let event = self.rows[*number].event;
-            !self.edges.iter().any(|(given, ..)| given == number)
-                && !self.conditions.iter().any(|(given, ..)| *given == event)
-        };
-        match (0..self.rows.len()).find(lacks).filter(|_| !self.edges.is_empty()) {
-            Some(number) => Err(BuildError::RowWithoutTransfer {
-                location: self.rows[number].source.name(),
-                event: self.rows[number].event.name(),
-            }),
-            None => Ok(()),
-        }
     }
 
     /// All locations, or those that are mentioned.
@@ -226,37 +184,26 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         if E::IS_OPEN { first_mentions(all.chain(mentioned)) } else { all.collect() }
     }
 
-    /// Adds what changes throughout to the flow of every location.
-    fn spread_rates(&mut self) -> Result<(), BuildError> {
-        let throughout = std::mem::take(&mut self.throughout);
-        if throughout.is_empty() {
-            return Ok(());
-        }
-        for location in self.locations() {
-            let given = self.flows.iter_mut().find(|(place, _)| *place == location);
-            match given {
-                Some((_, flow)) => {
-                    let rates =
-                        flow.rates().ok_or(BuildError::NoRates { location: location.name() })?;
-                    *flow = rates.iter().chain(&throughout).cloned().collect::<Vec<_>>().into();
-                }
-                None => self.flows.push((location, throughout.clone().into())),
-            }
-        }
-        Ok(())
-    }
-
     fn transition_of(
         &self,
-        number: usize,
         row: &Row<L, E>,
+        origin: Option<Origin>,
     ) -> Result<Transition<E, S>, BuildError> {
-        let edge = self.edges.iter().find(|(edge, ..)| *edge == number);
-        let own = edge.map(|(_, guard, reset)| (guard, reset));
-        let condition = self.conditions.iter().find(|(event, ..)| *event == row.event);
-        let common = condition.map(|(_, guard, reset)| (guard, reset));
-        let (guard, reset) =
-            own.or(common).ok_or(BuildError::EventWithoutGuard { event: row.event.name() })?;
+        let (guard, reset) = match origin {
+            Some(Origin::Condition(number)) => {
+                let (_, guard, reset) = &self.conditions[number];
+                (guard, reset)
+            }
+            Some(Origin::Edge(number)) => {
+                let (_, guard, reset) = &self.edges[number];
+                (guard, reset)
+            }
+            Some(Origin::Transfer(number)) => {
+                let Transfer { guard, reset, .. } = &self.transfers[number];
+                (guard, reset)
+            }
+            None => return Err(BuildError::EventWithoutGuard { event: row.event.name() }),
+        };
         Ok(Transition {
             event: row.event,
             guard: guard.clone(),
@@ -267,21 +214,13 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
         })
     }
 
-    /// The edges have the numbers of their rows.
-    fn leaving(&self, location: L) -> Vec<EdgeIndex> {
-        let rows = &self.rows;
-        let mut numbers: Vec<usize> =
-            (0..rows.len()).filter(|&number| rows[number].source == location).collect();
-        numbers.sort_by_key(|&number| (rows[number].priority, number));
-        numbers.into_iter().map(EdgeIndex::new).collect()
-    }
-
-    fn mode(&self, location: L) -> Mode<S> {
+    /// What is said of a location, where these are the rates in it, if they are formulas.
+    fn mode(&self, location: L, rates: Option<Vec<Rate>>) -> Mode<S> {
         let flow = self.flows.iter().find(|(place, _)| *place == location);
         let invariant = self.invariants.iter().find(|(place, _)| *place == location);
         let commands = self.commands.iter().filter(|(place, _)| *place == location);
         Mode {
-            flow: flow.map(|(_, flow)| flow.clone()),
+            flow: rates.map(Flow::of_rates).or_else(|| flow.map(|(_, flow)| flow.clone())),
             invariant: invariant.map(|(_, invariant)| invariant.clone()),
             watch: invariant.and_then(|(_, invariant)| (self.watch)(invariant)),
             commands: commands.map(|(_, command)| command.clone()).collect(),
@@ -349,7 +288,7 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
     /// In every location, beside its flow, this changes, too: such as a clock that shows the time,
     /// `time.rate(1.0)`.
     pub fn throughout(mut self, rates: impl IntoIterator<Item = Rate<S>>) -> Self {
-        self.throughout.extend(rates);
+        self.throughout.extend(rates.into_iter().map(Rate::untyped));
         self
     }
 
@@ -359,11 +298,6 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
         self.ranges.push((coordinate.name().to_owned(), range));
         self
     }
-}
-
-fn listed<L: Location>(locations: &[L], location: L) -> Result<NodeIndex, BuildError> {
-    let place = locations.iter().position(|listed| *listed == location).map(NodeIndex::new);
-    place.ok_or_else(|| BuildError::UnlistedLocation { location: format!("{location:?}") })
 }
 
 /// Those that are new, in the order in which they occur first.

@@ -10,6 +10,7 @@ use pleach_guards::{Expression, Substitution, constant};
 use thiserror::Error;
 
 use crate::coordinates::Coordinate;
+use crate::outline;
 
 /// The flow of a location.
 ///
@@ -33,7 +34,7 @@ pub struct Flow<S> {
 }
 
 pub(crate) enum Motion<S> {
-    Rates(Arc<[Rate<S>]>),
+    Rates(Arc<[Rate]>),
     Field(Arc<str>, Arc<Field<S>>),
     Exact(Arc<str>, Arc<Solution<S>>),
 }
@@ -41,8 +42,10 @@ pub(crate) enum Motion<S> {
 type Field<S> = dyn Fn(&S) -> S + Send + Sync;
 type Solution<S> = dyn Fn(&mut S, f64) + Send + Sync;
 
-/// The rate of one coordinate, as a formula; made by [`Coordinate::rate`](crate::Coordinate::rate).
-pub struct Rate<S> {
+/// The rate of one coordinate of the states `S`, as a formula; made by
+/// [`Coordinate::rate`](crate::Coordinate::rate). Once it is a part of a flow, its type no longer says
+/// of which states: what reads formulas is the same for all.
+pub struct Rate<S = ()> {
     coordinate: &'static str,
     rate: Expression,
     state: PhantomData<fn() -> S>,
@@ -51,6 +54,11 @@ pub struct Rate<S> {
 impl<S> Rate<S> {
     pub(crate) fn new(coordinate: &'static str, rate: Expression) -> Self {
         Rate { coordinate, rate, state: PhantomData }
+    }
+
+    /// The same without the type of the states.
+    pub(crate) fn untyped(self) -> Rate {
+        Rate::new(self.coordinate, self.rate)
     }
 
     /// The name of the coordinate.
@@ -93,8 +101,13 @@ impl<S> Flow<S> {
         Flow { motion: Motion::Field(name.into(), Arc::new(field)) }
     }
 
+    /// The flow of these rates, whose coordinates are those of `S`.
+    pub(crate) fn of_rates(rates: Vec<Rate>) -> Self {
+        Flow { motion: Motion::Rates(rates.into()) }
+    }
+
     /// The rates, unless the flow is a function.
-    pub fn rates(&self) -> Option<&[Rate<S>]> {
+    pub fn rates(&self) -> Option<&[Rate]> {
         match &self.motion {
             Motion::Rates(rates) => Some(rates),
             Motion::Field(..) | Motion::Exact(..) => None,
@@ -104,10 +117,7 @@ impl<S> Flow<S> {
     /// The name or the formulas, as text.
     pub fn name(&self) -> Cow<'_, str> {
         match &self.motion {
-            Motion::Rates(rates) => {
-                let texts: Vec<String> = rates.iter().map(Rate::to_string).collect();
-                Cow::Owned(texts.join(", "))
-            }
+            Motion::Rates(rates) => Cow::Owned(listed(rates)),
             Motion::Field(name, _) | Motion::Exact(name, _) => Cow::Borrowed(name),
         }
     }
@@ -128,12 +138,7 @@ impl<S> Flow<S> {
     /// The same flow with expressions in the place of variables, as far as it is data.
     pub(crate) fn substitute(&self, substitution: &Substitution) -> Self {
         match self.rates() {
-            Some(rates) => {
-                let changed = rates
-                    .iter()
-                    .map(|one| Rate::new(one.coordinate, one.rate.substitute(substitution)));
-                changed.collect::<Vec<_>>().into()
-            }
+            Some(rates) => Flow::of_rates(substituted(rates, substitution)),
             None => self.clone(),
         }
     }
@@ -179,17 +184,24 @@ impl<S> Flow<S> {
     pub(crate) fn motion(&self) -> &Motion<S> {
         &self.motion
     }
+
+    pub(crate) fn outline(&self) -> outline::Motion<'_> {
+        match &self.motion {
+            Motion::Rates(rates) => outline::Motion::Rates(rates),
+            Motion::Field(name, _) | Motion::Exact(name, _) => outline::Motion::Function(name),
+        }
+    }
 }
 
 impl<S, const N: usize> From<[Rate<S>; N]> for Flow<S> {
     fn from(rates: [Rate<S>; N]) -> Self {
-        Flow { motion: Motion::Rates(Arc::new(rates)) }
+        Vec::from(rates).into()
     }
 }
 
 impl<S> From<Vec<Rate<S>>> for Flow<S> {
     fn from(rates: Vec<Rate<S>>) -> Self {
-        Flow { motion: Motion::Rates(rates.into()) }
+        Flow::of_rates(rates.into_iter().map(Rate::untyped).collect())
     }
 }
 
@@ -197,6 +209,16 @@ impl<S> From<Rate<S>> for Flow<S> {
     fn from(rate: Rate<S>) -> Self {
         [rate].into()
     }
+}
+
+fn listed(rates: &[Rate]) -> String {
+    let texts: Vec<String> = rates.iter().map(Rate::to_string).collect();
+    texts.join(", ")
+}
+
+fn substituted(rates: &[Rate], substitution: &Substitution) -> Vec<Rate> {
+    let changed = |one: &Rate| Rate::new(one.coordinate, one.rate.substitute(substitution));
+    rates.iter().map(changed).collect()
 }
 
 // Written by hand, because derives would ask the same of S.

@@ -37,6 +37,7 @@ pub mod named;
 pub mod network;
 pub mod node;
 pub mod observed;
+mod outline;
 pub mod reset;
 pub mod sliding;
 mod sweep;

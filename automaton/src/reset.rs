@@ -8,6 +8,7 @@ use std::sync::Arc;
 use pleach_guards::{EvaluationError, Expression, Substitution, Valuation};
 
 use crate::coordinates::Coordinates;
+use crate::outline::Effect;
 
 /// The reset of a transition.
 ///
@@ -31,21 +32,23 @@ use crate::coordinates::Coordinates;
 /// assert_eq!(halt.to_string(), "halt");
 /// ```
 pub struct Reset<S> {
-    form: Form<S>,
+    form: Form,
     apply: Arc<Apply<S>>,
 }
 
-enum Form<S> {
-    Assignments(Arc<[Assignment<S>]>),
+#[derive(Clone)]
+enum Form {
+    Assignments(Arc<[Assignment]>),
     Function(Arc<str>),
 }
 
 type Apply<S> = dyn Fn(&mut S) -> Result<(), EvaluationError> + Send + Sync;
 
-/// One coordinate's new value over x⁻; made by
+/// One coordinate's new value over x⁻, in the states `S`; made by
 /// [`Coordinate::becomes`](crate::Coordinate::becomes) and
-/// [`Coordinate::becomes_within`](crate::Coordinate::becomes_within).
-pub struct Assignment<S> {
+/// [`Coordinate::becomes_within`](crate::Coordinate::becomes_within). Once it is a part of a reset, its
+/// type no longer says of which states.
+pub struct Assignment<S = ()> {
     coordinate: &'static str,
     value: NewValue,
     state: PhantomData<fn() -> S>,
@@ -63,6 +66,11 @@ pub enum NewValue {
 impl<S> Assignment<S> {
     pub(crate) fn new(coordinate: &'static str, value: NewValue) -> Self {
         Assignment { coordinate, value, state: PhantomData }
+    }
+
+    /// The same without the type of the states.
+    fn untyped(self) -> Assignment {
+        Assignment::new(self.coordinate, self.value)
     }
 
     /// The name of the coordinate that is assigned.
@@ -98,7 +106,7 @@ impl NewValue {
     }
 
     /// Its value in `state`; of an interval its lower end.
-    fn least(&self, state: &impl Valuation) -> Result<f64, EvaluationError> {
+    fn least(&self, state: &dyn Valuation) -> Result<f64, EvaluationError> {
         match self {
             NewValue::Exactly(value) | NewValue::Within(value, _) => value.evaluate(state),
         }
@@ -134,20 +142,24 @@ impl<S> Reset<S> {
     }
 
     /// The assignments, unless the reset is a function.
-    pub fn assignments(&self) -> Option<&[Assignment<S>]> {
+    pub fn assignments(&self) -> Option<&[Assignment]> {
         match &self.form {
             Form::Assignments(assignments) => Some(assignments),
             Form::Function(_) => None,
         }
     }
 
+    pub(crate) fn outline(&self) -> Effect<'_> {
+        match &self.form {
+            Form::Assignments(assignments) => Effect::Assignments(assignments),
+            Form::Function(name) => Effect::Function(name),
+        }
+    }
+
     /// The name or the formula, as text; empty for the identity.
     pub fn name(&self) -> Cow<'_, str> {
         match &self.form {
-            Form::Assignments(assignments) => {
-                let texts: Vec<String> = assignments.iter().map(Assignment::to_string).collect();
-                Cow::Owned(texts.join(", "))
-            }
+            Form::Assignments(assignments) => Cow::Owned(listed(assignments)),
             Form::Function(name) => Cow::Borrowed(name),
         }
     }
@@ -165,15 +177,23 @@ impl<S> Reset<S> {
 }
 
 impl<S: Coordinates> Reset<S> {
+    /// The reset of these assignments, whose coordinates are those of `S`.
+    fn of_assignments(assignments: Vec<Assignment>) -> Self {
+        let assignments: Arc<[Assignment]> = assignments.into();
+        let listed = assignments.clone();
+        let apply = Arc::new(move |state: &mut S| {
+            let mut values = state.to_values();
+            assign(&listed, state, state.names(), &mut values)?;
+            *state = state.like(&values);
+            Ok(())
+        });
+        Reset { form: Form::Assignments(assignments), apply }
+    }
+
     /// The same reset with expressions in the place of variables, as far as it is data.
     pub(crate) fn substitute(&self, substitution: &Substitution) -> Self {
         match self.assignments() {
-            Some(assignments) => {
-                let changed = assignments
-                    .iter()
-                    .map(|one| Assignment::new(one.coordinate, one.value.substitute(substitution)));
-                changed.collect::<Vec<_>>().into()
-            }
+            Some(assignments) => Reset::of_assignments(substituted(assignments, substitution)),
             None => self.clone(),
         }
     }
@@ -181,13 +201,7 @@ impl<S: Coordinates> Reset<S> {
 
 impl<S: Coordinates> From<Vec<Assignment<S>>> for Reset<S> {
     fn from(assignments: Vec<Assignment<S>>) -> Self {
-        let assignments: Arc<[Assignment<S>]> = assignments.into();
-        let listed = assignments.clone();
-        let apply = Arc::new(move |state: &mut S| {
-            *state = assign(&listed, state)?;
-            Ok(())
-        });
-        Reset { form: Form::Assignments(assignments), apply }
+        Reset::of_assignments(assignments.into_iter().map(Assignment::untyped).collect())
     }
 }
 
@@ -203,17 +217,32 @@ impl<S: Coordinates> From<Assignment<S>> for Reset<S> {
     }
 }
 
-/// x⁺, where every formula reads x⁻.
-fn assign<S: Coordinates>(assignments: &[Assignment<S>], before: &S) -> Result<S, EvaluationError> {
-    let mut after = before.to_values();
+/// Writes x⁺ over the values of x⁻; every formula reads x⁻.
+fn assign(
+    assignments: &[Assignment],
+    before: &dyn Valuation,
+    names: &[&str],
+    values: &mut [f64],
+) -> Result<(), EvaluationError> {
     for assignment in assignments {
         let value = assignment.value.least(before)?;
-        let place = before.names().iter().position(|name| *name == assignment.coordinate);
+        let place = names.iter().position(|name| *name == assignment.coordinate);
         let unknown =
             || EvaluationError::UnknownVariable { variable: assignment.coordinate.into() };
-        after[place.ok_or_else(unknown)?] = value;
+        values[place.ok_or_else(unknown)?] = value;
     }
-    Ok(before.like(&after))
+    Ok(())
+}
+
+pub(crate) fn listed(assignments: &[Assignment]) -> String {
+    let texts: Vec<String> = assignments.iter().map(Assignment::to_string).collect();
+    texts.join(", ")
+}
+
+fn substituted(assignments: &[Assignment], substitution: &Substitution) -> Vec<Assignment> {
+    let changed =
+        |one: &Assignment| Assignment::new(one.coordinate, one.value.substitute(substitution));
+    assignments.iter().map(changed).collect()
 }
 
 // Written by hand, because derives would ask the same of S.
@@ -227,15 +256,6 @@ impl<S> Clone for Assignment<S> {
 impl<S> Clone for Reset<S> {
     fn clone(&self) -> Self {
         Reset { form: self.form.clone(), apply: self.apply.clone() }
-    }
-}
-
-impl<S> Clone for Form<S> {
-    fn clone(&self) -> Self {
-        match self {
-            Form::Assignments(assignments) => Form::Assignments(assignments.clone()),
-            Form::Function(name) => Form::Function(name.clone()),
-        }
     }
 }
 

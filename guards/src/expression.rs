@@ -225,6 +225,11 @@ impl Expression {
     /// [`EvaluationError::UnknownVariable`] if `state` lacks a variable, and
     /// [`EvaluationError::NotANumber`] where any part, a variable included, is NaN.
     pub fn evaluate(&self, state: &(impl Valuation + ?Sized)) -> Result<f64, EvaluationError> {
+        self.evaluate_in(&state)
+    }
+
+    /// The same, built once and not for every type of state.
+    fn evaluate_in(&self, state: &dyn Valuation) -> Result<f64, EvaluationError> {
         let value = self.fold(&mut |part, operands| part.value(operands, state))?;
         if value.is_nan() {
             return Err(EvaluationError::NotANumber {
@@ -238,7 +243,7 @@ impl Expression {
     fn value(
         &self,
         operands: Operands<f64>,
-        state: &(impl Valuation + ?Sized),
+        state: &dyn Valuation,
     ) -> Result<f64, EvaluationError> {
         match self {
             Expression::Variable(name) => state
@@ -266,10 +271,7 @@ impl Expression {
     }
 
     /// The smallest part that makes the value NaN, the leftmost if there are several.
-    fn undefined_part(
-        &self,
-        state: &(impl Valuation + ?Sized),
-    ) -> Result<&Expression, EvaluationError> {
+    fn undefined_part(&self, state: &dyn Valuation) -> Result<&Expression, EvaluationError> {
         let whole = self.fold(&mut |part, operands: Operands<(f64, &Expression)>| {
             let inner = operands.find(|(value, _)| value.is_nan()).map(|(_, culprit)| *culprit);
             let value = part.value(operands.map(|(value, _)| value), state)?;

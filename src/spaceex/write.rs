@@ -241,7 +241,7 @@ fn compared(comparison: &Comparison) -> Result<String, String> {
 }
 
 /// An assignment, of a value or of bounds on it.
-fn assignment<S>(assignment: &Assignment<S>) -> Result<String, String> {
+fn assignment(assignment: &Assignment) -> Result<String, String> {
     let name = assignment.coordinate();
     Ok(match assignment.value() {
         NewValue::Exactly(value) => format!("{name} := {}", plain(value)?),

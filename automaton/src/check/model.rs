@@ -2,15 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use pleach_discrete::{Event, Location, Urgency};
-use pleach_guards::{Expression, not};
-use pleach_guards::{Guard, Interval, Predicate, Substitution, Valuation, always, variable};
+use pleach_discrete::Urgency;
+use pleach_guards::{Expression, Guard, Interval, Predicate, Substitution, always, not, variable};
 
 use super::report::FindingPlace;
-use crate::automaton::Automaton;
 use crate::decision::{Region, State};
-use crate::flow::Flow;
-use crate::reset::{Assignment, NewValue, Reset};
+use crate::outline::{self, Outline};
+use crate::reset::{Assignment, NewValue};
 
 /// An automaton, alone or as a component.
 #[derive(Clone, Debug)]
@@ -77,38 +75,30 @@ pub(crate) enum Effect {
 }
 
 impl Model {
-    pub(crate) fn of<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Self {
-        let modes = automaton.modes.iter().zip(&automaton.locations).zip(&automaton.leaving);
-        let modes = modes.map(|((mode, location), leaving)| Mode {
-            name: location.name(),
-            motion: mode.flow.as_ref().map_or(Motion::Rates(Vec::new()), motion),
-            invariant: mode.invariant.as_ref().map_or_else(always, in_numbers),
-            leaving: leaving.iter().map(|edge| edge.index()).collect(),
+    pub(crate) fn of(automaton: &Outline<'_>) -> Self {
+        let modes = automaton.modes.iter().map(|mode| Mode {
+            name: mode.name,
+            motion: mode.flow.map_or(Motion::Rates(Vec::new()), motion),
+            invariant: mode.invariant.map_or_else(always, in_numbers),
+            leaving: mode.leaving.iter().map(|edge| edge.index()).collect(),
         });
-        let transitions = automaton.graph.edge_indices().filter_map(|edge| {
-            let (source, target) = automaton.graph.edge_endpoints(edge)?;
-            let transition = &automaton.graph[edge];
-            Some(Transition {
-                source: source.index(),
-                target: target.index(),
-                event: automaton.events.iter().position(|event| *event == transition.event)?,
-                urgency: transition.urgency,
-                priority: transition.priority,
-                guard: Guard::new(
-                    transition.guard.name(),
-                    in_numbers(transition.guard.predicate()),
-                ),
-                effect: effect(&transition.reset),
-                intervals: intervals(&transition.reset),
-            })
+        let transitions = automaton.transitions.iter().map(|transition| Transition {
+            source: transition.source,
+            target: transition.target,
+            event: transition.event,
+            urgency: transition.urgency,
+            priority: transition.priority,
+            guard: Guard::new(transition.guard.name(), in_numbers(transition.guard.predicate())),
+            effect: effect(transition.effect),
+            intervals: intervals(transition.effect),
         });
         let mut model = Model {
             component: None,
             modes: modes.collect(),
             transitions: transitions.collect(),
-            events: automaton.events.iter().map(|event| event.name().to_owned()).collect(),
+            events: automaton.events.iter().map(|&event| event.to_owned()).collect(),
             is_label: vec![false; automaton.events.len()],
-            initial: automaton.node(automaton.initial).map_or(0, |node| node.index()),
+            initial: automaton.initial,
             initial_state: None,
             has_coordinates: automaton.known.is_some(),
             region: Region::new(),
@@ -118,7 +108,7 @@ impl Model {
         if !automaton.parameters.is_empty() {
             model.substitute(&automaton.numbers());
         }
-        let declared = automaton.known.iter().flatten().map(|name| (*name).to_owned());
+        let declared = automaton.known.into_iter().flatten().map(|name| (*name).to_owned());
         let propositions = propositions_of(automaton);
         let named = model.variables().into_iter().chain(propositions.iter().cloned());
         let names: Vec<String> = declared.chain(named).collect();
@@ -128,7 +118,7 @@ impl Model {
             let range = Interval::new(*range.start(), *range.end()).unwrap_or(Interval::WHOLE);
             model.region.insert(name, range);
         }
-        model.initial_state = automaton.initial_state.as_ref().map(|state| {
+        model.initial_state = automaton.initial_state.map(|state| {
             let value = |name: &String| Some((name.clone(), state.value(name)?));
             model.region.keys().filter_map(value).collect()
         });
@@ -263,29 +253,26 @@ fn in_numbers(predicate: &Predicate) -> Predicate {
     }
 }
 
-fn propositions_of<L: Location, E: Event, S: Valuation>(
-    automaton: &Automaton<L, E, S>,
-) -> BTreeSet<String> {
-    let invariants = automaton.modes.iter().filter_map(|mode| mode.invariant.as_ref());
-    let guards = automaton.graph.edge_weights().map(|transition| transition.guard.predicate());
-    let named = invariants.chain(guards).flat_map(Predicate::propositions);
+fn propositions_of(automaton: &Outline<'_>) -> BTreeSet<String> {
+    let predicates = automaton.invariants().chain(automaton.guards());
+    let named = predicates.flat_map(Predicate::propositions);
     named.map(str::to_owned).chain(automaton.exclusive.iter().flatten().cloned()).collect()
 }
 
-fn motion<S>(flow: &Flow<S>) -> Motion {
-    match flow.rates() {
-        Some(rates) => Motion::Rates(
+fn motion(flow: outline::Motion<'_>) -> Motion {
+    match flow {
+        outline::Motion::Rates(rates) => Motion::Rates(
             rates.iter().map(|one| (one.coordinate().to_owned(), one.rate().clone())).collect(),
         ),
-        None => Motion::Function(flow.name().into_owned()),
+        outline::Motion::Function(name) => Motion::Function(name.to_owned()),
     }
 }
 
 /// How the names of shares begin.
 const SHARE: &str = "share of the interval of ";
 
-fn effect<S>(reset: &Reset<S>) -> Effect {
-    let value = |one: &Assignment<S>| {
+fn effect(reset: outline::Effect<'_>) -> Effect {
+    let value = |one: &Assignment| {
         let value = match one.value() {
             NewValue::Exactly(value) => value.clone(),
             NewValue::Within(lower, upper) => {
@@ -295,15 +282,17 @@ fn effect<S>(reset: &Reset<S>) -> Effect {
         };
         (one.coordinate().to_owned(), value)
     };
-    match reset.assignments() {
-        Some(assignments) => Effect::Assignments(assignments.iter().map(value).collect()),
-        None => Effect::Function(reset.name().into_owned()),
+    match reset {
+        outline::Effect::Assignments(assignments) => {
+            Effect::Assignments(assignments.iter().map(value).collect())
+        }
+        outline::Effect::Function(name) => Effect::Function(name.to_owned()),
     }
 }
 
-fn intervals<S>(reset: &Reset<S>) -> Vec<(String, [Expression; 2])> {
+fn intervals(reset: outline::Effect<'_>) -> Vec<(String, [Expression; 2])> {
     let assignments = reset.assignments().into_iter().flatten();
-    let interval = |one: &Assignment<S>| match one.value() {
+    let interval = |one: &Assignment| match one.value() {
         NewValue::Exactly(_) => None,
         NewValue::Within(lower, upper) => {
             Some((one.coordinate().to_owned(), [lower.clone(), upper.clone()]))

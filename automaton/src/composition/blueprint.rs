@@ -6,16 +6,17 @@ use std::sync::Arc;
 use pleach_discrete::{Event, Location, Urgency};
 use pleach_guards::expression::{BinaryOperator, UnaryOperator};
 use pleach_guards::{
-    CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program, Sides, Tape,
-    Tracker, Verdict,
+    CompiledPredicate, EvaluationError, Expression, LinearForm, Predicate, Program, Sides,
+    Substitution, Tape, Tracker, Verdict,
 };
 
 use super::kinks::Kinks;
 use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
 use crate::diagram::sketch::Sketch;
-use crate::flow::{Flow, Motion};
-use crate::reset::{NewValue, Reset};
+use crate::flow::{self, Flow, Rate};
+use crate::outline::{Motion, Outline, Transition};
+use crate::reset::{Assignment, NewValue, Reset};
 
 /// Locations and events are numbers here, in the order of `ALL`, and formulas are compiled against
 /// the coordinates of the automaton's own state.
@@ -98,54 +99,132 @@ pub(crate) type Solution = dyn Fn(&mut [f64], f64) + Send + Sync;
 /// Turns x⁻ into x⁺.
 pub(crate) type ResetFunction = dyn Fn(&mut [f64]) -> Result<(), EvaluationError> + Send + Sync;
 
-impl Blueprint {
+/// What of an automaton is functions, on slices of its coordinates.
+struct Functions {
+    /// By location.
+    flows: Vec<Option<ModeMotion>>,
+    /// By transition.
+    resets: Vec<Option<Change>>,
+}
+
+impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
     /// # Errors
     ///
     /// The first variable that is none of the coordinates; [`Builder::build`](crate::Builder::build)
     /// refuses them for automata that begin with their coordinates.
-    pub(crate) fn of<L: Location, E: Event, S: Coordinates>(
-        automaton: &Automaton<L, E, S>,
+    pub(crate) fn blueprint(&self) -> Result<Blueprint, EvaluationError> {
+        let shape = self.initial_state();
+        let mut functions = Functions { flows: Vec::new(), resets: Vec::new() };
+        for mode in &self.modes {
+            functions.flows.push(mode.flow.as_ref().and_then(|flow| motion(flow, shape)));
+        }
+        for transition in self.graph.edge_weights() {
+            functions.resets.push(change(&transition.reset, shape));
+        }
+        Blueprint::of(&self.outline(), self.names(), functions)
+    }
+}
+
+impl Blueprint {
+    fn of(
+        automaton: &Outline<'_>,
+        names: &[&'static str],
+        mut functions: Functions,
     ) -> Result<Blueprint, EvaluationError> {
-        let sketch = Sketch::of(automaton);
-        let automaton = &automaton.with_numbers();
-        let (graph, names) = (automaton.graph(), automaton.names());
-        let shape = automaton.initial_state();
-        let mut modes = Vec::with_capacity(automaton.locations().len());
-        let locations = automaton.locations().iter();
-        for (node, (&location, mode)) in locations.zip(&automaton.modes).enumerate() {
-            let leaving = automaton.leaving[node].iter().map(|&edge| {
-                let transition = &graph[edge];
-                let (_, target) = graph.edge_endpoints(edge).unwrap_or_default();
-                Ok(Leaving {
-                    event: position(automaton.events(), transition.event),
-                    target: target.index(),
-                    urgency: transition.urgency,
-                    guard: Condition::of(transition.guard.predicate(), names)?,
-                    change: change(&transition.reset, names, shape)?,
-                })
-            });
-            let motion = match &mode.flow {
-                Some(flow) => motion(flow, names, shape)?,
-                None => ModeMotion::Rates(Vec::new()),
+        let numbers = automaton.numbers();
+        let compiler = Compiler { names, numbers: &numbers };
+        let mut modes = Vec::with_capacity(automaton.modes.len());
+        for (mode, function) in automaton.modes.iter().zip(&mut functions.flows) {
+            let mut leaving = Vec::with_capacity(mode.leaving.len());
+            for edge in mode.leaving {
+                let transition = &automaton.transitions[edge.index()];
+                let function = functions.resets[edge.index()].take();
+                leaving.push(compiler.leaving(transition, function)?);
+            }
+            let rates = compiler.rates(mode.flow.and_then(Motion::rates).unwrap_or_default())?;
+            let formulas = || rates.iter().map(|(_, rate)| rate);
+            let motion = match function.take() {
+                Some(function) => function,
+                None => {
+                    let program = |(place, rate): &_| RateProgram::of(*place, rate, names);
+                    ModeMotion::Rates(rates.iter().map(program).collect::<Result<_, _>>()?)
+                }
             };
             modes.push(Mode {
-                name: location.name(),
-                rates: Tape::compile(formulas(mode.flow.as_ref()), names)?,
-                sides: Sides::compile(formulas(mode.flow.as_ref()), names)?,
+                name: mode.name,
+                rates: Tape::compile(formulas(), names)?,
+                sides: Sides::compile(formulas(), names)?,
                 is_whole: motion.is_whole(names.len()),
                 motion,
-                invariant: mode
-                    .invariant
-                    .as_ref()
-                    .map(|invariant| Condition::of(invariant, names))
-                    .transpose()?,
-                leaving: leaving.collect::<Result<_, EvaluationError>>()?,
+                invariant: mode.invariant.map(|it| compiler.condition(it)).transpose()?,
+                leaving,
             });
         }
-        let events = automaton.events().iter().map(|event| event.name()).collect();
-        let initial = position(automaton.locations(), automaton.initial());
-        let (coordinates, own) = (names.to_vec(), automaton.own.clone());
-        Ok(Blueprint { modes, events, coordinates, initial, own, sketch })
+        Ok(Blueprint {
+            modes,
+            events: automaton.events.clone(),
+            coordinates: names.to_vec(),
+            initial: automaton.initial,
+            own: automaton.own.to_vec(),
+            sketch: Sketch::of(automaton),
+        })
+    }
+}
+
+/// Compiles formulas over coordinates, with numbers in the place of parameters.
+struct Compiler<'a> {
+    names: &'a [&'static str],
+    numbers: &'a Substitution,
+}
+
+impl Compiler<'_> {
+    fn leaving(
+        &self,
+        transition: &Transition<'_>,
+        function: Option<Change>,
+    ) -> Result<Leaving, EvaluationError> {
+        let assignments = transition.effect.assignments().unwrap_or_default();
+        let change = match function {
+            Some(function) => function,
+            None => {
+                let assigned = assignments.iter().map(|one| self.assigned(one));
+                Change::Assignments(assigned.collect::<Result<_, _>>()?)
+            }
+        };
+        Ok(Leaving {
+            event: transition.event,
+            target: transition.target,
+            urgency: transition.urgency,
+            guard: self.condition(transition.guard.predicate())?,
+            change,
+        })
+    }
+
+    fn condition(&self, predicate: &Predicate) -> Result<Condition, EvaluationError> {
+        Condition::of(&predicate.substitute(self.numbers), self.names)
+    }
+
+    /// The coordinates by their places, with their rates.
+    fn rates(&self, rates: &[Rate]) -> Result<Vec<(usize, Expression)>, EvaluationError> {
+        let rate = |one: &Rate| {
+            Ok((self.place_of(one.coordinate())?, one.rate().substitute(self.numbers)))
+        };
+        rates.iter().map(rate).collect()
+    }
+
+    fn assigned(&self, assignment: &Assignment) -> Result<(usize, Assigned), EvaluationError> {
+        let assigned = match assignment.value().substitute(self.numbers) {
+            NewValue::Exactly(value) => Assigned::Value(value.compile(self.names)?),
+            NewValue::Within(lower, upper) => {
+                Assigned::Interval([lower.compile(self.names)?, upper.compile(self.names)?])
+            }
+        };
+        Ok((self.place_of(assignment.coordinate())?, assigned))
+    }
+
+    fn place_of(&self, name: &str) -> Result<usize, EvaluationError> {
+        let unknown = || EvaluationError::UnknownVariable { variable: name.to_owned() };
+        self.names.iter().position(|listed| *listed == name).ok_or_else(unknown)
     }
 }
 
@@ -217,80 +296,45 @@ fn may_be_unbounded(expression: &Expression) -> bool {
     false
 }
 
-fn position<T: PartialEq>(all: &[T], one: T) -> usize {
-    // `build` has checked that every location and event is listed.
-    all.iter().position(|listed| *listed == one).unwrap_or_default()
-}
-
 /// A state of the automaton with these coordinates.
 fn state_of<S: Coordinates>(shape: Option<&S>, values: &[f64]) -> S {
     shape.map_or_else(|| S::from_values(values), |shape| shape.like(values))
 }
 
-fn formulas<S>(flow: Option<&Flow<S>>) -> impl Iterator<Item = &Expression> {
-    let rates = flow.and_then(Flow::rates).unwrap_or_default();
-    rates.iter().map(crate::flow::Rate::rate)
-}
-
-fn motion<S: Coordinates>(
-    flow: &Flow<S>,
-    names: &[&'static str],
-    shape: Option<&S>,
-) -> Result<ModeMotion, EvaluationError> {
+/// A flow that is a function.
+fn motion<S: Coordinates>(flow: &Flow<S>, shape: Option<&S>) -> Option<ModeMotion> {
     let shape = shape.cloned();
-    Ok(match flow.motion() {
-        Motion::Rates(rates) => {
-            let compile = |rate: &crate::flow::Rate<S>| {
-                RateProgram::of(place_of(names, rate.coordinate())?, rate.rate(), names)
-            };
-            ModeMotion::Rates(rates.iter().map(compile).collect::<Result<_, EvaluationError>>()?)
-        }
-        Motion::Field(_, field) => {
+    match flow.motion() {
+        flow::Motion::Rates(_) => None,
+        flow::Motion::Field(_, field) => {
             let field = field.clone();
-            ModeMotion::Field(Arc::new(move |values: &[f64], rates: &mut [f64]| {
+            Some(ModeMotion::Field(Arc::new(move |values: &[f64], rates: &mut [f64]| {
                 field(&state_of(shape.as_ref(), values)).write(rates);
-            }))
+            })))
         }
-        Motion::Exact(_, advance) => {
+        flow::Motion::Exact(_, advance) => {
             let advance = advance.clone();
-            ModeMotion::Exact(Arc::new(move |values: &mut [f64], duration: f64| {
+            Some(ModeMotion::Exact(Arc::new(move |values: &mut [f64], duration: f64| {
                 let mut state = state_of(shape.as_ref(), values);
                 advance(&mut state, duration);
                 state.write(values);
-            }))
+            })))
         }
-    })
+    }
 }
 
-fn change<S: Coordinates>(
-    reset: &Reset<S>,
-    names: &[&'static str],
-    shape: Option<&S>,
-) -> Result<Change, EvaluationError> {
-    if let Some(assignments) = reset.assignments() {
-        let compile = |assignment: &crate::reset::Assignment<S>| {
-            let assigned = match assignment.value() {
-                NewValue::Exactly(value) => Assigned::Value(value.compile(names)?),
-                NewValue::Within(lower, upper) => {
-                    Assigned::Interval([lower.compile(names)?, upper.compile(names)?])
-                }
-            };
-            Ok((place_of(names, assignment.coordinate())?, assigned))
-        };
-        return Ok(Change::Assignments(assignments.iter().map(compile).collect::<Result<_, _>>()?));
+/// A reset that is a function.
+fn change<S: Coordinates>(reset: &Reset<S>, shape: Option<&S>) -> Option<Change> {
+    if reset.assignments().is_some() {
+        return None;
     }
     let (reset, shape) = (reset.clone(), shape.cloned());
-    Ok(Change::Function(Arc::new(move |values: &mut [f64]| {
+    Some(Change::Function(Arc::new(move |values: &mut [f64]| {
         let mut state = state_of(shape.as_ref(), values);
         reset.apply(&mut state)?;
         state.write(values);
         Ok(())
     })))
-}
-
-fn place_of(names: &[&'static str], name: &str) -> Result<usize, EvaluationError> {
-    let unknown = || EvaluationError::UnknownVariable { variable: name.to_owned() };
-    names.iter().position(|listed| *listed == name).ok_or_else(unknown)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod error;
 use std::sync::Arc;
 
 use pleach_discrete::{Event, Location};
-use pleach_guards::EvaluationError;
+use pleach_guards::{EvaluationError, Valuation};
 
 pub use error::CompositionError;
 
@@ -64,10 +64,21 @@ impl CompositionBuilder {
 
     /// Adds `automaton` as a component that starts in `state`.
     pub fn add_in<L: Location, E: Event, S: Coordinates>(
-        mut self,
+        self,
         name: &str,
         automaton: &Automaton<L, E, S>,
         state: S,
+    ) -> Self {
+        let model = || Model::of(&automaton.outline());
+        self.add_part(name, automaton.blueprint(), &model, &state)
+    }
+
+    fn add_part(
+        mut self,
+        name: &str,
+        blueprint: Result<Blueprint, EvaluationError>,
+        model: &dyn Fn() -> Model,
+        state: &dyn Valuation,
     ) -> Self {
         let initial = |blueprint: Blueprint| -> Result<(Blueprint, Vec<f64>), EvaluationError> {
             let value = |name: &&'static str| {
@@ -77,7 +88,7 @@ impl CompositionBuilder {
             let values = blueprint.coordinates.iter().map(value).collect::<Result<_, _>>()?;
             Ok((blueprint, values))
         };
-        match Blueprint::of(automaton).and_then(initial) {
+        match blueprint.and_then(initial) {
             Ok((blueprint, initial)) if initial.iter().any(|value| value.is_nan()) => {
                 let named = blueprint.coordinates.iter().zip(&initial);
                 for (variable, _) in named.filter(|(_, value)| value.is_nan()) {
@@ -88,7 +99,7 @@ impl CompositionBuilder {
             Ok((blueprint, initial)) => self.parts.push(Part {
                 name: name.to_owned(),
                 blueprint: Arc::new(blueprint),
-                model: Arc::new(Model::of(automaton)),
+                model: Arc::new(model()),
                 initial,
                 renamed: Vec::new(),
                 accumulation: None,

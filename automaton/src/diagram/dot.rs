@@ -9,19 +9,20 @@ use crate::automaton::Automaton;
 /// The automaton in the DOT language. Transitions that only may be taken are dashed, and those
 /// that happen at once are bold.
 pub fn dot<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
+    graph(&Sketch::of(&automaton.outline()))
+}
+
+fn graph(sketch: &Sketch) -> String {
     let mut text = String::from(
         "digraph automaton {\n    \
          node [shape=box, style=rounded, fontname=\"sans-serif\"];\n    \
          edge [fontname=\"sans-serif\", fontsize=11];\n    \
          initial [shape=point];\n",
     );
-    let sketch = Sketch::of(automaton);
     for (number, mode) in sketch.modes.iter().enumerate() {
         text.push_str(&format!("    l{number} [label={}];\n", quoted(&mode.lines())));
     }
-    if let Some(initial) = sketch.initial {
-        text.push_str(&format!("    initial -> l{initial};\n"));
-    }
+    text.push_str(&format!("    initial -> l{};\n", sketch.initial));
     for link in &sketch.links {
         let (source, target) = (link.source, link.target);
         let (label, style) = (quoted(&link.lines()), style(link.urgency));

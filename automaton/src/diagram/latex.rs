@@ -2,14 +2,13 @@
 
 use std::fmt::Write as _;
 
-use petgraph::visit::EdgeRef;
 use pleach_discrete::{Event, Location};
 use pleach_guards::{constant, variable};
 
-use crate::automaton::{Automaton, Transition};
+use crate::automaton::Automaton;
 use crate::coordinates::Coordinates;
 use crate::flow::DOTTED;
-use crate::flow::Flow;
+use crate::outline::{Effect, Motion, Outline, Transition};
 use crate::reset::NewValue;
 
 /// H = (Q, X, Init, f, Inv, E, G, R) with the sets and maps of this automaton (Lygeros et al. 2003,
@@ -20,44 +19,42 @@ use crate::reset::NewValue;
 /// ranges that are declared. What is a function and not a formula stands under its name. Names of
 /// other scripts than Latin and Greek need LuaLaTeX or XeLaTeX.
 pub fn latex<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>) -> String {
+    let values = automaton.initial_state().map(Coordinates::to_values);
+    definition(&automaton.outline(), automaton.names(), values)
+}
+
+/// The definition over coordinates of these names, which start with these values, if they are known.
+fn definition(automaton: &Outline<'_>, names: &[&'static str], values: Option<Vec<f64>>) -> String {
     let mut definition = Definition { lines: Vec::new() };
     definition.put("H", r"(Q, X, \mathrm{Init}, f, \mathrm{Inv}, E, G, R)");
-    let names: Vec<String> =
-        automaton.locations().iter().map(|location| text(location.name())).collect();
-    definition.put("Q", &set(&names));
-    definition.put("X", &states(automaton));
-    definition.put(r"\mathrm{Init}", &initial(automaton));
-    let modes = automaton
-        .locations()
-        .iter()
-        .map(|&location| (text(location.name()), automaton.mode(location)));
-    let modes: Vec<_> = modes.filter_map(|(name, mode)| Some((name, mode?))).collect();
-    for (name, mode) in &modes {
-        definition.put(&format!("f({name}, x)"), &flow(automaton.names(), mode.flow.as_ref()));
+    let locations: Vec<String> = automaton.modes.iter().map(|mode| text(mode.name)).collect();
+    definition.put("Q", &set(&locations));
+    definition.put("X", &states(automaton, names));
+    definition.put(r"\mathrm{Init}", &initial(&locations[automaton.initial], values));
+    for (location, mode) in locations.iter().zip(&automaton.modes) {
+        definition.put(&format!("f({location}, x)"), &flow(names, mode.flow));
     }
-    for (name, mode) in &modes {
-        let invariant = mode.invariant.as_ref().map(|invariant| invariant.to_latex());
-        definition.put(&format!(r"\mathrm{{Inv}}({name})"), &where_it_holds(invariant));
+    for (location, mode) in locations.iter().zip(&automaton.modes) {
+        let invariant = mode.invariant.map(|invariant| invariant.to_latex());
+        definition.put(&format!(r"\mathrm{{Inv}}({location})"), &where_it_holds(invariant));
     }
-    let graph = automaton.graph();
-    let numbers = || (1..).zip(graph.edge_references());
+    let numbers = || (1..).zip(&automaton.transitions);
     let edges: Vec<String> = numbers().map(|(number, _)| format!("e_{{{number}}}")).collect();
     definition.put("E", &set(&edges));
     for (number, edge) in numbers() {
-        let Transition { event, urgency, priority, .. } = edge.weight();
-        let ends = [graph[edge.source()].name(), event.name(), graph[edge.target()].name()];
-        let [source, event, target] = ends.map(text);
+        let Transition { source, event, target, urgency, priority, .. } = edge;
+        let (source, target) = (&locations[*source], &locations[*target]);
+        let event = text(automaton.events[*event]);
         let how = format!(r"\quad\text{{({urgency}, {priority})}}");
         definition.put(&format!("e_{{{number}}}"), &format!("({source}, {event}, {target}) {how}"));
     }
     for (number, edge) in numbers() {
-        let guard = &edge.weight().guard;
-        let is_always = *guard.predicate() == pleach_guards::always();
-        let formula = (!is_always).then(|| guard.predicate().to_latex());
+        let is_always = *edge.guard.predicate() == pleach_guards::always();
+        let formula = (!is_always).then(|| edge.guard.predicate().to_latex());
         definition.put(&format!("G(e_{{{number}}})"), &where_it_holds(formula));
     }
     for (number, edge) in numbers() {
-        definition.put(&format!("R(e_{{{number}}}, x)"), &reset(automaton.names(), edge.weight()));
+        definition.put(&format!("R(e_{{{number}}}, x)"), &reset(names, edge.effect));
     }
     definition.finish()
 }
@@ -102,9 +99,9 @@ fn names(coordinates: &[&'static str]) -> Vec<String> {
     coordinates.iter().map(|name| variable(name).to_latex()).collect()
 }
 
-fn states<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>) -> String {
+fn states(automaton: &Outline<'_>, coordinates: &[&'static str]) -> String {
     let number = |value: f64| constant(value).to_latex();
-    let ranges = automaton.names().iter().map(|name| {
+    let ranges = coordinates.iter().map(|name| {
         let range = automaton.range(name);
         let (lower, upper) = (*range.start(), *range.end());
         match (lower.is_finite(), upper.is_finite()) {
@@ -122,16 +119,15 @@ fn states<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>)
         }
         some => some.join(r" \times "),
     };
-    format!(r"{product}, \quad x = {}", column(&names(automaton.names())))
+    format!(r"{product}, \quad x = {}", column(&names(coordinates)))
 }
 
-fn initial<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>) -> String {
-    let location = text(automaton.initial().name());
-    match automaton.initial_state() {
+fn initial(location: &str, values: Option<Vec<f64>>) -> String {
+    match values {
         None => format!(r"\{{{location}\}} \times X"),
-        Some(state) => {
+        Some(values) => {
             let values: Vec<String> =
-                state.to_values().into_iter().map(|value| constant(value).to_latex()).collect();
+                values.into_iter().map(|value| constant(value).to_latex()).collect();
             let state = column(&values);
             format!(r"\left\{{\left({location}, {state}\right)\right\}}")
         }
@@ -139,29 +135,25 @@ fn initial<L: Location, E: Event, S: Coordinates>(automaton: &Automaton<L, E, S>
 }
 
 /// The rates of all coordinates, or the name of the flow.
-fn flow<S>(names: &[&'static str], flow: Option<&Flow<S>>) -> String {
-    let rates = match flow {
-        None => Some(&[][..]),
-        Some(flow) => flow.rates(),
-    };
-    match (rates, flow) {
-        (Some(rates), _) => column(&of_coordinates(names, |name| {
+fn flow(names: &[&'static str], flow: Option<Motion<'_>>) -> String {
+    match flow.unwrap_or(Motion::Rates(&[])) {
+        Motion::Rates(rates) => column(&of_coordinates(names, |name| {
             let rate = rates.iter().find(|rate| rate.coordinate() == name);
             rate.map_or_else(|| "0".to_owned(), |rate| rate.rate().to_latex())
         })),
-        (None, flow) => flow.map_or_else(String::new, |flow| text(&flow.name())),
+        Motion::Function(name) => text(name),
     }
 }
 
 /// What becomes of all coordinates, or the name of the reset.
-fn reset<E, S>(names: &[&'static str], transition: &Transition<E, S>) -> String {
-    match transition.reset.assignments() {
-        Some([]) => "x".to_owned(),
-        Some(assignments) => column(&of_coordinates(names, |name| {
+fn reset(names: &[&'static str], reset: Effect<'_>) -> String {
+    match reset {
+        Effect::Assignments([]) => "x".to_owned(),
+        Effect::Assignments(assignments) => column(&of_coordinates(names, |name| {
             let assignment = assignments.iter().find(|one| one.coordinate() == name);
             assignment.map_or_else(|| variable(name).to_latex(), |one| new_value(one.value()))
         })),
-        None => text(&transition.reset.name()),
+        Effect::Function(name) => text(name),
     }
 }
 

@@ -9,16 +9,17 @@ use crate::composition::Composition;
 
 /// The automaton as a Mermaid `stateDiagram-v2`.
 pub fn mermaid<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
+    states(&Sketch::of(&automaton.outline()))
+}
+
+fn states(sketch: &Sketch) -> String {
     let mut text = String::from("stateDiagram-v2\n");
-    let sketch = Sketch::of(automaton);
     for (number, mode) in sketch.modes.iter().enumerate() {
         for line in mode.lines() {
             text.push_str(&format!("    l{number} : {}\n", escaped(&line)));
         }
     }
-    if let Some(initial) = sketch.initial {
-        text.push_str(&format!("    [*] --> l{initial}\n"));
-    }
+    text.push_str(&format!("    [*] --> l{}\n", sketch.initial));
     for link in &sketch.links {
         let (source, target) = (link.source, link.target);
         let label = escaped(&link.lines().join(" "));
@@ -39,9 +40,8 @@ pub fn composition_mermaid(composition: &Composition) -> String {
             let lines = lines.join("<br>");
             text.push_str(&format!("        c{component}l{number}(\"{lines}\")\n"));
         }
-        if let Some(initial) = sketch.initial {
-            text.push_str(&format!("        c{component}start(( )) --> c{component}l{initial}\n"));
-        }
+        let initial = sketch.initial;
+        text.push_str(&format!("        c{component}start(( )) --> c{component}l{initial}\n"));
         for link in &sketch.links {
             let (source, target) = (link.source, link.target);
             let lines: Vec<String> = link.lines().iter().map(|line| escaped(line)).collect();

@@ -1,11 +1,9 @@
 //! What locations and transitions say about themselves, the same in every kind of diagram.
 
-use petgraph::visit::EdgeRef;
-use pleach_discrete::{Event, Location, Urgency};
-use pleach_guards::{Expression, Valuation, constant};
+use pleach_discrete::Urgency;
+use pleach_guards::{Expression, Predicate, constant};
 
-use crate::automaton::{Automaton, Transition};
-use crate::reset::Reset;
+use crate::outline::{self, Effect, Motion, Outline, Transition};
 
 /// An automaton in words, without its types: diagrams only have to arrange it.
 #[derive(Clone, Debug)]
@@ -15,7 +13,7 @@ pub(crate) struct Sketch {
     /// In the order of the rows of the table.
     pub links: Vec<Link>,
     /// The number of the initial location.
-    pub initial: Option<usize>,
+    pub initial: usize,
     /// The state in which runs start, a variable a line; empty where the model does not say it.
     pub start: Vec<String>,
 }
@@ -57,41 +55,27 @@ pub(crate) struct Link {
 pub(super) const MISSED: &str = "never taken";
 
 impl Sketch {
-    pub fn of<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Sketch {
-        let mode = |&location: &L| {
-            let mode = automaton.mode(location);
-            let flow = mode.and_then(|mode| mode.flow.as_ref());
-            let flow = flow.map_or_else(Vec::new, |flow| match flow.rates() {
-                Some(rates) => rates.iter().map(ToString::to_string).collect(),
-                None => vec![flow.name().into_owned()],
-            });
-            let invariant = mode.and_then(|mode| mode.invariant.as_ref()).map(ToString::to_string);
-            let commands = mode.map_or(&[][..], |mode| &mode.commands);
-            let commands = commands
+    pub fn of(automaton: &Outline<'_>) -> Sketch {
+        let mode = |mode: &outline::Mode<'_>| Mode {
+            name: mode.name,
+            flow: mode.flow.map_or_else(Vec::new, flow_formulas),
+            invariant: mode.invariant.map(ToString::to_string),
+            commands: mode
+                .commands
                 .iter()
                 .map(|it| (format!("{} := {}", it.commanded, it.name), it.to_string()))
-                .collect();
-            Mode { name: location.name(), flow, invariant, commands, is_missed: false }
-        };
-        let rank = |edge| {
-            let ranks = automaton
-                .leaving
-                .iter()
-                .filter_map(|leaving: &Vec<_>| leaving.iter().position(|listed| *listed == edge));
-            ranks.min().unwrap_or_default()
-        };
-        let edges = automaton.graph().edge_references();
-        Sketch {
-            modes: automaton.graph().node_weights().map(mode).collect(),
-            links: edges
-                .map(|edge| {
-                    let (source, target) = (edge.source().index(), edge.target().index());
-                    let event = &edge.weight().event;
-                    let number = automaton.events().iter().position(|one| one == event);
-                    Link::of(edge.weight(), source, target, rank(edge.id()), number.unwrap_or(0))
-                })
                 .collect(),
-            initial: automaton.node(automaton.initial()).map(|node| node.index()),
+            is_missed: false,
+        };
+        let link = |(number, transition): (usize, &Transition<'_>)| {
+            let leaving = automaton.modes[transition.source].leaving;
+            let rank = leaving.iter().position(|edge| edge.index() == number).unwrap_or_default();
+            Link::of(transition, automaton.events[transition.event], rank)
+        };
+        Sketch {
+            modes: automaton.modes.iter().map(mode).collect(),
+            links: automaton.transitions.iter().enumerate().map(link).collect(),
+            initial: automaton.initial,
             start: start(automaton),
         }
     }
@@ -120,21 +104,15 @@ impl Mode {
 }
 
 impl Link {
-    fn of<E: Event, S>(
-        transition: &Transition<E, S>,
-        source: usize,
-        target: usize,
-        rank: usize,
-        event_number: usize,
-    ) -> Link {
+    fn of(transition: &Transition<'_>, event: &str, rank: usize) -> Link {
         Link {
-            source,
-            target,
+            source: transition.source,
+            target: transition.target,
             rank,
-            event: transition.event.name().to_owned(),
-            event_number,
+            event: event.to_owned(),
+            event_number: transition.event,
             guard: transition.guard.predicate().to_string(),
-            reset: reset_formulas(&transition.reset),
+            reset: reset_formulas(transition.effect),
             urgency: transition.urgency,
             priority: transition.priority,
             is_missed: false,
@@ -174,39 +152,45 @@ impl Link {
     }
 }
 
+/// The rates, each by itself; or the name of the flow.
+fn flow_formulas(flow: Motion<'_>) -> Vec<String> {
+    match flow {
+        Motion::Rates(rates) => rates.iter().map(ToString::to_string).collect(),
+        Motion::Function(name) => vec![name.to_owned()],
+    }
+}
+
 /// The assignments, each by itself; or the name, if there is one.
-fn reset_formulas<S>(reset: &Reset<S>) -> Vec<String> {
-    match reset.assignments() {
-        Some(assignments) => assignments.iter().map(ToString::to_string).collect(),
-        None if reset.name().is_empty() => Vec::new(),
-        None => vec![reset.name().into_owned()],
+fn reset_formulas(reset: Effect<'_>) -> Vec<String> {
+    match reset {
+        Effect::Assignments(assignments) => assignments.iter().map(ToString::to_string).collect(),
+        Effect::Function("") => Vec::new(),
+        Effect::Function(name) => vec![name.to_owned()],
     }
 }
 
 /// The initial state, as far as formulas name its variables: those that flow come first.
-fn start<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Vec<String> {
-    let Some(state) = automaton.initial_state() else { return Vec::new() };
-    let mut names: Vec<String> = Vec::new();
-    let mut note = |name: &str| {
-        if !names.iter().any(|listed| listed == name) {
-            names.push(name.to_owned());
+fn start(automaton: &Outline<'_>) -> Vec<String> {
+    let Some(state) = automaton.initial_state else { return Vec::new() };
+    let mut names: Vec<&str> = Vec::new();
+    let mut note = |name| {
+        if !names.contains(&name) {
+            names.push(name);
         }
     };
-    let flows = || automaton.modes.iter().filter_map(|mode| mode.flow.as_ref()?.rates()).flatten();
+    let flows = || automaton.modes.iter().filter_map(|mode| mode.flow?.rates()).flatten();
     flows().for_each(|rate| note(rate.coordinate()));
     flows().flat_map(|rate| rate.rate().variables()).for_each(&mut note);
-    let invariants = automaton.modes.iter().filter_map(|mode| mode.invariant.as_ref());
-    invariants.flat_map(|invariant| invariant.variables()).for_each(&mut note);
-    for transition in automaton.graph().edge_weights() {
+    automaton.invariants().flat_map(Predicate::variables).for_each(&mut note);
+    for transition in &automaton.transitions {
         transition.guard.predicate().variables().into_iter().for_each(&mut note);
-        for assignment in transition.reset.assignments().into_iter().flatten() {
+        for assignment in transition.effect.assignments().into_iter().flatten() {
             note(assignment.coordinate());
             let formulas = assignment.value().formulas();
             formulas.flat_map(Expression::variables).for_each(&mut note);
         }
     }
-    let line = |name: &String| Some(equation(name, state.value(name)?));
-    names.iter().filter_map(line).collect()
+    names.iter().filter_map(|name| Some(equation(name, state.value(name)?))).collect()
 }
 
 /// A variable and its value.

@@ -22,7 +22,7 @@ pub use composition::composition_svg;
 /// Up to four locations are drawn as boxes in a row, joined by arcs; more locations, or very many
 /// transitions, as columns that the arrows cross.
 pub fn svg<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
-    let (canvas, size) = draw(&Sketch::of(automaton));
+    let (canvas, size) = draw(&Sketch::of(&automaton.outline()));
     canvas.finish(size)
 }
 
@@ -32,7 +32,7 @@ pub fn coverage_svg<L: Location, E: Event, S: Valuation>(
     automaton: &Automaton<L, E, S>,
     coverage: &ComponentCoverage,
 ) -> String {
-    let mut sketch = Sketch::of(automaton);
+    let mut sketch = Sketch::of(&automaton.outline());
     coverage.mark(&mut sketch);
     let (canvas, size) = draw(&sketch);
     canvas.finish(size)

@@ -4,7 +4,8 @@ use pleach_discrete::{Event, Location};
 use pleach_guards::Valuation;
 
 use super::sketch::{Mode, Sketch};
-use crate::automaton::{Automaton, Transition};
+use crate::automaton::Automaton;
+use crate::outline::{Outline, Transition};
 
 /// The automaton in Markdown: the full location × event table; below it guard and reset, a row an
 /// event where all its transitions agree, and else a row a transition; and, where time changes or
@@ -13,10 +14,13 @@ use crate::automaton::{Automaton, Transition};
 /// The name of a guard is left out where it is the formula itself.
 pub fn table<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> String {
     let mut text = automaton.table().to_markdown();
-    text.push('\n');
-    text.push_str(&markdown(&transitions(automaton)));
-    let sketch = Sketch::of(automaton);
-    let modes = modes(&sketch);
+    text.push_str(&parts(&automaton.outline()));
+    text
+}
+
+fn parts(automaton: &Outline<'_>) -> String {
+    let mut text = format!("\n{}", markdown(&transitions(automaton)));
+    let modes = modes(&Sketch::of(automaton));
     if modes.len() > 1 {
         text.push('\n');
         text.push_str(&markdown(&modes));
@@ -29,35 +33,33 @@ type Columns = Vec<(&'static str, Vec<String>)>;
 
 const NOTHING: &str = "—";
 
-fn transitions<L: Location, E: Event, S: Valuation>(automaton: &Automaton<L, E, S>) -> Columns {
+fn transitions(automaton: &Outline<'_>) -> Columns {
     let rows = rows(automaton);
-    let column = |cell: &dyn Fn(&Row<'_, L, E, S>) -> String| rows.iter().map(cell).collect();
-    let mut columns: Columns =
-        vec![("event", column(&|row| format!("**{}**", row.transition.event.name())))];
+    let column = |cell: &dyn Fn(&Row<'_>) -> String| rows.iter().map(cell).collect();
+    let event = |row: &Row<'_>| format!("**{}**", automaton.events[row.transition.event]);
+    let mut columns: Columns = vec![("event", column(&event))];
     if rows.iter().any(|row| row.stands == Stands::Alone) {
-        columns.push(("transition", column(&|row| row.way())));
+        columns.push(("transition", column(&|row| row.way(automaton))));
     }
-    let has_name = |row: &Row<'_, L, E, S>| {
-        let guard = &row.transition.guard;
+    let has_name = |row: &Row<'_>| {
+        let guard = row.transition.guard;
         guard.name() != guard.predicate().to_string()
     };
     if rows.iter().any(has_name) {
-        let name = |row: &Row<'_, L, E, S>| match has_name(row) {
+        let name = |row: &Row<'_>| match has_name(row) {
             true => row.transition.guard.name().to_owned(),
             false => NOTHING.to_owned(),
         };
         columns.push(("guard", column(&name)));
     }
     columns.push(("holds where", column(&|row| row.transition.guard.predicate().to_string())));
-    columns.push(("reset", column(&|row| or_nothing(row.transition.reset.name().into_owned()))));
+    columns.push(("reset", column(&|row| or_nothing(row.transition.effect.to_string()))));
     columns
 }
 
 /// A row of the table.
-struct Row<'a, L, E, S> {
-    transition: &'a Transition<E, S>,
-    source: L,
-    target: L,
+struct Row<'a> {
+    transition: &'a Transition<'a>,
     stands: Stands,
 }
 
@@ -72,48 +74,41 @@ enum Stands {
     ForAll,
 }
 
-impl<L: Location, E, S> Row<'_, L, E, S> {
-    fn way(&self) -> String {
+impl Row<'_> {
+    fn way(&self, automaton: &Outline<'_>) -> String {
         match self.stands {
             Stands::ForAll => "all".to_owned(),
             Stands::Alone | Stands::Only => {
-                format!("{} → {}", self.source.name(), self.target.name())
+                let Transition { source, target, .. } = self.transition;
+                let [source, target] = [source, target].map(|&end| automaton.modes[end].name);
+                format!("{source} → {target}")
             }
         }
     }
 }
 
-fn rows<L: Location, E: Event, S: Valuation>(
-    automaton: &Automaton<L, E, S>,
-) -> Vec<Row<'_, L, E, S>> {
-    let table = automaton.table();
+fn rows<'a>(automaton: &'a Outline<'a>) -> Vec<Row<'a>> {
     let mut rows = Vec::new();
-    for event in automaton.events() {
-        let of_event: Vec<_> = automaton
-            .graph()
-            .edge_weights()
-            .zip(table.rows())
-            .filter(|(transition, _)| transition.event == *event)
-            .collect();
+    for event in 0..automaton.events.len() {
+        let is_on_it = |transition: &&Transition<'_>| transition.event == event;
+        let of_event: Vec<_> = automaton.transitions.iter().filter(is_on_it).collect();
         let stands = match &of_event[..] {
             [_] => Stands::Only,
-            [(first, _), others @ ..] if others.iter().all(|(other, _)| is_same(first, other)) => {
+            [first, others @ ..] if others.iter().all(|other| is_same(first, other)) => {
                 Stands::ForAll
             }
             _ => Stands::Alone,
         };
         let shown = if stands == Stands::ForAll { 1 } else { of_event.len() };
-        rows.extend(of_event.into_iter().take(shown).map(|(transition, row)| {
-            let (source, target) = (row.source, row.target);
-            Row { transition, source, target, stands }
-        }));
+        let shown = of_event.into_iter().take(shown);
+        rows.extend(shown.map(|transition| Row { transition, stands }));
     }
     rows
 }
 
 /// Whether guard and reset read the same.
-fn is_same<E, S>(one: &Transition<E, S>, other: &Transition<E, S>) -> bool {
-    one.guard == other.guard && one.reset.name() == other.reset.name()
+fn is_same(one: &Transition<'_>, other: &Transition<'_>) -> bool {
+    one.guard == other.guard && one.effect.to_string() == other.effect.to_string()
 }
 
 /// The locations, with what is said of any of them.

@@ -115,7 +115,7 @@ impl<L: Location, E: Event, S: Coordinates> Automaton<L, E, S> {
         });
         let [one, other] = flows;
         let flows = [one?, other?];
-        let rate = |rates: &[Rate<S>], name: &str| {
+        let rate = |rates: &[Rate], name: &str| {
             let given = rates.iter().find(|rate| rate.coordinate() == name);
             given.map_or_else(|| constant(0.0), |rate| rate.rate().clone())
         };

@@ -76,7 +76,7 @@ fn flow(coordinates: &[Coordinate<Record>], matrix: &[[f64; 9]; 9]) -> TestResul
     let mut rates: Vec<_> = rates
         .map(|(row, (rate, coordinate))| match row {
             1 => coordinate.rate(rate.rate() + variable("u")),
-            _ => rate.clone(),
+            _ => coordinate.rate(rate.rate().clone()),
         })
         .collect();
     rates.push(coordinates[9].rate(1.0));

@@ -50,7 +50,7 @@ pub(super) fn draw(sketch: &Sketch) -> (Canvas, Size) {
     let mut canvas = Canvas::new();
     let row = Row::of(sketch);
     let mut extent = Extent::default();
-    row.draw_boxes(&mut canvas, sketch, &mut extent);
+    row.draw_boxes(&mut canvas, &mut extent);
     row.draw_loops(&mut canvas, &mut extent);
     row.draw_near(&mut canvas, &mut extent);
     row.draw_far(&mut canvas, &mut extent);
@@ -173,7 +173,7 @@ impl Arc {
 impl Row {
     fn of(sketch: &Sketch) -> Row {
         let mut order: Vec<usize> = (0..sketch.modes.len()).collect();
-        order.sort_by_key(|&place| Some(place) != sketch.initial);
+        order.sort_by_key(|&place| place != sketch.initial);
         let position = |place| order.iter().position(|&one| one == place).unwrap_or_default();
         let arcs: Vec<Arc> = sketch
             .links

@@ -45,7 +45,7 @@ pub(super) fn draw(sketch: &Sketch) -> (Canvas, Size) {
     for row in &rows {
         draw_arrows(&mut canvas, row, &columns);
     }
-    if let Some(initial) = sketch.initial.and_then(|number| columns.get(number)) {
+    if let Some(initial) = columns.get(sketch.initial) {
         canvas.initial_arrow(Pixel { x: initial.x, y: MARGIN }, ENTRANCE);
     }
     (canvas, Size { width: right + MARGIN, height: bottom + LINE_HEIGHT + MARGIN })

@@ -20,7 +20,7 @@ const ENTRANCE: f64 = 40.0;
 const SAMPLE: f64 = 30.0;
 
 impl Row {
-    pub(super) fn draw_boxes(&self, canvas: &mut Canvas, sketch: &Sketch, extent: &mut Extent) {
+    pub(super) fn draw_boxes(&self, canvas: &mut Canvas, extent: &mut Extent) {
         for one in &self.boxes {
             let corner = Pixel { x: one.left, y: -self.height / 2.0 };
             let size = Size { width: one.width, height: self.height };
@@ -33,9 +33,7 @@ impl Row {
                 canvas.label(place, line, class);
             }
         }
-        if sketch.initial.is_some() {
-            self.draw_entrance(canvas, extent);
-        }
+        self.draw_entrance(canvas, extent);
     }
 
     /// The arrow to the initial location, with the initial state on it.

@@ -1,0 +1,169 @@
+//! An automaton without its types.
+//!
+//! Locations and events are numbers with names here, formulas are data, and functions are names. Checks,
+//! compositions and diagrams read automata in this form, so that they are compiled once, and not anew for
+//! the types of each automaton.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use petgraph::graph::EdgeIndex;
+use pleach_discrete::{Event, Location, Urgency};
+use pleach_guards::{Guard, Predicate, Substitution, Valuation, constant};
+
+use crate::automaton::Automaton;
+use crate::flow::{Flow, Rate};
+use crate::law::Command;
+use crate::reset::{Assignment, listed};
+
+pub(crate) struct Outline<'a> {
+    /// By location.
+    pub(crate) modes: Vec<Mode<'a>>,
+    pub(crate) events: Vec<&'static str>,
+    /// In the order of the table.
+    pub(crate) transitions: Vec<Transition<'a>>,
+    pub(crate) initial: usize,
+    /// The state in which runs start, where the model says it.
+    pub(crate) initial_state: Option<&'a dyn Valuation>,
+    /// The names of all variables, where the type of the state tells.
+    pub(crate) known: Option<&'a [&'static str]>,
+    pub(crate) parameters: &'a [(String, f64)],
+    pub(crate) ranges: &'a [(String, RangeInclusive<f64>)],
+    /// Propositions of which at most one is true at a time.
+    pub(crate) exclusive: &'a [Vec<String>],
+    /// The coordinates of which no other component may say how they move.
+    pub(crate) own: &'a [&'static str],
+}
+
+/// A location with what is said of it.
+pub(crate) struct Mode<'a> {
+    pub(crate) name: &'static str,
+    pub(crate) flow: Option<Motion<'a>>,
+    pub(crate) invariant: Option<&'a Predicate>,
+    pub(crate) commands: &'a [Command],
+    /// The transitions that leave it, in their total order.
+    pub(crate) leaving: &'a [EdgeIndex],
+}
+
+pub(crate) struct Transition<'a> {
+    pub(crate) source: usize,
+    pub(crate) event: usize,
+    pub(crate) target: usize,
+    pub(crate) urgency: Urgency,
+    pub(crate) priority: u8,
+    pub(crate) guard: &'a Guard,
+    pub(crate) effect: Effect<'a>,
+}
+
+/// A flow: its rates, or its name.
+#[derive(Clone, Copy)]
+pub(crate) enum Motion<'a> {
+    Rates(&'a [Rate]),
+    Function(&'a str),
+}
+
+/// A reset: its assignments, or its name.
+#[derive(Clone, Copy)]
+pub(crate) enum Effect<'a> {
+    Assignments(&'a [Assignment]),
+    Function(&'a str),
+}
+
+impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
+    pub(crate) fn outline(&self) -> Outline<'_> {
+        let mut modes = Vec::with_capacity(self.modes.len());
+        for (node, mode) in self.modes.iter().enumerate() {
+            modes.push(Mode {
+                name: self.locations[node].name(),
+                flow: mode.flow.as_ref().map(Flow::outline),
+                invariant: mode.invariant.as_ref(),
+                commands: &mode.commands,
+                leaving: &self.leaving[node],
+            });
+        }
+        let mut transitions = Vec::with_capacity(self.rows.len());
+        for edge in self.graph.raw_edges() {
+            let transition = &edge.weight;
+            transitions.push(Transition {
+                source: edge.source().index(),
+                event: place_of(&self.events, transition.event),
+                target: edge.target().index(),
+                urgency: transition.urgency,
+                priority: transition.priority,
+                guard: &transition.guard,
+                effect: transition.reset.outline(),
+            });
+        }
+        Outline {
+            modes,
+            events: names_of(&self.events, E::name),
+            transitions,
+            initial: place_of(&self.locations, self.initial),
+            initial_state: self.initial_state.as_ref().map(|state| state as &dyn Valuation),
+            known: self.known.as_deref(),
+            parameters: &self.parameters,
+            ranges: &self.ranges,
+            exclusive: &self.exclusive,
+            own: &self.own,
+        }
+    }
+}
+
+impl Outline<'_> {
+    /// The parameters as what to put in the place of their names.
+    pub(crate) fn numbers(&self) -> Substitution {
+        Substitution::new(self.parameters.iter().map(|(name, value)| (name, constant(*value))))
+    }
+
+    /// The range that the model declares for a variable; without a declaration, all numbers.
+    pub(crate) fn range(&self, name: &str) -> RangeInclusive<f64> {
+        let declared = self.ranges.iter().find(|(variable, _)| variable == name);
+        declared.map_or(f64::NEG_INFINITY..=f64::INFINITY, |(_, range)| range.clone())
+    }
+
+    pub(crate) fn invariants(&self) -> impl Iterator<Item = &Predicate> {
+        self.modes.iter().filter_map(|mode| mode.invariant)
+    }
+
+    pub(crate) fn guards(&self) -> impl Iterator<Item = &Predicate> {
+        self.transitions.iter().map(|transition| transition.guard.predicate())
+    }
+}
+
+impl<'a> Motion<'a> {
+    /// The rates, unless it is a function.
+    pub(crate) fn rates(self) -> Option<&'a [Rate]> {
+        match self {
+            Motion::Rates(rates) => Some(rates),
+            Motion::Function(_) => None,
+        }
+    }
+}
+
+impl<'a> Effect<'a> {
+    /// The assignments, unless it is a function.
+    pub(crate) fn assignments(self) -> Option<&'a [Assignment]> {
+        match self {
+            Effect::Assignments(assignments) => Some(assignments),
+            Effect::Function(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Effect<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Effect::Assignments(assignments) => formatter.write_str(&listed(assignments)),
+            Effect::Function(name) => formatter.write_str(name),
+        }
+    }
+}
+
+/// The place of one that is among them: the builder sees to it.
+pub(crate) fn place_of<T: Copy + PartialEq>(all: &[T], one: T) -> usize {
+    all.iter().position(|listed| *listed == one).unwrap_or_default()
+}
+
+pub(crate) fn names_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Vec<&'static str> {
+    all.iter().map(|one| name(*one)).collect()
+}
