@@ -108,8 +108,8 @@ fn chains_of_decays_are_as_in_closed_form() {
         });
         let chain = chain.build().expect("the parts fit");
         let trajectory = chain.run(12.0).expect("it can be run");
-        for t in [0.125, 0.7, 1.0, 3.3, 8.0, 12.0] {
-            let mut exact = (-t as f64).exp();
+        for t in [0.125_f64, 0.7, 1.0, 3.3, 8.0, 12.0] {
+            let mut exact = (-t).exp();
             for number in 0..links {
                 let found = trajectory.value(&format!("{number}.x"), t).expect("the run lasts");
                 assert_near(found, exact, tolerance);
