@@ -175,8 +175,11 @@ impl Attendee {
 }
 
 impl AccessPoint {
-    /// Once a control period: who is missed, and, at the first access point, the next roll.
+    /// Once a control period, at the first access point: who is missed, and the next roll.
     pub(super) fn call_roll(&mut self) -> Result<(), TransitionError> {
+        if !self.is_first() {
+            return Ok(());
+        }
         let site = Arc::clone(&self.site);
         for attendee in &mut self.attendees {
             attendee.review(&site.automata.attendance)?;
@@ -184,12 +187,10 @@ impl AccessPoint {
         for silence in &mut self.tasks_serviced {
             *silence = silence.saturating_add(1);
         }
-        if self.number == 0 {
-            let absent = self.absent();
-            let is_same = *self.roll.absent == absent;
-            let absent = if is_same { Arc::clone(&self.roll.absent) } else { Arc::new(absent) };
-            self.roll = Roll { called: self.period, absent };
-        }
+        let absent = self.absent();
+        let is_same = *self.roll.absent == absent;
+        let absent = if is_same { Arc::clone(&self.roll.absent) } else { Arc::new(absent) };
+        self.roll = Roll { called: self.period, absent };
         Ok(())
     }
 
