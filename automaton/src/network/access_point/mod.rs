@@ -79,9 +79,10 @@ pub struct AccessPoint {
     attached: Arc<IdSet>,
     /// Robots that are heard here and know no way to an access point, for the others likewise.
     strays: Arc<IdSet>,
-    /// The robots that take part, attached here or to other access points, as the first one knows.
+    /// The robots that take part, attached here or to other access points: where no attendance is kept,
+    /// those that are heard of.
     roster: Arc<IdSet>,
-    /// What it knows of each robot, at the first access point.
+    /// What it knows of each robot, if it [keeps attendance](Self::keeps_attendance).
     attendees: Vec<Attendee>,
     /// The newest roll.
     roll: Roll,
@@ -158,9 +159,14 @@ impl AccessPoint {
         self.number
     }
 
-    /// Whether it is the one that calls the rolls and serves the user.
+    /// Whether it is the one that calls the rolls.
     const fn is_first(&self) -> bool {
         self.number == 0
+    }
+
+    /// Whether it has to know which robots attend: it calls the rolls, or serves the user.
+    const fn keeps_attendance(&self) -> bool {
+        self.is_first() || self.requested.is_some()
     }
 
     fn id(&self) -> NodeId {
@@ -370,7 +376,7 @@ impl AccessPoint {
             <= 2.0 * CHANGEOVER_SHARE * self.site.lengths(self.stretched).build
     }
 
-    /// Which robots are attached here; and, at the first access point, which attend.
+    /// Which robots are attached here, and which take part.
     fn survey_robots(&mut self) {
         let own = Anchor::Access(self.number);
         let mut here = Reports::default();
@@ -380,9 +386,7 @@ impl AccessPoint {
                 here.take_in(beacon, is_child, self.id(), true);
             }
         }
-        if self.is_first() {
-            self.update_roster(here.clone());
-        }
+        self.update_roster(here.clone());
         if self.site.access_points.len() > 1 {
             let Reports { below, strays, serves } = here;
             (self.attached, self.strays) = (Arc::new(below), Arc::new(strays));
@@ -412,7 +416,7 @@ impl AccessPoint {
                 *silence = 0;
             }
         }
-        let roster = self.attending();
+        let roster = if self.keeps_attendance() { self.attending() } else { reports.below.clone() };
         let is_complete = reports.below.includes(&roster);
         let settled = is_complete && *self.roster == roster;
         self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
@@ -464,6 +468,7 @@ impl Node for AccessPoint {
             }
             Input::Heard { message: Message::Request(tasks), .. } => {
                 self.requested = Some(Arc::clone(tasks));
+                self.begin_attendance();
             }
             Input::Tick { .. } => self.tick(outputs)?,
             Input::Heard { .. } | Input::Sensed(_) => {}
