@@ -214,6 +214,24 @@ fn a_message_arrives_once_at_any_time_unless_the_channel_says_otherwise() {
     assert_eq!(lasting, [(0.0, "0"), (0.0, "1"), (1.0, "1"), (2.0, "1")]);
 }
 
+/// The message of 2 s takes the place of that of 1 s, and is heard half a second later.
+#[test]
+fn a_message_that_stays_gives_way_to_the_next() {
+    let Target { heard, last, count: clock } = Target::coordinates();
+    let late = from(Listening).on(Hear::Hear).to(Deaf).must(clock.at_least(2.5));
+    let receiver = Automaton::starting_in(Listening)
+        .initially(Target { heard: 0.0, last: -1.0, count: 0.0 })
+        .flow(Listening, clock.rate(1.0))
+        .transition(late.then(last.becomes(&heard)))
+        .build()
+        .expect("the receiver is sound");
+    let parts = Composition::builder().add("a", &sender(1.0)).add("b", &receiver);
+    let both = parts.channel(channel().lasting()).build().expect("the parts fit");
+    let trajectory = run(&both, Policy::Late, 2.75);
+    assert_eq!(jumps(&trajectory), [(1.0, TELL), (2.0, TELL), (2.5, HEAR)]);
+    assert_eq!(trajectory.value("b.last", 2.75), Some(1.0));
+}
+
 #[test]
 fn a_receiver_of_messages_with_a_deadline_takes_them_in_every_location() {
     let leaving = Automaton::starting_in(Listening)

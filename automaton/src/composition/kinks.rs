@@ -119,7 +119,7 @@ impl Kinks {
 
 #[cfg(test)]
 mod tests {
-    use pleach_guards::{Table, variable};
+    use pleach_guards::{Table, piecewise, variable};
 
     use super::*;
 
@@ -161,6 +161,11 @@ mod tests {
         let apart = [(0.0, vec![(0, 1.0), (1, -3.0)], false)];
         assert_eq!(told(x.min(3.0 * &y)), apart);
         assert_eq!(told(x.max(3.0 * &y).power(2.0).sin()), apart);
+        let cases = |condition| piecewise([(condition, y.abs())], &x).expect("a comparison");
+        let [inner, outer] = [(0.0, vec![(1, 1.0)], false), (-2.0, vec![(0, 1.0)], true)];
+        let mut found = told(cases(x.at_least(2.0)));
+        found.sort_by_key(|(_, _, are_jumps)| *are_jumps);
+        assert!(found == [inner.clone(), outer] || found == [inner, (2.0, vec![(0, -1.0)], true)]);
         assert!(told(&x * &y + x.sin()).is_empty() && told((&x * &y).abs()).is_empty());
         assert_eq!(told(x.abs() + y.sign()).len(), 2);
     }
