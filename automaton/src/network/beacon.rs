@@ -216,7 +216,7 @@ impl Beacon {
     pub(super) fn tell_forgetful(&self, own: Option<&Announced>, known: &mut Arc<IdSet>) {
         let goes_by = |announced: Option<&Announced>| announced.map(|(id, _)| *id);
         let is_same = goes_by(self.announced.as_ref()) == goes_by(own);
-        if is_same && !self.forgetful.iter().all(|robot| known.contains(robot)) {
+        if is_same && !known.includes(&self.forgetful) {
             Arc::make_mut(known).merge(&self.forgetful);
         }
     }

@@ -3,15 +3,22 @@
 #[cfg(any(kani, test))]
 mod proofs;
 
-/// A set of numbers below a few thousand, as bits.
+/// A set of numbers, as bits in words of 64. Words without any number take no memory.
 ///
 /// The numbers below 64 have a machine word of their own, so that the sets of most networks allocate
 /// nothing.
 #[derive(Clone, Debug, Default, Eq, PartialOrd, Ord)]
 pub struct IdSet {
     first: u64,
-    /// 64 numbers a word, from 64 on; the last word is not 0.
-    rest: Vec<u64>,
+    /// From 64 on, ascending.
+    rest: Vec<Word>,
+}
+
+/// The numbers from `WIDTH · at` on: at least one of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Word {
+    at: usize,
+    bits: u64,
 }
 
 /// How many numbers a word holds.
@@ -43,14 +50,7 @@ impl IdSet {
 
     /// Adds `id`; returns whether it is new.
     pub fn insert(&mut self, id: usize) -> bool {
-        let (at, bit) = (id / WIDTH, 1 << (id % WIDTH));
-        if at > self.rest.len() {
-            self.rest.resize(at, 0);
-        }
-        let word = if at == 0 { &mut self.first } else { &mut self.rest[at - 1] };
-        let is_new = *word & bit == 0;
-        *word |= bit;
-        is_new
+        self.add(Word { at: id / WIDTH, bits: 1 << (id % WIDTH) })
     }
 
     /// Whether `id` is in the set.
@@ -60,49 +60,83 @@ impl IdSet {
 
     /// Adds every number of `other`; returns whether any is new.
     pub fn merge(&mut self, other: &IdSet) -> bool {
-        if other.rest.len() > self.rest.len() {
-            self.rest.resize(other.rest.len(), 0);
-        }
         let mut grown = other.first & !self.first != 0;
         self.first |= other.first;
-        for (mine, theirs) in self.rest.iter_mut().zip(&other.rest) {
-            grown |= theirs & !*mine != 0;
-            *mine |= theirs;
+        for theirs in &other.rest {
+            grown |= self.add(*theirs);
         }
         grown
     }
 
+    /// Adds the numbers of a word; returns whether any is new.
+    fn add(&mut self, word: Word) -> bool {
+        let own = match self.place_of(word.at) {
+            None => &mut self.first,
+            Some(Ok(place)) => &mut self.rest[place].bits,
+            Some(Err(place)) => {
+                self.rest.insert(place, word);
+                return true;
+            }
+        };
+        let is_new = word.bits & !*own != 0;
+        *own |= word.bits;
+        is_new
+    }
+
     /// Whether every number of `other` is in the set.
     pub fn includes(&self, other: &IdSet) -> bool {
-        other.words().enumerate().all(|(at, theirs)| theirs & !self.word(at) == 0)
+        other.words().all(|theirs| theirs.bits & !self.word(theirs.at) == 0)
     }
 
     /// How many numbers there are.
     pub fn len(&self) -> usize {
-        self.words().map(|word| word.count_ones() as usize).sum()
+        self.words().map(|word| word.bits.count_ones() as usize).sum()
     }
 
     /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
-        self.words().all(|word| word == 0)
+        self.first == 0 && self.rest.is_empty()
     }
 
     /// The numbers, ascending.
     pub fn iter(&self) -> impl Iterator<Item = usize> + '_ {
-        self.words().enumerate().flat_map(|(at, word)| {
-            (0..WIDTH).filter(move |bit| word & (1 << bit) != 0).map(move |bit| WIDTH * at + bit)
-        })
+        self.words().flat_map(Word::numbers)
     }
 
-    fn words(&self) -> impl Iterator<Item = u64> + '_ {
-        std::iter::once(self.first).chain(self.rest.iter().copied())
+    fn words(&self) -> impl Iterator<Item = Word> + '_ {
+        std::iter::once(Word { at: 0, bits: self.first }).chain(self.rest.iter().copied())
     }
 
     fn word(&self, at: usize) -> u64 {
-        match at.checked_sub(1) {
+        match self.place_of(at) {
             None => self.first,
-            Some(at) => self.rest.get(at).copied().unwrap_or(0),
+            Some(Ok(place)) => self.rest[place].bits,
+            Some(Err(_)) => 0,
         }
+    }
+
+    /// Where a word is, or where it belongs; none if it is the first of all. Sets are often built in
+    /// their order: the end is looked at before the middle.
+    fn place_of(&self, at: usize) -> Option<Result<usize, usize>> {
+        if at == 0 {
+            return None;
+        }
+        Some(match self.rest.last() {
+            Some(last) if last.at >= at => self.rest.binary_search_by_key(&at, |word| word.at),
+            _ => Err(self.rest.len()),
+        })
+    }
+}
+
+impl Word {
+    /// The numbers, ascending.
+    fn numbers(self) -> impl Iterator<Item = usize> {
+        let mut left = self.bits;
+        std::iter::from_fn(move || {
+            let bit = (left != 0).then_some(left.trailing_zeros() as usize)?;
+            left &= left - 1;
+            Some(WIDTH * self.at + bit)
+        })
     }
 }
 

@@ -175,8 +175,12 @@ impl Attendee {
 }
 
 impl AccessPoint {
-    /// Once a control period: who is missed, and, at the first access point, the next roll.
+    /// Once a control period: who is missed, where that has to be known, and, at the first access point,
+    /// the next roll.
     pub(super) fn call_roll(&mut self) -> Result<(), TransitionError> {
+        if !self.keeps_attendance() {
+            return Ok(());
+        }
         let site = Arc::clone(&self.site);
         for attendee in &mut self.attendees {
             attendee.review(&site.automata.attendance)?;
@@ -184,13 +188,25 @@ impl AccessPoint {
         for silence in &mut self.tasks_serviced {
             *silence = silence.saturating_add(1);
         }
-        if self.number == 0 {
+        if self.is_first() {
             let absent = self.absent();
             let is_same = *self.roll.absent == absent;
             let absent = if is_same { Arc::clone(&self.roll.absent) } else { Arc::new(absent) };
             self.roll = Roll { called: self.period, absent };
         }
         Ok(())
+    }
+
+    /// It is asked for tasks: attendance is kept from now on, of those that are heard of at present.
+    pub(super) fn begin_attendance(&mut self) {
+        if self.attendees.is_empty() {
+            self.attendees = vec![Attendee::new(self.site.roll_validity()); self.site.robots];
+            for robot in self.roster.iter() {
+                if let Some(attendee) = self.attendees.get_mut(robot) {
+                    attendee.attend();
+                }
+            }
+        }
     }
 
     /// Whether robots are not in its roster that may not have begun yet.

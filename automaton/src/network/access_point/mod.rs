@@ -79,10 +79,12 @@ pub struct AccessPoint {
     attached: Arc<IdSet>,
     /// Robots that are heard here and know no way to an access point, for the others likewise.
     strays: Arc<IdSet>,
-    /// The robots that take part, attached here or to other access points.
+    /// The robots that take part, attached here or to other access points: where no attendance is kept,
+    /// those that are heard of.
     roster: Arc<IdSet>,
-    /// What it knows of each robot, and the newest roll.
+    /// What it knows of each robot, if it [keeps attendance](Self::keeps_attendance).
     attendees: Vec<Attendee>,
+    /// The newest roll.
     roll: Roll,
     settled_rounds: usize,
     /// For how many control periods each task that has been serviced has not been.
@@ -110,10 +112,12 @@ impl AccessPoint {
     /// Access point `number` of the site.
     pub fn new(number: usize, site: Arc<Site>) -> Self {
         let (period, longest_wait) = (site.settings.period, site.rounds_across(0));
+        let attending = if number == 0 { site.robots } else { 0 };
+        let attendees = vec![Attendee::new(site.roll_validity()); attending];
         AccessPoint {
             number,
             position: site.access_points[number],
-            attendees: vec![Attendee::new(site.roll_validity()); site.robots],
+            attendees,
             roll: Roll::default(),
             site,
             heard: Vec::new(),
@@ -153,6 +157,16 @@ impl AccessPoint {
     /// Its number among the access points.
     pub const fn number(&self) -> usize {
         self.number
+    }
+
+    /// Whether it is the one that calls the rolls.
+    const fn is_first(&self) -> bool {
+        self.number == 0
+    }
+
+    /// Whether it has to know which robots attend: it calls the rolls, or serves the user.
+    const fn keeps_attendance(&self) -> bool {
+        self.is_first() || self.requested.is_some()
     }
 
     fn id(&self) -> NodeId {
@@ -203,7 +217,7 @@ impl AccessPoint {
     fn deliberate(&mut self) -> Result<(), TransitionError> {
         self.hear_notices()?;
         self.find_route();
-        self.update_roster();
+        self.survey_robots();
         self.locate_wrecks();
         Ok(())
     }
@@ -256,7 +270,7 @@ impl AccessPoint {
 
     /// The first access point sends the user the newest notice.
     fn tell_user(&self, outputs: &mut Outputs<Message, MissionEvent>) {
-        if self.number == 0 {
+        if self.is_first() {
             let user = self.site.nodes();
             outputs.send(user, Message::News(self.bulletin.clone()));
         }
@@ -362,45 +376,48 @@ impl AccessPoint {
             <= 2.0 * CHANGEOVER_SHARE * self.site.lengths(self.stretched).build
     }
 
-    /// Which robots are attached to the access points, and which it hears of. One that knows no way to an
-    /// access point, on its way along Σ or with a parent that has failed, is not missed as long as it is
-    /// heard.
-    fn update_roster(&mut self) {
+    /// Which robots are attached here, and which take part.
+    fn survey_robots(&mut self) {
         let own = Anchor::Access(self.number);
-        let (mut here, mut elsewhere) = (Reports::default(), Reports::default());
+        let mut here = Reports::default();
         for beacon in &self.heard {
-            match &beacon.duty {
-                None => elsewhere.take_in_branch(beacon),
-                Some(duty) => {
-                    let is_child = duty.post().is_some_and(|post| post.parent == Some(own));
-                    here.take_in(beacon, is_child, self.id(), true);
-                }
+            if let Some(duty) = &beacon.duty {
+                let is_child = duty.post().is_some_and(|post| post.parent == Some(own));
+                here.take_in(beacon, is_child, self.id(), true);
             }
         }
-        let mut heard_of = here.below.clone();
-        heard_of.merge(&elsewhere.below);
-        for robot in heard_of.iter() {
-            if let Some(attendee) = self.attendees.get_mut(robot) {
-                attendee.attend();
-            }
-        }
-        for robot in here.strays.iter().chain(elsewhere.strays.iter()) {
-            if let Some(attendee) = self.attendees.get_mut(robot).filter(|it| it.is_known()) {
-                attendee.attend();
-            }
-        }
-        for task in here.serves.iter().chain(elsewhere.serves.iter()) {
-            if let Some(silence) = self.tasks_serviced.get_mut(task) {
-                *silence = 0;
-            }
-        }
+        self.update_roster(here.clone());
         if self.site.access_points.len() > 1 {
             let Reports { below, strays, serves } = here;
             (self.attached, self.strays) = (Arc::new(below), Arc::new(strays));
             self.serves = Arc::new(serves);
         }
-        let roster = self.attending();
-        let is_complete = roster.iter().all(|robot| heard_of.contains(robot));
+    }
+
+    /// Which robots are attached to the access points, of which these are attached here, and which are
+    /// heard of. One that knows no way to an access point, on its way along Σ or with a parent that has
+    /// failed, is not missed as long as it is heard.
+    fn update_roster(&mut self, mut reports: Reports) {
+        for beacon in self.heard.iter().filter(|beacon| beacon.duty.is_none()) {
+            reports.take_in_branch(beacon);
+        }
+        for robot in reports.below.iter() {
+            if let Some(attendee) = self.attendees.get_mut(robot) {
+                attendee.attend();
+            }
+        }
+        for robot in reports.strays.iter() {
+            if let Some(attendee) = self.attendees.get_mut(robot).filter(|it| it.is_known()) {
+                attendee.attend();
+            }
+        }
+        for task in reports.serves.iter() {
+            if let Some(silence) = self.tasks_serviced.get_mut(task) {
+                *silence = 0;
+            }
+        }
+        let roster = if self.keeps_attendance() { self.attending() } else { reports.below.clone() };
+        let is_complete = reports.below.includes(&roster);
         let settled = is_complete && *self.roster == roster;
         self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
         if *self.roster != roster {
@@ -451,6 +468,7 @@ impl Node for AccessPoint {
             }
             Input::Heard { message: Message::Request(tasks), .. } => {
                 self.requested = Some(Arc::clone(tasks));
+                self.begin_attendance();
             }
             Input::Tick { .. } => self.tick(outputs)?,
             Input::Heard { .. } | Input::Sensed(_) => {}

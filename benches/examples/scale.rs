@@ -1,0 +1,99 @@
+//! How setting up, the first control period and those after it grow with the number of robots.
+//!
+//! ```text
+//! cargo run --release -p pleach-benches --example scale -- [ROBOTS]...
+//! ```
+//!
+//! Each number of robots stands in a hall of its own, in which every robot hears twelve others and 49
+//! share an access point; without numbers 100, 1,000 and 10,000. Robots of a hall without tasks keep up
+//! their network only. Exponents are those of the power law through the first and the last hall.
+
+use std::process::ExitCode;
+use std::time::Instant;
+use std::{env, fs};
+
+use pleach_benches::course::Course;
+use pleach_benches::hall::hall;
+
+const SIZES: [usize; 3] = [100, 1_000, 10_000];
+/// Control periods that count, after those in which the network gathers.
+const PERIODS: u32 = 10;
+const GATHERING: usize = 20;
+
+/// What was measured in a hall.
+struct Row {
+    robots: usize,
+    /// Seconds for reading the hall, the first control period, and one of those after it.
+    times: [f64; 3],
+    /// Bytes of memory that the mission takes.
+    memory: Option<f64>,
+}
+
+impl Row {
+    fn of(robots: usize) -> Row {
+        let before = resident();
+        let (scenario, setup) = timed(|| hall(robots, 0));
+        let (mut course, first) = timed(|| Course::new(&scenario));
+        (0..GATHERING).for_each(|_| course.pass_period());
+        let ((), periods) = timed(|| (0..PERIODS).for_each(|_| course.pass_period()));
+        let memory = resident().zip(before).map(|(after, before)| after - before);
+        Row { robots, times: [setup, first, periods / f64::from(PERIODS)], memory }
+    }
+
+    fn print(&self) {
+        let [setup, first, period] = self.times.map(|seconds| seconds * 1e3);
+        let each = period * 1e3 / self.robots as f64;
+        let memory = self.memory.map_or("—".to_owned(), |bytes| {
+            format!("{:.0} kB", bytes / 1e3 / self.robots as f64)
+        });
+        let robots = self.robots;
+        println!(
+            "| {robots} | {setup:.1} ms | {first:.1} ms | {period:.2} ms | {each:.1} µs | {memory} |"
+        );
+    }
+}
+
+fn main() -> ExitCode {
+    let numbers: Result<Vec<usize>, _> = env::args().skip(1).map(|word| word.parse()).collect();
+    let sizes = match numbers {
+        Ok(numbers) if numbers.contains(&0) => {
+            eprintln!("a hall has at least one robot: give numbers from 1 on, such as 100 1000");
+            return ExitCode::from(2);
+        }
+        Ok(numbers) if numbers.is_empty() => SIZES.to_vec(),
+        Ok(numbers) => numbers,
+        Err(error) => {
+            eprintln!("the arguments are numbers of robots, such as 100 1000: {error}");
+            return ExitCode::from(2);
+        }
+    };
+    println!("| robots | set up | first period | period | a robot and period | memory a robot |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    let mut rows = Vec::with_capacity(sizes.len());
+    for robots in sizes {
+        let row = Row::of(robots);
+        row.print();
+        rows.push(row);
+    }
+    if let [first, .., last] = &rows[..] {
+        let growth = (last.robots as f64 / first.robots as f64).ln();
+        let exponent = |which: usize| (last.times[which] / first.times[which]).ln() / growth;
+        let [setup, first, period] = [0, 1, 2].map(exponent);
+        println!("| exponent | {setup:.2} | {first:.2} | {period:.2} | | |");
+    }
+    ExitCode::SUCCESS
+}
+
+/// The result, and the seconds that it took.
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let begin = Instant::now();
+    let result = work();
+    (result, begin.elapsed().as_secs_f64())
+}
+
+/// The bytes of memory that the process holds, where the system tells.
+fn resident() -> Option<f64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok()? * 1024.0)
+}
