@@ -104,6 +104,18 @@ fn chains_of_urgent_events_take_no_time() {
     }
 }
 
+/// Those that jump at one instant do so in the order in which they are added, whoever is connected to whom.
+#[test]
+fn at_one_instant_components_jump_in_their_order() {
+    let late = link(|_, time| time.at_least(0.7));
+    let three =
+        ["0", "1", "2"].iter().fold(Composition::builder(), |all, name| all.add(name, &late));
+    let three = three.connect("0.d", "2.h").build().expect("they fit");
+    let trajectory = three.run(2.0).expect("it can be run");
+    assert_eq!(instants(&trajectory), [0.7; 3]);
+    assert_eq!(movers(&trajectory), [0, 1, 2]);
+}
+
 /// A stiff variable that follows the cosine of a clock of another component: k (cos t − x) passes zero, up to
 /// what has faded, where tan t = −k.
 #[test]

@@ -1,10 +1,10 @@
 //! Compositions as one automaton.
 
 use petgraph::visit::EdgeRef;
-use pleach_automaton::composition::ProductError;
+use pleach_automaton::composition::{ProductError, Reached};
 use pleach_automaton::{Automaton, Composition, Flow, Name, Record, Reset, coordinates, from};
 use pleach_discrete::vocabulary;
-use pleach_guards::always;
+use pleach_guards::{Valuation, always};
 
 vocabulary! {
     enum Lamp: Location { Dark = "dark", Lit = "lit" }
@@ -183,4 +183,37 @@ fn coordinates_of_one_name_have_no_product() {
     let parts = Composition::builder().add("a", &named("b.c")).add("a.b", &named("c"));
     let product = parts.build().expect("the names of the parts differ").product();
     assert!(matches!(product, Err(ProductError::Names(_))));
+}
+
+/// From 1 on by adding 1 and by doubling, as long as the number is at most 5.
+#[test]
+fn an_exploration_finds_all_numbers_by_the_shortest_ways() {
+    let Charge { charge } = Charge::coordinates();
+    let small = || charge.at_most(5.0);
+    let press =
+        from(Dark).on(Hand::Press).to(Dark).may(small()).then(charge.becomes(&charge + 1.0));
+    let double =
+        from(Dark).on(Hand::Flicker).to(Dark).may(small()).then(charge.becomes(2.0 * &charge));
+    let calculator = Automaton::starting_in(Dark)
+        .initially(Charge { charge: 1.0 })
+        .transition(press)
+        .transition(double)
+        .build()
+        .expect("it is sound");
+    let alone = Composition::builder().add("a", &calculator).build().expect("it is one part");
+    assert!(alone.explore(7).is_err(), "there are eight");
+    let found = alone.explore(8).expect("no time passes");
+    let number = |state: &Reached<'_>| state.value("q").expect("it is its coordinate");
+    let mut numbers: Vec<f64> = found.states().map(|state| number(&state)).collect();
+    numbers.sort_by(f64::total_cmp);
+    assert_eq!(numbers, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0]);
+    assert_eq!(found.transitions(), 10);
+    let mut ends: Vec<f64> = found.deadlocks().map(|state| number(&state)).collect();
+    ends.sort_by(f64::total_cmp);
+    assert_eq!(ends, [6.0, 8.0, 10.0]);
+    let beyond = |bound: f64| {
+        let beyond = found.counterexample(&charge.at_most(bound)).expect("it has a value");
+        beyond.map(|state| (number(&state), state.path().len()))
+    };
+    assert_eq!([beyond(7.0), beyond(8.0), beyond(10.0)], [Some((8.0, 3)), Some((10.0, 4)), None]);
 }

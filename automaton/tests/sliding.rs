@@ -9,6 +9,8 @@ use pleach_discrete::vocabulary;
 use pleach_guards::Predicate;
 use proptest::prelude::*;
 
+use crate::common::classics::{Gear, Shift};
+
 vocabulary! {
     enum Side: Location { Before = "before", Behind = "behind" }
     enum Way: Event { There = "there", Back = "back", Leave = "leave" }
@@ -67,6 +69,25 @@ fn jumps_back_and_forth_along_one_flow_are_no_sliding() {
     };
     assert!(matches!(reason(1.0, -1.0), Reason::Sliding(_)));
     assert_eq!(reason(1.0, 1.0), Reason::JumpLimit);
+}
+
+/// Nor are jumps in a circle, though the flows of two of its three locations lead to the boundary.
+#[test]
+fn jumps_in_a_circle_are_no_sliding() {
+    use Gear::{First, Second, Third};
+    let Point { x } = Point::coordinates();
+    let next = |source, target| from(source).on(Shift::Up).to(target).must(x.at_least(0.0));
+    for start in [First, Second, Third] {
+        let circle = Automaton::starting_in(start)
+            .initially(Point { x: 0.0 })
+            .flow(First, x.rate(1.0))
+            .flow(Second, x.rate(-1.0))
+            .transition(next(First, Second))
+            .transition(next(Second, Third))
+            .transition(next(Third, First));
+        let trajectory = circle.build().expect("it is sound").run(2.0).expect("it can be run");
+        assert_eq!(trajectory.ending().reason, Reason::JumpLimit);
+    }
 }
 
 #[test]

@@ -115,7 +115,7 @@ impl Plan<'_> {
         };
         let end = match search.run(limit) {
             Ok(end) => end,
-            Err(Stop { at, halt }) if at > 0.0 && (since + Moment::from(at)) > since => {
+            Err(Stop { at, halt }) if since + Moment::from(at) > since => {
                 return search.cut_short(at, halt, failed);
             }
             Err(Stop { halt, .. }) => return Err(halt),
