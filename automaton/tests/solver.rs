@@ -280,3 +280,19 @@ proptest! {
         prop_assert!((found - exact).abs() < 1e-4 * exact, "{} is not {}", found, exact);
     }
 }
+
+/// Two narrow spikes add their two widths, however far apart they are: the wide range of exponents for which
+/// an exponential is 0 is no reason to look at a span more closely.
+#[test]
+fn two_spikes_add_both_integrals() {
+    for (width, centres) in [(3.6e-4, [1.0, 60.0]), (1e-3, [20.0, 21.0]), (2e-5, [33.3, 99.0])] {
+        let [_, _, time] = coordinates();
+        let spike = |centre: f64| (-((&time - centre) / width).power(2.0)).exp();
+        let rate = centres.map(|centre| spike(centre) / width).into_iter().sum::<Expression>();
+        let trajectory = run([0.0; 2], [rate, constant(0.0)], 100.0);
+        assert_eq!(trajectory.ending().reason, Reason::Horizon, "{centres:?}");
+        let found = trajectory.value("p", 100.0).expect("the run lasts");
+        let exact = 2.0 * PI.sqrt();
+        assert!((found - exact).abs() < 1e-4 * exact, "{centres:?}: {found} is not {exact}");
+    }
+}

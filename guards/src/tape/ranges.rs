@@ -144,7 +144,12 @@ fn is_sharp(operator: UnaryOperator) -> bool {
 fn strains(operator: UnaryOperator, operand: Interval) -> bool {
     use UnaryOperator::{Cosine, Exponential, HyperbolicTangent, Sine, Tangent};
     match operator {
-        Exponential => operand.width() > MOST_GROWTH.ln(),
+        // Below −746 it is 0.
+        Exponential => {
+            let felt = Interval::new(-746.0, f64::INFINITY).ok();
+            let felt = felt.and_then(|felt| felt.intersection(operand));
+            felt.is_some_and(|felt| felt.width() > MOST_GROWTH.ln())
+        }
         // Beyond 20 it is 1 to rounding.
         HyperbolicTangent => {
             let bent = Interval::new(-20.0, 20.0).ok().and_then(|bent| bent.intersection(operand));
