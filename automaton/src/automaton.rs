@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
 use pleach_discrete::{Event, Location, Row, TransitionTable, Urgency};
-use pleach_guards::{EvaluationError, Guard, Predicate, Substitution, Valuation, constant};
+use pleach_guards::{EvaluationError, Guard, Predicate, Substitution, Valuation};
 use thiserror::Error;
 
 use crate::builder::Builder;
@@ -16,6 +16,7 @@ use crate::flow::Flow;
 use crate::law::Command;
 use crate::located::{Holds, Place};
 use crate::observed::{self, Watch};
+use crate::outline::{numbers_of, range_of};
 use crate::reset::Reset;
 
 pub use step::Step;
@@ -194,8 +195,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
     /// The range that the model declares for the variable called `name`; without a declaration,
     /// all numbers.
     pub fn range(&self, name: &str) -> RangeInclusive<f64> {
-        let declared = self.ranges.iter().find(|(variable, _)| variable == name);
-        declared.map_or(f64::NEG_INFINITY..=f64::INFINITY, |(_, range)| range.clone())
+        range_of(&self.ranges, name)
     }
 
     /// The locations, in the order in which tables and diagrams show them.
@@ -215,7 +215,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
 
     /// The parameters as what to put in the place of their names.
     pub(crate) fn numbers(&self) -> Substitution {
-        Substitution::new(self.parameters.iter().map(|(name, value)| (name, constant(*value))))
+        numbers_of(&self.parameters)
     }
 
     /// The node of `location`, unless the automaton lacks it. Enums are small: looking through them

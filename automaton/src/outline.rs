@@ -112,13 +112,12 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
 impl Outline<'_> {
     /// The parameters as what to put in the place of their names.
     pub(crate) fn numbers(&self) -> Substitution {
-        Substitution::new(self.parameters.iter().map(|(name, value)| (name, constant(*value))))
+        numbers_of(self.parameters)
     }
 
     /// The range that the model declares for a variable; without a declaration, all numbers.
     pub(crate) fn range(&self, name: &str) -> RangeInclusive<f64> {
-        let declared = self.ranges.iter().find(|(variable, _)| variable == name);
-        declared.map_or(f64::NEG_INFINITY..=f64::INFINITY, |(_, range)| range.clone())
+        range_of(self.ranges, name)
     }
 
     pub(crate) fn invariants(&self) -> impl Iterator<Item = &Predicate> {
@@ -157,6 +156,20 @@ impl fmt::Display for Effect<'_> {
             Effect::Function(name) => formatter.write_str(name),
         }
     }
+}
+
+/// Parameters as what to put in the place of their names.
+pub(crate) fn numbers_of(parameters: &[(String, f64)]) -> Substitution {
+    Substitution::new(parameters.iter().map(|(name, value)| (name, constant(*value))))
+}
+
+/// The range that is declared for a variable; without a declaration, all numbers.
+pub(crate) fn range_of(
+    ranges: &[(String, RangeInclusive<f64>)],
+    name: &str,
+) -> RangeInclusive<f64> {
+    let declared = ranges.iter().find(|(variable, _)| variable == name);
+    declared.map_or(f64::NEG_INFINITY..=f64::INFINITY, |(_, range)| range.clone())
 }
 
 /// The place of one that is among them: the builder sees to it.

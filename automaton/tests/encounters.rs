@@ -11,7 +11,7 @@ use pleach_guards::{Expression, Predicate, Table, constant, maximum, minimum, pi
 
 use crate::common::body::Cue::{self, Back, Go};
 use crate::common::body::Place::{self, Here, There};
-use crate::common::body::{Body, body, line};
+use crate::common::body::{Body, body, instants, line};
 
 coordinates! {
     struct Link { heard = "h", time = "t", done = "d" }
@@ -39,10 +39,6 @@ fn run_with(parts: Builder<Place, Cue, Body>, settings: Settings, horizon: f64) 
 fn go(parts: Builder<Place, Cue, Body>, guard: Predicate, horizon: f64) -> Trajectory {
     let parts = parts.transition(from(Here).on(Go).to(There).must(guard));
     run_with(parts, Settings { step_limit: 1_000_000, ..Settings::default() }, horizon)
-}
-
-fn instants(trajectory: &Trajectory) -> Vec<f64> {
-    trajectory.jumps().iter().map(|jump| jump.at.t).collect()
 }
 
 fn movers(trajectory: &Trajectory) -> Vec<usize> {
@@ -104,7 +100,8 @@ fn chains_of_urgent_events_take_no_time() {
     }
 }
 
-/// Those that jump at one instant do so in the order in which they are added, whoever is connected to whom.
+/// Components that jump at the same instant jump in the order in which they were added, whatever the
+/// connections between them.
 #[test]
 fn at_one_instant_components_jump_in_their_order() {
     let late = link(|_, time| time.at_least(0.7));

@@ -3,18 +3,13 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
-use pleach_automaton::{Builder, Coordinate, Reason, Settings, Trajectory, Why, from};
+use pleach_automaton::{Builder, Reason, Settings, Trajectory, Why, from};
 use pleach_guards::{Expression, Predicate, constant, maximum, minimum, piecewise, variable};
 use proptest::prelude::*;
 
 use crate::common::body::Cue::{self, Go};
 use crate::common::body::Place::{self, Here, There};
-use crate::common::body::{Body, body, line};
-
-fn coordinates() -> [Coordinate<Body>; 3] {
-    let Body { place, speed, time } = Body::coordinates();
-    [place, speed, time]
-}
+use crate::common::body::{Body, assert_near, body, coordinates, line};
 
 /// p = sin t, s = cos t, by a linear flow or by the integrator.
 fn wave(is_integrated: bool) -> Builder<Place, Cue, Body> {
@@ -39,10 +34,6 @@ fn first(parts: Builder<Place, Cue, Body>, guard: Predicate, horizon: f64) -> f6
     assert!(trajectory.doubts().is_empty(), "{:?}", trajectory.doubts());
     let jump = trajectory.jumps().first();
     jump.unwrap_or_else(|| panic!("no event: {:?}", trajectory.ending())).at.t
-}
-
-fn assert_near(found: f64, exact: f64, tolerance: f64) {
-    assert!((found - exact).abs() <= tolerance, "{found} is not {exact}");
 }
 
 #[test]

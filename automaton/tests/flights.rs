@@ -4,20 +4,14 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use pleach_automaton::composition::SimulationError;
 use pleach_automaton::{
-    Automaton, Builder, Coordinate, Doubt, Flow, Limit, Policy, Reason, Settings, Trajectory, Why,
-    from,
+    Automaton, Builder, Doubt, Flow, Limit, Policy, Reason, Settings, Trajectory, Why, from,
 };
 use pleach_guards::{Predicate, always, constant};
 use proptest::prelude::*;
 
 use crate::common::body::Cue::{self, Back, Go};
 use crate::common::body::Place::{self, Here, There};
-use crate::common::body::{Body, body, line};
-
-fn coordinates() -> [Coordinate<Body>; 3] {
-    let Body { place, speed, time } = Body::coordinates();
-    [place, speed, time]
-}
+use crate::common::body::{Body, assert_near, body, coordinates, instants, line};
 
 /// How p = sin t and s = cos t are solved.
 #[derive(Clone, Copy, Debug)]
@@ -68,14 +62,6 @@ fn run_with(parts: Builder<Place, Cue, Body>, settings: Settings, horizon: f64) 
 fn run(parts: Builder<Place, Cue, Body>, horizon: f64) -> Trajectory {
     let settings = Settings { step_limit: 100_000, ..Settings::default() };
     run_with(parts, settings, horizon)
-}
-
-fn instants(trajectory: &Trajectory) -> Vec<f64> {
-    trajectory.jumps().iter().map(|jump| jump.at.t).collect()
-}
-
-fn assert_near(found: f64, exact: f64, tolerance: f64) {
-    assert!((found - exact).abs() <= tolerance, "{found} is not {exact}");
 }
 
 /// Nothing is in doubt but that a flow is a function, and what rounding hides for a moment.

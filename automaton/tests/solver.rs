@@ -13,7 +13,7 @@ use proptest::prelude::*;
 
 use crate::common::body::Cue::{self, Go};
 use crate::common::body::Place::{self, Here, There};
-use crate::common::body::{Body, body};
+use crate::common::body::{Body, assert_near, body, coordinates};
 
 vocabulary! {
     enum Only: Location { Flowing = "flowing" }
@@ -25,15 +25,6 @@ coordinates! {
     struct Link { before = "b", here = "x" }
 }
 use Only::Flowing;
-
-fn assert_near(found: f64, exact: f64, tolerance: f64) {
-    assert!((found - exact).abs() <= tolerance, "{found} is not {exact}");
-}
-
-fn coordinates() -> [Coordinate<Body>; 3] {
-    let Body { place, speed, time } = Body::coordinates();
-    [place, speed, time]
-}
 
 /// With few pieces.
 fn run(start: [f64; 2], rates: [Expression; 2], horizon: f64) -> Trajectory {

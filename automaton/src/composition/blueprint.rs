@@ -131,8 +131,8 @@ impl Blueprint {
         names: &[&'static str],
         mut functions: Functions,
     ) -> Result<Blueprint, EvaluationError> {
-        let numbers = automaton.numbers();
-        let compiler = Compiler { names, numbers: &numbers };
+        let numbers = (!automaton.parameters.is_empty()).then(|| automaton.numbers());
+        let compiler = Compiler { names, numbers };
         let mut modes = Vec::with_capacity(automaton.modes.len());
         for (mode, function) in automaton.modes.iter().zip(&mut functions.flows) {
             let mut leaving = Vec::with_capacity(mode.leaving.len());
@@ -174,7 +174,8 @@ impl Blueprint {
 /// Compiles formulas over coordinates, with numbers in the place of parameters.
 struct Compiler<'a> {
     names: &'a [&'static str],
-    numbers: &'a Substitution,
+    /// None without parameters: formulas then stay as they are, and functions the ones they were.
+    numbers: Option<Substitution>,
 }
 
 impl Compiler<'_> {
@@ -201,19 +202,29 @@ impl Compiler<'_> {
     }
 
     fn condition(&self, predicate: &Predicate) -> Result<Condition, EvaluationError> {
-        Condition::of(&predicate.substitute(self.numbers), self.names)
+        Condition::of(&self.in_numbers(predicate, Predicate::substitute), self.names)
+    }
+
+    fn in_numbers<T: Clone>(&self, formula: &T, substitute: fn(&T, &Substitution) -> T) -> T {
+        match &self.numbers {
+            Some(numbers) => substitute(formula, numbers),
+            None => formula.clone(),
+        }
     }
 
     /// The coordinates by their places, with their rates.
     fn rates(&self, rates: &[Rate]) -> Result<Vec<(usize, Expression)>, EvaluationError> {
         let rate = |one: &Rate| {
-            Ok((self.place_of(one.coordinate())?, one.rate().substitute(self.numbers)))
+            Ok((
+                self.place_of(one.coordinate())?,
+                self.in_numbers(one.rate(), Expression::substitute),
+            ))
         };
         rates.iter().map(rate).collect()
     }
 
     fn assigned(&self, assignment: &Assignment) -> Result<(usize, Assigned), EvaluationError> {
-        let assigned = match assignment.value().substitute(self.numbers) {
+        let assigned = match self.in_numbers(assignment.value(), NewValue::substitute) {
             NewValue::Exactly(value) => Assigned::Value(value.compile(self.names)?),
             NewValue::Within(lower, upper) => {
                 Assigned::Interval([lower.compile(self.names)?, upper.compile(self.names)?])

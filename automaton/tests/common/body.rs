@@ -1,6 +1,6 @@
 //! A body in the time t, at rates that a test gives, until an event that it asks for.
 
-use pleach_automaton::{Automaton, Builder, coordinates};
+use pleach_automaton::{Automaton, Builder, Coordinate, Trajectory, coordinates};
 use pleach_discrete::vocabulary;
 use pleach_guards::Expression;
 
@@ -10,6 +10,12 @@ vocabulary! {
 }
 coordinates! {
     pub struct Body { place = "p", speed = "s", time = "t" }
+}
+
+/// Place, speed and time.
+pub fn coordinates() -> [Coordinate<Body>; 3] {
+    let Body { place, speed, time } = Body::coordinates();
+    [place, speed, time]
 }
 
 /// A body with these rates of place and speed.
@@ -24,4 +30,13 @@ pub fn body(start: [f64; 2], rates: [Expression; 2]) -> Builder<Place, Cue, Body
 /// p = t, s = 0.
 pub fn line() -> Builder<Place, Cue, Body> {
     body([0.0; 2], [1.0.into(), 0.0.into()])
+}
+
+/// The instants of the jumps, in seconds.
+pub fn instants(trajectory: &Trajectory) -> Vec<f64> {
+    trajectory.jumps().iter().map(|jump| jump.at.t).collect()
+}
+
+pub fn assert_near(found: f64, exact: f64, tolerance: f64) {
+    assert!((found - exact).abs() <= tolerance, "{found} is not {exact}");
 }

@@ -197,7 +197,7 @@ impl AccessPoint {
         Ok(())
     }
 
-    /// It is asked for tasks: attendance is kept from now on, of those that are heard of at present.
+    /// Attendance is kept from now on, of those that are heard of at present.
     pub(super) fn begin_attendance(&mut self) {
         if self.attendees.is_empty() {
             self.attendees = vec![Attendee::new(self.site.roll_validity()); self.site.robots];

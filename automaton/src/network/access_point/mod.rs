@@ -112,12 +112,10 @@ impl AccessPoint {
     /// Access point `number` of the site.
     pub fn new(number: usize, site: Arc<Site>) -> Self {
         let (period, longest_wait) = (site.settings.period, site.rounds_across(0));
-        let attending = if number == 0 { site.robots } else { 0 };
-        let attendees = vec![Attendee::new(site.roll_validity()); attending];
-        AccessPoint {
+        let mut point = AccessPoint {
             number,
             position: site.access_points[number],
-            attendees,
+            attendees: Vec::new(),
             roll: Roll::default(),
             site,
             heard: Vec::new(),
@@ -151,7 +149,11 @@ impl AccessPoint {
             period: 0,
             last_beacon: LastBeacon::default(),
             log: Vec::new(),
+        };
+        if point.is_first() {
+            point.begin_attendance();
         }
+        point
     }
 
     /// Its number among the access points.
@@ -401,6 +403,22 @@ impl AccessPoint {
         for beacon in self.heard.iter().filter(|beacon| beacon.duty.is_none()) {
             reports.take_in_branch(beacon);
         }
+        let roster = if self.keeps_attendance() {
+            self.attend(&reports);
+            self.attending()
+        } else {
+            reports.below.clone()
+        };
+        let is_complete = reports.below.includes(&roster);
+        let settled = is_complete && *self.roster == roster;
+        self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
+        if *self.roster != roster {
+            self.roster = Arc::new(roster);
+        }
+    }
+
+    /// Robots and tasks of which these reports tell are heard of.
+    fn attend(&mut self, reports: &Reports) {
         for robot in reports.below.iter() {
             if let Some(attendee) = self.attendees.get_mut(robot) {
                 attendee.attend();
@@ -415,13 +433,6 @@ impl AccessPoint {
             if let Some(silence) = self.tasks_serviced.get_mut(task) {
                 *silence = 0;
             }
-        }
-        let roster = if self.keeps_attendance() { self.attending() } else { reports.below.clone() };
-        let is_complete = reports.below.includes(&roster);
-        let settled = is_complete && *self.roster == roster;
-        self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
-        if *self.roster != roster {
-            self.roster = Arc::new(roster);
         }
     }
 
