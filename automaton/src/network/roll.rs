@@ -46,14 +46,15 @@ pub struct Wreck {
     pub heard_in: u32,
 }
 
-/// Where robots were when they were heard last, by number.
+/// Where robots were when they were last heard, or heard of, by number.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sightings(Vec<Wreck>);
 
 impl Sightings {
-    /// A robot was heard.
+    /// A robot was heard, or heard of.
     pub fn note(&mut self, seen: Wreck) {
         match self.0.binary_search_by_key(&seen.robot, |known| known.robot) {
+            Ok(at) if self.0[at].heard_in > seen.heard_in => {}
             Ok(at) => self.0[at] = seen,
             Err(at) => self.0.insert(at, seen),
         }

@@ -53,7 +53,7 @@ pub struct AccessPoint {
     position: Point,
     /// The beacon heard last of each node in range, by their senders.
     heard: Vec<Arc<Beacon>>,
-    /// Where each robot was when it was heard last.
+    /// Where each robot was when it was last heard, or heard of.
     sightings: Sightings,
     /// Where robots that do not take part were heard last, here or by the nodes that are heard.
     wrecks: Arc<Vec<Wreck>>,
@@ -209,6 +209,7 @@ impl AccessPoint {
             stretched: self.stretched,
             longest_wait: self.longest_wait,
             wrecks: Arc::clone(&self.wrecks),
+            branches: Arc::default(),
         }
     }
 
@@ -246,6 +247,7 @@ impl AccessPoint {
         if beacon.duty.is_some() {
             let (robot, place) = (beacon.sender, beacon.position);
             self.sightings.note(Wreck { robot, place, heard_in: period });
+            beacon.sightings(period).for_each(|seen| self.sightings.note(seen));
         }
     }
 

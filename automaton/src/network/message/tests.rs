@@ -9,7 +9,7 @@ use pleach_discrete::network::{
 };
 use serde_json::{Value, json};
 
-use super::super::beacon::{Announcement, Notice, TeamReport};
+use super::super::beacon::{Announcement, Branch, Notice, TeamReport};
 use super::super::duty::{
     AwaitingRelease, Bound, Duty, Following, Held, Hop, Junction, Leading, Leaf, Path, PathPlace,
     Relay, Shifting, Standby, Station, Waiting,
@@ -121,6 +121,7 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
         stretched: true,
         longest_wait: 9,
         wrecks: Arc::new(vec![Wreck { robot: 3, place: Point::new(0.5, 0.5), heard_in: 6 }]),
+        branches: Arc::new(vec![Branch { robot: 5, place: Point::new(0.25, 0.5) }]),
         ..silent()
     }
 }

@@ -4,13 +4,17 @@
 //! A robot that is gone is not expected to be heard. Others go round the place where any node heard it
 //! last, and stay two steps farther away: one for the control period in which it was heard, and one for the
 //! next. They learn of this place when the robot is suspended, and so before they can come near without
-//! having heard it. A robot that is cut off cannot know in which period it was heard last, but that this was
+//! having heard it. Every robot tells where those are that are attached to it: if the only one that hears a
+//! robot stops, its own neighbours still know where that was. A robot that is cut off cannot know in which period it was heard last, but that this was
 //! not before its newest roll was called. So it stays within two steps of each place where it has been since.
+
+use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{Disc, HalfPlane};
 use pleach_discrete::network::NodeId;
 
+use super::super::beacon::{Beacon, Branch};
 use super::super::roll::{Roll, Wreck};
 use super::super::scenario::Settings;
 use super::Robot;
@@ -56,6 +60,26 @@ impl Robot {
         let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter().copied());
         let seen = self.out_of_sight.iter().chain(told).chain(silent.map(Neighbour::wreck));
         self.roll.absent.locate(&mut self.wrecks, seen);
+    }
+
+    /// Where the robots attached to it are. Those that nobody else hears are so known two links away, in case
+    /// that it stops as well.
+    pub(super) fn locate_branches(&mut self) {
+        let is_known = |it: &Branch, known: &Neighbour| {
+            (it.robot, it.place) == (known.id(), known.position())
+        };
+        let told = &self.branches;
+        let is_same = self.tree_children().count() == told.len()
+            && told.iter().zip(self.tree_children()).all(|(it, known)| is_known(it, known));
+        if !is_same {
+            let place = |known: &Neighbour| Branch { robot: known.id(), place: known.position() };
+            self.branches = Arc::new(self.tree_children().map(place).collect());
+        }
+    }
+
+    /// A beacon tells of robots that are attached to its sender.
+    pub(super) fn note_branches(&mut self, beacon: &Beacon, heard_in: u32) {
+        beacon.sightings(heard_in).for_each(|seen| self.out_of_sight.note(seen));
     }
 
     /// How far a robot that is not heard any more may be from where it was heard last.

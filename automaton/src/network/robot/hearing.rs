@@ -165,6 +165,7 @@ impl Robot {
         }
         let (Ok(at) | Err(at)) = known;
         self.heard_up_to = at + 1;
+        self.note_branches(beacon, period);
     }
 
     /// A neighbour that the robot knows is heard again. What it has passed on counts for the post that it

@@ -74,7 +74,9 @@ use crate::automaton::TransitionError;
 use crate::located::Current;
 use crate::node::Outputs;
 
-use super::beacon::{Announced, Announcement, Beacon, Bulletin, LastBeacon, Notice, TeamReport};
+use super::beacon::{
+    Announced, Announcement, Beacon, Branch, Bulletin, LastBeacon, Notice, TeamReport,
+};
 use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::message::Message;
@@ -131,9 +133,11 @@ pub struct Robot {
     /// Another node has begun the next control period.
     is_behind: bool,
 
-    // Where robots were that it does not hear any more, and those that are gone.
+    // Where robots were that it does not hear any more or has only heard of, those that do not take part,
+    // and those that are attached to it.
     out_of_sight: Sightings,
     wrecks: Arc<Vec<Wreck>>,
+    branches: Arc<Vec<Branch>>,
     /// Where it has set off since its roll was called, each with the control period.
     trail: Vec<(u32, Point)>,
 
@@ -293,6 +297,7 @@ impl Robot {
             roll: Roll::default(),
             out_of_sight: Sightings::default(),
             wrecks: Arc::default(),
+            branches: Arc::default(),
             trail: Vec::new(),
             heard_up_to: 0,
             parent: None,
@@ -447,6 +452,7 @@ impl Robot {
             stretched: self.stretched,
             longest_wait: self.longest_wait(),
             wrecks: Arc::clone(&self.wrecks),
+            branches: Arc::clone(&self.branches),
         }
     }
 
@@ -509,6 +515,7 @@ impl Robot {
         (self.has_unsent_news, self.is_unmeasured) = (true, true);
         self.advance_exchange()?;
         self.locate_wrecks();
+        self.locate_branches();
         self.note_follower();
         self.keep_place()?;
         self.hear_notices();
