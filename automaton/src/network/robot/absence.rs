@@ -65,9 +65,8 @@ impl Robot {
     /// Where the robots attached to it are. Those that nobody else hears are so known two links away, in case
     /// that it stops as well.
     pub(super) fn locate_branches(&mut self) {
-        let is_known = |it: &Branch, known: &Neighbour| {
-            (it.robot, it.place) == (known.id(), known.position())
-        };
+        let is_known =
+            |it: &Branch, known: &Neighbour| (it.robot, it.place) == (known.id(), known.position());
         let told = &self.branches;
         let is_same = self.tree_children().count() == told.len()
             && told.iter().zip(self.tree_children()).all(|(it, known)| is_known(it, known));
