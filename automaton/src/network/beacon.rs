@@ -224,7 +224,7 @@ impl Beacon {
 
     /// Where the sender, heard in this control period, says that robots are which are attached to it.
     pub(super) fn sightings(&self, heard_in: u32) -> impl Iterator<Item = Wreck> {
-        let sighting = move |it: &Branch| Wreck { robot: it.robot, place: it.place, heard_in };
+        let sighting = move |it: &Branch| Wreck::heard(it.robot, it.place, heard_in);
         self.branches.iter().map(sighting)
     }
 

@@ -3,7 +3,7 @@
 //! Every beacon carries the newest roll that its sender knows. A robot moves only by a roll that is
 //! valid and does not name it, so that robots which others take to be gone do not move.
 
-use std::cmp::Reverse;
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -44,6 +44,21 @@ pub struct Wreck {
     pub place: Point,
     /// The control period in which that was.
     pub heard_in: u32,
+    /// How far the move leads that it intended afterwards, if it told of one.
+    #[serde(with = "wire")]
+    pub astray: f64,
+}
+
+impl Wreck {
+    /// A robot that is heard.
+    pub const fn heard(robot: NodeId, place: Point, heard_in: u32) -> Self {
+        Wreck { robot, place, heard_in, astray: 0.0 }
+    }
+
+    /// The order in which more is known of the same robot.
+    fn by_news(&self, other: &Wreck) -> Ordering {
+        self.heard_in.cmp(&other.heard_in).then(self.astray.total_cmp(&other.astray))
+    }
 }
 
 /// Where robots were when they were last heard, or heard of, by number.
@@ -54,7 +69,7 @@ impl Sightings {
     /// A robot was heard, or heard of.
     pub fn note(&mut self, seen: Wreck) {
         match self.0.binary_search_by_key(&seen.robot, |known| known.robot) {
-            Ok(at) if self.0[at].heard_in > seen.heard_in => {}
+            Ok(at) if self.0[at].by_news(&seen).is_gt() => {}
             Ok(at) => self.0[at] = seen,
             Err(at) => self.0.insert(at, seen),
         }
@@ -79,7 +94,7 @@ impl Absent {
         }
         let mut wrecks: Vec<Wreck> = known.iter().copied().chain(seen).collect();
         wrecks.retain(|wreck| self.contains(wreck.robot));
-        wrecks.sort_by_key(|wreck| (wreck.robot, Reverse(wreck.heard_in)));
+        wrecks.sort_by(|one, other| one.robot.cmp(&other.robot).then(other.by_news(one)));
         wrecks.dedup_by_key(|wreck| wreck.robot);
         if **known != wrecks {
             *known = Arc::new(wrecks);

@@ -53,7 +53,7 @@ fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
         point.deliberate().expect("guards have values");
         point.next_beacon().wrecks.to_vec()
     };
-    let wreck = |robot: NodeId, place: Point, heard_in: u32| Wreck { robot, place, heard_in };
+    let wreck = Wreck::heard;
     let (west, east) = (Point::new(4.0, 5.0), Point::new(6.0, 5.0));
     let farther = Point::new(7.0, 5.0);
     let all = roll(1, &[]);

@@ -50,7 +50,7 @@ impl<'a> RobotView<'a> {
     /// for motion alone.
     pub fn beacon_in_time(self) -> Beacon {
         let beacon = self.robot().public_state();
-        let named = |wreck: &Wreck| Wreck { place: Point::origin(), heard_in: 0, ..*wreck };
+        let named = |wreck: &Wreck| Wreck::heard(wreck.robot, Point::origin(), 0);
         let wrecks = Arc::new(beacon.wrecks.iter().map(named).collect());
         Beacon { wrecks, branches: Arc::default(), ..beacon }
     }

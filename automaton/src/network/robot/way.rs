@@ -10,7 +10,7 @@ use super::Robot;
 use super::motion::ROUNDING;
 
 /// Parked robots are kept at this many ρ when there is a way round.
-const KEEP_OUT: f64 = 2.1;
+pub(super) const KEEP_OUT: f64 = 2.1;
 /// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
 /// goes straight on and exchanges duties with the robot in its way.
 const DETOUR_ALLOWANCE: f64 = 8.0;

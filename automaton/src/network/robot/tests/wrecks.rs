@@ -8,7 +8,7 @@ fn beside_wreck(away: f64) -> Robot {
     let mut robot = robot();
     let gone = [1].into_iter().collect();
     robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
-    robot.wrecks = Arc::new(vec![Wreck { robot: 1, place: east(away), heard_in: NOW - 9 }]);
+    robot.wrecks = Arc::new(vec![Wreck::heard(1, east(away), NOW - 9)]);
     robot
 }
 
