@@ -23,6 +23,7 @@ use super::super::duty::{
 };
 use super::super::record::MissionEvent;
 use super::Robot;
+use super::hearing::Neighbour;
 use super::target::targets;
 
 /// The automaton of a robot's duty.
@@ -155,6 +156,16 @@ impl Robot {
     /// Whether it has past duties: a fixed post, or robots attached to it that find no other parent.
     pub(super) fn has_past_duties(&self) -> bool {
         !self.duty.is_redundant() || self.children().any(|child| !child.beacon.can_detach)
+    }
+
+    /// Whether it leads alone, and a fixed post has been attached to its own: by a robot that had lost its parent,
+    /// and had not heard yet that this one is elected.
+    pub(super) fn is_burdened(&self) -> bool {
+        let bears_fixed = || self.children().filter_map(Neighbour::post).any(Post::is_fixed);
+        self.label == Label::Alone
+            && matches!(*self.duty, Duty::Leading(_))
+            && self.is_first()
+            && bears_fixed()
     }
 
     /// Whether the path Σ that it learns of now passes its post, before or at the last break point.
@@ -545,6 +556,12 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
         .carried_out(bound::<Relay>())
         .carried_out(bound::<Junction>())
         .carried_out(bound::<Leaf>())
+        .carried_out(Transfer::new(
+            DutyEvent::Burdened,
+            guards::burdened(),
+            "lead, bound to its post",
+            bind::<Leading>,
+        ))
         .carried_out(Transfer::new(
             On::RelayResumed,
             guards::relay_resumed(),

@@ -158,6 +158,8 @@ facts! {
             superfluous: robot.is_superfluous(),
             /// It holds a fixed post, or robots attached to it find no other parent.
             has_past_duties: robot.has_past_duties(),
+            /// It leads alone, and a fixed post has been attached to its own.
+            burdened: robot.is_burdened(),
             /// The leader election is over now, and it has won it.
             wins: robot.wins_now(),
             /// It learns in this jump that Σ passes its post.
