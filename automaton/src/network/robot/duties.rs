@@ -225,7 +225,7 @@ impl Robot {
     /// The robot behind takes the post that this one left only if this one has reported that it has
     /// arrived. Until then it goes back to it, as links are made for robots at their posts; from then on it
     /// may not.
-    fn coming_station(&self) -> Option<Station> {
+    pub(super) fn coming_station(&self) -> Option<Station> {
         let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
         if !self.is_superseded() {
             return self.next_hop().map(|hop| self.station_at(hop));
