@@ -23,6 +23,8 @@
 
 use super::NodeId;
 
+#[cfg(test)]
+mod lemma;
 #[cfg(any(kani, test))]
 mod proofs;
 
