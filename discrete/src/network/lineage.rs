@@ -6,6 +6,9 @@
 
 use super::PostId;
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// The posts from one post up to the access point, the post itself first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
