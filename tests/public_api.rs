@@ -25,7 +25,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     entries.sort();
     for path in entries {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-        if ["tests", "proofs", "lemma", "abstraction"].contains(&name.as_str()) {
+        if ["tests", "proofs", "abstraction"].contains(&name.as_str()) {
             continue;
         }
         if path.is_dir() {
