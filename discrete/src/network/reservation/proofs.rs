@@ -41,9 +41,9 @@ fn a_lease_ends_at_the_sender_first() {
     let any_period = |bound: u8| u32::from(kani::any_where(|period: &u8| *period < bound));
     let mut kept = any_period(3);
     let mut told = [kept; 3];
-    for grant in 1..3 {
+    for grant in &mut told[1..] {
         kept = renewed(kept, any_period(4));
-        told[grant] = kept;
+        *grant = kept;
     }
     let mut used = 0;
     for _ in 0..3 {

@@ -111,10 +111,10 @@ fn an_exchange_of_duties_keeps_the_tree() {
     posts[parked] = given.unwrap_or(posts[parked]);
     assert!(given.is_some() && given == in_effect);
     let mut holders = [ROBOTS; ROBOTS + 1];
-    for robot in 0..ROBOTS {
-        for post in 0..ROBOTS {
-            if post == posts[robot] {
-                holders[post] = robot;
+    for (robot, own) in posts.iter().enumerate() {
+        for (post, holder) in holders.iter_mut().enumerate() {
+            if post == *own {
+                *holder = robot;
             }
         }
     }
@@ -130,8 +130,8 @@ fn an_exchange_of_duties_keeps_the_tree() {
     kani::cover!(parents[mover] == Some(parked) && parents[parked].is_some());
     kani::cover!(parents[mover].is_none() && parents[parked].is_some());
     assert!(is_rooted(&changed));
-    for post in 0..ROBOTS {
-        assert!(is_member(&changed, holders[post]) == is_member(&parents, post));
+    for (post, holder) in holders.iter().take(ROBOTS).enumerate() {
+        assert!(is_member(&changed, *holder) == is_member(&parents, post));
     }
 }
 
