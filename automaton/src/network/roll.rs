@@ -132,3 +132,32 @@ impl Roll {
         self.absent.gone.contains(robot)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lemma `roll.smt2`, for all rolls of the first periods: where two that let a robot move and call
+    /// it gone are more than the validity apart, no period is one of both, and where they are not, one is.
+    #[test]
+    fn rolls_are_valid_as_the_lemma_says() {
+        let gone = Absent { gone: IdSet::singleton(1), ..Absent::default() };
+        let absent = [Arc::default(), Arc::new(gone)];
+        for (validity, called, other) in (1..4_u32)
+            .flat_map(|validity| (0..9).map(move |called| (validity, called)))
+            .flat_map(|(validity, called)| (0..9).map(move |other| (validity, called, other)))
+        {
+            let moves = Roll { called, absent: Arc::clone(&absent[0]) };
+            let calls_gone = Roll { called: other, absent: Arc::clone(&absent[1]) };
+            let is_unsafe = |period: u32| {
+                let is_known = called <= period && other <= period;
+                is_known
+                    && moves.lets_move(1, period, validity)
+                    && calls_gone.lets_move(0, period, validity)
+                    && calls_gone.calls_gone(1)
+            };
+            assert!(!moves.calls_gone(1) && !calls_gone.lets_move(1, other, validity));
+            assert_eq!((0..20).any(is_unsafe), called.abs_diff(other) <= validity);
+        }
+    }
+}

@@ -369,11 +369,20 @@ impl Robot {
     /// the move.
     fn hear_of_later_period(&mut self, period: u32) {
         if self.is_new {
+            self.count_offers_after(period);
             return self.join_in(period);
         }
         self.is_behind = true;
         if period > self.period + 1 {
             self.join_in(period - 1);
+        }
+    }
+
+    /// It may have forgotten the offers that it has made: at most one in each control period so far.
+    fn count_offers_after(&mut self, period: u32) {
+        if period > 1 {
+            let offers = Offers::numbered_after(period);
+            self.exchange = Current::new(Exchange::Free(exchange::Free(offers)));
         }
     }
 

@@ -13,7 +13,8 @@
 //! be, and a robot that does not know where those are on which it relies consents to nothing and
 //! stays.
 
-use pleach_continuous::network::acceptance::{Capsule, Segment};
+use pleach_continuous::network::acceptance::{Capsule, Segment, is_acceptable};
+use pleach_discrete::network::consent::all_consent;
 use pleach_discrete::network::{NodeId, Stage};
 
 use super::super::message::Message;
@@ -22,9 +23,6 @@ use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
 use crate::node::Outputs;
-
-/// How much of a load a sender may be given, just below its whole time.
-pub(super) const FULL_LOAD: f64 = 1.0 - 1e-9;
 
 impl Robot {
     /// A new proposal is about to be made: nothing has been heard of others, and nobody consents.
@@ -123,7 +121,7 @@ impl Robot {
     }
 
     fn has_all_consents(&self) -> bool {
-        !self.consents.is_empty() && self.reliant().all(|robot| self.consents.contains(&robot))
+        !self.consents.is_empty() && all_consent(self.reliant(), &self.consents)
     }
 
     /// Judges the moves that it has heard of together with its own: objects, and halves its own, or
@@ -208,7 +206,7 @@ impl Robot {
             let is_parked = self.neighbour(node).is_none_or(rests);
             self.reach_of(self.move_of(node), is_parked)
         });
-        worst > FULL_LOAD.max(self.load() + ROUNDING)
+        !is_acceptable(worst, self.load() + ROUNDING)
     }
 
     /// By how much at least each end that moves has to shorten a link of this length. What measurements

@@ -10,7 +10,7 @@ use super::*;
 use crate::node::Outputs;
 
 /// The leader on its way to the east, called by the roll.
-fn mover() -> Robot {
+pub(super) fn mover() -> Robot {
     let mut robot = robot();
     robot.holds(primary(30, None, 13));
     robot.advances_to(east(3.0));
@@ -18,7 +18,7 @@ fn mover() -> Robot {
     robot
 }
 
-fn proposed(robot: &mut Robot) -> Option<Segment> {
+pub(super) fn proposed(robot: &mut Robot) -> Option<Segment> {
     robot.measures();
     robot.propose().expect("its guards have values");
     robot.proposal
