@@ -252,7 +252,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         row(Relay, On::Bound, Bound),
         row(Junction, On::Bound, Bound),
         row(Leaf, On::Bound, Bound),
-        row(Leading, On::Burdened, Bound),
+        last(Leading, On::Burdened, Bound),
         row(Bound, On::RelayResumed, Relay),
         row(Bound, On::LeafResumed, Leaf),
         row(Standby, On::PathJoined, Waiting),

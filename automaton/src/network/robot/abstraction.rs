@@ -259,6 +259,7 @@ impl Robot {
             label: _,
             facts: _,
             is_quiet: _,
+            forgotten_offers: _, // by its offers
             has_news: _,
             has_unsent_news: _,
             is_unmeasured: _,

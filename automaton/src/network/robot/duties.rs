@@ -162,10 +162,7 @@ impl Robot {
     /// and had not heard yet that this one is elected.
     pub(super) fn is_burdened(&self) -> bool {
         let bears_fixed = || self.children().filter_map(Neighbour::post).any(Post::is_fixed);
-        self.label == Label::Alone
-            && matches!(*self.duty, Duty::Leading(_))
-            && self.is_first()
-            && bears_fixed()
+        matches!(*self.duty, Duty::Leading(_)) && self.is_first() && bears_fixed()
     }
 
     /// Whether the path Σ that it learns of now passes its post, before or at the last break point.

@@ -168,12 +168,12 @@ impl Robot {
                 let neighbour =
                     Neighbour::new(beacon, confirmed, period, self.position, &self.site);
                 self.neighbours.insert(at, neighbour);
+                self.note_branches(beacon, period);
                 self.receive_news();
             }
         }
         let (Ok(at) | Err(at)) = known;
         self.heard_up_to = at + 1;
-        self.note_branches(beacon, period);
     }
 
     /// A neighbour that the robot knows is heard again. What it has passed on counts for the post that it
@@ -197,6 +197,9 @@ impl Robot {
             known.confirmed = confirmed;
             self.has_news |= is_back || self.awaits_confirmation && is_newer;
             return;
+        }
+        if !is_same {
+            self.note_branches(beacon, period);
         }
         self.receive_news();
     }

@@ -164,6 +164,8 @@ pub struct Robot {
 
     // The exchange of duties that it is engaged in.
     exchange: Current<Exchange>,
+    /// How many offers it may have made before it began: at most one in each control period.
+    forgotten_offers: u32,
     /// The robot in its way with which it could exchange duties.
     partner: Option<NodeId>,
     /// The duty that it takes over in this jump, and from which robot.
@@ -288,6 +290,7 @@ impl Robot {
             last_beacon: LastBeacon::default(),
             beacon_told: 0,
             exchange: Current::new(Exchange::Free(exchange::Free(Offers::new()))),
+            forgotten_offers: 0,
             partner: None,
             taking_over: None,
             last_partner: None,
@@ -369,20 +372,12 @@ impl Robot {
     /// the move.
     fn hear_of_later_period(&mut self, period: u32) {
         if self.is_new {
-            self.count_offers_after(period);
+            self.forgotten_offers = if period > 1 { period } else { 0 };
             return self.join_in(period);
         }
         self.is_behind = true;
         if period > self.period + 1 {
             self.join_in(period - 1);
-        }
-    }
-
-    /// It may have forgotten the offers that it has made: at most one in each control period so far.
-    fn count_offers_after(&mut self, period: u32) {
-        if period > 1 {
-            let offers = Offers::numbered_after(period);
-            self.exchange = Current::new(Exchange::Free(exchange::Free(offers)));
         }
     }
 
