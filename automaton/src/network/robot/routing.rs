@@ -500,10 +500,11 @@ impl Robot {
         self.has_swept && !has_news && (self.has_no_reserve || !self.is_infeasible())
     }
 
-    /// The routes of the period stand.
+    /// The routes of the period stand. That they do not carry the rates is told when it begins.
     pub(super) fn end_routes(&mut self) {
         self.adopt_flows();
-        if self.is_infeasible() {
+        let was_infeasible = std::mem::replace(&mut self.routes_fall_short, self.is_infeasible());
+        if self.routes_fall_short && !was_infeasible {
             self.report(MissionEvent::RouteInfeasible { robot: self.id });
         }
     }
