@@ -503,10 +503,11 @@ impl Robot {
     /// The routes of the period stand. That they do not carry the rates is told when it begins.
     pub(super) fn end_routes(&mut self) {
         self.adopt_flows();
-        let was_infeasible = std::mem::replace(&mut self.routes_fall_short, self.is_infeasible());
-        if self.routes_fall_short && !was_infeasible {
+        let falls_short = self.is_infeasible();
+        if falls_short && !self.routes_fall_short {
             self.report(MissionEvent::RouteInfeasible { robot: self.id });
         }
+        self.routes_fall_short = falls_short;
     }
 
     /// The worst load h_i whichever of the proposed moves are carried out, and wherever robots measure
