@@ -18,7 +18,7 @@ use pleach::cli::job::{self, Outputs};
 use pleach::cli::output::{self, tell};
 use pleach::cli::plan::Planned;
 use pleach::cli::progress::Progress;
-use pleach::cli::run::{status_of, told, warn_of_tasks};
+use pleach::cli::run::{status_of, told, warn_of};
 use pleach::cli::status::{Failure, Status};
 use pleach::continuous::Point;
 use pleach::mission::{Completed, Gallery};
@@ -92,7 +92,7 @@ pub fn show(
         ..Outputs::default()
     };
     if !arguments.quiet {
-        warn_of_tasks(planned);
+        warn_of(planned);
     }
     let interrupt = Interrupt::listen()?;
     let mut progress = Progress::new(&planned.scenario, arguments.quiet);
