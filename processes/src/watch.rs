@@ -191,7 +191,7 @@ impl<'a> Observatory<'a> {
 
     fn broken_off(&self, what: String) -> End {
         let reason = format!("{what} at k = {}", self.step.saturating_sub(1));
-        End { outcome: Outcome::Interrupted, reason, task: None }
+        End::new(Outcome::Interrupted, reason, None)
     }
 
     // ---- What arrives ------------------------------------------------------------------------

@@ -227,6 +227,13 @@ impl Site {
         self.robots + self.access_points.len()
     }
 
+    /// Where a robot at `from` would service a task: the nearest place to which a way leads; where none does,
+    /// the nearest of all.
+    pub fn place_to_service(&self, task: Point, from: Point) -> Point {
+        let reached = self.free_space.nearest_reached(task, from);
+        reached.unwrap_or_else(|| self.free_space.nearest(task))
+    }
+
     /// The length of the shortest way in 𝒲_f; infinite if there is none.
     pub fn distance(&self, from: Point, to: Point) -> f64 {
         #[cfg(feature = "abstraction")]

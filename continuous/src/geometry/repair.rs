@@ -252,15 +252,19 @@ impl Ring {
 }
 
 impl Spike {
-    /// Adds it to those found, as a part of the last one if that has become shorter by it.
+    /// Adds it to those found, or to the last one if the two are one line.
     fn join(self, spikes: &mut Vec<Spike>) {
-        match spikes.last_mut() {
-            Some(last)
-                if last.polygon == self.polygon
-                    && last.line.from == self.line.to
-                    && side(self.line.from, self.line.to, last.line.to) == 0.0 =>
+        let Segment { from, to } = self.line;
+        match spikes.last_mut().filter(|last| last.polygon == self.polygon) {
+            Some(Spike { line, .. }) if line.from == to && side(from, to, line.to) == 0.0 => {
+                line.from = from;
+            }
+            Some(Spike { line, .. })
+                if line.from == from
+                    && side(line.to, from, to) == 0.0
+                    && (line.to - from).dot(&(to - from)) < 0.0 =>
             {
-                last.line.from = self.line.from;
+                line.from = to;
             }
             _ => spikes.push(self),
         }

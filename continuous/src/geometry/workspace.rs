@@ -315,7 +315,8 @@ impl Workspace {
 
     /// Whether a part of a segment lies in W, and not on ∂W alone.
     pub(super) fn holds_part_of(&self, path: &Segment) -> bool {
-        self.contains(nalgebra::center(&path.from, &path.to)) || self.tree.is_crossed_by(path)
+        let crosses = || self.edges().any(|edge| edge.crossing_point(path).is_some());
+        self.contains(nalgebra::center(&path.from, &path.to)) || crosses()
     }
 
     /// Whether a segment meets ∂W or comes closer to it than `distance`.

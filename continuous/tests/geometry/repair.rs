@@ -96,7 +96,7 @@ fn lines_there_and_back_are_walls() {
         Repair::Wall { wall, .. } => (wall.from.x, wall.to.x),
         _ => panic!("{repair}"),
     };
-    assert_eq!(repairs.iter().map(ends).collect::<Vec<_>>(), [(4.0, 3.0), (1.0, 2.0)]);
+    assert_eq!(repairs.iter().map(ends).collect::<Vec<_>>(), [(4.0, 3.0), (2.0, 1.0)]);
     assert!((workspace.clearance(Point::new(3.0, 1.1)) - 0.1).abs() < 1e-12);
     let (below, above) = (Point::new(3.5, 0.5), Point::new(3.5, 1.5));
     assert!(workspace.segment_clearance(below, above) <= 0.0);

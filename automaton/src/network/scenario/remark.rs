@@ -128,16 +128,16 @@ impl ValidScenario {
     fn task_remark(&self, task: Point) -> Option<TaskRemark> {
         let site = self.site();
         let service_radius = site.settings.service_radius;
-        let target = site.free_space.nearest(task);
-        let gap = (target - task).norm();
+        let gap_at = |place: Point| (place - task).norm();
+        let gap = gap_at(site.free_space.nearest(task));
         if gap > site.settings.leash_radius() {
             let is_inside = site.workspace.contains(task);
             return Some(TaskRemark::TooDeep { is_inside, gap, service_radius });
         }
-        let region = site.free_space.region(target);
-        let region_of =
-            |start: [f64; 2]| site.free_space.region(site.free_space.nearest(start.into()));
-        let is_reached = self.robot.iter().any(|robot| region_of(robot.position) == region);
+        let is_reached = self.robot.iter().any(|robot| {
+            let place = site.free_space.nearest_reached(task, robot.position.into());
+            place.is_some_and(|place| gap_at(place) <= site.settings.leash_radius())
+        });
         (!is_reached).then_some(TaskRemark::Elsewhere)
     }
 
