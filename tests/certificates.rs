@@ -14,10 +14,13 @@ use std::path::Path;
 /// A scenario that is given up, with the outcome and the kind of certificate.
 fn given_up() -> Vec<(Scenario, Outcome, &'static str)> {
     let kept = |name: &str| read(&Path::new("tests/scenarios").join(name)).unwrap().into_scenario();
+    let mut pair = shipped("too-few");
+    pair.robot.truncate(2);
     vec![
         (shipped("unreachable"), Outcome::UnreachableTask, "unreachable"),
         (kept("touching/cut-in-two.toml"), Outcome::UnreachableTask, "unreachable"),
-        (shipped("too-few"), Outcome::InsufficientRobots, "bound"),
+        (pair, Outcome::InsufficientRobots, "bound"),
+        (shipped("too-few"), Outcome::InsufficientRobots, "tried"),
         (kept("given-up/two-clusters.toml"), Outcome::InsufficientRobots, "tried"),
         (kept("given-up/wrong-order.toml"), Outcome::Blocked, "blocked"),
         (kept("saturated.toml"), Outcome::Blocked, "tried"),

@@ -70,6 +70,8 @@ pub struct Attempt {
     pub caller: usize,
     /// The access point in whose tree it was, if any.
     pub root: Option<usize>,
+    /// Whether links were stretched already when it called.
+    pub stretched: bool,
     /// What came of it.
     pub then: Then,
     /// Every robot that is not of the team that called, in order, and why it could not come.
@@ -129,7 +131,7 @@ pub struct Standing {
     pub robot: usize,
     /// Where it stands.
     pub position: [f64; 2],
-    /// Where it goes, if the record says so.
+    /// Where it went last, if the record says so.
     pub target: Option<[f64; 2]>,
     /// What was found in its way; nothing for a robot that waits for others.
     pub hindrances: Vec<Hindrance>,

@@ -70,6 +70,7 @@ fn attempt(trial: &Trial) -> Attempt {
         k: trial.snapshot.step,
         caller: trial.caller,
         root: root_of(trial.caller, &trial.snapshot),
+        stretched: trial.stretched,
         then: trial.then,
         others: others
             .map(|robot| Other { robot, because: because(robot, &trial.snapshot) })
@@ -107,7 +108,7 @@ fn team(judge: &Judge, last: &Snapshot) -> Vec<Standing> {
         .map(|&robot| Standing {
             robot,
             position: last.positions[robot].into(),
-            target: last.robots.get(robot).and_then(|shown| shown.target).map(Into::into),
+            target: judge.headings[robot].map(Into::into),
             hindrances: hindrances(judge, ground.as_ref(), robot, last),
         })
         .collect()

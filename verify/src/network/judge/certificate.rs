@@ -152,9 +152,9 @@ fn are_all_ways(judge: &Judge, attempts: &[Attempt]) -> Complaint {
 fn is_call(attempt: &Attempt, trial: &Trial) -> Complaint {
     let robots = trial.snapshot.roles.len();
     let root = tree_of(trial.caller, &trial.snapshot).map(|access_point| robots + access_point);
-    let is_so = (attempt.k, attempt.caller, attempt.then)
-        == (trial.snapshot.step, trial.caller, trial.then)
-        && attempt.root == root;
+    let is_so = (attempt.k, attempt.caller, attempt.root)
+        == (trial.snapshot.step, trial.caller, root)
+        && (attempt.stretched, attempt.then) == (trial.stretched, trial.then);
     if !is_so {
         return Err(format!(
             "robot {} is told to have called in the tree of {:?} until k = {}, and robot {} did in that of \
@@ -249,9 +249,12 @@ fn stand(judge: &Judge, team: &[Standing], last: &Snapshot) -> Result<usize, Str
     let ground = Ground::of(&judge.scenario, judge.monitor.limits());
     for standing in team {
         let Standing { robot, position, target, hindrances } = standing;
-        let shown = last.robots.get(*robot).and_then(|shown| shown.target);
-        if last.positions[*robot] != Point::from(*position) || shown != target.map(Point::from) {
-            return Err(format!("robot {robot} neither stands nor goes where it is told to"));
+        let is_so = last.positions[*robot] == Point::from(*position)
+            && judge.headings[*robot] == target.map(Point::from);
+        if !is_so {
+            return Err(format!(
+                "robot {robot} does not stand, or did not go, where it is told to"
+            ));
         }
         for hindrance in hindrances {
             is_in_the_way(judge, ground.as_ref(), *robot, hindrance, last)

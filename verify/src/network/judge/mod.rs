@@ -113,6 +113,8 @@ pub struct Judge<'a> {
     scenario: ValidScenario,
     previous: Option<Snapshot>,
     recent: VecDeque<Vec<Point>>,
+    /// Where each robot went last: one that has given up goes nowhere.
+    headings: Vec<Option<Point>>,
 }
 
 impl<'a> Judge<'a> {
@@ -130,6 +132,7 @@ impl<'a> Judge<'a> {
             scenario: scenario.clone(),
             previous: None,
             recent: VecDeque::with_capacity(RECENT + 1),
+            headings: vec![None; robots],
             monitor,
         }
     }
@@ -158,6 +161,9 @@ impl<'a> Judge<'a> {
         self.recent.push_back(snapshot.positions.clone());
         if self.recent.len() > RECENT {
             self.recent.pop_front();
+        }
+        for (heading, shown) in self.headings.iter_mut().zip(&snapshot.robots) {
+            *heading = shown.target.or(*heading);
         }
         self.previous = Some(snapshot.clone());
         Ok(())

@@ -32,6 +32,8 @@ pub struct Trial {
     pub team: Vec<usize>,
     /// Whether the leader was to be released.
     pub releases_leader: bool,
+    /// Whether links were stretched already.
+    pub stretched: bool,
     /// What came of it.
     pub then: Then,
     /// The last instant before it was given up.
@@ -46,6 +48,7 @@ impl Trial {
             caller,
             team: ledger.primary_team.clone(),
             releases_leader: ledger.awaits_release,
+            stretched: ledger.stretched,
             then,
             snapshot: snapshot.clone(),
         })
