@@ -92,14 +92,17 @@ fn is_out_of_reach(judge: &Judge, claim: &Unreachable, task: Option<usize>) -> C
             "robots come within {distance:.6} of the task, and {reach:.6} is enough"
         ));
     }
-    match claim.elsewhere.map(Point::from) {
-        Some(other) if ground.is_reached(other) || (other - place).norm() > reach + SLACK => {
-            Err(format!(
-                "({}, {}) is no place beside the task that robots cannot get to",
-                other.x, other.y
-            ))
-        }
-        _ => Ok(()),
+    let Some(other) = claim.elsewhere.map(Point::from) else { return Ok(()) };
+    let truly = ground.nearest(place);
+    let is_so = (other - truly).norm() <= ground.tolerance()
+        && (truly - place).norm() <= reach
+        && !ground.is_reached(truly);
+    match is_so {
+        true => Ok(()),
+        false => Err(format!(
+            "({}, {}) is not the place beside the task to which no way leads",
+            other.x, other.y
+        )),
     }
 }
 
