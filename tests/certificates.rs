@@ -136,7 +136,7 @@ fn a_task_in_a_wall_is_serviced_from_the_side_where_the_robots_are() {
         valid(scenario.clone())
             .remarks()
             .iter()
-            .all(|remark| !remark.to_string().contains("no robot"))
+            .all(|remark| !remark.to_string().contains("no robot can service"))
     );
     run(scenario.clone()).assert_serviced();
     scenario.task[0].position = [1.025, 0.5];
