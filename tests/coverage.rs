@@ -13,6 +13,7 @@ use pleach::automaton::network::{NamedRow, Network, Site};
 use pleach::mission;
 use pleach::verify::network::storm::{Kind, draw, network_on};
 use pleach_exploration::network::{Findings, QUICK};
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -74,37 +75,49 @@ struct Acts {
 }
 
 impl Acts {
-    fn of(scenarios: impl Iterator<Item = ValidScenario>) -> Self {
-        scenarios.fold(Acts::default(), |mut acts, scenario| {
+    fn of(scenarios: impl Iterator<Item = ValidScenario> + Send) -> Self {
+        let in_each = scenarios.par_bridge().map(|scenario| {
             let site = counted(&scenario);
             let medium = Noted::new(&site);
             let mut network = Network::with_medium(&scenario, Arc::clone(&site), medium).unwrap();
             mission::run_network(&scenario, &mut network, &mut []).unwrap();
-            acts.add(&site, network.medium().counts());
-            acts
-        })
+            Acts::in_one(&site, network.medium().counts())
+        });
+        in_each.reduce(Acts::default, Acts::and)
     }
 
     fn in_storms() -> Self {
-        STORMS.iter().fold(Acts::default(), |mut acts, &(name, kind, seed)| {
+        let in_each = STORMS.par_iter().map(|&(name, kind, seed)| {
             let scenario = valid(shipped(name));
             let site = counted(&scenario);
             let storm = draw(kind, seed, &scenario, DURATION_OF_STORMS);
             let mut network = network_on(Arc::clone(&site), &scenario, &storm).unwrap();
             let executor = Executor::new(HORIZON_OF_STORMS, 1_000_000).unwrap();
             executor.run(&mut network, &mut ()).unwrap();
-            acts.add(&site, &BTreeMap::new());
-            acts
-        })
+            Acts::in_one(&site, &BTreeMap::new())
+        });
+        in_each.reduce(Acts::default, Acts::and)
     }
 
-    /// Adds what has acted in one mission.
-    fn add(&mut self, site: &Site, heard: &BTreeMap<&'static str, u64>) {
-        self.missions += 1;
+    /// What has acted in one mission.
+    fn in_one(site: &Site, heard: &BTreeMap<&'static str, u64>) -> Self {
+        let mut acts = Acts { missions: 1, ..Acts::default() };
         for (row, times) in site.automata.taken() {
-            *self.rows.entry(row).or_default() += usize::from(times > 0);
+            *acts.rows.entry(row).or_default() += usize::from(times > 0);
         }
-        heard.keys().for_each(|kind| *self.heard.entry(kind).or_default() += 1);
+        acts.heard.extend(heard.keys().map(|&kind| (kind, 1)));
+        acts
+    }
+
+    fn and(mut self, other: Acts) -> Self {
+        self.missions += other.missions;
+        for (row, times) in other.rows {
+            *self.rows.entry(row).or_default() += times;
+        }
+        for (kind, times) in other.heard {
+            *self.heard.entry(kind).or_default() += times;
+        }
+        self
     }
 }
 

@@ -18,7 +18,10 @@ const ACTIVITY: &str = "discrete/src/network/activity.rs";
 const AGREEMENT: &str = "discrete/src/network/agreement.rs";
 const BULLETIN: &str = "discrete/src/network/bulletin.rs";
 const ELECTION: &str = "discrete/src/network/election.rs";
+const LINEAGE: &str = "discrete/src/network/lineage.rs";
+const OFFERS: &str = "discrete/src/network/offers.rs";
 const PATH: &str = "discrete/src/network/path.rs";
+const RESERVATION: &str = "discrete/src/network/reservation.rs";
 const TABLES: &str = "discrete/src/network/tables.rs";
 const CROSSING: &str = "guards/src/crossing.rs";
 const VERDICT: &str = "guards/src/predicate/verdict.rs";
@@ -34,6 +37,8 @@ const PROOFS: &[Proof] = &[
     ),
     ("no_corner_is_worse_than_the_worst", "worst_corner", ACCEPTANCE),
     ("smaller_terms_have_no_worse_corner", "worst_corner", ACCEPTANCE),
+    ("a_sender_that_accepts_is_never_given_too_much", "is_acceptable", ACCEPTANCE),
+    ("consent_to_a_move_is_consent_to_less_of_it", "is_acceptable", ACCEPTANCE),
     (
         "what_is_admitted_meets_every_constraint",
         "is_admitted",
@@ -53,13 +58,21 @@ const PROOFS: &[Proof] = &[
     ("a_view_of_another_path_changes_nothing", "merge", AGREEMENT),
     ("the_newest_notice_wins_in_any_order", "merge", BULLETIN),
     ("identities_are_totally_ordered", "is_newer_than", BULLETIN),
+    (
+        "a_robot_moves_against_nobody_that_relies_on_it",
+        "all_consent",
+        "discrete/src/network/consent.rs",
+    ),
     ("merging_views_is_taking_a_maximum", "merge", ELECTION),
     ("a_view_of_another_election_changes_nothing", "merge", ELECTION),
     ("bids_are_ordered_by_rank_first_and_ties_go_to_the_higher_index", "best", ELECTION),
     ("a_merge_is_the_union", "merge", "discrete/src/network/id_set.rs"),
-    ("an_exchange_conserves_duties_at_every_step", "conclude", "discrete/src/network/offers.rs"),
+    ("a_way_is_extended_by_posts_that_are_not_on_it", "extended_by", LINEAGE),
+    ("an_exchange_conserves_duties_at_every_step", "conclude", OFFERS),
     ("the_recruit_the_last_and_both_sides_of_a_crossing_break", "is_break_point", PATH),
     ("every_place_before_the_last_break_point_is_in_one_subgroup", "subgroups", PATH),
+    ("no_more_is_granted_than_there_is_to_spare", "most", RESERVATION),
+    ("a_lease_ends_at_the_sender_first", "renewed", RESERVATION),
     ("a_phase_answers_every_step_in_one_way", "MISSION", TABLES),
     ("every_phase_is_reached", "MISSION", TABLES),
     ("the_end_is_heard_and_final", "MISSION", TABLES),
@@ -77,15 +90,11 @@ const PROOFS: &[Proof] = &[
     ("robots_that_have_heard_every_vote_form_the_same_subgroups", "is_break_point", AGREEMENT),
     ("the_subgroups_of_any_votes_partition_the_path", "subgroups", PATH),
     ("the_subgroups_of_any_votes_are_teams", "subgroups", PATH),
-    (
-        "a_robot_that_avoids_its_own_lineage_keeps_the_tree",
-        "closes_cycle",
-        "discrete/src/network/lineage.rs",
-    ),
-    // That a tree stays one when a leaf is taken away, and when two names are exchanged, is a lemma on
-    // trees; the robots' own steps are explored.
+    ("a_robot_that_avoids_its_own_lineage_keeps_the_tree", "closes_cycle", LINEAGE),
+    // That a tree stays one when a leaf is taken away is a lemma on trees; that robots leave only without
+    // children is explored.
     ("a_robot_without_children_may_leave", "leads_to_access_point", TREE),
-    ("an_exchange_of_duties_keeps_the_tree", "is_rooted", TREE),
+    ("an_exchange_of_duties_keeps_the_tree", "conclude", OFFERS),
     ("edges_give_parents_unless_a_robot_has_two", "parents_of", TREE),
     ("the_connected_are_those_with_a_way_out", "mark_connected", TREE),
 ];

@@ -5,14 +5,17 @@ pub type Use = (&'static str, &'static str, &'static str, &'static str);
 
 const TENSION: &str = "automaton/src/composition/tension.rs";
 const ROBOT_ABSENCE: &str = "automaton/src/network/robot/absence.rs";
+const ROBOT_ATTACHMENT: &str = "automaton/src/network/robot/attachment.rs";
 const ROBOT_EXCHANGE: &str = "automaton/src/network/robot/exchange.rs";
 const ROBOT_FACTS: &str = "automaton/src/network/robot/facts.rs";
 const ROBOT_LEADER: &str = "automaton/src/network/robot/leader.rs";
+const ROBOT_LINEAGE: &str = "automaton/src/network/robot/lineage.rs";
 const ROBOT_MISSION: &str = "automaton/src/network/robot/mission.rs";
 const ROBOT: &str = "automaton/src/network/robot/mod.rs";
 const ROBOT_MOTION: &str = "automaton/src/network/robot/motion.rs";
 const ROBOT_PARTNER: &str = "automaton/src/network/robot/partner.rs";
 const ROBOT_PATH: &str = "automaton/src/network/robot/path.rs";
+const ROBOT_RESERVATION: &str = "automaton/src/network/robot/reservation.rs";
 const ROBOT_ROUTING: &str = "automaton/src/network/robot/routing.rs";
 const ROLL: &str = "automaton/src/network/roll.rs";
 const CELL: &str = "continuous/src/geometry/cell.rs";
@@ -28,6 +31,7 @@ const ID_SET: &str = "discrete/src/network/id_set.rs";
 const LINEAGE: &str = "discrete/src/network/lineage.rs";
 const OFFERS: &str = "discrete/src/network/offers.rs";
 const PATH: &str = "discrete/src/network/path.rs";
+const RESERVATION: &str = "discrete/src/network/reservation.rs";
 const CROSSING: &str = "guards/src/crossing.rs";
 const VERDICT: &str = "guards/src/predicate/verdict.rs";
 const DUTY: &str = "verify/src/network/duty.rs";
@@ -58,6 +62,12 @@ pub const USES: &[Use] = &[
     ("planning_clearance", ERRORS, ROBOT_MOTION, "errors.planning_clearance(kept)"),
     ("wall_half_planes", ERRORS, ROBOT_MOTION, "errors.wall_half_planes(&site.workspace"),
     ("worst_corner", ACCEPTANCE, ACCEPTANCE, "worst_corner(ends(&own.axis).map(terms_from))"),
+    (
+        "is_acceptable",
+        ACCEPTANCE,
+        "automaton/src/network/robot/negotiation.rs",
+        "!is_acceptable(worst, self.load() + ROUNDING)",
+    ),
     ("is_admitted", MOTION, MOTION, "is_admitted(self.smallest_margin(point))"),
     ("smallest", MOTION, MOTION, "smallest(lines.chain(circles))"),
     (
@@ -102,6 +112,18 @@ pub const USES: &[Use] = &[
         "automaton/src/network/robot/confirmation.rs",
         "self.confirmation.admits(neighbour.confirmed)",
     ),
+    (
+        "pass_on",
+        "discrete/src/network/confirmation.rs",
+        "automaton/src/network/robot/confirmation.rs",
+        "self.confirmation.pass_on(parent.confirmed)",
+    ),
+    (
+        "all_consent",
+        "discrete/src/network/consent.rs",
+        "automaton/src/network/robot/negotiation.rs",
+        "all_consent(self.reliant(), &self.consents)",
+    ),
     ("new", ELECTION, ROBOT_LEADER, "Election::new(robot.notice_id())"),
     ("place", ELECTION, ROBOT_LEADER, "Arc::make_mut(election).place(self.id, bid)"),
     ("merge", ELECTION, ROBOT_MISSION, "merge_election(own, heard)"),
@@ -114,6 +136,12 @@ pub const USES: &[Use] = &[
     ("merge", ID_SET, ELECTION, "self.tokens.merge(&heard.tokens)"),
     ("includes", ID_SET, ELECTION, "self.tokens.includes(roster)"),
     ("closes_cycle", LINEAGE, LINEAGE, "closes_cycle(&self.posts, post)"),
+    ("of_access_point", LINEAGE, ROBOT_LINEAGE, "Lineage::of_access_point(access)"),
+    ("extended_by", LINEAGE, ROBOT_LINEAGE, ".extended_by(robot.duty.post()?.id)"),
+    ("extends", LINEAGE, ROBOT_LINEAGE, "own.extends(&way, post.id)"),
+    ("contains", LINEAGE, ROBOT_LINEAGE, "way.contains(post.id)"),
+    ("hops", LINEAGE, ROBOT_ATTACHMENT, "let hops = lineage.hops();"),
+    ("root", LINEAGE, ROBOT_ATTACHMENT, "lineage.root() == lost"),
     ("new", OFFERS, ROBOT, "Offers::new()"),
     ("make_offer", OFFERS, ROBOT_EXCHANGE, "offers.make_offer(robot.partner?"),
     ("answer", OFFERS, ROBOT_EXCHANGE, "offers.answer(mover, offer, given)"),
@@ -130,6 +158,11 @@ pub const USES: &[Use] = &[
     ("last_break_point", PATH, ROBOT_FACTS, "shift.path.last_break_point()"),
     ("subgroups", PATH, ROBOT_PATH, "subgroups(&points)"),
     ("places", PATH, ROBOT_PATH, "agreement.have_arrived(subgroup.places())"),
+    ("of", RESERVATION, ROBOT_RESERVATION, "Spare::of(self.lasting_outflow("),
+    ("most", RESERVATION, ROBOT_RESERVATION, "spare.most(kept.flow, kept.wanted)"),
+    ("grant", RESERVATION, ROBOT_RESERVATION, "spare.grant(kept.flow, flow)"),
+    ("renewed", RESERVATION, ROBOT_RESERVATION, "renewed(held.until, grant.until)"),
+    ("holds", RESERVATION, ROBOT_RESERVATION, "holds(held.until, period)"),
     ("MISSION", "discrete/src/network/tables.rs", ROBOT_MISSION, "Automaton::builder(MISSION,"),
     ("between_margins", CROSSING, FOR_USERS, ""),
     ("update", CROSSING, FOR_USERS, ""),

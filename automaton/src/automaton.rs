@@ -15,7 +15,7 @@ use crate::coverage::tally::Tally;
 use crate::flow::Flow;
 use crate::law::Command;
 use crate::located::{Holds, Place};
-use crate::observed::{self, Watch};
+use crate::observed::{self, Exclusion, Watch};
 use crate::outline::{numbers_of, range_of};
 use crate::reset::Reset;
 
@@ -87,6 +87,8 @@ pub struct Automaton<L, E, S> {
     pub(crate) tally: Option<Tally>,
     /// Propositions of which at most one is true at a time.
     pub(crate) exclusive: Vec<Vec<String>>,
+    /// The same by numbers.
+    pub(crate) exclusion: Exclusion<S>,
 }
 
 /// What an edge of the graph carries.

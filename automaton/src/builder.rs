@@ -17,7 +17,7 @@ use crate::edge::Edge;
 use crate::flow::{Flow, Rate};
 use crate::law::{Command, Laws};
 use crate::located::Transfer;
-use crate::observed::{Observed, Watch};
+use crate::observed::{Exclusion, Observed, Watch};
 use crate::reset::Reset;
 use draft::Origin;
 
@@ -47,6 +47,8 @@ pub struct Builder<L, E, S> {
     throughout: Vec<Rate>,
     /// Propositions of which at most one is true at a time.
     exclusive: Vec<Vec<String>>,
+    /// The same by numbers.
+    exclusion: Exclusion<S>,
     /// What is chosen at samples.
     commands: Vec<(L, Command)>,
     /// The names of all variables and propositions, where the state is not its coordinates.
@@ -74,6 +76,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             parameters: Vec::new(),
             throughout: Vec::new(),
             exclusive: Vec::new(),
+            exclusion: Exclusion::none(),
             commands: Vec::new(),
             observed: None,
             watch: |_| None,
@@ -134,8 +137,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             let [source, target] = draft.ends(number).map(NodeIndex::new);
             graph.add_edge(source, target, self.transition_of(row, draft.origin(number))?);
         }
-        let Builder { rows, initial, initial_state, ranges, known, parameters, exclusive, .. } =
-            self;
+        let Builder { rows, initial, initial_state, ranges, known, parameters, .. } = self;
         Ok(Automaton {
             rows,
             initial,
@@ -150,7 +152,8 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             modes,
             leaving,
             tally: None,
-            exclusive,
+            exclusive: self.exclusive,
+            exclusion: self.exclusion,
         })
     }
 
@@ -241,6 +244,7 @@ impl<L: Location, E: Event, S: Observed> Builder<L, E, S> {
     /// nowhere else, and in builds with debug assertions every step of the automaton watches it.
     pub fn at_most_one(mut self, propositions: &[&str]) -> Self {
         self.exclusive.push(propositions.iter().map(|&name| name.to_owned()).collect());
+        self.exclusion = self.exclusion.and(propositions);
         self
     }
 
@@ -267,6 +271,7 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
             parameters: automaton.parameters.clone(),
             ranges: automaton.ranges.clone(),
             exclusive: automaton.exclusive.clone(),
+            exclusion: automaton.exclusion.clone(),
             ..Builder::new(TransitionTable::new(&[]), initial)
         }
     }

@@ -222,6 +222,38 @@ impl<S> Watch<S> {
     }
 }
 
+/// Groups of propositions of which at most one is true at a time, by their numbers.
+pub(crate) struct Exclusion<S> {
+    groups: Vec<Vec<usize>>,
+    names: &'static [&'static str],
+    proposition: fn(&S, usize) -> bool,
+}
+
+impl<S> Exclusion<S> {
+    /// Nothing is excluded.
+    pub(crate) fn none() -> Self {
+        Exclusion { groups: Vec::new(), names: &[], proposition: |_, _| false }
+    }
+
+    /// Two propositions of one group that are both true.
+    pub(crate) fn violation(&self, state: &S) -> Option<[&'static str; 2]> {
+        self.groups.iter().find_map(|group| {
+            let mut true_ones =
+                group.iter().copied().filter(|&number| (self.proposition)(state, number));
+            Some([self.names[true_ones.next()?], self.names[true_ones.next()?]])
+        })
+    }
+}
+
+impl<S: Observed> Exclusion<S> {
+    /// One more group; names that the state does not know are left out.
+    pub(crate) fn and(mut self, propositions: &[&str]) -> Self {
+        let numbers = propositions.iter().filter_map(|name| number(S::PROPOSITIONS, name));
+        self.groups.push(numbers.collect());
+        Exclusion { names: S::PROPOSITIONS, proposition: S::proposition, ..self }
+    }
+}
+
 impl Test {
     fn of<S: Observed>(predicate: &Predicate) -> Option<Test> {
         let each = |parts: &[Predicate]| -> Option<Arc<[Test]>> {
@@ -259,6 +291,18 @@ fn number(names: &[&str], name: &str) -> Option<usize> {
 impl<S> Clone for Watch<S> {
     fn clone(&self) -> Self {
         Watch { test: self.test.clone(), ..*self }
+    }
+}
+
+impl<S> Clone for Exclusion<S> {
+    fn clone(&self) -> Self {
+        Exclusion { groups: self.groups.clone(), ..*self }
+    }
+}
+
+impl<S> std::fmt::Debug for Exclusion<S> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "Exclusion({:?})", self.groups)
     }
 }
 

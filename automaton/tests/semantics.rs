@@ -2,10 +2,10 @@
 
 use pleach_automaton::{
     Automaton, Composition, Failure, HybridTime, Policy, Reason, Settings, Trajectory, coordinates,
-    from,
+    from, observed,
 };
-use pleach_discrete::vocabulary;
-use pleach_guards::{Predicate, always};
+use pleach_discrete::{TransitionTable, vocabulary};
+use pleach_guards::{Predicate, always, proposition};
 
 vocabulary! {
     enum Place: Location { Here = "here", There = "there", Beyond = "beyond" }
@@ -303,4 +303,49 @@ fn what_has_to_be_taken_right_after_an_instant_goes_before_what_may_be_taken_at_
     let settings = Settings { policy: Policy::Late, ..Settings::default() };
     let trajectory = machine.run_with(settings, 2.0).expect("the machine can be run");
     assert_eq!(labels(&trajectory), [(1f64.next_up(), 0, "stay")]);
+}
+
+struct Lamp {
+    hours: f64,
+    colours: [bool; 2],
+}
+
+observed! {
+    impl Observed for Lamp as lamp;
+    const GLOSSARY;
+    quantities {
+        /// Hours since the lamp was made.
+        age: lamp.hours,
+    }
+    propositions {
+        /// It shows red.
+        red: lamp.colours[0],
+        /// It shows green.
+        green: lamp.colours[1],
+    }
+}
+
+/// Takes a step of a lamp that shows one colour at a time, as its model says.
+fn step_of_lamp(colours: [bool; 2]) -> Place {
+    let lamp = Automaton::builder(TransitionTable::new(&[]), Here)
+        .transition(from(Here).on(Go).to(There).must(proposition("red")))
+        .observing()
+        .at_most_one(&[GLOSSARY[1].0, GLOSSARY[2].0])
+        .build()
+        .expect("the model is complete");
+    let mut location = lamp.initial();
+    lamp.step(&mut location, &mut Lamp { hours: 0.0, colours }).expect("the guard has a verdict");
+    location
+}
+
+#[test]
+fn a_lamp_shows_no_colour_or_one() {
+    assert_eq!([[true, false], [false, true], [false; 2]].map(step_of_lamp), [There, Here, Here]);
+}
+
+#[test]
+#[cfg(debug_assertions)]
+#[should_panic(expected = "these exclude each other")]
+fn propositions_that_exclude_each_other_are_not_true_at_once() {
+    step_of_lamp([true; 2]);
 }

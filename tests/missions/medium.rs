@@ -177,7 +177,7 @@ impl Noted {
 
     fn kind(&mut self, from: NodeId, to: NodeId, message: &Message) -> &'static str {
         match message {
-            Message::Proposal { period, segment } => {
+            Message::Proposal { period, segment, .. } => {
                 let now = (*period, segment.length());
                 let before = self.proposed.insert(from, now);
                 match before.is_some_and(|(at, length)| at == *period && now.1 < length) {

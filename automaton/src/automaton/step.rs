@@ -77,22 +77,13 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
         self.step(&mut location, state)
     }
 
-    /// Two propositions that are true although the model says that they exclude each other.
-    fn two_at_once(&self, state: &S) -> Option<[&str; 2]> {
-        self.exclusive.iter().find_map(|group| {
-            let holds = |name: &&str| state.truth(name) == Some(true);
-            let mut true_ones = group.iter().map(String::as_str).filter(holds);
-            Some([true_ones.next()?, true_ones.next()?])
-        })
-    }
-
     fn first(
         &self,
         location: L,
         state: &S,
         eligible: impl Fn(&Transition<E, S>) -> bool,
     ) -> Result<Option<Step<'_, L, E, S>>, TransitionError> {
-        debug_assert!(self.two_at_once(state).is_none(), "{:?}", self.two_at_once(state));
+        debug_assert_eq!(self.exclusion.violation(state), None, "these exclude each other");
         let leaving = self.node(location).and_then(|node| self.leaving.get(node.index()));
         for &edge in leaving.map_or(&[][..], Vec::as_slice) {
             let transition = &self.graph[edge];

@@ -172,6 +172,20 @@ pub struct Beacon {
     /// Where robots that do not take part were heard last.
     #[serde(with = "wire")]
     pub wrecks: Arc<Vec<Wreck>>,
+    /// Where the robots that are attached to it are, by number; an access point does not tell.
+    #[serde(with = "wire")]
+    pub branches: Arc<Vec<Branch>>,
+}
+
+/// A robot that is attached to the sender of a beacon.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Branch {
+    /// The robot.
+    pub robot: NodeId,
+    /// Where the sender has heard it.
+    #[serde(with = "wire")]
+    pub place: Point,
 }
 
 impl Beacon {
@@ -204,7 +218,14 @@ impl Beacon {
             stretched: false,
             longest_wait: 0,
             wrecks: Arc::default(),
+            branches: Arc::default(),
         }
+    }
+
+    /// Where the sender, heard in this control period, says that robots are which are attached to it.
+    pub(super) fn sightings(&self, heard_in: u32) -> impl Iterator<Item = Wreck> {
+        let sighting = move |it: &Branch| Wreck::heard(it.robot, it.place, heard_in);
+        self.branches.iter().map(sighting)
     }
 
     /// The task that is serviced from the post of the sender.

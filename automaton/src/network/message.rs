@@ -74,14 +74,16 @@ pub enum Message {
         /// From where it is to where it would be.
         #[serde(with = "wire")]
         segment: Segment,
+        /// The node that is asked to know of the move, where nobody relies on the sender.
+        witness: Option<NodeId>,
     },
     /// The sender cannot accept the move that the receiver intends.
     Objection {
         /// The control period.
         period: u32,
     },
-    /// The sender, which relies on the receiver, accepts the move that the receiver intends and
-    /// every part of it.
+    /// The sender, which relies on the receiver or is its witness, knows and accepts the move that the receiver
+    /// intends, and every part of it.
     Consent {
         /// The control period.
         period: u32,
@@ -95,6 +97,12 @@ pub enum Message {
 impl Message {
     /// Whether its receiver may send something at once, and not only at its next tick.
     pub const fn may_be_answered_at_once(&self) -> bool {
-        matches!(self, Message::Demand(_) | Message::Shortage | Message::News(_))
+        matches!(
+            self,
+            Message::Demand(_)
+                | Message::Shortage
+                | Message::News(_)
+                | Message::Proposal { witness: Some(_), .. }
+        )
     }
 }

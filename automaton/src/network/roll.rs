@@ -3,7 +3,7 @@
 //! Every beacon carries the newest roll that its sender knows. A robot moves only by a roll that is
 //! valid and does not name it, so that robots which others take to be gone do not move.
 
-use std::cmp::Reverse;
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -44,16 +44,32 @@ pub struct Wreck {
     pub place: Point,
     /// The control period in which that was.
     pub heard_in: u32,
+    /// How far the move leads that it intended afterwards, if it told of one.
+    #[serde(with = "wire")]
+    pub astray: f64,
 }
 
-/// Where robots were when they were heard last, by number.
+impl Wreck {
+    /// A robot that is heard.
+    pub const fn heard(robot: NodeId, place: Point, heard_in: u32) -> Self {
+        Wreck { robot, place, heard_in, astray: 0.0 }
+    }
+
+    /// The order in which more is known of the same robot.
+    fn by_news(&self, other: &Wreck) -> Ordering {
+        self.heard_in.cmp(&other.heard_in).then(self.astray.total_cmp(&other.astray))
+    }
+}
+
+/// Where robots were when they were last heard, or heard of, by number.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sightings(Vec<Wreck>);
 
 impl Sightings {
-    /// A robot was heard.
+    /// A robot was heard, or heard of.
     pub fn note(&mut self, seen: Wreck) {
         match self.0.binary_search_by_key(&seen.robot, |known| known.robot) {
+            Ok(at) if self.0[at].by_news(&seen).is_gt() => {}
             Ok(at) => self.0[at] = seen,
             Err(at) => self.0.insert(at, seen),
         }
@@ -78,7 +94,7 @@ impl Absent {
         }
         let mut wrecks: Vec<Wreck> = known.iter().copied().chain(seen).collect();
         wrecks.retain(|wreck| self.contains(wreck.robot));
-        wrecks.sort_by_key(|wreck| (wreck.robot, Reverse(wreck.heard_in)));
+        wrecks.sort_by(|one, other| one.robot.cmp(&other.robot).then(other.by_news(one)));
         wrecks.dedup_by_key(|wreck| wreck.robot);
         if **known != wrecks {
             *known = Arc::new(wrecks);
@@ -114,5 +130,34 @@ impl Roll {
     /// Whether `robot` is called gone.
     pub fn calls_gone(&self, robot: NodeId) -> bool {
         self.absent.gone.contains(robot)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lemma `roll.smt2`, for all rolls of the first periods: where two that let a robot move and call
+    /// it gone are more than the validity apart, no period is one of both, and where they are not, one is.
+    #[test]
+    fn rolls_are_valid_as_the_lemma_says() {
+        let gone = Absent { gone: IdSet::singleton(1), ..Absent::default() };
+        let absent = [Arc::default(), Arc::new(gone)];
+        for (validity, called, other) in (1..4_u32)
+            .flat_map(|validity| (0..9).map(move |called| (validity, called)))
+            .flat_map(|(validity, called)| (0..9).map(move |other| (validity, called, other)))
+        {
+            let moves = Roll { called, absent: Arc::clone(&absent[0]) };
+            let calls_gone = Roll { called: other, absent: Arc::clone(&absent[1]) };
+            let is_unsafe = |period: u32| {
+                let is_known = called <= period && other <= period;
+                is_known
+                    && moves.lets_move(1, period, validity)
+                    && calls_gone.lets_move(0, period, validity)
+                    && calls_gone.calls_gone(1)
+            };
+            assert!(!moves.calls_gone(1) && !calls_gone.lets_move(1, other, validity));
+            assert_eq!((0..20).any(is_unsafe), called.abs_diff(other) <= validity);
+        }
     }
 }

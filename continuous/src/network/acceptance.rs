@@ -70,6 +70,22 @@ pub use crate::geometry::{Capsule, Segment};
 #[cfg(any(kani, test))]
 mod proofs;
 
+/// How much of a load a sender may be given, just below its whole time.
+pub const FULL_LOAD: f64 = 1.0 - 1e-9;
+
+/// Whether a sender accepts moves that could give it a load of `worst`, if it may have `present` where nobody
+/// moves: the moves overload it not at all, or no more than it is. What is not a number is not accepted.
+///
+/// ```
+/// use pleach_continuous::network::acceptance::is_acceptable;
+///
+/// assert!(is_acceptable(0.9, 0.2) && !is_acceptable(1.0, 0.2));
+/// assert!(is_acceptable(1.1, 1.1) && !is_acceptable(1.2, 1.1));
+/// ```
+pub fn is_acceptable(worst: f64, present: f64) -> bool {
+    worst <= FULL_LOAD.max(present)
+}
+
 /// h_i: the time share that a sender at `own` needs to carry its flows, given as pairs of a flow
 /// F_ij and the place of the receiver. Infinite if a receiver of a flow cannot be reached.
 pub fn load(

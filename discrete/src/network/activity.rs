@@ -42,6 +42,8 @@ vocabulary! {
         Elected = "elected",
         /// It wins the leader election and has past duties.
         Bound = "bound",
+        /// A branch of the tree has come to depend on the post of the leader, which is bound to it.
+        Burdened = "burdened",
         /// The path Σ passes its post.
         PathJoined = "path joined",
         /// Its turn has come, and its post is held by another robot if it matters.
@@ -250,6 +252,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         row(Relay, On::Bound, Bound),
         row(Junction, On::Bound, Bound),
         row(Leaf, On::Bound, Bound),
+        last(Leading, On::Burdened, Bound),
         row(Bound, On::RelayResumed, Relay),
         row(Bound, On::LeafResumed, Leaf),
         row(Standby, On::PathJoined, Waiting),

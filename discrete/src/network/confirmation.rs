@@ -139,9 +139,50 @@ mod tests {
             all
         }
 
-        fn has_cycle(&self) -> bool {
+        fn above(&self, post: usize) -> impl Iterator<Item = usize> {
             let up = |node: &usize| self.parents[*node];
-            (1..NODES).any(|post| successors(up(&post), up).take(NODES).any(|node| node == post))
+            successors(up(&post), up).take(NODES)
+        }
+
+        fn has_cycle(&self) -> bool {
+            (1..NODES).any(|post| self.above(post).any(|node| node == post))
+        }
+
+        /// The newest confirmation that was ever passed on from a node, whoever held it.
+        fn newest_ever(&self, node: usize) -> Option<u32> {
+            self.told.iter().filter(|told| told.0 == node).map(|told| told.1).max()
+        }
+
+        /// The invariant of the lemma: nothing newer has been passed on from a post than from what is above
+        /// it, and nothing newer than its holder knows.
+        fn is_invariant(&self) -> bool {
+            (1..NODES).all(|post| {
+                let newest = self.newest_ever(post);
+                let bound = self.bounds[post];
+                self.above(post).all(|node| newest <= self.newest_ever(node)) && (newest <= bound)
+            })
+        }
+    }
+
+    /// A robot attaches its post, and passes a confirmation on, as the lemma says: whatever was passed on
+    /// from its post before, by itself or by others. That nothing was passed on is older than anything.
+    #[test]
+    fn a_confirmation_takes_the_steps_of_the_lemma() {
+        let heard = || [None].into_iter().chain((0..4).map(Some));
+        for (newest, before, of_parent) in heard()
+            .flat_map(|newest| heard().map(move |before| (newest, before)))
+            .flat_map(|(newest, before)| heard().map(move |of_parent| (newest, before, of_parent)))
+        {
+            let mut own = Confirmation::default();
+            if let Some(period) = before {
+                own.take_over(period);
+            }
+            own.pass_on(newest);
+            let bound = newest.max(before);
+            assert_eq!(own.admits(of_parent), of_parent > bound || bound.is_none());
+            own.pass_on(of_parent);
+            assert_eq!(own.newest(), newest.max(of_parent));
+            assert_eq!(own.bound, bound.max(of_parent));
         }
     }
 
@@ -151,7 +192,7 @@ mod tests {
         let mut known = BTreeSet::from([Network::default()]);
         let mut waiting: Vec<Network> = known.iter().cloned().collect();
         while let Some(network) = waiting.pop() {
-            assert!(!network.has_cycle(), "{network:?}");
+            assert!(!network.has_cycle() && network.is_invariant(), "{network:?}");
             waiting
                 .extend(network.successors().into_iter().filter(|next| known.insert(next.clone())));
         }

@@ -38,6 +38,8 @@ vocabulary! {
         RefusalHeard = "refusal heard",
         /// The mover has taken the duty given: it takes the one offered.
         DutyGiven = "duty given",
+        /// It has begun while others were under way, and may have forgotten offers that it has made.
+        OffersForgotten = "offers forgotten",
     }
 }
 
@@ -52,12 +54,13 @@ const fn row(
 
 /// The table of the exchange of duties.
 ///
-/// Priority 0: what becomes of an own offer. Priority 1: what becomes of a reply. Priority 2:
+/// Priority 0: what becomes of own offers. Priority 1: what becomes of a reply. Priority 2:
 /// offers of others. Priority 3: an offer of its own.
 pub const EXCHANGE: TransitionTable<ExchangeStage, ExchangeEvent> = {
     use ExchangeEvent as On;
     use ExchangeStage::{Free, Giving, Offering, OfferingAndRefusing, Refusing};
     TransitionTable::new(&[
+        row(0, Free, On::OffersForgotten, Free),
         row(3, Free, On::Offers, Offering),
         row(2, Free, On::Gives, Giving),
         row(2, Free, On::Refuses, Refusing),

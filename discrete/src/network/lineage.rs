@@ -6,6 +6,9 @@
 
 use super::PostId;
 
+#[cfg(any(kani, test))]
+mod proofs;
+
 /// The posts from one post up to the access point, the post itself first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -113,6 +116,60 @@ mod tests {
             assert_eq!(way.extended_by(PostId(post)).is_none(), [4, 6].contains(&post));
             assert_eq!(closes_cycle(way.posts(), PostId(post)), [4, 6].contains(&post));
         }
+    }
+
+    /// Posts 0 to 3 in any forest below an access point: the lineage of each, none where it knows no way.
+    fn lineages(parents: &[Option<usize>; 4]) -> Vec<Option<Lineage>> {
+        let mut known = vec![None; 4];
+        known.push(Some(Lineage::of_access_point(0)));
+        for _ in 0..4 {
+            for (post, parent) in parents.iter().enumerate() {
+                let way = parent.and_then(|parent| known[parent].as_ref());
+                known[post] = way.and_then(|way: &Lineage| way.extended_by(PostId(post as u32)));
+            }
+        }
+        known
+    }
+
+    /// Every forest of four posts, every post and every parent that knows a way: the lineage of the parent is
+    /// extended exactly where the lemma `forest.smt2` wants it, that is, unless the parent is below the post;
+    /// and then the posts above each one, as their lineages tell, are those of the lemma.
+    #[test]
+    fn attaching_a_post_is_the_step_of_the_lemma() {
+        let mut attached = 0;
+        for code in 0..6_usize.pow(4) {
+            let parents = [1, 6, 36, 216].map(|unit| Some(code / unit % 6).filter(|&it| it < 5));
+            let before = lineages(&parents);
+            let above = |ways: &[Option<Lineage>], x: usize, y: usize| {
+                x == y || ways[x].as_ref().is_some_and(|way| way.contains(PostId(y as u32)))
+            };
+            if (0..4).any(|post| parents[post].is_some() && before[post].is_none()) {
+                continue; // in a cycle, or attached to one that knows no way
+            }
+            for (post, parent) in (0..4).flat_map(|post| (0..5).map(move |parent| (post, parent))) {
+                let Some(way) = &before[parent] else { continue };
+                let is_below = parent < 4 && above(&before, parent, post);
+                assert_eq!(way.extended_by(PostId(post as u32)).is_none(), is_below);
+                if is_below {
+                    continue;
+                }
+                attached += 1;
+                let mut changed = parents;
+                changed[post] = Some(parent);
+                let after = lineages(&changed);
+                for (x, y) in (0..4).flat_map(|x| (0..4).map(move |y| (x, y))) {
+                    let expected = match above(&before, x, post) {
+                        true => {
+                            above(&before, x, y) && above(&before, y, post)
+                                || above(&before, parent, y)
+                        }
+                        false => above(&before, x, y),
+                    };
+                    assert_eq!(above(&after, x, y), expected, "{parents:?} {post} {parent}");
+                }
+            }
+        }
+        assert!(attached > 1_000, "only {attached}");
     }
 
     /// Root, post and parent all have to be the same; an access point extends nothing.

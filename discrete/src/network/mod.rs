@@ -7,6 +7,7 @@ pub mod attachment;
 pub mod attendance;
 pub mod bulletin;
 pub mod confirmation;
+pub mod consent;
 pub mod control;
 pub mod election;
 pub mod exchange;
@@ -15,6 +16,7 @@ pub mod lineage;
 pub mod offers;
 pub mod path;
 pub mod post;
+pub mod reservation;
 pub mod role;
 #[cfg(feature = "serde")]
 mod serialization;

@@ -23,6 +23,8 @@
 
 use super::NodeId;
 
+#[cfg(test)]
+mod lemma;
 #[cfg(any(kani, test))]
 mod proofs;
 
@@ -86,7 +88,12 @@ impl<D> Default for Offers<D> {
 impl<D> Offers<D> {
     /// Those of a robot that has never exchanged its duty.
     pub const fn new() -> Self {
-        Offers { offer: None, offers_made: 0, reply: None, taking: None }
+        Offers::numbered_after(0)
+    }
+
+    /// Those of a robot that may have made this number of offers and has forgotten them: its next one is newer.
+    pub const fn numbered_after(offers_made: u32) -> Self {
+        Offers { offer: None, offers_made, reply: None, taking: None }
     }
 
     /// The standing offer.

@@ -30,6 +30,11 @@ pub fn bound() -> Guard {
     named("bound", proposition("wins").and(proposition("has_past_duties")))
 }
 
+/// It leads, nobody follows it, and a branch of the tree depends on its post.
+pub fn burdened() -> Guard {
+    disengaged("burdened", proposition("burdened"))
+}
+
 /// The path Σ passes its post.
 pub fn path_joined() -> Guard {
     named("path joined", proposition("on_coming_path"))

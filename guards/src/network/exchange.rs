@@ -2,6 +2,11 @@
 
 use crate::{Guard, proposition};
 
+/// It may have made offers before it began, and have forgotten them.
+pub fn offers_forgotten() -> Guard {
+    Guard::new("offers forgotten", proposition("has_forgotten_offers"))
+}
+
 /// A robot in its way could go on with its duty, and it with that robot's.
 pub fn offers() -> Guard {
     Guard::new("offers", proposition("finds_partner"))

@@ -321,6 +321,8 @@ pub fn attendance_automaton() -> Result<AttendanceAutomaton, BuildError> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
 
     const VALIDITY: u32 = 5;
@@ -355,6 +357,54 @@ mod tests {
                 _ => {}
             }
         }
+    }
+
+    /// Of any robot, heard of or not in any periods: its standing, what decides on it from now on, and for how
+    /// many periods it has not been called present, and gone; more than any roll is valid are the same.
+    type Record = ((Attendance, Option<u32>, u32), u32, u32);
+
+    fn record_of(attendee: &Attendee, present: u32, gone: u32) -> Record {
+        let silence = attendee.silence.map(|silence| silence.min(PATIENCE + 1));
+        let standing = (attendee.standing.location(), silence, attendee.age.min(VALIDITY + 1));
+        (standing, present.min(VALIDITY + 1), gone.min(VALIDITY + 1))
+    }
+
+    /// The assumption of the lemma `roll.smt2`, exhaustively: between a roll that lets a robot move and one
+    /// that calls it gone, in either order, are more periods than a roll is valid. So of two robots that go
+    /// by valid rolls none takes the other for gone that may move.
+    #[test]
+    fn between_rolls_that_let_a_robot_move_and_call_it_gone_no_roll_is_valid() {
+        let automaton = attendance_automaton().expect("it is well formed");
+        let longer = VALIDITY + 1;
+        let first = Attendee::new(VALIDITY);
+        let mut known = BTreeSet::from([record_of(&first, longer, longer)]);
+        let (mut waiting, mut returned) = (vec![(first, longer, longer)], 0);
+        while let Some((attendee, present, gone)) = waiting.pop() {
+            for is_heard_of in [false, true] {
+                let mut next = attendee.clone();
+                if is_heard_of {
+                    next.attend();
+                }
+                next.review(&automaton).expect("its guards have values");
+                let (mut present, mut gone) = (present + 1, gone + 1);
+                match next.standing.location() {
+                    Attendance::Present => {
+                        assert!(gone > VALIDITY, "it was gone {gone} periods ago");
+                        present = 0;
+                    }
+                    Attendance::Gone => {
+                        assert!(present > VALIDITY, "it was present {present} periods ago");
+                        gone = 0;
+                    }
+                    Attendance::Suspended | Attendance::Returning => returned += 1,
+                }
+                let record = record_of(&next, present, gone);
+                if known.insert(record) {
+                    waiting.push((next, record.1, record.2));
+                }
+            }
+        }
+        assert!(known.len() > 50 && returned > 10, "{} {returned}", known.len());
     }
 
     #[test]

@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
+use pleach_continuous::network::acceptance::Segment;
 use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId, NoticeId};
 
 mod attendance;
@@ -53,7 +54,7 @@ pub struct AccessPoint {
     position: Point,
     /// The beacon heard last of each node in range, by their senders.
     heard: Vec<Arc<Beacon>>,
-    /// Where each robot was when it was heard last.
+    /// Where each robot was when it was last heard, or heard of.
     sightings: Sightings,
     /// Where robots that do not take part were heard last, here or by the nodes that are heard.
     wrecks: Arc<Vec<Wreck>>,
@@ -209,6 +210,7 @@ impl AccessPoint {
             stretched: self.stretched,
             longest_wait: self.longest_wait,
             wrecks: Arc::clone(&self.wrecks),
+            branches: Arc::default(),
         }
     }
 
@@ -245,8 +247,24 @@ impl AccessPoint {
         }
         if beacon.duty.is_some() {
             let (robot, place) = (beacon.sender, beacon.position);
-            self.sightings.note(Wreck { robot, place, heard_in: period });
+            self.sightings.note(Wreck::heard(robot, place, period));
+            beacon.sightings(period).for_each(|seen| self.sightings.note(seen));
         }
+    }
+
+    /// A robot tells of the move that it intends; returns whether it is known where that begins.
+    fn note_move(&mut self, robot: NodeId, segment: Segment) -> bool {
+        let is_heard = |beacon: &Arc<Beacon>| {
+            beacon.sender == robot
+                && beacon.position == segment.from
+                && !self.silent.contains(&robot)
+        };
+        let is_known = self.heard.iter().any(is_heard);
+        if is_known {
+            let heard = Wreck::heard(robot, segment.from, self.period);
+            self.sightings.note(Wreck { astray: segment.length(), ..heard });
+        }
+        is_known
     }
 
     /// Where robots that do not take part were heard last, here or by the nodes that are heard.
@@ -480,6 +498,13 @@ impl Node for AccessPoint {
             Input::Heard { message: Message::Request(tasks), .. } => {
                 self.requested = Some(Arc::clone(tasks));
                 self.begin_attendance();
+            }
+            Input::Heard { from, message: Message::Proposal { period, segment, witness } }
+                if (*period, *witness) == (self.period, Some(self.id())) =>
+            {
+                if self.note_move(from, *segment) {
+                    outputs.send(from, Message::Consent { period: *period });
+                }
             }
             Input::Tick { .. } => self.tick(outputs)?,
             Input::Heard { .. } | Input::Sensed(_) => {}

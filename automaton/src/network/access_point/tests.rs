@@ -2,16 +2,19 @@
 
 use std::sync::Arc;
 
-use pleach_continuous::Point;
+use pleach_continuous::network::acceptance::Segment;
+use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{NodeId, Post, PostId};
 use serde_json::json;
 
 use super::super::beacon::Beacon;
 use super::super::duty::{Duty, Held, Standby, Station};
+use super::super::message::Message;
 use super::super::roll::{Absent, Roll, Wreck};
 use super::super::scenario::Scenario;
 use super::super::site::Site;
 use super::AccessPoint;
+use crate::node::{Input, Node as _, Outputs};
 
 /// The first access point of a hall, which hears robots 0 and 1.
 fn access_point() -> AccessPoint {
@@ -44,6 +47,32 @@ fn roll(called: u32, suspended: &[NodeId]) -> Roll {
     Roll { called, absent: Arc::new(Absent { suspended, ..Absent::default() }) }
 }
 
+/// Nobody relies on the robot, and the access point is asked to know of its move.
+#[test]
+fn it_knows_of_the_move_of_a_robot_that_asks_it_to() {
+    let asked = |from: Point, witness: usize, period: u32| {
+        let mut point = access_point();
+        let west = Point::new(4.0, 5.0);
+        point.period = 7;
+        point.hear(7, &roll(7, &[]), &Arc::new(beacon(0, west)));
+        let segment = Segment { from, to: from + Vector::new(0.06, 0.0) };
+        let message = Message::Proposal { period, segment, witness: Some(witness) };
+        let mut outputs = Outputs::of(2);
+        let heard = Input::Heard { from: 0, message: &message };
+        point.step(heard, &mut outputs).expect("guards have values");
+        let answers = outputs.drain_sent().count();
+        point.roll.absent = roll(7, &[0]).absent;
+        point.locate_wrecks();
+        (answers, point.wrecks[0].astray)
+    };
+    let here = Point::new(4.0, 5.0);
+    let (answers, astray) = asked(here, 2, 7);
+    assert!(answers == 1 && (astray - 0.06).abs() < 1e-12);
+    assert_eq!(asked(here, 1, 7), (0, 0.0), "another node is asked");
+    assert_eq!(asked(here, 2, 6), (0, 0.0), "the proposal is late");
+    assert_eq!(asked(Point::new(4.1, 5.0), 2, 7), (0, 0.0), "the beacon from there is lost");
+}
+
 /// Robots that have not heard them themselves keep away from these places.
 #[test]
 fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
@@ -53,7 +82,7 @@ fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
         point.deliberate().expect("guards have values");
         point.next_beacon().wrecks.to_vec()
     };
-    let wreck = |robot: NodeId, place: Point, heard_in: u32| Wreck { robot, place, heard_in };
+    let wreck = Wreck::heard;
     let (west, east) = (Point::new(4.0, 5.0), Point::new(6.0, 5.0));
     let farther = Point::new(7.0, 5.0);
     let all = roll(1, &[]);

@@ -9,7 +9,7 @@ use pleach_discrete::network::{
 };
 use serde_json::{Value, json};
 
-use super::super::beacon::{Announcement, Notice, TeamReport};
+use super::super::beacon::{Announcement, Branch, Notice, TeamReport};
 use super::super::duty::{
     AwaitingRelease, Bound, Duty, Following, Held, Hop, Junction, Leading, Leaf, Path, PathPlace,
     Relay, Shifting, Standby, Station, Waiting,
@@ -120,7 +120,13 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
         }),
         stretched: true,
         longest_wait: 9,
-        wrecks: Arc::new(vec![Wreck { robot: 3, place: Point::new(0.5, 0.5), heard_in: 6 }]),
+        wrecks: Arc::new(vec![Wreck {
+            robot: 3,
+            place: Point::new(0.5, 0.5),
+            heard_in: 6,
+            astray: 0.25,
+        }]),
+        branches: Arc::new(vec![Branch { robot: 5, place: Point::new(0.25, 0.5) }]),
         ..silent()
     }
 }
@@ -150,7 +156,7 @@ fn messages() -> Vec<Message> {
         Message::Shortage,
         Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.075 }),
         Message::GrantFlow(FlowGrant { number, flow: 0.05, until: 12 }),
-        Message::Proposal { period: 5, segment },
+        Message::Proposal { period: 5, segment, witness: Some(2) },
         Message::Objection { period: 5 },
         Message::Consent { period: 5 },
         Message::Request(Arc::from([])),

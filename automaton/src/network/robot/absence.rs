@@ -2,22 +2,28 @@
 //! suspended or gone.
 //!
 //! A robot that is gone is not expected to be heard. Others go round the place where any node heard it
-//! last, and stay two steps farther away: one for the control period in which it was heard, and one for the
-//! next. They learn of this place when the robot is suspended, and so before they can come near without
-//! having heard it. A robot that is cut off cannot know in which period it was heard last, but that this was
+//! last, and stay farther away: by the move of which it told then, which no robot makes without a witness, and
+//! by one step, or by two where witnesses may have stopped as well. They learn of this place when the robot is suspended, and so before they can come near without
+//! having heard it. Every robot tells where those are that are attached to it: if the only one that hears a
+//! robot stops, its own neighbours still know where that was. A robot that is cut off cannot know in which period it was heard last, but that this was
 //! not before its newest roll was called. So it stays within two steps of each place where it has been since.
+
+use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{Disc, HalfPlane};
+use pleach_continuous::network::reliability::LinkReliability;
 use pleach_discrete::network::NodeId;
 
+use super::super::beacon::{Beacon, Branch};
 use super::super::roll::{Roll, Wreck};
 use super::super::scenario::Settings;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::{MARGIN, ROUNDING};
 
-/// A robot that is gone is at most this many steps from where it was heard last.
+/// A robot that is gone is at most this many steps from where it was heard last, whoever knows of its last
+/// move.
 const ASTRAY: f64 = 2.0;
 
 impl Robot {
@@ -58,9 +64,42 @@ impl Robot {
         self.roll.absent.locate(&mut self.wrecks, seen);
     }
 
+    /// Where the robots attached to it are. Those that nobody else hears are so known two links away, in case
+    /// that it stops as well.
+    pub(super) fn locate_branches(&mut self) {
+        let is_known =
+            |it: &Branch, known: &Neighbour| (it.robot, it.place) == (known.id(), known.position());
+        let told = &self.branches;
+        let is_same = self.tree_children().count() == told.len()
+            && told.iter().zip(self.tree_children()).all(|(it, known)| is_known(it, known));
+        if !is_same {
+            let place = |known: &Neighbour| Branch { robot: known.id(), place: known.position() };
+            self.branches = Arc::new(self.tree_children().map(place).collect());
+        }
+    }
+
+    /// A beacon tells of robots that are attached to its sender.
+    pub(super) fn note_branches(&mut self, beacon: &Beacon, heard_in: u32) {
+        beacon.sightings(heard_in).for_each(|seen| self.out_of_sight.note(seen));
+    }
+
     /// How far a robot that is not heard any more may be from where it was heard last.
     fn farthest_astray(&self) -> f64 {
         ASTRAY * self.site.settings.step_radius
+    }
+
+    /// How far a robot that does not take part may be from where any node heard it last. It has made no move
+    /// that no node knows of. One move may be forgotten, if the node that knew of it has begun again; if another
+    /// node does not take part that could have heard it, more of them may be.
+    fn astray(&self, wreck: &Wreck) -> f64 {
+        let Settings { step_radius: step, clearance, .. } = self.site.settings;
+        let farthest = self.farthest_astray();
+        let earshot = self.site.radio.range() + farthest + clearance;
+        let is_near = |place: &Point| (place - wreck.place).norm() <= earshot;
+        let lost = self.wrecks.iter().filter(|other| other.robot != wreck.robot);
+        let may_lack_witness = lost.map(|other| other.place).any(|place| is_near(&place))
+            || self.site.access_points.iter().skip(1).any(is_near);
+        if may_lack_witness { farthest } else { farthest.min(wreck.astray + step) }
     }
 
     /// Where the robot stays, in case that it is not heard any more: near each place where it has been since
@@ -79,25 +118,24 @@ impl Robot {
         self.trail.iter().all(|(_, place)| (place - self.position).norm() <= leash)
     }
 
-    /// The places of wrecks that are not heard in this control period.
-    fn obstacles(&self) -> impl Iterator<Item = Point> {
+    /// The places of wrecks that are not heard in this control period, and how far they may be from there.
+    fn obstacles(&self) -> impl Iterator<Item = (Point, f64)> {
         let is_heard = |robot| self.neighbour(robot).is_some_and(|it| it.heard_in == self.period);
         let unheard = move |wreck: &&Wreck| !is_heard(wreck.robot);
-        self.wrecks.iter().filter(unheard).map(|wreck| wreck.place)
+        self.wrecks.iter().filter(unheard).map(|wreck| (wreck.place, self.astray(wreck)))
     }
 
     /// The discs that no way leads through.
     pub(super) fn keep_out_discs(&self, clearance: f64) -> impl Iterator<Item = Disc> {
-        let radius = clearance + self.farthest_astray();
-        self.obstacles().map(move |center| Disc { center, radius })
+        self.obstacles().map(move |(center, astray)| Disc { center, radius: clearance + astray })
     }
 
     /// The sides of wrecks on which this robot stays, wherever they may be astray.
     pub(super) fn sides_of_wrecks(&self) -> impl Iterator<Item = HalfPlane> {
         let Settings { clearance, step_radius: step, errors, .. } = self.site.settings;
         let kept = errors.planning_clearance(clearance * (1.0 + MARGIN));
-        let radius = 2.0 * kept + self.farthest_astray();
-        self.obstacles().filter_map(move |place| {
+        self.obstacles().filter_map(move |(place, astray)| {
+            let radius = 2.0 * kept + astray;
             let ahead = place - self.position;
             let away = ahead.norm();
             if away == 0.0 || away > radius + step {

@@ -40,17 +40,19 @@ impl Numbers {
 
 /// What an explorer reads from a robot in addition to what observers see.
 impl<'a> RobotView<'a> {
-    /// The beacon that the robot would send now, without what matters only when time passes.
+    /// The beacon that the robot would send now, without what matters only when time passes or for motion.
     pub fn beacon(self) -> Beacon {
-        Beacon { strays: Arc::default(), serves: Arc::default(), ..self.robot().public_state() }
+        let (strays, serves, branches) = Default::default();
+        Beacon { strays, serves, branches, ..self.robot().public_state() }
     }
 
-    /// The beacon that the robot sends where control periods count. Where bodies lie that do not take
-    /// part is left out: it matters for motion alone.
+    /// The beacon that the robot sends where control periods count. Where bodies are is left out: it matters
+    /// for motion alone.
     pub fn beacon_in_time(self) -> Beacon {
         let beacon = self.robot().public_state();
-        let named = |wreck: &Wreck| Wreck { place: Point::origin(), heard_in: 0, ..*wreck };
-        Beacon { wrecks: Arc::new(beacon.wrecks.iter().map(named).collect()), ..beacon }
+        let named = |wreck: &Wreck| Wreck::heard(wreck.robot, Point::origin(), 0);
+        let wrecks = Arc::new(beacon.wrecks.iter().map(named).collect());
+        Beacon { wrecks, branches: Arc::default(), ..beacon }
     }
 
     /// Whether it may leave its place in this control period.
@@ -257,6 +259,7 @@ impl Robot {
             label: _,
             facts: _,
             is_quiet: _,
+            forgotten_offers: _, // by its offers
             has_news: _,
             has_unsent_news: _,
             is_unmeasured: _,
@@ -280,6 +283,7 @@ impl Robot {
             roll: _,
             out_of_sight: _,
             wrecks: _,
+            branches: _,
             trail: _,
             // Routes and motion.
             velocity: _,

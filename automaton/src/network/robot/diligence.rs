@@ -69,6 +69,7 @@ impl Robot {
             "robots that have forgotten": now.forgetful, then.forgetful;
             "tasks serviced below": now.serves, then.serves;
             "wrecks": now.wrecks, then.wrecks;
+            "branches": now.branches, then.branches;
             "exchange of duties": self.exchange, before.exchange;
             "offers answered": self.answered, before.answered;
             "partner": self.partner, before.partner;

@@ -18,11 +18,12 @@ use crate::{Automaton, BuildError, Jump, Transfer, TransitionError};
 
 use super::super::beacon::Notice;
 use super::super::duty::{
-    AwaitingRelease, Bound, Duty, Following, Held, Holder, Junction, Leading, Leaf, Relay,
+    AwaitingRelease, Bound, Duty, Following, Held, Holder, Hop, Junction, Leading, Leaf, Relay,
     Shifting, Standby, Station, Waiting,
 };
 use super::super::record::MissionEvent;
 use super::Robot;
+use super::hearing::Neighbour;
 use super::target::targets;
 
 /// The automaton of a robot's duty.
@@ -157,6 +158,13 @@ impl Robot {
         !self.duty.is_redundant() || self.children().any(|child| !child.beacon.can_detach)
     }
 
+    /// Whether it leads alone, and a fixed post has been attached to its own: by a robot that had lost its parent,
+    /// and had not heard yet that this one is elected.
+    pub(super) fn is_burdened(&self) -> bool {
+        let bears_fixed = || self.children().filter_map(Neighbour::post).any(Post::is_fixed);
+        matches!(*self.duty, Duty::Leading(_)) && self.is_first() && bears_fixed()
+    }
+
     /// Whether the path Σ that it learns of now passes its post, before or at the last break point.
     pub(super) fn is_on_coming_path(&self) -> bool {
         self.coming_place().is_some()
@@ -208,27 +216,48 @@ impl Robot {
                 || self.is_superseded())
     }
 
-    /// The post that a robot on its way along Σ takes next: the one ahead or, where its task is announced
-    /// again before all of its subgroup have arrived, the one that it left.
+    /// The post that a robot on its way along Σ takes next, and where that is: the one ahead or, where its
+    /// task is announced again before all of its subgroup have arrived, the one that it left.
     ///
     /// The robot behind takes the post that this one left only if this one has reported that it has
-    /// arrived. Until then it may come back to it, and from then on it may not.
-    pub(super) fn coming_post(&self) -> Option<Post> {
+    /// arrived. Until then it goes back to it, as links are made for robots at their posts; from then on it
+    /// may not.
+    pub(super) fn coming_station(&self) -> Option<Station> {
         let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
         if !self.is_superseded() {
-            return self.next_hop().map(|hop| hop.post);
+            return self.next_hop().map(|hop| self.station_at(hop));
         }
         let hops = &self.mission.path()?.hops;
         let active = self.active_subgroup();
         let is_taken = left.is_some() && active.is_none_or(|active| active.first == place);
         let leads_on = active.is_some_and(|active| active.places().contains(&(place + 1)));
         match self.has_reported(place) {
-            false if !is_taken => hops.get(place).map(|hop| self.detached_if_far(hop.post)),
+            false if !is_taken => hops.get(place).map(|hop| match hop.post.is_redundant() {
+                true => self.station_here(self.detached_if_far(hop.post)),
+                false => Station { post: hop.post, reference: hop.place.reference },
+            }),
             true if leads_on && self.has_reported(place + 1) => {
-                hops.get(place + 1).map(|hop| hop.post)
+                hops.get(place + 1).map(|hop| self.station_at(hop))
             }
-            _ => Some(self.new_post()),
+            _ => Some(self.station_here(self.new_post())),
         }
+    }
+
+    pub(super) fn coming_post(&self) -> Option<Post> {
+        self.coming_station().map(|station| station.post)
+    }
+
+    /// A post to which it has come. One that queues behind the next member makes its place where it stands.
+    fn station_at(&self, hop: &Hop) -> Station {
+        let reference = hop.place.reference;
+        match (self.position - reference).norm() <= self.site.settings.arrival_radius() {
+            true => Station { post: hop.post, reference },
+            false => self.station_here(hop.post),
+        }
+    }
+
+    fn station_here(&self, post: Post) -> Station {
+        Station { post, reference: self.free_place() }
     }
 
     /// This post, which it takes again. A redundant one is attached to nothing where the robot has gone out of
@@ -311,7 +340,7 @@ fn stand_by(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Standby 
 /// A new post where the robot stands: the one before is left to the robot that holds it.
 fn leave_post<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Standby {
     effects.push(DutyEffect::Restart);
-    let station = Station { post: robot.new_post(), reference: robot.free_place() };
+    let station = robot.station_here(robot.new_post());
     Standby(Held { station, left: robot.duty.post().map(|post| post.id) })
 }
 
@@ -331,15 +360,13 @@ fn set_out(waiting: &Waiting, robot: &Robot, effects: &mut Effects) -> Shifting 
     Shifting { place, left: (place > 0).then_some(waiting.held.station.post.id) }
 }
 
-/// Eq. (26): the robot holds the post that it has come to, or takes a post where it stands if it turns
-/// back. A plain node that queues behind the next
-/// member makes its place where it stands.
+/// Eq. (26): the robot holds the post that it has come to, or another one if it turns back.
 fn take_post_ahead<B: From<Held>>(
     shifting: &Shifting,
     robot: &Robot,
     effects: &mut Effects,
 ) -> Option<B> {
-    let post = robot.coming_post()?;
+    let station = robot.coming_station()?;
     if !robot.takes_step(MissionStep::SubgroupArrived) {
         effects.push(DutyEffect::Restart);
     } else if let Some(active) =
@@ -348,10 +375,7 @@ fn take_post_ahead<B: From<Held>>(
         let (subgroup, robots) = (robot.subgroups_done(), robot.robots_at(active));
         effects.push(DutyEffect::Report(MissionEvent::SubgroupArrived { subgroup, robots }));
     }
-    let place = robot.next_hop()?.place.reference;
-    let queues = (robot.position - place).norm() > robot.site.settings.arrival_radius();
-    let reference = if queues || robot.is_superseded() { robot.free_place() } else { place };
-    Some(B::from(Held { station: Station { post, reference }, left: None }))
+    Some(B::from(Held { station, left: None }))
 }
 
 /// The post that the last robot of Σ gets in the primary team. Where the robot ahead is attached to the
@@ -365,7 +389,7 @@ fn team_post(held: &Held, robot: &Robot, follows: Option<PostId>) -> Held {
         false => PostId((robot.site.robots as u32) + robot.bulletin.number()),
     };
     let post = Post { id, kind: PostKind::Primary { follows }, parent, task: None };
-    let station = Station { post, reference: robot.free_place() };
+    let station = robot.station_here(post);
     Held { station, left: (!joins_at_once).then_some(before.id) }
 }
 
@@ -529,6 +553,12 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
         .carried_out(bound::<Relay>())
         .carried_out(bound::<Junction>())
         .carried_out(bound::<Leaf>())
+        .carried_out(Transfer::new(
+            DutyEvent::Burdened,
+            guards::burdened(),
+            "lead, bound to its post",
+            bind::<Leading>,
+        ))
         .carried_out(Transfer::new(
             On::RelayResumed,
             guards::relay_resumed(),

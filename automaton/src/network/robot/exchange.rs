@@ -154,6 +154,11 @@ fn answer<A: HasOffers, B: From<Offers<Duty>>>(
     Some(B::from(offers))
 }
 
+/// Its next offer is newer than any that it may have made before.
+fn count_on(_: &Free, robot: &Robot, _: &mut Effects) -> Free {
+    Free(Offers::numbered_after(robot.forgotten_offers))
+}
+
 fn give(free: &Free, robot: &Robot, effects: &mut Effects) -> Option<Giving> {
     answer(free, robot, effects, Some(*robot.duty))
 }
@@ -244,6 +249,12 @@ pub fn exchange_automaton() -> Result<ExchangeAutomaton, BuildError> {
     use ExchangeEvent as On;
     Automaton::builder(EXCHANGE, ExchangeStage::Free)
         .observing()
+        .carried_out(Transfer::new(
+            On::OffersForgotten,
+            guards::offers_forgotten(),
+            "count on from there",
+            count_on,
+        ))
         .carried_out(Transfer::where_known(On::Offers, guards::offers(), "offer the duty", offer))
         .carried_out(Transfer::where_known(On::Gives, guards::gives(), "give the duty", give))
         .carried_out(refuses::<Free, Refusing>())

@@ -105,6 +105,8 @@ facts! {
         may_set_out,
         /// Another parent in the tree is better than its own.
         finds_better_parent,
+        /// It leads alone, and a fixed post has been attached to its own.
+        burdened,
     }
     of the robot robot {
         quantities {
@@ -158,6 +160,8 @@ facts! {
             superfluous: robot.is_superfluous(),
             /// It holds a fixed post, or robots attached to it find no other parent.
             has_past_duties: robot.has_past_duties(),
+            /// It may have made more offers to exchange duties, before it began, than it counts.
+            has_forgotten_offers: robot.forgotten_offers > robot.offers().offers_made(),
             /// The leader election is over now, and it has won it.
             wins: robot.wins_now(),
             /// It learns in this jump that Σ passes its post.
@@ -292,6 +296,7 @@ impl Robot {
         facts.branches = self.branches() as f64;
         facts.may_set_out = self.may_set_out();
         facts.finds_better_parent = self.finds_better_parent();
+        facts.burdened = self.is_burdened();
         facts
     }
 

@@ -74,7 +74,9 @@ use crate::automaton::TransitionError;
 use crate::located::Current;
 use crate::node::Outputs;
 
-use super::beacon::{Announced, Announcement, Beacon, Bulletin, LastBeacon, Notice, TeamReport};
+use super::beacon::{
+    Announced, Announcement, Beacon, Branch, Bulletin, LastBeacon, Notice, TeamReport,
+};
 use super::control::{Control, Moving};
 use super::duty::{Duty, Held, Hop, Standby, Station};
 use super::message::Message;
@@ -131,9 +133,11 @@ pub struct Robot {
     /// Another node has begun the next control period.
     is_behind: bool,
 
-    // Where robots were that it does not hear any more, and those that are gone.
+    // Where robots were that it does not hear any more or has only heard of, those that do not take part,
+    // and those that are attached to it.
     out_of_sight: Sightings,
     wrecks: Arc<Vec<Wreck>>,
+    branches: Arc<Vec<Branch>>,
     /// Where it has set off since its roll was called, each with the control period.
     trail: Vec<(u32, Point)>,
 
@@ -160,6 +164,8 @@ pub struct Robot {
 
     // The exchange of duties that it is engaged in.
     exchange: Current<Exchange>,
+    /// How many offers it may have made before it began: at most one in each control period.
+    forgotten_offers: u32,
     /// The robot in its way with which it could exchange duties.
     partner: Option<NodeId>,
     /// The duty that it takes over in this jump, and from which robot.
@@ -284,6 +290,7 @@ impl Robot {
             last_beacon: LastBeacon::default(),
             beacon_told: 0,
             exchange: Current::new(Exchange::Free(exchange::Free(Offers::new()))),
+            forgotten_offers: 0,
             partner: None,
             taking_over: None,
             last_partner: None,
@@ -293,6 +300,7 @@ impl Robot {
             roll: Roll::default(),
             out_of_sight: Sightings::default(),
             wrecks: Arc::default(),
+            branches: Arc::default(),
             trail: Vec::new(),
             heard_up_to: 0,
             parent: None,
@@ -364,6 +372,7 @@ impl Robot {
     /// the move.
     fn hear_of_later_period(&mut self, period: u32) {
         if self.is_new {
+            self.forgotten_offers = if period > 1 { period } else { 0 };
             return self.join_in(period);
         }
         self.is_behind = true;
@@ -447,6 +456,7 @@ impl Robot {
             stretched: self.stretched,
             longest_wait: self.longest_wait(),
             wrecks: Arc::clone(&self.wrecks),
+            branches: Arc::clone(&self.branches),
         }
     }
 
@@ -509,6 +519,7 @@ impl Robot {
         (self.has_unsent_news, self.is_unmeasured) = (true, true);
         self.advance_exchange()?;
         self.locate_wrecks();
+        self.locate_branches();
         self.note_follower();
         self.keep_place()?;
         self.hear_notices();

@@ -4,7 +4,7 @@
 //! solution. What becomes of the proposal is told in `negotiation`.
 
 use pleach_continuous::geometry::{Disc, HalfPlane, cell};
-use pleach_continuous::network::acceptance::Segment;
+use pleach_continuous::network::acceptance::{FULL_LOAD, Segment};
 use pleach_continuous::network::motion::{Motion, MotionProblem};
 use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::Phase;
@@ -14,7 +14,6 @@ use super::super::scenario::MotionSolver;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::links::TreeLink;
-use super::negotiation::FULL_LOAD;
 use crate::automaton::TransitionError;
 
 /// A robot this share of ρ from the reference of its post has settled.

@@ -7,12 +7,14 @@
 //! Otherwise it consents. Shrinking moves never creates a new objection, so that consent to a move
 //! is consent to what is left of it.
 //!
-//! A robot moves only with the consent of all that rely on it. A message that is lost takes away the
+//! A robot moves only with the consent of all that rely on it, or of a *witness* where nobody does: so there
+//! is always a node that knows where a robot is that stops. A message that is lost takes away the
 //! right to move and never gives one: a robot whose proposal is not heard stays where others take it to
 //! be, and a robot that does not know where those are on which it relies consents to nothing and
 //! stays.
 
-use pleach_continuous::network::acceptance::{Capsule, Segment};
+use pleach_continuous::network::acceptance::{Capsule, Segment, is_acceptable};
+use pleach_discrete::network::consent::all_consent;
 use pleach_discrete::network::{NodeId, Stage};
 
 use super::super::message::Message;
@@ -21,9 +23,6 @@ use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
 use crate::node::Outputs;
-
-/// How much of a load a sender may be given, just below its whole time.
-pub(super) const FULL_LOAD: f64 = 1.0 - 1e-9;
 
 impl Robot {
     /// A new proposal is about to be made: nothing has been heard of others, and nobody consents.
@@ -41,7 +40,8 @@ impl Robot {
             && (self.told_move != self.proposal || !self.has_all_consents())
         {
             self.told_move = self.proposal;
-            outputs.broadcast(Message::Proposal { period: self.period, segment });
+            let (period, witness) = (self.period, self.witness());
+            outputs.broadcast(Message::Proposal { period, segment, witness });
         }
     }
 
@@ -50,9 +50,15 @@ impl Robot {
         self.proposal.unwrap_or(Segment::still(self.position))
     }
 
-    /// The proposal of a neighbour is received.
-    pub(super) fn hear_proposal(&mut self, from: NodeId, segment: Segment) {
-        if self.relies_on(from) && !self.to_answer.contains(&from) {
+    /// The proposal of a neighbour is received. A witness that does not know where it begins is none.
+    pub(super) fn hear_proposal(
+        &mut self,
+        from: NodeId,
+        segment: Segment,
+        witness: Option<NodeId>,
+    ) {
+        let is_witness = self.note_move(from, segment) && witness == Some(self.id);
+        if (self.relies_on(from) || is_witness) && !self.to_answer.contains(&from) {
             self.to_answer.push(from);
         }
         match self.heard_moves.iter_mut().find(|(mover, _)| *mover == from) {
@@ -85,14 +91,29 @@ impl Robot {
         self.senders().chain(self.tree_children().map(Neighbour::id))
     }
 
-    /// A robot that relies on this one consents to its move.
+    /// The node that it asks to know of its move, where nobody relies on it: its parent if that is heard, or
+    /// else, and from time to time where it does not get on, another node that is heard.
+    fn witness(&self) -> Option<NodeId> {
+        if self.reliant().next().is_some() {
+            return None;
+        }
+        let is_heard = |known: &&Neighbour| known.heard_in == self.period;
+        let is_parent = |known: &Neighbour| Some(known.id()) == self.parent;
+        let heard = || self.neighbours.iter().filter(is_heard);
+        let (parent, others): (Vec<_>, Vec<_>) = heard().partition(|known| is_parent(known));
+        let candidates = [parent, others].concat();
+        let turn = self.still_periods as usize % candidates.len().max(1);
+        candidates.get(turn).map(|known| known.id())
+    }
+
+    /// A node that relies on this one, or is its witness, consents to its move.
     pub(super) fn hear_consent(&mut self, from: NodeId) {
         if !self.consents.contains(&from) {
             self.consents.push(from);
         }
     }
 
-    /// Without the consent of all that rely on it the robot stays.
+    /// Without the consent of all that rely on it, and of one node at least, the robot stays.
     pub(super) fn stay_without_consent(&mut self) {
         if !self.has_all_consents() {
             self.proposal = None;
@@ -100,7 +121,7 @@ impl Robot {
     }
 
     fn has_all_consents(&self) -> bool {
-        self.reliant().all(|robot| self.consents.contains(&robot))
+        !self.consents.is_empty() && all_consent(self.reliant(), &self.consents)
     }
 
     /// Judges the moves that it has heard of together with its own: objects, and halves its own, or
@@ -185,7 +206,7 @@ impl Robot {
             let is_parked = self.neighbour(node).is_none_or(rests);
             self.reach_of(self.move_of(node), is_parked)
         });
-        worst > FULL_LOAD.max(self.load() + ROUNDING)
+        !is_acceptable(worst, self.load() + ROUNDING)
     }
 
     /// By how much at least each end that moves has to shorten a link of this length. What measurements

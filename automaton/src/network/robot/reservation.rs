@@ -17,6 +17,7 @@
 //! where grants are not renewed, flows end at those who send first.
 
 use pleach_discrete::network::NodeId;
+use pleach_discrete::network::reservation::{Spare, holds, renewed};
 use serde::{Deserialize, Serialize};
 
 use super::super::message::Message;
@@ -24,6 +25,9 @@ use super::super::record::MissionEvent;
 use super::Robot;
 use super::routing::{RESIDUAL_ROUNDING, RouteLink, link_at};
 use crate::node::Outputs;
+
+#[cfg(test)]
+mod lemma;
 
 /// Control periods for which a grant holds at the least as long as no message is lost. Every flow is asked for
 /// again in each of them.
@@ -141,7 +145,7 @@ impl Robot {
     pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
         let (period, robots) = (self.period, self.site.robots);
         let patience = PATIENCE_WITH_ACCESS_POINTS * self.lease();
-        self.reservations.retain(|kept| kept.until >= period);
+        self.reservations.retain(|kept| holds(kept.until, period));
         for at in 0..self.links.len() {
             let heard_in = self.neighbour(self.links[at].to).map_or(0, |known| known.heard_in);
             let link = &mut self.links[at];
@@ -154,7 +158,7 @@ impl Robot {
                 let until = heard_in.saturating_add(patience);
                 (held.granted, held.until) = (f64::INFINITY, until);
             }
-            if held.until < period {
+            if !holds(held.until, period) {
                 (held.flow, held.granted) = (0.0, 0.0);
             }
             let is_in_use = held.flow > 0.0 || held.wanted > 0.0;
@@ -230,7 +234,7 @@ impl Robot {
         let Some(at) = link_at(&self.links, from) else { return };
         let held = &mut self.links[at].held;
         if held.asked == grant.number {
-            (held.is_open, held.until) = (false, held.until.max(grant.until));
+            (held.is_open, held.until) = (false, renewed(held.until, grant.until));
             held.granted = held.granted.max(grant.flow);
             self.has_flow_news = true;
         }
@@ -281,17 +285,17 @@ impl Robot {
         let wanted = self.reservations.iter().map(|kept| (kept.wanted - kept.flow).max(0.0));
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
         let until = self.lasts_until(carried).min(self.period.saturating_add(self.lease()));
-        let mut spare = self.lasting_outflow(until.max(promised)) - needed;
+        let mut spare = Spare::of(self.lasting_outflow(until.max(promised)) - needed);
         let may_grant = self.round_count.is_for_grants();
         for kept in &mut self.reservations {
-            let flow = kept.wanted.min(kept.flow + spare.max(0.0));
+            let flow = spare.most(kept.flow, kept.wanted);
             let can_grant = flow > kept.flow + SAME_FLOW && may_grant;
             if can_grant {
-                spare -= flow - kept.flow;
+                spare.grant(kept.flow, flow);
                 kept.flow = flow;
             }
             if can_grant || !std::mem::replace(&mut kept.is_answered, true) {
-                kept.until = kept.until.max(until);
+                kept.until = renewed(kept.until, until);
                 let grant = FlowGrant { number: kept.asked, flow: kept.flow, until: kept.until };
                 outputs.send(kept.from, Message::GrantFlow(grant));
             }
@@ -310,7 +314,7 @@ impl Robot {
 
     /// The flows that last up to this control period, even if no grant is renewed.
     fn lasting_outflow(&self, period: u32) -> f64 {
-        let lasting = self.links.iter().filter(|link| link.held.until >= period);
+        let lasting = self.links.iter().filter(|link| holds(link.held.until, period));
         lasting.map(|link| link.held.flow).sum()
     }
 

@@ -225,7 +225,9 @@ impl Robot {
             | Message::Objection { period }
             | Message::Consent { period }
                 if *period != self.period => {}
-            Message::Proposal { segment, .. } => self.hear_proposal(from, *segment),
+            Message::Proposal { segment, witness, .. } => {
+                self.hear_proposal(from, *segment, *witness);
+            }
             Message::Objection { .. } => self.yield_to_objection(),
             Message::Consent { .. } => self.hear_consent(from),
             _ => {}

@@ -1,6 +1,9 @@
 //! The primary team (Sec. V-A): its leader, its order, and when it is stuck.
 
-use pleach_continuous::Point;
+use std::f64::consts::TAU;
+
+use pleach_continuous::geometry::Disc;
+use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{NodeId, Phase, Post, PostId, PostKind};
 
 use super::super::beacon::{Notice, TeamReport};
@@ -9,9 +12,14 @@ use super::super::record::{MissionEvent, Outcome};
 use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
+use super::way::KEEP_OUT;
 
 /// The leader stops at δ − 2.2ρ from its task, so that a robot 2ρ behind it is within δ as well.
 const STAND_OFF: f64 = 2.2;
+/// Where a robot has stopped at the task, the leader goes to another place at this share of δ from it, in
+/// one of so many directions.
+const WITHIN: f64 = 0.95;
+const DIRECTIONS: u8 = 32;
 /// How near to a target that it cannot get closer to a leader goes, as a share of ρ.
 const TOUCH: f64 = 0.1;
 /// A member of the primary team this many ρ behind the next is bunched: more room would not help.
@@ -118,7 +126,7 @@ impl Robot {
     /// ψ of a member of the primary team, eq. (24).
     pub(super) fn team_goal(&self) -> Option<Point> {
         match self.duty.post()?.kind {
-            PostKind::Primary { follows: None } => self.target,
+            PostKind::Primary { follows: None } => self.leader_goal(),
             PostKind::Primary { follows: Some(ahead) } => match self.holder(ahead) {
                 Some(neighbour) => Some(neighbour.position()),
                 // Not heard yet: where it stood when it called.
@@ -126,6 +134,27 @@ impl Robot {
             },
             _ => None,
         }
+    }
+
+    /// ψ of the leader: its target or, where a robot has stopped there, the place within δ of the task that is
+    /// farthest from such robots.
+    fn leader_goal(&self) -> Option<Point> {
+        let (target, task) = (self.target?, self.announcement()?.position);
+        let keep_out: Vec<Disc> = self.keep_out_discs(KEEP_OUT * self.clearance()).collect();
+        if !keep_out.iter().any(|disc| disc.contains(target)) {
+            return Some(target);
+        }
+        let radius = WITHIN * self.site.settings.arrival_radius();
+        let room = |place: &Point| {
+            let to = |disc: &Disc| (disc.center - place).norm() - disc.radius;
+            keep_out.iter().map(to).fold(f64::INFINITY, f64::min)
+        };
+        let around = (0..DIRECTIONS).map(|number| {
+            let angle = TAU * f64::from(number) / f64::from(DIRECTIONS);
+            task + Vector::new(angle.cos(), angle.sin()) * radius
+        });
+        let free = around.filter(|&place| self.site.free_space.contains(place));
+        free.max_by(|one, other| room(one).total_cmp(&room(other))).or(Some(target))
     }
 
     /// The distance from the announced task at which the leader stops.

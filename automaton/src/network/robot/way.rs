@@ -10,7 +10,7 @@ use super::Robot;
 use super::motion::ROUNDING;
 
 /// Parked robots are kept at this many ρ when there is a way round.
-const KEEP_OUT: f64 = 2.1;
+pub(super) const KEEP_OUT: f64 = 2.1;
 /// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
 /// goes straight on and exchanges duties with the robot in its way.
 const DETOUR_ALLOWANCE: f64 = 8.0;
@@ -22,8 +22,8 @@ const NEARBY: f64 = 0.1;
 const OBSTINACY: u32 = 3;
 
 impl Robot {
-    /// a₁ of the way to the goal: of the geodesic, round parked robots where that is a short way round,
-    /// unless its link holds it back on that side of an obstacle.
+    /// a₁ of the way to the goal: of the geodesic, round wrecks, and round parked robots where that is a short
+    /// way round, unless its link holds it back on that side of an obstacle.
     pub(super) fn first_waypoint(&mut self, goal: Point) -> Option<Point> {
         let site = Arc::clone(&self.site);
         let free_space: &FreeSpace = &site.free_space;
@@ -31,17 +31,26 @@ impl Robot {
             self.destination = Some(free_space.destination(goal));
         }
         let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
+        let keep_out = KEEP_OUT * self.clearance();
+        let wrecks: Vec<Disc> = self.keep_out_discs(keep_out).collect();
         let parked: Vec<Disc> = self
             .neighbours
             .iter()
             .filter(|neighbour| !neighbour.is_access_point() && neighbour.beacon.parked)
-            .map(|n| Disc { center: n.position(), radius: KEEP_OUT * self.clearance() })
-            .chain(self.keep_out_discs(KEEP_OUT * self.clearance()))
+            .map(|n| Disc { center: n.position(), radius: keep_out })
+            .chain(wrecks.iter().copied())
             .collect();
         let allowance = DETOUR_ALLOWANCE * self.clearance();
-        let around = |from: Point, direct: Geodesic| match free_space.detour(from, goal, &parked) {
-            Some(round) if round.length <= direct.length + allowance => round,
-            _ => direct,
+        // A parked robot in the way takes part in an exchange of duties, a wreck in none.
+        let around = |from: Point, direct: Geodesic| {
+            let direct = match wrecks.is_empty() {
+                true => direct,
+                false => free_space.detour(from, goal, &wrecks).unwrap_or(direct),
+            };
+            match free_space.detour(from, goal, &parked) {
+                Some(round) if round.length <= direct.length + allowance => round,
+                _ => direct,
+            }
         };
         let path = around(self.position, direct);
         if let Some(path) = self.way_of_link(&path, &parked) {

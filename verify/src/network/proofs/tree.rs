@@ -1,7 +1,7 @@
 //! Trees stay trees, whatever step the protocol takes.
 
-use pleach_discrete::network::PostId;
 use pleach_discrete::network::lineage::closes_cycle;
+use pleach_discrete::network::{Offers, PostId};
 
 use super::below;
 use crate::network::tree::{
@@ -68,7 +68,8 @@ fn a_robot_that_avoids_its_own_lineage_keeps_the_tree() {
 }
 
 /// Any tree of four robots: one without children may leave, and all others still come to
-/// an access point.
+/// an access point. A lemma on trees, by the functions of the judge; that robots leave only without children is
+/// explored.
 #[kani::proof]
 #[kani::unwind(7)]
 fn a_robot_without_children_may_leave() {
@@ -87,27 +88,50 @@ fn a_robot_without_children_may_leave() {
     );
 }
 
-/// Any tree of four robots: two of them exchange their duties, and with them their places in the
-/// tree. It stays a tree with the same number of members.
+/// Any tree of four posts, each held by one robot: two robots exchange their duties, by the offer, the answer
+/// and the conclusion of [`Offers`]. The tree of posts is as it was; the tree of robots, in which each is below
+/// the one that holds the parent of its post, is rooted before and after, with as many members; and between
+/// the two steps, when both robots have the post of the parked one, the tree is that of the duties in effect.
 #[kani::proof]
 #[kani::unwind(7)]
 fn an_exchange_of_duties_keeps_the_tree() {
     let parents = any_tree();
-    let (one, other) = (below(ROBOTS), below(ROBOTS));
-    let exchanged = |node: usize| match node {
-        _ if node == one => other,
-        _ if node == other => one,
-        _ => node,
-    };
-    let mut changed = [None; ROBOTS];
-    for (robot, parent) in parents.into_iter().enumerate() {
-        changed[exchanged(robot)] = parent.map(exchanged);
+    let (mover, parked) = (below(ROBOTS), below(ROBOTS));
+    kani::assume(mover != parked);
+    let mut posts = [0, 1, 2, 3];
+    let (mut of_mover, mut of_parked) = (Offers::new(), Offers::new());
+    of_mover.make_offer(parked, posts[mover]);
+    if let Some(offer) = of_mover.offer() {
+        of_parked.answer(mover, offer, Some(posts[parked]));
     }
-    kani::cover!(parents[one] == Some(other) && parents[other].is_some());
-    kani::cover!(parents[one].is_none() && parents[other].is_some());
+    let taken = of_parked.reply().and_then(|reply| of_mover.hear(mover, reply));
+    posts[mover] = taken.unwrap_or(posts[mover]);
+    let in_effect = of_parked.taking().copied();
+    let given = of_parked.conclude(of_mover.offer(), of_mover.offers_made());
+    posts[parked] = given.unwrap_or(posts[parked]);
+    assert!(given.is_some() && given == in_effect);
+    let mut holders = [ROBOTS; ROBOTS + 1];
+    for (robot, own) in posts.iter().enumerate() {
+        for (post, holder) in holders.iter_mut().enumerate() {
+            if post == *own {
+                *holder = robot;
+            }
+        }
+    }
+    let mut changed = [None; ROBOTS];
+    for post in 0..ROBOTS {
+        assert!(holders[post] < ROBOTS);
+        for robot in 0..ROBOTS {
+            if robot == holders[post] {
+                changed[robot] = parents[post].map(|parent| holders[parent]);
+            }
+        }
+    }
+    kani::cover!(parents[mover] == Some(parked) && parents[parked].is_some());
+    kani::cover!(parents[mover].is_none() && parents[parked].is_some());
     assert!(is_rooted(&changed));
-    for robot in 0..ROBOTS {
-        assert!(is_member(&changed, exchanged(robot)) == is_member(&parents, robot));
+    for (post, holder) in holders.iter().take(ROBOTS).enumerate() {
+        assert!(is_member(&changed, *holder) == is_member(&parents, post));
     }
 }
 

@@ -179,7 +179,10 @@ fn a_path_that_is_given_up_leaves_each_robot_a_post_of_its_own() {
         }
         assert_eq!(robot.coming_post().map(|post| post.id), Some(PostId(place as u32 + 1)));
         robot.label = Label::Mission(MissionStep::Announced);
-        let post = robot.coming_post().expect("it is on its way");
+        let Station { post, reference } = robot.coming_station().expect("it is on its way");
+        let is_back = post.id == PostId(place as u32) && post.is_fixed();
+        let back = robot.mission.path().expect("it is on a path").hops[place].place.reference;
+        assert!(!is_back || reference == back, "{reference} is not where its post is");
         (post.id != robot.new_post().id).then_some(post.id.0)
     };
     assert_eq!(coming(0, None, &[], 0), Some(0), "it is the recruit: nobody is behind it");
@@ -236,7 +239,7 @@ fn a_link_that_is_far_too_long_truly_gets_no_longer() {
         robot.remember_parent();
         robot.begin_negotiation();
         if other > 0.0 {
-            robot.hear_proposal(5, Segment { from: west(length), to: west(length - other) });
+            robot.hear_proposal(5, Segment { from: west(length), to: west(length - other) }, None);
         }
         let proposal = (own > 0.0).then(|| Segment { from: HERE, to: west(own) });
         robot.proposal = proposal;
@@ -264,7 +267,7 @@ fn a_sender_reckons_with_where_its_receiver_may_measure_itself() {
         robot.links[0].share = share;
         robot.links[0].held.flow = share * robot.links[0].reliability;
         robot.begin_negotiation();
-        robot.hear_proposal(5, Segment { from: west(1.2), to: west(move_to) });
+        robot.hear_proposal(5, Segment { from: west(1.2), to: west(move_to) }, None);
         let mut outputs = crate::node::Outputs::of(0);
         robot.judge_moves(&mut outputs);
         outputs.drain_sent().count() > 0

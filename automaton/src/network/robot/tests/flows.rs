@@ -13,7 +13,7 @@ const LEASE: u32 = 8;
 type Out = Outputs<Message, MissionEvent>;
 
 /// Robot 0 with links to the access point, 1.2 away, and to robot 5, 1.0 away.
-fn router() -> Robot {
+pub(in super::super) fn router() -> Robot {
     let mut robot = robot();
     robot.holds(Post { parent: Some(Anchor::Access(0)), ..fixed(20, 0) });
     robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
@@ -28,7 +28,7 @@ fn sent(outputs: &mut Out) -> Vec<(Destination, Message)> {
     outputs.drain_sent().map(|envelope| (envelope.to, envelope.message)).collect()
 }
 
-fn requests(outputs: &mut Out) -> Vec<(Destination, FlowRequest)> {
+pub(in super::super) fn requests(outputs: &mut Out) -> Vec<(Destination, FlowRequest)> {
     let asks = |(to, message)| match message {
         Message::AskFlow(request) => Some((to, request)),
         _ => None,
@@ -36,7 +36,7 @@ fn requests(outputs: &mut Out) -> Vec<(Destination, FlowRequest)> {
     sent(outputs).into_iter().filter_map(asks).collect()
 }
 
-fn grants(outputs: &mut Out) -> Vec<(Destination, FlowGrant)> {
+pub(in super::super) fn grants(outputs: &mut Out) -> Vec<(Destination, FlowGrant)> {
     let grants = |(to, message)| match message {
         Message::GrantFlow(grant) => Some((to, grant)),
         _ => None,

@@ -131,6 +131,12 @@ fn a_robot_that_begins_later_than_others_learns_which_period_this_is() {
     let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
     late.hear_beacon(7, None, &heard);
     assert_eq!((late.period, late.is_late), (7, true));
+    late.advance_exchange().expect("its guards have values");
+    assert_eq!(
+        late.offers().offers_made(),
+        7,
+        "its next offer is newer than any that it has forgotten"
+    );
     let mut first = robot();
     (first.period, first.is_new) = (0, true);
     first.hear_beacon(1, None, &heard);
@@ -140,6 +146,8 @@ fn a_robot_that_begins_later_than_others_learns_which_period_this_is() {
     assert_eq!((running.period, running.is_late), (NOW, false), "it is in the period before");
     running.hear_beacon(NOW + 2, None, &Arc::new(beacon(2, west(0.5), redundant(12, 13), &[])));
     assert_eq!((running.period, running.is_late), (NOW + 1, true), "it has missed one");
+    running.advance_exchange().expect("its guards have values");
+    assert_eq!(running.offers().offers_made(), 0, "it has forgotten none");
 }
 
 /// A robot whose clock is behind takes its sample when it hears that another has begun the period, wherever its

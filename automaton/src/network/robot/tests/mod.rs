@@ -3,8 +3,9 @@
 mod attachment;
 mod elections;
 mod errors;
-mod flows;
+pub(super) mod flows;
 mod hearing;
+mod lemmas;
 mod moves;
 mod partner;
 mod seen;

@@ -10,7 +10,7 @@ use super::*;
 use crate::node::Outputs;
 
 /// The leader on its way to the east, called by the roll.
-fn mover() -> Robot {
+pub(super) fn mover() -> Robot {
     let mut robot = robot();
     robot.holds(primary(30, None, 13));
     robot.advances_to(east(3.0));
@@ -18,7 +18,7 @@ fn mover() -> Robot {
     robot
 }
 
-fn proposed(robot: &mut Robot) -> Option<Segment> {
+pub(super) fn proposed(robot: &mut Robot) -> Option<Segment> {
     robot.measures();
     robot.propose().expect("its guards have values");
     robot.proposal
@@ -208,6 +208,69 @@ fn a_robot_moves_with_the_consent_of_all_that_rely_on_it() {
     assert!(!relied_on(&[]) && !relied_on(&[2]) && relied_on(&[1]) && relied_on(&[2, 1, 1]));
 }
 
+/// The witness that a robot on which nobody relies asks for.
+fn witness(robot: &mut Robot) -> Option<NodeId> {
+    let mut outputs = Outputs::of(0);
+    robot.tell_proposal(&mut outputs);
+    let told = sent(&mut outputs);
+    let [Message::Proposal { witness, .. }] = told[..] else { panic!("it proposes: {told:?}") };
+    witness
+}
+
+#[test]
+fn a_robot_on_which_nobody_relies_moves_when_a_witness_knows_of_it() {
+    let mut robot = mover();
+    robot.hears(beacon(4, north(0.7), fixed(12, 14), &[12, 14]));
+    robot.hears(beacon(5, west(0.7), fixed(13, 14), &[13, 14]));
+    robot.remember_parent();
+    proposed(&mut robot).expect("nothing is in its way");
+    assert_eq!(witness(&mut robot), Some(5), "its parent");
+    robot.stay_without_consent();
+    assert_eq!(robot.proposal, None, "nobody knows of its move");
+    proposed(&mut robot).expect("nothing is in its way");
+    robot.still_periods = 1;
+    assert_eq!(witness(&mut robot), Some(4), "the parent may not receive it");
+    robot.hear_consent(4);
+    robot.stay_without_consent();
+    assert!(robot.proposal.is_some());
+    robot.hears(Beacon { parent: Some(0), ..beacon(1, west(0.5), primary(31, Some(30), 30), &[]) });
+    proposed(&mut robot).expect("nothing is in its way");
+    assert_eq!(witness(&mut robot), None, "robot 1 has to consent in any case");
+}
+
+/// A witness that could not say where the move begins is none.
+#[test]
+fn a_witness_knows_how_far_a_robot_may_have_gone() {
+    let asked = |from: Point, witness: NodeId| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 99));
+        robot.hears(beacon(5, west(1.0), redundant(13, 14), &[13, 14]));
+        robot.begin_negotiation();
+        let to = from + Vector::new(0.0, 0.06);
+        robot.hear_proposal(5, Segment { from, to }, Some(witness));
+        let mut outputs = Outputs::of(0);
+        robot.judge_moves(&mut outputs);
+        let consents = matches!(sent(&mut outputs)[..], [Message::Consent { period: NOW }]);
+        let known = robot.neighbour(5).expect("it is heard").wreck();
+        assert_eq!((known.place, known.heard_in), (west(1.0), NOW));
+        (consents, known.astray)
+    };
+    let near = |(consents, astray): (bool, f64), expected: f64| {
+        assert!((astray - expected).abs() < 1e-12, "{astray}");
+        consents
+    };
+    assert!(near(asked(west(1.0), 0), 0.06));
+    assert!(!near(asked(west(1.0), 3), 0.06), "another one is asked");
+    assert!(!near(asked(west(1.1), 0), 0.0), "the beacon from there is lost");
+    let mut robot = robot();
+    robot.hears(beacon(5, west(1.0), redundant(13, 14), &[13, 14]));
+    robot.hear_proposal(5, Segment { from: west(1.0), to: west(0.95) }, None);
+    robot.period += 1;
+    robot.hears(beacon(5, west(0.95), redundant(13, 14), &[13, 14]));
+    let known = robot.neighbour(5).expect("it is heard").wreck();
+    assert_eq!((known.place, known.astray), (west(0.95), 0.0), "it has arrived");
+}
+
 #[test]
 fn a_proposal_is_told_until_all_have_consented_and_whenever_it_changes() {
     let mut robot = mover();
@@ -246,7 +309,7 @@ fn a_child_objects_to_a_move_of_its_parent_that_overstretches_their_link() {
         robot.remember_parent();
         robot.begin_negotiation();
         let from = west(hard - 0.03);
-        robot.hear_proposal(5, Segment { from, to: from - Vector::new(ahead, 0.0) });
+        robot.hear_proposal(5, Segment { from, to: from - Vector::new(ahead, 0.0) }, None);
         let mut outputs = Outputs::of(0);
         robot.judge_moves(&mut outputs);
         sent(&mut outputs)
@@ -267,7 +330,7 @@ fn a_sender_objects_to_a_move_of_its_receiver_that_overloads_it() {
         robot.links[0].share = share;
         robot.links[0].held.flow = share * robot.links[0].reliability;
         robot.begin_negotiation();
-        robot.hear_proposal(5, Segment { from: west(1.2), to: west(1.2 + ahead) });
+        robot.hear_proposal(5, Segment { from: west(1.2), to: west(1.2 + ahead) }, None);
         let mut outputs = Outputs::of(0);
         robot.judge_moves(&mut outputs);
         sent(&mut outputs)
@@ -293,11 +356,11 @@ fn moves_that_are_heard_only_shrink() {
     let to = |ahead: f64| Segment { from: west(1.0), to: west(1.0 - ahead) };
     robot.hears(beacon(5, west(1.0), fixed(13, 14), &[13, 14]));
     robot.begin_negotiation();
-    robot.hear_proposal(5, to(0.08));
+    robot.hear_proposal(5, to(0.08), None);
     robot.must_judge_moves = false;
-    robot.hear_proposal(5, to(0.09));
+    robot.hear_proposal(5, to(0.09), None);
     assert_eq!((robot.heard_moves[0].1, robot.must_judge_moves), (to(0.08), false));
-    robot.hear_proposal(5, to(0.04));
+    robot.hear_proposal(5, to(0.04), None);
     assert_eq!((robot.heard_moves[0].1, robot.must_judge_moves), (to(0.04), true));
     assert_eq!(robot.heard_moves.len(), 1);
 }
@@ -320,7 +383,7 @@ fn a_sender_relies_on_its_receiver_and_answers_it() {
     robot.take_in_requests(&mut outputs);
     assert!((robot.links[0].held.flow - 0.15).abs() < 1e-12, "no more than is granted");
     robot.begin_negotiation();
-    robot.hear_proposal(5, Segment { from: west(1.0), to: west(0.95) });
+    robot.hear_proposal(5, Segment { from: west(1.0), to: west(0.95) }, None);
     let mut outputs = Outputs::of(0);
     robot.judge_moves(&mut outputs);
     assert!(matches!(sent(&mut outputs)[..], [Message::Consent { period: NOW }]));

@@ -1,7 +1,12 @@
 //! The primary team: its order, its targets, and what it knows when it gets no farther (Sec. V-A).
 
+use pleach_discrete::network::Activity;
+
 use super::super::super::beacon::TeamReport;
+use super::super::super::roll::{Absent, Wreck};
+use super::super::Label;
 use super::*;
+use crate::located::Place as _;
 
 fn leader() -> Robot {
     let mut robot = robot();
@@ -60,6 +65,49 @@ fn the_leader_stops_where_a_robot_behind_it_is_within_reach_as_well() {
     assert!((robot.reach() - (0.15 + 0.1 * CLEARANCE)).abs() < 1e-9, "{}", robot.reach());
     robot.knows_task(east(3.0) + Vector::new(SERVICE_RADIUS, 0.0));
     assert!((robot.reach() - SERVICE_RADIUS).abs() < 1e-12, "never farther than δ");
+}
+
+/// A robot has stopped at the task, east of it: the leader goes to the west of it.
+#[test]
+fn a_task_is_serviced_beside_a_robot_that_has_stopped_there() {
+    let goal = |away: f64| {
+        let mut robot = leader();
+        robot.knows_task(east(3.0));
+        let gone = [1].into_iter().collect();
+        robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
+        robot.wrecks = Arc::new(vec![Wreck::heard(1, east(3.0 + away), NOW - 9)]);
+        robot.team_goal().expect("it leads")
+    };
+    let kept = 2.1 * CLEARANCE + STEP;
+    assert_eq!(goal(kept + LITTLE), east(3.0));
+    let beside = goal(kept - LITTLE);
+    assert!((beside - east(3.0 - 0.95 * SERVICE_RADIUS)).norm() < 1e-9, "{beside}");
+}
+
+/// A robot that had lost its parent has attached to it before it heard that this one is elected.
+#[test]
+fn a_leader_on_whose_post_a_branch_depends_is_bound_to_it() {
+    let activity = |attached: Option<Post>, follower: Option<Post>| {
+        let mut robot = leader();
+        if let Some(post) = attached {
+            robot.hears(beacon(1, east(0.5), post, &[]));
+        }
+        if let Some(post) = follower {
+            robot.hears(beacon(2, west(0.5), post, &[]));
+        }
+        robot.measures();
+        robot.jump_duty(Label::Alone).expect("its guards have values");
+        robot.duty.location()
+    };
+    assert_eq!(activity(Some(fixed(21, 30)), None), Activity::Bound);
+    assert_eq!(activity(Some(fixed(21, 13)), None), Activity::Leading);
+    assert_eq!(activity(Some(redundant(21, 30)), None), Activity::Leading);
+    let follower = Some(primary(31, Some(30), 13));
+    assert_eq!(
+        activity(Some(fixed(21, 30)), follower),
+        Activity::Leading,
+        "it does not lead alone"
+    );
 }
 
 fn report(still: u32, slack: Option<NodeId>, saturated: Option<NodeId>) -> TeamReport {

@@ -1,5 +1,6 @@
 //! Robots that do not take part: where others keep off, and where one stays that may be taken for gone.
 
+use super::super::super::beacon::Branch;
 use super::super::super::roll::{Absent, Wreck};
 use super::*;
 
@@ -8,15 +9,15 @@ fn beside_wreck(away: f64) -> Robot {
     let mut robot = robot();
     let gone = [1].into_iter().collect();
     robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
-    robot.wrecks = Arc::new(vec![Wreck { robot: 1, place: east(away), heard_in: NOW - 9 }]);
+    robot.wrecks = Arc::new(vec![Wreck::heard(1, east(away), NOW - 9)]);
     robot
 }
 
-/// A wreck may be two steps from where it was heard last, and both keep ρ.
+/// A wreck may be a step from where it was heard last, and both keep ρ.
 #[test]
 fn a_robot_that_can_meet_a_wreck_in_a_step_keeps_to_its_side() {
     let kept = CLEARANCE * (1.0 + 1e-4);
-    let radius = 2.0 * kept + 2.0 * STEP;
+    let radius = 2.0 * kept + STEP;
     let room = |away: f64| {
         let robot = beside_wreck(away);
         let sides: Vec<_> = robot.sides_of_wrecks().collect();
@@ -33,6 +34,50 @@ fn a_robot_that_can_meet_a_wreck_in_a_step_keeps_to_its_side() {
     close(room(0.5 * radius), 0.0);
     assert_eq!(room(radius + STEP + LITTLE), None, "it is farther than a step");
     assert_eq!(room(0.0), None, "there is no side");
+}
+
+/// It may be as far off as the move leads of which it told, and a step farther if that was forgotten; two
+/// steps, if another robot has stopped that could have known more.
+#[test]
+fn how_far_a_wreck_may_be_from_where_it_was_heard() {
+    let radius = |astray: f64, other: Option<f64>| {
+        let mut robot = beside_wreck(0.6);
+        let known = robot.wrecks[0];
+        let other = other.map(|away| Wreck::heard(2, east(0.6 + away), NOW - 9));
+        let wrecks = [Wreck { astray, ..known }].into_iter().chain(other);
+        robot.wrecks = Arc::new(wrecks.collect());
+        robot.keep_out_discs(0.0).next().expect("it is in the way").radius
+    };
+    let close = |one: f64, other: f64| assert!((one - other).abs() < 1e-12, "{one} is not {other}");
+    close(radius(0.0, None), STEP);
+    close(radius(0.3 * STEP, None), 1.3 * STEP);
+    close(radius(STEP, None), 2.0 * STEP);
+    let earshot = 2.0 + 2.0 * STEP + CLEARANCE;
+    close(radius(0.0, Some(earshot - LITTLE)), 2.0 * STEP);
+    close(radius(0.0, Some(earshot + LITTLE)), STEP);
+}
+
+/// The only robot that hears another one tells where that is, and is remembered to have told so.
+#[test]
+fn where_branches_are_is_known_two_links_away() {
+    let mut bearer = robot();
+    bearer.holds(fixed(20, 99));
+    let child = Beacon { parent: Some(0), ..beacon(3, east(1.5), redundant(23, 20), &[]) };
+    bearer.hears(child);
+    bearer.hears(beacon(4, west(0.5), redundant(24, 99), &[]));
+    bearer.locate_branches();
+    assert_eq!(*bearer.branches, [Branch { robot: 3, place: east(1.5) }]);
+    let mut robot = robot();
+    let told = Beacon { branches: bearer.branches, ..beacon(5, east(0.5), fixed(20, 99), &[]) };
+    robot.hears(told);
+    let absent = |robots: &[NodeId]| {
+        let gone = robots.iter().copied().collect();
+        Arc::new(Absent { gone, ..Absent::default() })
+    };
+    robot.roll.absent = absent(&[3, 5]);
+    robot.neighbours.clear();
+    robot.locate_wrecks();
+    assert_eq!(*robot.wrecks, [Wreck::heard(3, east(1.5), NOW)]);
 }
 
 #[test]
