@@ -163,7 +163,7 @@ pub enum MissionEvent {
     RoleChanged { robot: usize, from: Role, to: Role },
     /// A task is serviced, eq. (2).
     TaskServiced { task: usize, robot: usize },
-    /// No routing carries the rates: the residual of `robot` falls below −c_min.
+    /// From now on no routing carries the rates: the residual of `robot` has fallen below −c_min.
     RouteInfeasible { robot: usize },
     /// A mover and the robot in its way exchange duties.
     DutiesExchanged { mover: usize, parked: usize },

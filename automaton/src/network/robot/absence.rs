@@ -2,11 +2,16 @@
 //! suspended or gone.
 //!
 //! A robot that is gone is not expected to be heard. Others go round the place where any node heard it
-//! last, and stay farther away: by the move of which it told then, which no robot makes without a witness, and
-//! by one step, or by two where witnesses may have stopped as well. They learn of this place when the robot is suspended, and so before they can come near without
-//! having heard it. Every robot tells where those are that are attached to it: if the only one that hears a
-//! robot stops, its own neighbours still know where that was. A robot that is cut off cannot know in which period it was heard last, but that this was
-//! not before its newest roll was called. So it stays within two steps of each place where it has been since.
+//! last. They stay farther from it by the length of the move that it told of then, as no robot moves
+//! without a witness, and by one step more; or by two steps in all, where witnesses may have stopped as
+//! well. They learn of this place when the robot is suspended, and so before they can come near without
+//! having heard it.
+//!
+//! Every robot tells where those are that are attached to it: if the only one that hears a robot stops,
+//! its own neighbours still know where that was.
+//!
+//! A robot that is cut off cannot know in which period it was heard last, but that this was not before
+//! its newest roll was called. So it stays within two steps of each place where it has been since.
 
 use std::sync::Arc;
 

@@ -303,6 +303,7 @@ impl Robot {
             demands_passed_on: _,
             has_no_reserve: _,
             has_shortage_news: _,
+            routes_fall_short: _,
             has_untold_flows: _,
             is_unsettled: _,
             destination: _,

@@ -243,11 +243,13 @@ impl Robot {
         }
     }
 
+    /// The post of that station.
     pub(super) fn coming_post(&self) -> Option<Post> {
         self.coming_station().map(|station| station.post)
     }
 
-    /// A post to which it has come. One that queues behind the next member makes its place where it stands.
+    /// The post of this place of Σ, to which it has come. A robot that queues behind the next member makes
+    /// its place where it stands.
     fn station_at(&self, hop: &Hop) -> Station {
         let reference = hop.place.reference;
         match (self.position - reference).norm() <= self.site.settings.arrival_radius() {
@@ -256,6 +258,7 @@ impl Robot {
         }
     }
 
+    /// A post where it stands.
     fn station_here(&self, post: Post) -> Station {
         Station { post, reference: self.free_place() }
     }

@@ -235,6 +235,8 @@ pub struct Robot {
     demands_passed_on: usize,
     has_no_reserve: bool,
     has_shortage_news: bool,
+    /// Its routes of the period before do not carry the rates.
+    routes_fall_short: bool,
     has_untold_flows: bool,
     is_unsettled: bool,
 
@@ -347,6 +349,7 @@ impl Robot {
             demands_passed_on: 0,
             has_no_reserve: false,
             has_shortage_news: false,
+            routes_fall_short: false,
             has_untold_flows: false,
             is_unsettled: true,
             destination: None,

@@ -50,7 +50,8 @@ impl Robot {
         self.proposal.unwrap_or(Segment::still(self.position))
     }
 
-    /// The proposal of a neighbour is received. A witness that does not know where it begins is none.
+    /// The proposal of a neighbour is received. One that does not know where the move begins is no witness
+    /// of it.
     pub(super) fn hear_proposal(
         &mut self,
         from: NodeId,
@@ -91,8 +92,8 @@ impl Robot {
         self.senders().chain(self.tree_children().map(Neighbour::id))
     }
 
-    /// The node that it asks to know of its move, where nobody relies on it: its parent if that is heard, or
-    /// else, and from time to time where it does not get on, another node that is heard.
+    /// The node that it asks to be the witness of its move, where nobody relies on it: its parent if that is
+    /// heard. Where it does not get on, the nodes that it hears take turns.
     fn witness(&self) -> Option<NodeId> {
         if self.reliant().next().is_some() {
             return None;

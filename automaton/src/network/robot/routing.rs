@@ -500,12 +500,14 @@ impl Robot {
         self.has_swept && !has_news && (self.has_no_reserve || !self.is_infeasible())
     }
 
-    /// The routes of the period stand.
+    /// The routes of the period stand. That they do not carry the rates is told when it begins.
     pub(super) fn end_routes(&mut self) {
         self.adopt_flows();
-        if self.is_infeasible() {
+        let falls_short = self.is_infeasible();
+        if falls_short && !self.routes_fall_short {
             self.report(MissionEvent::RouteInfeasible { robot: self.id });
         }
+        self.routes_fall_short = falls_short;
     }
 
     /// The worst load h_i whichever of the proposed moves are carried out, and wherever robots measure

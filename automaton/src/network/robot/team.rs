@@ -16,8 +16,8 @@ use super::way::KEEP_OUT;
 
 /// The leader stops at δ − 2.2ρ from its task, so that a robot 2ρ behind it is within δ as well.
 const STAND_OFF: f64 = 2.2;
-/// Where a robot has stopped at the task, the leader goes to another place at this share of δ from it, in
-/// one of so many directions.
+/// Where a robot has stopped at the task, the leader goes to another place: at this share of δ from the
+/// task, in one of this many directions.
 const WITHIN: f64 = 0.95;
 const DIRECTIONS: u8 = 32;
 /// How near to a target that it cannot get closer to a leader goes, as a share of ρ.
@@ -62,7 +62,7 @@ pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
     };
     let stopped: Vec<NodeId> = robot.wrecks.iter().map(|wreck| wreck.robot).collect();
     if !stopped.is_empty() {
-        reason.push_str(&format!("; robots {stopped:?} have stopped and stand where they are"));
+        reason.push_str(&format!("; robots {stopped:?} have stopped, or nobody hears them"));
     }
     let (outcome, task) = (Outcome::Blocked, robot.current_task());
     let end = Notice::Ended { outcome, reason: reason.into(), task };

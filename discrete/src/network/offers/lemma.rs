@@ -29,7 +29,7 @@ struct Robot {
 struct Beacon {
     sender: NodeId,
     made: u32,
-    /// Whom the offer that stands is made, and what is offered.
+    /// To whom the offer that stands is made, and what is offered.
     offer: Option<(NodeId, Duty)>,
     /// Whom the reply that stands is for, to which offer, and what it gives.
     reply: Option<(NodeId, u32, Option<Duty>)>,

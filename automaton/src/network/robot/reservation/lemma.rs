@@ -8,7 +8,7 @@ use super::*;
 
 /// The receiver is robot 5 for the sender, and the sender robot 5 for the receiver.
 const OTHER: NodeId = 5;
-/// So many steps are taken.
+/// How many steps are taken.
 const DEPTH: usize = 6;
 /// Flows that differ by less are the same.
 const LITTLE: f64 = 1e-9;
@@ -40,13 +40,13 @@ struct View {
 enum Step {
     /// The sender plans this flow, and asks.
     Plan(f64),
-    /// The receiver sends on as much.
+    /// The receiver sends on this flow.
     SendOn(f64),
     SenderSettles,
     ReceiverSettles,
     HearAsk(usize),
     HearGrant(usize),
-    /// So many control periods go by.
+    /// This many control periods go by.
     Pass(u32),
 }
 
