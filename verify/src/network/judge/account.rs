@@ -1,7 +1,7 @@
 //! An observer's account of why a mission ended: the [`Certificate`] that goes with its end.
 //!
 //! What the robots have not told, it looks for in the last instants of the record. Whether it is true,
-//! [`certificate`](super::certificate) says, which shares nothing with it but the record.
+//! [`certificate`](super::certificate) says, which shares with it the record, the geometry and what counts as near.
 
 use pleach_automaton::network::certificate::{
     Attempt, Because, Bound, Certificate, Hindrance, Other, Standing, Unreachable,
