@@ -102,7 +102,8 @@ fn lines_there_and_back_are_walls() {
     assert!(workspace.segment_clearance(below, above) <= 0.0);
     let free_space = FreeSpace::new(&workspace, 0.05).unwrap();
     let path = free_space.geodesic(below, above).unwrap();
-    assert!(path.length > 1.4 && path.length < 1.5, "round the end: {}", path.length);
+    // Round a disc about the end it would be 1.4963; free space keeps off a polygon about the disc.
+    assert!(path.length > 1.496 && path.length < 1.51, "round the end: {}", path.length);
 
     let beside = ring(&[(1.0, 9.0), (2.0, 9.0), (1.5, 9.0)]);
     let refused = Workspace::repaired(room(), vec![beside]);
