@@ -148,11 +148,7 @@ const JUMPS_PER_PERIOD: u32 = 1_000_000;
 fn stopped(violation: &Violation, end: &End) -> End {
     match end.outcome {
         Outcome::InvariantViolated => end.clone(),
-        _ => End {
-            outcome: Outcome::InvariantViolated,
-            reason: violation.to_string(),
-            task: end.task,
-        },
+        _ => End::new(Outcome::InvariantViolated, violation.to_string(), end.task),
     }
 }
 
@@ -201,7 +197,7 @@ impl<'a, 'w> Gallery<'a, 'w> {
         if let Err(error) = self.show(snapshot, events) {
             let reason = error.to_string();
             self.failure = Some(error);
-            return Some(End { outcome: Outcome::Blocked, reason, task: None });
+            return Some(End::new(Outcome::Blocked, reason, None));
         }
         self.saturated = saturated(snapshot);
         let end = self.check(snapshot, events).err();
@@ -233,14 +229,15 @@ impl<'a, 'w> Gallery<'a, 'w> {
         Ok(())
     }
 
-    /// An end with what observers add to its reason.
+    /// An end with what observers add to its reason, and with what shows that it had to be so.
     fn explain(&self, end: End) -> End {
+        let certificate = self.judge.account(&end);
         let reason = match end.outcome {
             Outcome::Blocked | Outcome::StepLimit => self.overload(&end),
             Outcome::InsufficientRobots => self.shortage(&end),
             _ => None,
         };
-        End { reason: reason.unwrap_or(end.reason), ..end }
+        End { reason: reason.unwrap_or(end.reason), certificate, ..end }
     }
 
     /// A mission that gets stuck while robots send all the time is stuck because of their links:
@@ -275,14 +272,12 @@ impl<'a, 'w> Gallery<'a, 'w> {
     /// The end that a watcher asks for.
     fn interruption(&self, task: Option<usize>) -> Option<End> {
         let reason = self.watchers.iter().find_map(|watcher| watcher.interruption())?;
-        Some(End { outcome: Outcome::Interrupted, reason, task })
+        Some(End::new(Outcome::Interrupted, reason, task))
     }
 
     fn check(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Result<(), End> {
-        self.judge.observe(snapshot, events).map_err(|violation| End {
-            outcome: Outcome::InvariantViolated,
-            reason: violation.to_string(),
-            task: snapshot.task,
+        self.judge.observe(snapshot, events).map_err(|violation| {
+            End::new(Outcome::InvariantViolated, violation.to_string(), snapshot.task)
         })
     }
 }

@@ -17,6 +17,7 @@ mod uses;
 mod absurd_numbers;
 mod book;
 mod browser;
+mod certificates;
 mod command_line;
 mod coverage;
 mod determinism;

@@ -1,6 +1,7 @@
 //! Every mistake that a scenario can hold is told with file, line, column, key and what would be
 //! right. Each file in `tests/scenarios/faulty` holds one, but for the one that holds several.
 
+use pleach::automaton::network::record::Outcome;
 use pleach::scenario_file::{ScenarioError, Setting, parse, parse_with, read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -21,6 +22,24 @@ fn every_faulty_scenario_is_refused_with_a_clear_message() {
         let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
         let error = read(&path).expect_err(&stem);
         insta::assert_snapshot!(stem, error);
+    }
+}
+
+/// What touches is no mistake: it is told how it is taken, and the mission is run on it.
+#[test]
+fn scenarios_whose_polygons_touch_are_taken_with_a_note() {
+    for path in scenarios_in("tests/scenarios/touching") {
+        let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let scenario = read(&path).unwrap_or_else(|error| panic!("{error}"));
+        let remarks = scenario.remarks();
+        let lines = remarks.iter().map(|remark| format!("{}: {remark}\n", remark.key()));
+        insta::assert_snapshot!(format!("touching-{stem}"), lines.collect::<String>());
+        let completed = pleach::mission::run(&scenario, &mut []).unwrap();
+        let expected = match stem.as_str() {
+            "cut-in-two" => Outcome::UnreachableTask,
+            _ => Outcome::Serviced,
+        };
+        assert_eq!(completed.end.outcome, expected, "{stem}: {}", completed.end.reason);
     }
 }
 

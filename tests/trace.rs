@@ -79,11 +79,8 @@ fn every_kind_of_event_survives() {
 
 #[test]
 fn an_end_with_a_reason_keeps_it() {
-    let end = End {
-        outcome: Outcome::InsufficientRobots,
-        reason: "no recruit is left: 2 more are needed".into(),
-        task: Some(1),
-    };
+    let reason = "no recruit is left: 2 more are needed".to_owned();
+    let end = End::new(Outcome::InsufficientRobots, reason, Some(1));
     let mut writer = TraceWriter::new(Vec::new(), &room()).unwrap();
     writer.end(&end).unwrap();
     let text = String::from_utf8(writer.finish().unwrap()).unwrap();

@@ -61,14 +61,14 @@ pub struct Tally {
 }
 
 impl From<End> for AnnouncedEnd {
-    fn from(End { outcome, reason, task }: End) -> Self {
+    fn from(End { outcome, reason, task, .. }: End) -> Self {
         AnnouncedEnd { outcome, reason, task }
     }
 }
 
 impl From<AnnouncedEnd> for End {
     fn from(AnnouncedEnd { outcome, reason, task }: AnnouncedEnd) -> Self {
-        End { outcome, reason, task }
+        End::new(outcome, reason, task)
     }
 }
 

@@ -18,7 +18,7 @@ use pleach::cli::job::{self, Outputs};
 use pleach::cli::output::{self, tell};
 use pleach::cli::plan::Planned;
 use pleach::cli::progress::Progress;
-use pleach::cli::run::{status_of, told, warn_of_tasks};
+use pleach::cli::run::{status_of, told, warn_of};
 use pleach::cli::status::{Failure, Status};
 use pleach::continuous::Point;
 use pleach::mission::{Completed, Gallery};
@@ -92,7 +92,7 @@ pub fn show(
         ..Outputs::default()
     };
     if !arguments.quiet {
-        warn_of_tasks(planned);
+        warn_of(planned);
     }
     let interrupt = Interrupt::listen()?;
     let mut progress = Progress::new(&planned.scenario, arguments.quiet);
@@ -191,7 +191,7 @@ impl<'a> Observatory<'a> {
 
     fn broken_off(&self, what: String) -> End {
         let reason = format!("{what} at k = {}", self.step.saturating_sub(1));
-        End { outcome: Outcome::Interrupted, reason, task: None }
+        End::new(Outcome::Interrupted, reason, None)
     }
 
     // ---- What arrives ------------------------------------------------------------------------

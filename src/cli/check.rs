@@ -3,6 +3,7 @@
 use super::arguments::CheckArguments;
 use super::output;
 use super::plan::Planned;
+use super::remarks;
 use super::source::Source;
 use super::status::{Failure, Status};
 use super::sweep::Sweep;
@@ -70,7 +71,7 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
         ),
     ];
     rows.extend(drawing.map(|path| ("start", path.display().to_string())));
-    rows.extend(remarks.iter().map(|remark| ("remark", format!("{}: {remark}", remark.key()))));
+    rows.extend(remarks::lines(remarks).into_iter().map(|line| ("remark", line)));
     let rows = rows.iter().map(|(label, text)| format!("  {label:<19} {text}\n"));
     format!("{source}{set}: a mission can start\n{}", rows.collect::<String>())
 }

@@ -2,8 +2,10 @@
 
 use super::arguments::ImportArguments;
 use super::output;
+use super::remarks;
 use super::source::STANDARD;
 use super::status::{Failure, Status};
+use pleach::automaton::network::scenario::Remark;
 use pleach::import::{self, Choices, Reading};
 use std::path::Path;
 
@@ -31,8 +33,12 @@ pub fn import(arguments: &ImportArguments) -> Result<Status, Failure> {
     for note in &notes {
         output::tell(format_args!("{}: {note}", arguments.map.display()));
     }
-    for remark in scenario.remarks() {
-        output::tell(format_args!("{}: {}: {remark}", arguments.map.display(), remark.key()));
+    // What was repaired is among the notes.
+    let remarks = scenario.remarks();
+    for line in
+        remarks::lines(remarks.iter().filter(|remark| !matches!(remark, Remark::Outline(_))))
+    {
+        output::tell(format_args!("{}: {line}", arguments.map.display()));
     }
     let origin = arguments.map.file_name().unwrap_or_default().to_string_lossy();
     let text = import::text(&scenario, &origin, &notes);

@@ -20,6 +20,7 @@ pub mod plan;
 pub mod progress;
 mod reach;
 pub mod record;
+mod remarks;
 pub mod run;
 pub mod source;
 pub mod status;

@@ -8,6 +8,7 @@ use super::output;
 use super::plan::{Planned, plan};
 use super::progress::Progress;
 use super::record::{Record, write_csv, write_json};
+use super::remarks;
 use super::source::STANDARD;
 use super::status::{Failure, Status};
 use super::{table, terminal};
@@ -32,7 +33,7 @@ fn run_one(
     interrupt: &Interrupt,
 ) -> Result<Status, Failure> {
     if !arguments.quiet {
-        warn_of_tasks(run);
+        warn_of(run);
     }
     let default_folder = || Path::new("figures").join(&run.scenario.name);
     let outputs = Outputs {
@@ -111,12 +112,14 @@ pub fn status_of(record: &Record) -> Status {
     Status::of_number(record.status)
 }
 
-/// A task that no robot can service is told before the mission, which will end with it.
-pub fn warn_of_tasks(run: &Planned) {
+/// What is told before the mission: tasks that no robot can service, with which it will end, and what is taken
+/// otherwise than it stands in the file.
+pub fn warn_of(run: &Planned) {
     use pleach::automaton::network::scenario::Remark;
     let remarks = run.scenario.remarks();
-    for remark in remarks.iter().filter(|remark| matches!(remark, Remark::Task { .. })) {
-        output::tell(format_args!("warning: {}: {}: {remark}", run.source, remark.key()));
+    let told = remarks.iter().filter(|remark| !matches!(remark, Remark::ThroughWalls { .. }));
+    for line in remarks::lines(told) {
+        output::tell(format_args!("warning: {}: {line}", run.source));
     }
 }
 

@@ -145,11 +145,8 @@ fn empty_album(scenario: &Scenario) -> Album {
 }
 
 fn end() -> End {
-    End {
-        outcome: Outcome::InsufficientRobots,
-        reason: "No recruit is left: c < 0 & one more robot would be needed.".to_owned(),
-        task: Some(2),
-    }
+    let reason = "No recruit is left: c < 0 & one more robot would be needed.".to_owned();
+    End::new(Outcome::InsufficientRobots, reason, Some(2))
 }
 
 fn folder(name: &str) -> PathBuf {

@@ -115,7 +115,8 @@ pub fn skeleton(
     lengths_are_positive(choices)?;
     let mut scenario = outline(plan, choices);
     let site = Site::new(&scenario)?;
-    let mut notes = narrow_passages(&scenario, &site.settings);
+    let mut notes: Vec<String> = site.repairs.iter().map(ToString::to_string).collect();
+    notes.extend(narrow_passages(&scenario, &site.settings));
 
     let named = places_named(plan, &scenario);
     let places = Lattice::of(&site);
@@ -254,8 +255,8 @@ struct Lattice {
 
 impl Lattice {
     fn of(site: &Site) -> Self {
-        let corners = site.workspace.boundary();
-        let low = corners.iter().fold(corners[0], |low, corner| low.inf(corner));
+        let corners = site.workspace.polygons().iter().flatten();
+        let low = corners.copied().reduce(|low, corner| low.inf(&corner)).unwrap_or_default();
         let step = site.workspace.extent() / LATTICE as f64;
         let lattice = (0..LATTICE).flat_map(|row| (0..LATTICE).map(move |column| (column, row)));
         let places = lattice

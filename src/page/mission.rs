@@ -53,7 +53,10 @@ impl MissionPage {
     pub fn with_faults(scenario: &ValidScenario, faults: Faults) -> MissionPage {
         let settings = *scenario.settings();
         let free_space = scenario.site().free_space.clone();
-        let goal = |place: [f64; 2]| free_space.destination(free_space.nearest(place.into()));
+        let site = scenario.site();
+        let start = scenario.robot.first().map_or([0.0; 2], |robot| robot.position).into();
+        let goal =
+            |place: [f64; 2]| free_space.destination(site.place_to_service(place.into(), start));
         let decimals = (LENGTHS_PER_CLEARANCE / settings.clearance).log10().ceil();
         MissionPage {
             destinations: scenario.task.iter().map(|task| goal(task.position)).collect(),

@@ -1,5 +1,6 @@
 //! The lines of a trace as JSON shows them.
 
+use crate::automaton::network::certificate::Certificate;
 use crate::automaton::network::record::{
     End, Faults, MissionEvent, Outcome, PostView, RobotSnapshot, Route, Snapshot,
 };
@@ -104,6 +105,8 @@ pub(super) struct EndLine {
     reason: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     task: Option<usize>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    certificate: Option<Certificate>,
 }
 
 impl From<&Snapshot> for StepLine {
@@ -260,13 +263,14 @@ impl From<&End> for EndLine {
             outcome: end.outcome,
             reason: (!serviced).then(|| end.reason.clone()),
             task: end.task.filter(|_| !serviced),
+            certificate: end.certificate.clone(),
         }
     }
 }
 
 impl From<EndLine> for End {
     fn from(line: EndLine) -> Self {
-        let EndLine { outcome, reason, task } = line;
-        Self { outcome, reason: reason.unwrap_or_default(), task }
+        let EndLine { outcome, reason, task, certificate } = line;
+        Self { outcome, reason: reason.unwrap_or_default(), task, certificate }
     }
 }

@@ -423,7 +423,7 @@ fn a_violated_invariant_is_told_and_marked() {
         made.observe(snapshot, &now).unwrap();
     }
     let reason = "two robots touch".to_owned();
-    made.end(&End { outcome: Outcome::InvariantViolated, reason, task: None }).unwrap();
+    made.end(&End::new(Outcome::InvariantViolated, reason, None)).unwrap();
     let mut page = Page::open(&kept("violated", &made.render()), DESKTOP);
     let outcome = page.value("document.querySelector('.outcome.bad').innerText");
     assert!(outcome.as_str().unwrap().contains("two robots touch"), "{outcome}");

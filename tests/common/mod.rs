@@ -26,7 +26,7 @@ pub fn show(watcher: &mut dyn Watcher) {
 
 /// How the pretended mission ends.
 pub fn end() -> End {
-    End { outcome: Outcome::Serviced, reason: String::new(), task: None }
+    End::new(Outcome::Serviced, String::new(), None)
 }
 
 /// The scenario that the pretended mission belongs to.

@@ -34,7 +34,7 @@ impl Places {
         let build_reliability =
             scenario.control.build_reliability.unwrap_or(Settings::GOOD_RELIABILITY);
         let settings = Settings { build_reliability, ..settings };
-        let workspace = scenario.workspace().ok()?;
+        let (workspace, _) = scenario.workspace().ok()?;
         let free_space = FreeSpace::new(&workspace, settings.clearance).ok()?;
         let access_points: Vec<Point> =
             scenario.access_point.iter().map(|it| it.position.into()).collect();

@@ -259,7 +259,7 @@ fn a_trace_that_no_mission_starts_from_is_not_judged() {
 fn an_interrupted_mission_is_sound_as_far_as_it_goes() {
     let mission = missions()[1].up_to(100);
     let reason = "the run was interrupted".to_owned();
-    let end = End { outcome: Outcome::Interrupted, reason, task: Some(0) };
+    let end = End::new(Outcome::Interrupted, reason, Some(0));
     let text = trace(&mission.scenario, &Record { end, ..Record::of(&mission) });
     let verdict = judge(TraceReader::new(text.as_slice()).unwrap()).unwrap();
     assert!(matches!(verdict, Verdict::Sound { periods: 101, .. }));

@@ -4,6 +4,7 @@ pub mod access_point;
 mod act;
 pub mod automata;
 pub mod beacon;
+pub mod certificate;
 mod composition;
 pub mod control;
 pub mod duty;

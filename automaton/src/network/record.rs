@@ -6,6 +6,8 @@ use nalgebra::Point2;
 use pleach_discrete::network::{Activity, ExchangeStage, Phase, Role};
 use serde::{Deserialize, Serialize};
 
+use super::certificate::Certificate;
+
 /// The observers' view of one instant, just before the robots move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
@@ -183,16 +185,20 @@ pub struct End {
     pub reason: String,
     /// The task concerned.
     pub task: Option<usize>,
+    /// What observers add to show that it had to end so, where a mission ends before its tasks are serviced.
+    pub certificate: Option<Certificate>,
 }
 
 impl End {
+    /// An end without a certificate.
+    pub const fn new(outcome: Outcome, reason: String, task: Option<usize>) -> Self {
+        End { outcome, reason, task, certificate: None }
+    }
+
     /// The end of a mission that has taken as many control periods as it may.
     pub fn at_step_limit(limit: usize) -> Self {
-        End {
-            outcome: Outcome::StepLimit,
-            reason: format!("the mission has taken the {limit} control periods allowed"),
-            task: None,
-        }
+        let reason = format!("the mission has taken the {limit} control periods allowed");
+        End::new(Outcome::StepLimit, reason, None)
     }
 }
 
@@ -218,6 +224,11 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// Whether robots gave up: such an end comes with a [`Certificate`].
+    pub const fn is_given_up(self) -> bool {
+        matches!(self, Outcome::InsufficientRobots | Outcome::UnreachableTask | Outcome::Blocked)
+    }
+
     /// The name used in traces.
     pub const fn name(self) -> &'static str {
         match self {

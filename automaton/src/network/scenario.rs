@@ -51,13 +51,13 @@ pub struct Scenario {
     pub task: Vec<Task>,
 }
 
-/// The workspace 𝒲: a simple polygon with holes.
+/// The workspace 𝒲: a polygon with holes. Polygons may touch themselves and each other; none may cross.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorkspaceOutline {
-    /// A simple polygon, either orientation, not closed twice.
+    /// A polygon, either orientation.
     pub boundary: Vec<[f64; 2]>,
-    /// Simple polygons inside the boundary, disjoint.
+    /// Polygons inside the boundary, without a common part.
     #[serde(default)]
     pub holes: Vec<Vec<[f64; 2]>>,
 }

@@ -2,7 +2,7 @@
 //! the settings.
 
 use pleach_continuous::Point;
-use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Workspace, WorkspaceError};
+use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Repair, Workspace, WorkspaceError};
 use pleach_continuous::network::reliability::ReliabilityError;
 use pleach_continuous::network::{LinkReliability, WithMargin};
 
@@ -28,6 +28,8 @@ const ROUNDS_TO_SPARE: usize = 5;
 pub struct Site {
     /// 𝒲.
     pub workspace: Workspace,
+    /// What of its polygons was repaired, since they touch.
+    pub repairs: Vec<Repair>,
     /// 𝒲_f, the free space of the robots' centres by what these know: it keeps ρ + e + m from walls, with
     /// the errors e of positions and m of moves.
     pub free_space: FreeSpace,
@@ -42,10 +44,13 @@ pub struct Site {
     pub settings: Settings,
     /// Number of robots.
     pub robots: usize,
-    /// How long links of the tree may be as long as there are robots left.
+    /// How long links of the tree may be as long as there are robots left; where robots start too far apart
+    /// for these, as long as [`stretched`](Self::stretched).
     pub usual: LinkLengths,
     /// How long they may be once no robot is left that can be recruited.
     pub stretched: LinkLengths,
+    /// Whether `usual` is `stretched`, since the robots start so far apart.
+    begins_stretched: bool,
     /// The distance up to which robots watch each other.
     watch_radius: f64,
     /// Whether links behave as a model of the caller's says, and not as `[link]` does.
@@ -89,17 +94,19 @@ impl Site {
     /// When polygons, clearance or ranges are not valid.
     pub fn new(scenario: &Scenario) -> Result<Self, SiteError> {
         let settings = Settings::resolve(scenario);
-        let workspace = scenario.workspace()?;
+        let (workspace, repairs) = scenario.workspace()?;
         let free_space = Self::free_space(&workspace, &settings)?;
         let radio = scenario.link.link()?;
         let link = Self::as_measured(&radio, &settings)?;
         Ok(Site {
             workspace,
+            repairs,
             free_space,
             access_points: scenario.access_point.iter().map(|ap| ap.position.into()).collect(),
             robots: scenario.robot.len(),
             usual: settings.usual_links(),
             stretched: settings.stretched_links(),
+            begins_stretched: false,
             watch_radius: Self::watch_radius(&settings, &link),
             settings,
             has_own_link: false,
@@ -173,6 +180,16 @@ impl Site {
         if stretched { self.stretched } else { self.usual }
     }
 
+    /// The same site where links are from the beginning as long as they may be.
+    pub(super) fn stretched_from_the_start(self) -> Self {
+        Site { usual: self.stretched, begins_stretched: true, ..self }
+    }
+
+    /// Whether links are from the beginning as long as they may be, since the robots start so far apart.
+    pub const fn begins_stretched(&self) -> bool {
+        self.begins_stretched
+    }
+
     /// Whether links may be any longer when no robot is left that can be recruited.
     pub fn could_stretch(&self) -> bool {
         self.stretched.build > self.usual.build
@@ -208,6 +225,13 @@ impl Site {
     /// How many robots and access points there are.
     pub const fn nodes(&self) -> usize {
         self.robots + self.access_points.len()
+    }
+
+    /// Where a robot at `from` would service a task: the nearest place to which a way leads; where none does,
+    /// the nearest of all.
+    pub fn place_to_service(&self, task: Point, from: Point) -> Point {
+        let reached = self.free_space.nearest_reached(task, from);
+        reached.unwrap_or_else(|| self.free_space.nearest(task))
     }
 
     /// The length of the shortest way in 𝒲_f; infinite if there is none.

@@ -181,7 +181,7 @@ impl User {
         match (&*self.request, self.notice()) {
             (Asked::Deserted(_), _) => Some(self.end_without_access_point()),
             (_, Notice::Ended { outcome, reason, task }) => {
-                Some(End { outcome: *outcome, reason: reason.to_string(), task: *task })
+                Some(End::new(*outcome, reason.to_string(), *task))
             }
             _ => None,
         }
@@ -193,7 +193,7 @@ impl User {
              announced and no robot moves",
             self.patience()
         );
-        End { outcome: Outcome::Blocked, reason, task: None }
+        End::new(Outcome::Blocked, reason, None)
     }
 
     fn patience(&self) -> u32 {

@@ -31,7 +31,8 @@ pub(super) type Region = Vec<Vec<Point>>;
 /// vertices, is removed.
 pub(super) fn erode(workspace: &Workspace, distance: f64, negligible: f64) -> Vec<Region> {
     let coordinates = |ring: &[Point]| ring.iter().map(|p| [p.x, p.y]).collect::<Vec<_>>();
-    let whole: Vec<_> = workspace.polygons().iter().map(|ring| coordinates(ring)).collect();
+    let areas = workspace.polygons().iter().filter(|ring| ring.len() >= 3);
+    let whole: Vec<_> = areas.map(|ring| coordinates(ring)).collect();
     let removed: Vec<_> =
         strips_and_caps(workspace, distance).iter().map(|ring| coordinates(ring)).collect();
     let rest = whole.overlay_as::<i64>(&removed, OverlayRule::Difference, FillRule::NonZero);
@@ -64,10 +65,13 @@ fn strip(edge: &Segment, width: f64) -> Vec<Point> {
 }
 
 /// The polygon about the disc of `radius` around the vertex between two edges, from the end of one
-/// strip to the beginning of the next; none where the boundary does not turn right.
+/// strip to the beginning of the next; none where the boundary does not turn right. At the end of a wall
+/// without thickness it turns back.
 fn cap(edge: &Segment, next: &Segment, radius: f64) -> Option<Vec<Point>> {
     // Decided exactly: at the tip of a needle, rounding could take a right turn for a left one.
-    if side(edge.from, edge.to, next.to) >= 0.0 {
+    let aside = side(edge.from, edge.to, next.to);
+    let turns_back = || aside == 0.0 && edge.vector().dot(&next.vector()) < 0.0;
+    if aside >= 0.0 && !turns_back() {
         return None;
     }
     let (first, last) = (edge.left_normal(), next.left_normal());

@@ -190,6 +190,20 @@ impl FreeSpace {
         self.planning.tree.nearest(point).map_or(point, |(_, nearest)| nearest)
     }
 
+    /// The point of the planning set nearest to `point` of all to which a way leads from `from`, which may lie
+    /// outside, within the reach of re-entry; none if `from` lies in no piece of the free space.
+    pub fn nearest_reached(&self, point: Point, from: Point) -> Option<Point> {
+        let piece = self.region(if self.contains(from) { from } else { self.nearest(from) })?;
+        let is_reached = |place: &Point| self.region(*place) == Some(piece);
+        let nearest = self.nearest(point);
+        if is_reached(&nearest) {
+            return Some(nearest);
+        }
+        let mut feet: Vec<Point> = self.planning.edges().map(|edge| edge.nearest(point)).collect();
+        feet.sort_by(|one, other| (one - point).norm().total_cmp(&(other - point).norm()));
+        feet.into_iter().find(is_reached)
+    }
+
     /// Which connected piece of the free space `point` lies in, `None` if it lies in none.
     /// Robots cannot walk from one piece to another.
     pub fn region(&self, point: Point) -> Option<usize> {

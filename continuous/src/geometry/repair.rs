@@ -2,8 +2,10 @@
 //!
 //! Drawn and recorded maps are often *weakly* simple: a hole touches the boundary at a vertex or
 //! shares a wall with its neighbour, a line runs out and back, the first vertex is listed again as
-//! the last. As sets of points they say clearly what is free. What is left ambiguous (edges that
-//! cross, holes that overlap) stays an error.
+//! the last. As sets of points they say clearly what is free: where a robot keeps its clearance from every
+//! line that is drawn. So holes that touch are one obstacle, a line that runs out into the workspace and
+//! back is a wall without thickness, and a piece that walls cut off stays a place where robots may be. What
+//! is left ambiguous (edges that cross, holes that overlap) stays an error.
 
 use std::fmt;
 
@@ -12,8 +14,8 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
 
 use super::segment::side;
-use super::workspace::{NamedEdge, Polygon, contacts};
-use super::{Workspace, WorkspaceError};
+use super::workspace::{NamedEdge, Polygon, contacts, crossings};
+use super::{Segment, Workspace, WorkspaceError};
 use crate::Point;
 
 /// By how much the area of the result may differ from that of the boundary less those of the holes,
@@ -28,20 +30,36 @@ pub enum Repair {
     RepeatedVertex {
         /// The polygon.
         polygon: Polygon,
+        /// Index of the vertex in it, as it was given.
+        vertex: usize,
         /// Where the vertex is.
         at: Point,
     },
-    /// A spike, which runs out to a point and back, is left out.
+    /// A spike that runs into a wall, or out of the workspace, and back is left out.
     Spike {
         /// The polygon.
         polygon: Polygon,
+        /// Index of the vertex at its tip, as it was given.
+        vertex: usize,
         /// The tip.
         tip: Point,
+    },
+    /// A spike that runs into the workspace and back, or a hole without an area, is a wall without
+    /// thickness.
+    Wall {
+        /// The polygon.
+        polygon: Polygon,
+        /// Index of the vertex at its tip, as it was given.
+        vertex: usize,
+        /// The wall.
+        wall: Segment,
     },
     /// A polygon passes through a vertex more than once.
     Pinch {
         /// The polygon.
         polygon: Polygon,
+        /// Index of the vertex in it, as it was given: the later one of two.
+        vertex: usize,
         /// The vertex.
         at: Point,
     },
@@ -52,38 +70,56 @@ pub enum Repair {
         /// The other edge.
         second: NamedEdge,
     },
-    /// The workspace falls into pieces between which no robot can move; only the largest is kept.
-    PieceLeftOut {
-        /// A vertex of the piece that is left out.
+    /// The workspace falls into pieces between which no robot can move.
+    PieceCutOff {
+        /// A vertex of a piece that is not the largest.
         at: Point,
         /// Its area.
         area: f64,
     },
 }
 
+impl Repair {
+    /// The polygon and the vertex of it, as they were given, where something was changed; of two, the later.
+    pub fn place(&self) -> Option<(Polygon, usize)> {
+        match *self {
+            Repair::RepeatedVertex { polygon, vertex, .. }
+            | Repair::Spike { polygon, vertex, .. }
+            | Repair::Wall { polygon, vertex, .. }
+            | Repair::Pinch { polygon, vertex, .. } => Some((polygon, vertex)),
+            Repair::Contact { second, .. } => Some((second.polygon, second.index)),
+            Repair::PieceCutOff { .. } => None,
+        }
+    }
+}
+
 impl fmt::Display for Repair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Repair::RepeatedVertex { polygon, at } => {
+            Repair::RepeatedVertex { polygon, at, .. } => {
                 write!(f, "a second vertex of {polygon} at ({}, {}) is left out", at.x, at.y)
             }
-            Repair::Spike { polygon, tip } => {
-                write!(
-                    f,
-                    "a spike of {polygon}, with its tip at ({}, {}), is left out",
-                    tip.x, tip.y
-                )
-            }
-            Repair::Pinch { polygon, at } => {
+            Repair::Spike { polygon, tip, .. } => write!(
+                f,
+                "a spike of {polygon}, with its tip at ({}, {}), lies outside the workspace and is left out",
+                tip.x, tip.y
+            ),
+            Repair::Wall { polygon, wall: Segment { from, to }, .. } => write!(
+                f,
+                "a line of {polygon} that runs there and back, ({}, {}) to ({}, {}), is a wall without \
+                 thickness",
+                from.x, from.y, to.x, to.y
+            ),
+            Repair::Pinch { polygon, at, .. } => {
                 write!(f, "{polygon} touches itself at its vertex ({}, {})", at.x, at.y)
             }
             Repair::Contact { first, second } => {
                 write!(f, "{first}, touches {second}: the two are joined")
             }
-            Repair::PieceLeftOut { at, area } => write!(
+            Repair::PieceCutOff { at, .. } => write!(
                 f,
-                "a piece of the workspace with an area of {area}, at ({}, {}), is cut off from the \
-                 largest piece and left out",
+                "a piece of the workspace, with a vertex at ({}, {}), is cut off from the largest piece: no \
+                 robot can move between the two",
                 at.x, at.y
             ),
         }
@@ -94,8 +130,8 @@ impl Workspace {
     /// As [`Workspace::new`], but weakly simple polygons are repaired; also tells what was changed,
     /// nothing if the polygons are what `new` takes.
     ///
-    /// Where polygons touch, all vertices are rounded to about 1e-15 of the extent. Edges are
-    /// counted after repeated vertices and spikes are left out.
+    /// Where polygons touch, all vertices are rounded to about 1e-15 of the extent. Vertices and edges are
+    /// counted as they were given.
     ///
     /// # Errors
     ///
@@ -122,66 +158,163 @@ impl Workspace {
         boundary: Vec<Point>,
         holes: Vec<Vec<Point>>,
     ) -> Result<(Workspace, Vec<Repair>), WorkspaceError> {
-        let error = match Workspace::new(boundary.clone(), holes.clone()) {
+        match Workspace::new(boundary.clone(), holes.clone()) {
             Ok(workspace) => return Ok((workspace, Vec::new())),
             Err(error) if error.is_about_numbers() => return Err(error),
-            Err(error) => error,
-        };
+            Err(_) => {}
+        }
+        let given: Vec<Vec<Point>> = std::iter::once(boundary).chain(holes).collect();
+        let named = || given.iter().zip(Polygon::all());
+        if let Some((vertices, polygon)) = named().find(|(vertices, _)| vertices.len() < 3) {
+            return Err(WorkspaceError::TooFewVertices { polygon, count: vertices.len() });
+        }
         let mut repairs = Vec::new();
-        let mut polygons: Vec<Vec<Point>> = std::iter::once(boundary)
-            .chain(holes)
-            .zip(Polygon::all())
-            .map(|(vertices, polygon)| without_spikes(vertices, polygon, &mut repairs))
+        let mut spikes = Vec::new();
+        let mut rings: Vec<Ring> = named()
+            .map(|(vertices, polygon)| {
+                Ring::without_spikes(polygon, vertices, &mut repairs, &mut spikes)
+            })
             .collect();
-        // A hole that was nothing but a spike is gone; a boundary is none then.
-        let boundary = polygons.remove(0);
-        polygons.retain(|hole| hole.len() >= 3);
-        match Workspace::new(boundary.clone(), polygons.clone()) {
-            Ok(workspace) => Ok((workspace, repairs)),
-            Err(error) if !error.is_about_contact() => Err(error),
-            Err(pinch) => {
-                let (workspace, contacts) = joined(boundary, polygons).ok_or(error)?;
-                if let WorkspaceError::RepeatedVertex { polygon, at, .. } = pinch {
-                    repairs.push(Repair::Pinch { polygon, at });
-                }
-                repairs.extend(contacts);
-                Ok((workspace, repairs))
+        if rings[0].points.len() < 3 {
+            return Err(WorkspaceError::Flat { polygon: Polygon::Boundary });
+        }
+        // A hole that was nothing but a line is a wall.
+        rings.retain(|ring| ring.points.len() >= 3);
+        let workspace = joined(&rings, &mut repairs)?;
+        let encloses = |polygon| rings.iter().any(|ring| ring.polygon == polygon);
+        let walls = within(&workspace, &spikes, encloses, &mut repairs)?;
+        Ok((workspace.with_walls(walls.into_iter()), repairs))
+    }
+}
+
+/// A polygon, and which of the vertices that were given are left of it.
+struct Ring {
+    polygon: Polygon,
+    vertices: Vec<usize>,
+    points: Vec<Point>,
+}
+
+/// A line that a polygon runs there and back.
+struct Spike {
+    polygon: Polygon,
+    /// The vertex at its tip.
+    vertex: usize,
+    /// From the polygon to the tip.
+    line: Segment,
+}
+
+impl Ring {
+    /// The ring without vertices that repeat the one before, and without spikes.
+    fn without_spikes(
+        polygon: Polygon,
+        points: &[Point],
+        repairs: &mut Vec<Repair>,
+        spikes: &mut Vec<Spike>,
+    ) -> Ring {
+        let mut ring =
+            Ring { polygon, vertices: (0..points.len()).collect(), points: points.to_vec() };
+        let mut at = 0;
+        while at < ring.points.len() && ring.points.len() >= 2 {
+            let count = ring.points.len();
+            let (before, here, after) = (
+                ring.points[(at + count - 1) % count],
+                ring.points[at],
+                ring.points[(at + 1) % count],
+            );
+            let folds =
+                side(before, here, after) == 0.0 && (before - here).dot(&(after - here)) > 0.0;
+            let vertex = ring.vertices[at];
+            if here == after {
+                repairs.push(Repair::RepeatedVertex { polygon, vertex, at: here });
+            } else if folds {
+                let nearer = (after - here).norm() < (before - here).norm();
+                let foot = if nearer { after } else { before };
+                Spike { polygon, vertex, line: Segment::new(foot, here) }.join(spikes);
+            } else {
+                at += 1;
+                continue;
             }
+            ring.remove(at);
+            if folds && before == after {
+                // The way there and back ends at the vertex where it began.
+                ring.remove(at % ring.points.len());
+            }
+            // What was before it may now be the tip of a shorter spike.
+            at = at.saturating_sub(2);
+        }
+        ring
+    }
+
+    fn remove(&mut self, at: usize) {
+        self.vertices.remove(at);
+        self.points.remove(at);
+    }
+}
+
+impl Spike {
+    /// Adds it to those found, or to the last one if the two are one line.
+    fn join(self, spikes: &mut Vec<Spike>) {
+        let Segment { from, to } = self.line;
+        match spikes.last_mut().filter(|last| last.polygon == self.polygon) {
+            Some(Spike { line, .. }) if line.from == to && side(from, to, line.to) == 0.0 => {
+                line.from = from;
+            }
+            Some(Spike { line, .. })
+                if line.from == from
+                    && side(line.to, from, to) == 0.0
+                    && (line.to - from).dot(&(to - from)) < 0.0 =>
+            {
+                line.from = to;
+            }
+            _ => spikes.push(self),
         }
     }
 }
 
-/// The ring without vertices that repeat the one before, and without spikes.
-fn without_spikes(mut ring: Vec<Point>, polygon: Polygon, repairs: &mut Vec<Repair>) -> Vec<Point> {
-    let mut at = 0;
-    while ring.len() >= 3 && at < ring.len() {
-        let here = ring[at];
-        let before = ring[(at + ring.len() - 1) % ring.len()];
-        let after = ring[(at + 1) % ring.len()];
-        let folds = side(before, here, after) == 0.0 && (before - here).dot(&(after - here)) > 0.0;
-        if here == after {
-            repairs.push(Repair::RepeatedVertex { polygon, at: here });
-        } else if folds {
-            repairs.push(Repair::Spike { polygon, tip: here });
-        } else {
-            at += 1;
-            continue;
-        }
-        ring.remove(at);
-        // What was before it may now be the tip of a shorter spike.
-        at = at.saturating_sub(1);
+/// The workspace of polygons that may touch.
+fn joined(rings: &[Ring], repairs: &mut Vec<Repair>) -> Result<Workspace, WorkspaceError> {
+    let polygons: Vec<Vec<Point>> = rings.iter().map(|ring| ring.points.clone()).collect();
+    let name = |polygon: Polygon, vertex: usize| {
+        let ring = &rings[match polygon {
+            Polygon::Boundary => 0,
+            Polygon::Hole(hole) => hole + 1,
+        }];
+        (ring.polygon, ring.vertices[vertex])
+    };
+    let pinch = match Workspace::new(polygons[0].clone(), polygons[1..].to_vec()) {
+        Ok(workspace) => return Ok(workspace),
+        Err(error) if !error.is_about_contact() => return Err(error.renamed(name)),
+        Err(error) => error,
+    };
+    let Some((workspace, cut_off)) = without_holes(&polygons) else {
+        let crossing = crossings(&polygons).next();
+        let crossing = crossing.map(|(first, second)| WorkspaceError::Crossing { first, second });
+        let overlap = || {
+            let (first, second) = contacts(&polygons).next()?;
+            Some(WorkspaceError::Overlap { first, second })
+        };
+        return Err(crossing.or_else(overlap).unwrap_or(pinch).renamed(name));
+    };
+    if let WorkspaceError::RepeatedVertex { polygon, second, at, .. } = pinch {
+        let (polygon, vertex) = name(polygon, second);
+        repairs.push(Repair::Pinch { polygon, vertex, at });
     }
-    ring
+    repairs.extend(contacts(&polygons).map(|(first, second)| Repair::Contact {
+        first: first.renamed(name),
+        second: second.renamed(name),
+    }));
+    repairs.extend(cut_off);
+    Ok(workspace)
 }
 
-/// The boundary without the holes, as sets of points, with what was joined; `None` if they do more
-/// than touch.
-fn joined(boundary: Vec<Point>, holes: Vec<Vec<Point>>) -> Option<(Workspace, Vec<Repair>)> {
-    let expected = signed_area(&boundary).abs()
-        - holes.iter().map(|hole| signed_area(hole).abs()).sum::<f64>();
+/// The boundary, which comes first, without the holes, as sets of points, and what of it is cut off; `None`
+/// if polygons do more than touch.
+fn without_holes(polygons: &[Vec<Point>]) -> Option<(Workspace, Vec<Repair>)> {
+    let mut areas = polygons.iter().map(|ring| signed_area(ring).abs());
+    let expected = areas.next()? - areas.sum::<f64>();
     let coordinates = |ring: &Vec<Point>| ring.iter().map(|p| [p.x, p.y]).collect::<Vec<_>>();
-    let whole = vec![coordinates(&boundary)];
-    let removed: Vec<_> = holes.iter().map(coordinates).collect();
+    let whole = vec![coordinates(&polygons[0])];
+    let removed: Vec<_> = polygons[1..].iter().map(coordinates).collect();
     let rest = whole.overlay_as::<i64>(&removed, OverlayRule::Difference, FillRule::NonZero);
     let points = |ring: &Vec<[f64; 2]>| ring.iter().map(|&[x, y]| Point::new(x, y)).collect();
     let mut pieces: Vec<(f64, Vec<Vec<Point>>)> = rest
@@ -191,16 +324,38 @@ fn joined(boundary: Vec<Point>, holes: Vec<Vec<Point>>) -> Option<(Workspace, Ve
         .collect();
     let found: f64 = pieces.iter().map(|(area, _)| area).sum();
     pieces.sort_by(|one, other| other.0.total_cmp(&one.0));
-    let mut pieces = pieces.into_iter();
-    let workspace = Workspace::of_rings(pieces.next()?.1);
-    if (found - expected).abs() > AREA_TOLERANCE * workspace.extent().powi(2) {
-        return None;
+    let holes = pieces.first()?.1.len() - 1;
+    let cut_off = (pieces[1..].iter())
+        .map(|(area, rings)| Repair::PieceCutOff { at: rings[0][0], area: *area })
+        .collect();
+    let rings = pieces.into_iter().flat_map(|(_, rings)| rings).collect();
+    let workspace = Workspace::of_rings(rings, holes);
+    let is_exact = (found - expected).abs() <= AREA_TOLERANCE * workspace.extent().powi(2);
+    is_exact.then_some((workspace, cut_off))
+}
+
+/// The spikes that are walls: those that run into the workspace. A hole that encloses nothing, since it is but
+/// a line, must be one.
+fn within(
+    workspace: &Workspace,
+    spikes: &[Spike],
+    encloses: impl Fn(Polygon) -> bool,
+    repairs: &mut Vec<Repair>,
+) -> Result<Vec<Segment>, WorkspaceError> {
+    let mut walls = Vec::new();
+    for &Spike { polygon, vertex, line } in spikes {
+        match polygon {
+            _ if workspace.holds_part_of(&line) => {
+                repairs.push(Repair::Wall { polygon, vertex, wall: line });
+                walls.push(line);
+            }
+            Polygon::Hole(hole) if !encloses(polygon) && !workspace.is_near(&line, 0.0) => {
+                return Err(WorkspaceError::HoleOutside { hole, at: line.to });
+            }
+            _ => repairs.push(Repair::Spike { polygon, vertex, tip: line.to }),
+        }
     }
-    let polygons: Vec<Vec<Point>> = std::iter::once(boundary).chain(holes).collect();
-    let contacts = contacts(&polygons).map(|(first, second)| Repair::Contact { first, second });
-    let left_out = pieces.map(|(area, rings)| Repair::PieceLeftOut { at: rings[0][0], area });
-    let repairs = contacts.chain(left_out).collect();
-    Some((workspace, repairs))
+    Ok(walls)
 }
 
 /// The area of a ring, positive if it runs counter-clockwise.

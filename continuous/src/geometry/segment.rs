@@ -125,7 +125,7 @@ impl Segment {
     }
 
     /// Where the segments cross, if each has ends strictly on both sides of the other.
-    fn crossing_point(&self, other: &Segment) -> Option<Point> {
+    pub(super) fn crossing_point(&self, other: &Segment) -> Option<Point> {
         let (a, b) = (side(self.from, self.to, other.from), side(self.from, self.to, other.to));
         let (c, d) = (side(other.from, other.to, self.from), side(other.from, other.to, self.to));
         let crosses = a * b < 0.0 && c * d < 0.0;

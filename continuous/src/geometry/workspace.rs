@@ -16,10 +16,16 @@ pub(super) const COORDINATE_LIMIT: f64 = 1e100;
 /// The bounded region W in which the robots live: a simple polygon without the interiors of its
 /// holes. Its boundary ∂W has W on the left: the outer boundary runs counter-clockwise, holes run
 /// clockwise, however they were given.
+///
+/// A [repaired](Workspace::repaired) map may have walls without thickness as well, and pieces that
+/// walls cut off from each other.
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    /// The outer boundary, then the holes.
+    /// The outer boundary, then its holes, then those of pieces that are cut off, then walls without
+    /// thickness, there and back.
     polygons: Vec<Vec<Point>>,
+    /// How many of them are holes.
+    holes: usize,
     tree: EdgeTree,
     extent: f64,
 }
@@ -59,6 +65,14 @@ pub struct NamedEdge {
     pub index: usize,
     /// Where it runs.
     pub segment: Segment,
+}
+
+impl NamedEdge {
+    /// The same edge, where `name` has the name of each vertex of each polygon.
+    pub(super) fn renamed(self, name: impl Fn(Polygon, usize) -> (Polygon, usize)) -> NamedEdge {
+        let (polygon, index) = name(self.polygon, self.index);
+        NamedEdge { polygon, index, ..self }
+    }
 }
 
 impl fmt::Display for NamedEdge {
@@ -135,6 +149,28 @@ pub enum WorkspaceError {
         /// The edge of the other.
         second: NamedEdge,
     },
+    /// Polygons that do more than touch: their edges cross.
+    #[error(
+        "{first}, crosses {second}; polygons may touch themselves and each other, and none may cross: \
+         move a vertex, or draw holes that overlap as one"
+    )]
+    Crossing {
+        /// The earlier edge.
+        first: NamedEdge,
+        /// The later edge.
+        second: NamedEdge,
+    },
+    /// Polygons that do more than touch: areas overlap, though no edges cross.
+    #[error(
+        "{first}, touches {second}, and beyond it the two overlap; polygons may touch, but no part of \
+         a hole may lie in another hole or outside the boundary: draw holes that overlap as one"
+    )]
+    Overlap {
+        /// The earlier edge.
+        first: NamedEdge,
+        /// The later edge.
+        second: NamedEdge,
+    },
     /// A hole outside the boundary.
     #[error("hole {hole}, with a vertex at ({}, {}), lies outside the boundary; remove it", at.x, at.y)]
     HoleOutside {
@@ -159,7 +195,35 @@ impl WorkspaceError {
         matches!(self, WorkspaceError::NotFinite { .. })
     }
 
-    /// Whether polygons meet themselves or each other where they must not.
+    /// The same of polygons and vertices that are called otherwise: `name` has the name of each vertex of
+    /// each polygon.
+    pub(super) fn renamed(
+        self,
+        name: impl Fn(Polygon, usize) -> (Polygon, usize),
+    ) -> WorkspaceError {
+        let edge = |edge: NamedEdge| edge.renamed(&name);
+        let hole = |hole: usize| match name(Polygon::Hole(hole), 0).0 {
+            Polygon::Hole(hole) => hole,
+            Polygon::Boundary => hole,
+        };
+        match self {
+            WorkspaceError::Crossing { first, second } => {
+                WorkspaceError::Crossing { first: edge(first), second: edge(second) }
+            }
+            WorkspaceError::Overlap { first, second } => {
+                WorkspaceError::Overlap { first: edge(first), second: edge(second) }
+            }
+            WorkspaceError::HoleOutside { hole: outside, at } => {
+                WorkspaceError::HoleOutside { hole: hole(outside), at }
+            }
+            WorkspaceError::NestedHoles { inner, outer } => {
+                WorkspaceError::NestedHoles { inner: hole(inner), outer: hole(outer) }
+            }
+            other => other,
+        }
+    }
+
+    /// Whether polygons meet themselves or each other where simple ones do not.
     pub(super) fn is_about_contact(&self) -> bool {
         use WorkspaceError::{PolygonsMeet, RepeatedVertex, SelfIntersecting};
         matches!(self, RepeatedVertex { .. } | SelfIntersecting { .. } | PolygonsMeet { .. })
@@ -189,27 +253,36 @@ impl Workspace {
                 vertices.reverse();
             }
         }
-        Ok(Workspace::of_rings(polygons))
+        let holes = polygons.len() - 1;
+        Ok(Workspace::of_rings(polygons, holes))
     }
 
-    /// The workspace that rings bound, the outer one first, with W on their left.
-    pub(super) fn of_rings(polygons: Vec<Vec<Point>>) -> Workspace {
+    /// The workspace that rings bound with W on their left: the outer one, then so many holes, then what else
+    /// belongs to ∂W.
+    pub(super) fn of_rings(polygons: Vec<Vec<Point>>, holes: usize) -> Workspace {
         let tree = EdgeTree::new(polygons.iter().flat_map(|vertices| edges_of(vertices)));
-        let extent = extent_of(&polygons[0]);
-        Workspace { polygons, tree, extent }
+        let extent = extent_of(&polygons);
+        Workspace { polygons, holes, tree, extent }
     }
 
-    /// Vertices of the outer boundary, counter-clockwise.
+    /// The same with walls without thickness.
+    pub(super) fn with_walls(mut self, walls: impl Iterator<Item = Segment>) -> Workspace {
+        self.polygons.extend(walls.map(|wall| vec![wall.from, wall.to]));
+        Workspace::of_rings(self.polygons, self.holes)
+    }
+
+    /// Vertices of the outer boundary, counter-clockwise; of several pieces, that of the largest.
     pub fn boundary(&self) -> &[Point] {
         &self.polygons[0]
     }
 
     /// Vertices of the holes, each clockwise.
     pub fn holes(&self) -> &[Vec<Point>] {
-        &self.polygons[1..]
+        &self.polygons[1..=self.holes]
     }
 
-    /// The outer boundary and the holes: all of ∂W, with W on the left.
+    /// The outer boundary, the holes, and what else there is in a repaired map: all of ∂W, with W on the
+    /// left. A wall without thickness has two vertices.
     pub fn polygons(&self) -> &[Vec<Point>] {
         &self.polygons
     }
@@ -238,6 +311,12 @@ impl Workspace {
         } else {
             self.clearance(from).min(self.clearance(to)).min(0.0)
         }
+    }
+
+    /// Whether a part of a segment lies in W, and not on ∂W alone.
+    pub(super) fn holds_part_of(&self, path: &Segment) -> bool {
+        let crosses = || self.edges().any(|edge| edge.crossing_point(path).is_some());
+        self.contains(nalgebra::center(&path.from, &path.to)) || crosses()
     }
 
     /// Whether a segment meets ∂W or comes closer to it than `distance`.
@@ -306,6 +385,19 @@ fn check_edges(polygons: &[Vec<Point>]) -> Result<(), WorkspaceError> {
 
 /// The edges that meet others where they must not, each with the first one after it that it meets.
 pub(super) fn contacts(polygons: &[Vec<Point>]) -> impl Iterator<Item = (NamedEdge, NamedEdge)> {
+    pairs(polygons, wrongly_meets)
+}
+
+/// The edges that cross others, each with the first one after it that it crosses.
+pub(super) fn crossings(polygons: &[Vec<Point>]) -> impl Iterator<Item = (NamedEdge, NamedEdge)> {
+    pairs(polygons, |first, second| first.crossing_point(second).is_some())
+}
+
+/// The edges that stand in a relation to others, each with the first one after it that it does so with.
+fn pairs(
+    polygons: &[Vec<Point>],
+    are_related: impl Fn(&Segment, &Segment) -> bool,
+) -> impl Iterator<Item = (NamedEdge, NamedEdge)> {
     let named: Vec<NamedEdge> = polygons
         .iter()
         .zip(Polygon::all())
@@ -319,7 +411,7 @@ pub(super) fn contacts(polygons: &[Vec<Point>]) -> impl Iterator<Item = (NamedEd
         let first = named[index];
         let mut met: Option<usize> = None;
         tree.for_each_overlapping(&first.segment, |other, edge| {
-            if other > index && wrongly_meets(&first.segment, edge) {
+            if other > index && are_related(&first.segment, edge) {
                 met = Some(met.map_or(other, |found| found.min(other)));
             }
         });
@@ -384,8 +476,9 @@ fn is_counter_clockwise(vertices: &[Point]) -> bool {
     side(before, vertices[lowest], after) > 0.0
 }
 
-fn extent_of(vertices: &[Point]) -> f64 {
-    let low = vertices.iter().fold(vertices[0], |low, vertex| low.inf(vertex));
-    let high = vertices.iter().fold(vertices[0], |high, vertex| high.sup(vertex));
+fn extent_of(polygons: &[Vec<Point>]) -> f64 {
+    let vertices = || polygons.iter().flatten();
+    let low = vertices().fold(polygons[0][0], |low, vertex| low.inf(vertex));
+    let high = vertices().fold(polygons[0][0], |high, vertex| high.sup(vertex));
     (high - low).max()
 }

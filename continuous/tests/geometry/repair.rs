@@ -1,6 +1,7 @@
 //! Maps whose polygons touch.
 
 use pleach_continuous::Point;
+use pleach_continuous::geometry::workspace::Polygon;
 use pleach_continuous::geometry::{FreeSpace, Repair, Workspace, WorkspaceError};
 use proptest::prelude::*;
 
@@ -9,6 +10,10 @@ use super::plain;
 
 fn room() -> Vec<Point> {
     ring(&[(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)])
+}
+
+fn square_at(x: f64, y: f64) -> Vec<Point> {
+    ring(&[(x, y), (x + 1.0, y), (x + 1.0, y + 1.0), (x, y + 1.0)])
 }
 
 /// The distance to the edges of all polygons, as they were given.
@@ -65,26 +70,61 @@ fn holes_that_touch_each_other_are_joined() {
 }
 
 #[test]
-fn spikes_and_repeated_vertices_are_left_out() {
+fn repeated_vertices_and_spikes_out_of_the_workspace_are_left_out() {
     let mut boundary = room();
     boundary.push(boundary[0]);
-    boundary.splice(2..2, ring(&[(4.0, 1.0), (3.0, 1.0), (4.0, 1.0)]));
+    boundary.splice(2..2, ring(&[(4.0, 1.0), (5.0, 1.0), (4.0, 1.0)]));
+    let (workspace, repairs) = Workspace::repaired(boundary, vec![]).unwrap();
+    assert_eq!((workspace.boundary().len(), workspace.polygons().len()), (5, 1));
+    let [
+        Repair::RepeatedVertex { vertex: 7, .. },
+        Repair::Spike { polygon: Polygon::Boundary, vertex: 3, .. },
+    ] = repairs[..]
+    else {
+        panic!("{repairs:?}")
+    };
+}
+
+/// A line that runs into the room and back, and a hole that is nothing but a line: robots keep off both.
+#[test]
+fn lines_there_and_back_are_walls() {
+    let mut boundary = room();
+    boundary.splice(2..2, ring(&[(4.0, 1.0), (3.5, 1.0), (3.0, 1.0), (4.0, 1.0)]));
     let line = ring(&[(1.0, 1.0), (2.0, 1.0), (1.5, 1.0)]);
-    let (workspace, repairs) = Workspace::repaired(boundary, vec![line]).unwrap();
-    assert_eq!(workspace.boundary().len(), 5);
-    assert!(workspace.holes().is_empty());
-    let count = |is: fn(&Repair) -> bool| repairs.iter().filter(|repair| is(repair)).count();
-    assert!(count(|repair| matches!(repair, Repair::Spike { .. })) >= 2, "{repairs:?}");
-    assert!(count(|repair| matches!(repair, Repair::RepeatedVertex { .. })) >= 1);
+    let (workspace, repairs) = repaired(boundary.clone(), vec![line]);
+    let ends = |repair: &Repair| match repair {
+        Repair::Wall { wall, .. } => (wall.from.x, wall.to.x),
+        _ => panic!("{repair}"),
+    };
+    assert_eq!(repairs.iter().map(ends).collect::<Vec<_>>(), [(4.0, 3.0), (2.0, 1.0)]);
+    assert!((workspace.clearance(Point::new(3.0, 1.1)) - 0.1).abs() < 1e-12);
+    let (below, above) = (Point::new(3.5, 0.5), Point::new(3.5, 1.5));
+    assert!(workspace.segment_clearance(below, above) <= 0.0);
+    let free_space = FreeSpace::new(&workspace, 0.05).unwrap();
+    let path = free_space.geodesic(below, above).unwrap();
+    // Round a disc about the end it would be 1.4963; free space keeps off a polygon about the disc.
+    assert!(path.length > 1.496 && path.length < 1.51, "round the end: {}", path.length);
+
+    let beside = ring(&[(1.0, 9.0), (2.0, 9.0), (1.5, 9.0)]);
+    let refused = Workspace::repaired(room(), vec![beside]);
+    assert!(matches!(refused, Err(WorkspaceError::HoleOutside { hole: 0, .. })), "{refused:?}");
+    let flat = ring(&[(0.0, 0.0), (2.0, 0.0), (1.0, 0.0)]);
+    let refused = Workspace::repaired(flat, vec![]);
+    assert!(matches!(refused, Err(WorkspaceError::Flat { .. })), "{refused:?}");
 }
 
 #[test]
-fn only_the_largest_piece_is_kept() {
+fn pieces_that_a_wall_cuts_off_are_kept_apart() {
     let wall = ring(&[(1.0, 0.0), (1.2, 0.0), (1.2, 3.0), (1.0, 3.0)]);
-    let (workspace, repairs) = Workspace::repaired(room(), vec![wall]).unwrap();
-    assert!(workspace.contains(Point::new(2.0, 1.0)) && !workspace.contains(Point::new(0.5, 1.0)));
-    let Some(Repair::PieceLeftOut { area, .. }) = repairs.last() else { panic!("{repairs:?}") };
+    let (workspace, repairs) = repaired(room(), vec![wall]);
+    let (left, right) = (Point::new(0.5, 1.0), Point::new(2.0, 1.0));
+    assert!(workspace.contains(left) && workspace.contains(right));
+    assert!(!workspace.contains(Point::new(1.1, 1.0)));
+    let Some(Repair::PieceCutOff { area, .. }) = repairs.last() else { panic!("{repairs:?}") };
     assert!((area - 3.0).abs() < 1e-9);
+    let free_space = FreeSpace::new(&workspace, 0.05).unwrap();
+    assert_ne!(free_space.region(left), free_space.region(right));
+    assert!(free_space.geodesic(left, right).is_none());
 }
 
 #[test]
@@ -107,19 +147,18 @@ fn a_polygon_that_touches_itself_is_taken() {
 #[test]
 fn what_crosses_or_overlaps_stays_an_error() {
     let bow_tie = ring(&[(0.0, 0.0), (4.0, 3.0), (4.0, 0.0), (0.0, 3.0)]);
-    assert!(matches!(
-        Workspace::repaired(bow_tie, vec![]),
-        Err(WorkspaceError::SelfIntersecting { .. })
-    ));
-    let square = |x: f64, y: f64| ring(&[(x, y), (x + 1.0, y), (x + 1.0, y + 1.0), (x, y + 1.0)]);
-    let overlapping = vec![square(1.0, 1.0), square(1.5, 1.5)];
+    assert!(matches!(Workspace::repaired(bow_tie, vec![]), Err(WorkspaceError::Crossing { .. })));
+    let overlapping = vec![square_at(1.0, 1.0), square_at(1.5, 1.5)];
     assert!(matches!(
         Workspace::repaired(room(), overlapping),
-        Err(WorkspaceError::PolygonsMeet { .. })
+        Err(WorkspaceError::Crossing { .. })
     ));
-    assert!(Workspace::repaired(room(), vec![square(3.5, 1.0)]).is_err(), "half outside");
-    assert!(Workspace::repaired(room(), vec![square(4.0, 1.0)]).is_err(), "outside, touching");
-    assert!(Workspace::repaired(room(), vec![square(9.0, 9.0)]).is_err(), "outside");
+    assert!(Workspace::repaired(room(), vec![square_at(3.5, 1.0)]).is_err(), "half outside");
+    let outside = Workspace::repaired(room(), vec![square_at(4.0, 1.0)]);
+    assert!(matches!(outside, Err(WorkspaceError::Overlap { .. })), "touching: {outside:?}");
+    let twice = Workspace::repaired(room(), vec![square_at(1.0, 1.0), square_at(1.0, 1.0)]);
+    assert!(matches!(twice, Err(WorkspaceError::Overlap { .. })), "{twice:?}");
+    assert!(Workspace::repaired(room(), vec![square_at(9.0, 9.0)]).is_err(), "outside");
     let mut infinite = room();
     infinite[0].x = f64::INFINITY;
     assert!(matches!(Workspace::repaired(infinite, vec![]), Err(WorkspaceError::NotFinite { .. })));
@@ -132,6 +171,11 @@ fn what_is_wrong_besides_contact_is_told_of_the_map_as_it_was_given() {
     let outside = vec![ring(&[(9.0, 9.0), (10.0, 9.0), (10.0, 10.0), (9.0, 10.0)])];
     let refused = Workspace::repaired(twice.clone(), outside);
     assert!(matches!(refused, Err(WorkspaceError::HoleOutside { hole: 0, .. })), "{refused:?}");
+    // A harmless contact comes before the edges that cross; vertices count as they were given.
+    let crossing = vec![square_at(0.0, 1.0), square_at(2.0, 1.0), square_at(2.5, 1.5)];
+    let refused = Workspace::repaired(twice.clone(), crossing);
+    let Err(WorkspaceError::Crossing { first, second }) = refused else { panic!("{refused:?}") };
+    assert_eq!((first.polygon, second.polygon), (Polygon::Hole(1), Polygon::Hole(2)));
     twice[4].y = f64::INFINITY;
     let refused = Workspace::repaired(twice, vec![]);
     assert!(matches!(refused, Err(WorkspaceError::NotFinite { vertex: 4, .. })), "{refused:?}");

@@ -99,6 +99,11 @@ impl Limits {
         self.site.radio.distance_at(self.settings().tree_reliability)
     }
 
+    /// d_build: up to which length links of the tree are made, before and after the team has stretched them.
+    pub fn link_to_be_made(&self, stretched: bool) -> f64 {
+        self.site.lengths(stretched).build
+    }
+
     /// r_i of every robot.
     pub fn rates(&self) -> &[f64] {
         &self.rates

@@ -90,7 +90,7 @@ impl Robot {
 
     /// The nearer to the task along the geodesic, the better; none if the task is out of reach.
     fn leader_bid(&self, task: Point) -> Option<Bid> {
-        let target = self.site.free_space.nearest(task);
+        let target = self.site.place_to_service(task, self.position);
         let gap = (target - task).norm();
         let distance = self.site.distance(self.position, target);
         let unit = BID_RESOLUTION * self.site.usual.build;

@@ -78,7 +78,8 @@ impl Holds<Mission> for Robot {
                 MissionEffect::Issue(notice) => self.issue(notice),
                 MissionEffect::Learn(announced) => {
                     self.epoch = announced.0.epoch();
-                    self.target = Some(self.site.free_space.nearest(announced.1.position));
+                    let task = announced.1.position;
+                    self.target = Some(self.site.place_to_service(task, self.position));
                     self.announced = Some(announced);
                     self.forgetful = Arc::default();
                 }

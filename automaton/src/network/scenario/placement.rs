@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use pleach_continuous::Point;
 use pleach_continuous::geometry::workspace::Polygon;
-use pleach_continuous::geometry::{Workspace, WorkspaceError};
+use pleach_continuous::geometry::{Repair, Workspace, WorkspaceError};
 use pleach_continuous::network::LinkReliability;
 use pleach_continuous::network::rates::Receiver;
 use pleach_continuous::network::routing::central::widest_reserve;
@@ -29,6 +29,22 @@ pub(super) fn site(scenario: &Scenario) -> Result<Site, Fault> {
         };
         Problem::Outline(error.to_string()).at(key)
     })
+}
+
+/// The site in which the robots of `scenario` start: links are as long as they may be from the beginning if
+/// the usual ones do not connect the robots.
+pub(super) fn start(scenario: &Scenario, site: Site) -> Result<Site, Vec<Fault>> {
+    let found = faults(scenario, &site);
+    if found.is_empty() {
+        return Ok(site);
+    }
+    let are_apart = |fault: &Fault| matches!(fault.problem, Problem::CutOff { .. });
+    if !site.could_stretch() || !found.iter().all(are_apart) {
+        return Err(found);
+    }
+    let site = site.stretched_from_the_start();
+    let found = faults(scenario, &site);
+    if found.is_empty() { Ok(site) } else { Err(found) }
 }
 
 /// What is wrong with where robots and access points of `scenario` stand in `site`.
@@ -210,24 +226,20 @@ impl Ground<'_> {
 }
 
 impl Scenario {
-    /// The workspace 𝒲.
+    /// The workspace 𝒲, and what of its polygons had to be [repaired](Workspace::repaired).
     ///
     /// # Errors
     /// The polygons do not bound a workspace.
-    pub fn workspace(&self) -> Result<Workspace, WorkspaceError> {
+    pub fn workspace(&self) -> Result<(Workspace, Vec<Repair>), WorkspaceError> {
         let polygon = |corners: &Vec<[f64; 2]>| corners.iter().copied().map(Point::from).collect();
         let holes = self.workspace.holes.iter().map(polygon).collect();
-        Workspace::new(polygon(&self.workspace.boundary), holes)
+        Workspace::repaired(polygon(&self.workspace.boundary), holes)
     }
 }
 
 /// Where in the scenario the polygon stands that the error is about; of two, the later one.
 fn key_of_outline(error: &WorkspaceError) -> KeyPath {
-    let workspace = KeyPath::root().key("workspace");
-    let of = |polygon: &Polygon| match *polygon {
-        Polygon::Boundary => workspace.clone().key("boundary"),
-        Polygon::Hole(hole) => workspace.clone().key("holes").index(hole),
-    };
+    let of = |polygon: &Polygon| key_of_polygon(*polygon);
     match error {
         WorkspaceError::TooFewVertices { polygon, .. } | WorkspaceError::Flat { polygon } => {
             of(polygon)
@@ -235,8 +247,27 @@ fn key_of_outline(error: &WorkspaceError) -> KeyPath {
         WorkspaceError::NotFinite { polygon, vertex, .. } => of(polygon).index(*vertex),
         WorkspaceError::RepeatedVertex { polygon, second, .. } => of(polygon).index(*second),
         WorkspaceError::SelfIntersecting { second, .. }
-        | WorkspaceError::PolygonsMeet { second, .. } => of(&second.polygon).index(second.index),
+        | WorkspaceError::PolygonsMeet { second, .. }
+        | WorkspaceError::Crossing { second, .. }
+        | WorkspaceError::Overlap { second, .. } => of(&second.polygon).index(second.index),
         WorkspaceError::HoleOutside { hole, .. } => of(&Polygon::Hole(*hole)),
         WorkspaceError::NestedHoles { inner, .. } => of(&Polygon::Hole(*inner)),
+    }
+}
+
+/// Where in the scenario a polygon stands.
+fn key_of_polygon(polygon: Polygon) -> KeyPath {
+    let workspace = KeyPath::root().key("workspace");
+    match polygon {
+        Polygon::Boundary => workspace.key("boundary"),
+        Polygon::Hole(hole) => workspace.key("holes").index(hole),
+    }
+}
+
+/// Where in the scenario something of the outline was repaired.
+pub(super) fn key_of_repair(repair: &Repair) -> KeyPath {
+    match repair.place() {
+        Some((polygon, vertex)) => key_of_polygon(polygon).index(vertex),
+        None => KeyPath::root().key("workspace"),
     }
 }

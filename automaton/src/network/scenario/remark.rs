@@ -3,9 +3,11 @@
 use std::fmt;
 
 use pleach_continuous::Point;
+use pleach_continuous::geometry::Repair;
 use pleach_continuous::network::LinkReliability;
 
 use super::buckets::Buckets;
+use super::placement::key_of_repair;
 use super::{KeyPath, ValidScenario};
 
 /// Something about a valid scenario that its author may not have meant.
@@ -18,6 +20,16 @@ pub enum Remark {
         task: usize,
         /// Why not.
         remark: TaskRemark,
+    },
+    /// Polygons of the workspace touch, or hold what encloses nothing: they are taken as they are meant.
+    Outline(Repair),
+    /// Robots start so far apart that links are from the beginning as long as they otherwise get only when
+    /// no robot is left that can be recruited.
+    LongLinks {
+        /// Up to which length links would be made.
+        usual: f64,
+        /// Up to which length they are made.
+        longest: f64,
     },
     /// Links whose ends do not see each other. The radio of the paper reaches through walls.
     ThroughWalls {
@@ -51,7 +63,8 @@ impl Remark {
     pub fn key(&self) -> KeyPath {
         match self {
             Remark::Task { task, .. } => KeyPath::root().key("task").index(*task).key("position"),
-            Remark::ThroughWalls { .. } => KeyPath::root().key("link"),
+            Remark::Outline(repair) => key_of_repair(repair),
+            Remark::LongLinks { .. } | Remark::ThroughWalls { .. } => KeyPath::root().key("link"),
         }
     }
 }
@@ -78,6 +91,12 @@ impl fmt::Display for Remark {
                  passages narrower than 2 clearances are closed to them, where position_error and \
                  motion_error add to the clearance"
             ),
+            Remark::Outline(repair) => write!(formatter, "{repair}"),
+            Remark::LongLinks { usual, longest } => write!(
+                formatter,
+                "robots start farther apart than links are made for these rates, {usual:.6}: from the \
+                 beginning they are made up to {longest:.6} instead, the limit that tree_reliability sets"
+            ),
             Remark::ThroughWalls { crossing, links } => write!(
                 formatter,
                 "{crossing} of the {links} links at the start cross walls, which the model of \
@@ -88,31 +107,37 @@ impl fmt::Display for Remark {
 }
 
 impl ValidScenario {
-    /// Everything worth a remark, tasks first.
+    /// Everything worth a remark, tasks first, then the outline.
     pub fn remarks(&self) -> Vec<Remark> {
         let tasks = self.task.iter().enumerate().filter_map(|(task, place)| {
             let remark = self.task_remark(place.position.into())?;
             Some(Remark::Task { task, remark })
         });
+        let site = self.site();
+        let outline = site.repairs.iter().cloned().map(Remark::Outline);
+        let long = site.begins_stretched().then(|| Remark::LongLinks {
+            usual: site.settings.usual_links().build,
+            longest: site.usual.build,
+        });
         let (links, crossing) = self.count_links();
         let walls = (crossing > 0).then_some(Remark::ThroughWalls { crossing, links });
-        tasks.chain(walls).collect()
+        tasks.chain(outline).chain(long).chain(walls).collect()
     }
 
     /// Why no robot can service a task at this place, if none can; robots decide alike.
     fn task_remark(&self, task: Point) -> Option<TaskRemark> {
         let site = self.site();
         let service_radius = site.settings.service_radius;
-        let target = site.free_space.nearest(task);
-        let gap = (target - task).norm();
+        let gap_at = |place: Point| (place - task).norm();
+        let gap = gap_at(site.free_space.nearest(task));
         if gap > site.settings.leash_radius() {
             let is_inside = site.workspace.contains(task);
             return Some(TaskRemark::TooDeep { is_inside, gap, service_radius });
         }
-        let region = site.free_space.region(target);
-        let region_of =
-            |start: [f64; 2]| site.free_space.region(site.free_space.nearest(start.into()));
-        let is_reached = self.robot.iter().any(|robot| region_of(robot.position) == region);
+        let is_reached = self.robot.iter().any(|robot| {
+            let place = site.free_space.nearest_reached(task, robot.position.into());
+            place.is_some_and(|place| gap_at(place) <= site.settings.leash_radius())
+        });
         (!is_reached).then_some(TaskRemark::Elsewhere)
     }
 

@@ -29,7 +29,7 @@ impl ValidScenario {
     ///
     /// # Errors
     /// The faults, in the order of the keys. Later checks presuppose earlier ones (numbers are
-    /// finite, then in their ranges, then settings fit each other, then polygons are simple, then
+    /// finite, then in their ranges, then settings fit each other, then polygons do not cross, then
     /// robots stand well, then they are connected, then links carry the rates), so only the first
     /// kind of check that fails is reported.
     pub fn new(scenario: Scenario) -> Result<Self, InvalidScenario> {
@@ -59,12 +59,8 @@ impl ValidScenario {
     }
 
     fn on(scenario: Scenario, site: Site) -> Result<Self, InvalidScenario> {
-        let faults = placement::faults(&scenario, &site);
-        if faults.is_empty() {
-            Ok(Self { scenario, site: Arc::new(site) })
-        } else {
-            Err(faults.into())
-        }
+        let site = placement::start(&scenario, site)?;
+        Ok(Self { scenario, site: Arc::new(site) })
     }
 
     /// The same scenario with robots at other places, one for each. The geometry is not prepared

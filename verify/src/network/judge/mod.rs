@@ -16,9 +16,12 @@
 //! conclude what they can without faults. Such a record is held against what no fault may break
 //! ([`Safety`]). The [`Referee`] is the one or the other.
 
+mod account;
+mod certificate;
 mod claims;
 mod clock;
 mod conclusions;
+mod ground;
 mod lately;
 mod ledger;
 mod places;
@@ -31,6 +34,7 @@ mod walk;
 
 use std::collections::VecDeque;
 
+use pleach_automaton::network::certificate::{Certificate, Then};
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_continuous::Point;
@@ -47,8 +51,8 @@ pub use ledger::{Ledger, Stage};
 use places::Places;
 pub use referee::Referee;
 pub use safety::{Safety, relayed};
-use verdicts::Tried;
 pub use verdicts::missing;
+use verdicts::{Trial, Tried};
 pub use walk::Walk;
 
 /// What is wrong with an entry of the record; the instant is added where it is known.
@@ -109,6 +113,8 @@ pub struct Judge<'a> {
     scenario: ValidScenario,
     previous: Option<Snapshot>,
     recent: VecDeque<Vec<Point>>,
+    /// Where each robot went last: one that has given up goes nowhere.
+    headings: Vec<Option<Point>>,
 }
 
 impl<'a> Judge<'a> {
@@ -126,6 +132,7 @@ impl<'a> Judge<'a> {
             scenario: scenario.clone(),
             previous: None,
             recent: VecDeque::with_capacity(RECENT + 1),
+            headings: vec![None; robots],
             monitor,
         }
     }
@@ -154,6 +161,9 @@ impl<'a> Judge<'a> {
         self.recent.push_back(snapshot.positions.clone());
         if self.recent.len() > RECENT {
             self.recent.pop_front();
+        }
+        for (heading, shown) in self.headings.iter_mut().zip(&snapshot.robots) {
+            *heading = shown.target.or(*heading);
         }
         self.previous = Some(snapshot.clone());
         Ok(())
@@ -285,7 +295,9 @@ impl<'a> Judge<'a> {
             _ if serviced == tasks && tasks > 0 => {
                 Some(format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
             }
-            Outcome::InsufficientRobots => self.refutation(),
+            _ if end.outcome.is_given_up() => {
+                certificate::check(self, end).err().or_else(|| self.refutation(end))
+            }
             _ => None,
         });
         match complaint {
@@ -294,8 +306,26 @@ impl<'a> Judge<'a> {
         }
     }
 
+    /// An observer's account of why the mission ended: what its end should come with.
+    pub fn account(&self, end: &End) -> Option<Certificate> {
+        account::of(self, end)
+    }
+
+    /// The call for a recruit with which the mission ended, if it ended with one.
+    fn last_trial(&self) -> Option<Trial> {
+        Trial::of(&self.ledger, self.previous.as_ref()?, Then::Ended)
+    }
+
+    /// Up to which length links of the tree are made now.
+    fn link_limit(&self) -> f64 {
+        self.monitor.limits().link_to_be_made(self.ledger.stretched)
+    }
+
     /// Why robots are not too few although the mission ended for that reason, as a clause.
-    fn refutation(&self) -> Option<String> {
+    fn refutation(&self, end: &End) -> Option<String> {
+        if end.outcome != Outcome::InsufficientRobots {
+            return None;
+        }
         let overlooked = self.tried.overlooked(&self.ledger, self.previous.as_ref()?)?;
         let announced = self.ledger.task().map_or(0, |task| task + 1);
         match verdicts::missing(&self.scenario, announced) {

@@ -1,5 +1,6 @@
 //! Which judge a mission has.
 
+use pleach_automaton::network::certificate::Certificate;
 use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_discrete::network::Role;
@@ -58,6 +59,14 @@ impl<'a> Referee<'a> {
         match self {
             Referee::Whole(judge) => judge.conclude(end),
             Referee::Safety(safety) => safety.conclude(end),
+        }
+    }
+
+    /// An observer's account of why a mission without faults ended: what its end should come with.
+    pub fn account(&self, end: &End) -> Option<Certificate> {
+        match self {
+            Referee::Whole(judge) => judge.account(end),
+            Referee::Safety(_) => None,
         }
     }
 

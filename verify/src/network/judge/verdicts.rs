@@ -6,6 +6,7 @@
 
 use std::collections::BTreeSet;
 
+use pleach_automaton::network::certificate::Then;
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_discrete::network::Role;
@@ -18,6 +19,40 @@ use crate::network::bound::Spans;
 pub struct Tried {
     /// The access points in whose trees no recruit was left.
     trees: BTreeSet<usize>,
+    /// The calls that no robot could answer.
+    trials: Vec<Trial>,
+}
+
+/// A call for a recruit that no robot could answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// The robot that called.
+    pub caller: usize,
+    /// Its team.
+    pub team: Vec<usize>,
+    /// Whether the leader was to be released.
+    pub releases_leader: bool,
+    /// Whether links were stretched already.
+    pub stretched: bool,
+    /// What came of it.
+    pub then: Then,
+    /// The last instant before it was given up.
+    pub snapshot: Snapshot,
+}
+
+impl Trial {
+    /// The call that is under way by the ledger, given up after this instant; none if no robot calls.
+    pub fn of(ledger: &Ledger, snapshot: &Snapshot, then: Then) -> Option<Self> {
+        let caller = *ledger.primary_team.first()?;
+        (ledger.stage() == Stage::Calling).then(|| Trial {
+            caller,
+            team: ledger.primary_team.clone(),
+            releases_leader: ledger.awaits_release,
+            stretched: ledger.stretched,
+            then,
+            snapshot: snapshot.clone(),
+        })
+    }
 }
 
 impl Tried {
@@ -25,7 +60,7 @@ impl Tried {
     pub fn enter(&mut self, event: &MissionEvent, ledger: &Ledger, scenes: [Option<&Snapshot>; 2]) {
         match event {
             MissionEvent::TaskAnnounced { .. } | MissionEvent::TaskReannounced { .. } => {
-                self.trees.clear();
+                *self = Tried::default();
             }
             MissionEvent::ElectionRepeated { .. } => {
                 let trees = scenes
@@ -33,9 +68,22 @@ impl Tried {
                     .flatten()
                     .filter_map(|snapshot| tree_of(*ledger.primary_team.first()?, snapshot));
                 self.trees.extend(trees);
+                self.note(ledger, scenes[0], Then::ElectionRepeated);
+            }
+            MissionEvent::LinksStretched { .. } => {
+                self.note(ledger, scenes[0], Then::LinksStretched);
             }
             _ => {}
         }
+    }
+
+    fn note(&mut self, ledger: &Ledger, before: Option<&Snapshot>, then: Then) {
+        self.trials.extend(before.and_then(|before| Trial::of(ledger, before, then)));
+    }
+
+    /// The calls that no robot could answer since the task was announced, but for one that ended the mission.
+    pub fn trials(&self) -> &[Trial] {
+        &self.trials
     }
 
     /// A robot that could have helped where the mission ended because none could, in a clause.
@@ -80,12 +128,13 @@ pub fn missing(scenario: &ValidScenario, announced: usize) -> Option<usize> {
     (least > scenario.robot.len()).then_some(least)
 }
 
-fn parent_of(robot: usize, snapshot: &Snapshot) -> Option<usize> {
+/// The parent of a robot in the tree, as a node.
+pub fn parent_of(robot: usize, snapshot: &Snapshot) -> Option<usize> {
     snapshot.tree.iter().find(|(child, _)| *child == robot).map(|&(_, parent)| parent)
 }
 
 /// The access point at the root of the tree that a robot is in.
-fn tree_of(robot: usize, snapshot: &Snapshot) -> Option<usize> {
+pub fn tree_of(robot: usize, snapshot: &Snapshot) -> Option<usize> {
     let robots = snapshot.roles.len();
     let mut node = robot;
     for _ in 0..=robots {

@@ -1,0 +1,76 @@
+//! Where robots may walk, prepared once more for what certificates say of places and links.
+
+use pleach_automaton::network::record::Snapshot;
+use pleach_automaton::network::scenario::ValidScenario;
+use pleach_continuous::Point;
+use pleach_continuous::geometry::{FreeSpace, Segment};
+
+use crate::network::limits::Limits;
+
+/// The free space of robots that go by what they know.
+pub struct Ground<'a> {
+    limits: &'a Limits,
+    space: FreeSpace,
+    /// The pieces of it in which robots start, ascending.
+    pieces: Vec<usize>,
+}
+
+impl<'a> Ground<'a> {
+    /// The ground of a mission; none if robots have no place to stand.
+    pub fn of(scenario: &ValidScenario, limits: &'a Limits) -> Option<Self> {
+        let clearance = limits.settings().planning_clearance();
+        let space = FreeSpace::new(limits.workspace(), clearance).ok()?;
+        let starts = scenario.robot.iter().map(|robot| space.nearest(robot.position.into()));
+        let mut pieces: Vec<usize> = starts.filter_map(|start| space.region(start)).collect();
+        pieces.sort_unstable();
+        pieces.dedup();
+        Some(Ground { limits, space, pieces })
+    }
+
+    /// Whether a way leads to a place from where a robot started.
+    pub fn is_reached(&self, place: Point) -> bool {
+        self.space.region(place).is_some_and(|piece| self.pieces.binary_search(&piece).is_ok())
+    }
+
+    /// The place nearest to a point of all that robots can come to: it lies on the outline of their pieces,
+    /// unless it is the point itself.
+    pub fn nearest_reached(&self, point: Point) -> Option<Point> {
+        if self.space.nearest(point) == point && self.is_reached(point) {
+            return Some(point);
+        }
+        let edges = self.space.outline().iter().flat_map(|ring| {
+            let next = ring.iter().cycle().skip(1);
+            ring.iter().zip(next).map(|(&from, &to)| Segment::new(from, to).nearest(point))
+        });
+        let mut places: Vec<Point> = edges.collect();
+        places.sort_by(|one, other| (one - point).norm().total_cmp(&(other - point).norm()));
+        places.into_iter().find(|&place| self.is_reached(place))
+    }
+
+    /// The place nearest to a point where a robot could stand, whether or not a way leads there.
+    pub fn nearest(&self, point: Point) -> Point {
+        self.space.nearest(point)
+    }
+
+    /// By how much places and lengths may differ that are computed alike: what the free space is computed to.
+    pub fn tolerance(&self) -> f64 {
+        10.0 * self.space.tolerance()
+    }
+
+    /// The length of a link along the shortest way around walls, between nodes.
+    pub fn length(&self, one: usize, other: usize, snapshot: &Snapshot) -> f64 {
+        self.space.distance(self.place(one, snapshot), self.place(other, snapshot))
+    }
+
+    fn place(&self, node: usize, snapshot: &Snapshot) -> Point {
+        let robots = snapshot.positions.len();
+        let place = match node.checked_sub(robots) {
+            None => snapshot.positions[node],
+            Some(access_point) => self.limits.access_points()[access_point],
+        };
+        match self.space.contains(place) {
+            true => place,
+            false => self.space.nearest(place),
+        }
+    }
+}
