@@ -24,7 +24,7 @@ pub enum Verdict {
         /// How many control periods it tells of.
         periods: usize,
         /// How the mission ended.
-        end: End,
+        end: Box<End>,
         /// How near it came to its bounds.
         extremes: Extremes,
     },
@@ -107,7 +107,7 @@ impl Reading<'_> {
         match self.end {
             Some(end) => {
                 let extremes = self.judge.extremes().clone();
-                Verdict::Sound { periods: self.periods, end, extremes }
+                Verdict::Sound { periods: self.periods, end: Box::new(end), extremes }
             }
             None => Verdict::Violated(
                 self.fault(Property::Outcome, "the trace breaks off: it does not say how it ends"),

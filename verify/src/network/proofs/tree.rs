@@ -121,9 +121,9 @@ fn an_exchange_of_duties_keeps_the_tree() {
     let mut changed = [None; ROBOTS];
     for post in 0..ROBOTS {
         assert!(holders[post] < ROBOTS);
-        for robot in 0..ROBOTS {
+        for (robot, parent) in changed.iter_mut().enumerate() {
             if robot == holders[post] {
-                changed[robot] = parents[post].map(|parent| holders[parent]);
+                *parent = parents[post].map(|parent| holders[parent]);
             }
         }
     }

@@ -70,11 +70,8 @@ fn where_branches_are_is_known_two_links_away() {
     let mut robot = robot();
     let told = Beacon { branches: bearer.branches, ..beacon(5, east(0.5), fixed(20, 99), &[]) };
     robot.hears(told);
-    let absent = |robots: &[NodeId]| {
-        let gone = robots.iter().copied().collect();
-        Arc::new(Absent { gone, ..Absent::default() })
-    };
-    robot.roll.absent = absent(&[3, 5]);
+    let gone = [3, 5].into_iter().collect();
+    robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
     robot.neighbours.clear();
     robot.locate_wrecks();
     assert_eq!(*robot.wrecks, [Wreck::heard(3, east(1.5), NOW)]);
