@@ -183,7 +183,7 @@ pub struct Beacon {
 pub struct Branch {
     /// The robot.
     pub robot: NodeId,
-    /// Where the sender has heard it.
+    /// Where the sender has heard it, in this control period or in the one before.
     #[serde(with = "wire")]
     pub place: Point,
 }
@@ -222,8 +222,10 @@ impl Beacon {
         }
     }
 
-    /// Where the sender, heard in this control period, says that robots are which are attached to it.
-    pub(super) fn sightings(&self, heard_in: u32) -> impl Iterator<Item = Wreck> {
+    /// Where the sender, heard in this control period, says that robots are which are attached to it: it has
+    /// heard them in this period or in the one before.
+    pub(super) fn sightings(&self, period: u32) -> impl Iterator<Item = Wreck> {
+        let heard_in = period.saturating_sub(1);
         let sighting = move |it: &Branch| Wreck::heard(it.robot, it.place, heard_in);
         self.branches.iter().map(sighting)
     }

@@ -7,6 +7,7 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
+use pleach_continuous::network::acceptance::Segment;
 use pleach_discrete::network::{IdSet, NodeId};
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +54,11 @@ impl Wreck {
     /// A robot that is heard.
     pub const fn heard(robot: NodeId, place: Point, heard_in: u32) -> Self {
         Wreck { robot, place, heard_in, astray: 0.0 }
+    }
+
+    /// A robot that tells of its next move.
+    pub fn setting_off(robot: NodeId, segment: Segment, heard_in: u32) -> Self {
+        Wreck { astray: segment.length(), ..Wreck::heard(robot, segment.from, heard_in) }
     }
 
     /// The order in which more is known of the same robot.

@@ -10,7 +10,6 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_continuous::network::acceptance::Segment;
 use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId, NoticeId};
 
 mod attendance;
@@ -252,21 +251,6 @@ impl AccessPoint {
         }
     }
 
-    /// A robot tells of the move that it intends; returns whether it is known where that begins.
-    fn note_move(&mut self, robot: NodeId, segment: Segment) -> bool {
-        let is_heard = |beacon: &Arc<Beacon>| {
-            beacon.sender == robot
-                && beacon.position == segment.from
-                && !self.silent.contains(&robot)
-        };
-        let is_known = self.heard.iter().any(is_heard);
-        if is_known {
-            let heard = Wreck::heard(robot, segment.from, self.period);
-            self.sightings.note(Wreck { astray: segment.length(), ..heard });
-        }
-        is_known
-    }
-
     /// Where robots that do not take part were heard last, here or by the nodes that are heard.
     fn locate_wrecks(&mut self) {
         let told = self.heard.iter().flat_map(|beacon| beacon.wrecks.iter().copied());
@@ -500,9 +484,10 @@ impl Node for AccessPoint {
                 self.begin_attendance();
             }
             Input::Heard { from, message: Message::Proposal { period, segment, witness } }
-                if (*period, *witness) == (self.period, Some(self.id())) =>
+                if *period == self.period =>
             {
-                if self.note_move(from, *segment) {
+                self.sightings.note(Wreck::setting_off(from, *segment, *period));
+                if *witness == Some(self.id()) {
                     outputs.send(from, Message::Consent { period: *period });
                 }
             }

@@ -72,20 +72,17 @@ impl Robot {
     /// Where the robots attached to it are. Those that nobody else hears are so known two links away, in case
     /// that it stops as well.
     pub(super) fn locate_branches(&mut self) {
-        let is_known =
-            |it: &Branch, known: &Neighbour| (it.robot, it.place) == (known.id(), known.position());
-        let told = &self.branches;
-        let is_same = self.tree_children().count() == told.len()
-            && told.iter().zip(self.tree_children()).all(|(it, known)| is_known(it, known));
-        if !is_same {
-            let place = |known: &Neighbour| Branch { robot: known.id(), place: known.position() };
-            self.branches = Arc::new(self.tree_children().map(place).collect());
+        let present = self.tree_children().filter(|known| known.is_present(self.period));
+        let places = present.map(|known| Branch { robot: known.id(), place: known.position() });
+        let now: Vec<Branch> = places.collect();
+        if *self.branches != now {
+            self.branches = Arc::new(now);
         }
     }
 
     /// A beacon tells of robots that are attached to its sender.
-    pub(super) fn note_branches(&mut self, beacon: &Beacon, heard_in: u32) {
-        beacon.sightings(heard_in).for_each(|seen| self.out_of_sight.note(seen));
+    pub(super) fn note_branches(&mut self, beacon: &Beacon, period: u32) {
+        beacon.sightings(period).for_each(|seen| self.out_of_sight.note(seen));
     }
 
     /// How far a robot that is not heard any more may be from where it was heard last.
@@ -97,14 +94,15 @@ impl Robot {
     /// that no node knows of. One move may be forgotten, if the node that knew of it has begun again; if another
     /// node does not take part that could have heard it, more of them may be.
     fn astray(&self, wreck: &Wreck) -> f64 {
-        let Settings { step_radius: step, clearance, .. } = self.site.settings;
+        let Settings { step_radius: step, clearance, errors, .. } = self.site.settings;
         let farthest = self.farthest_astray();
-        let earshot = self.site.radio.range() + farthest + clearance;
+        let earshot = self.site.radio.range() + farthest + step + clearance;
         let is_near = |place: &Point| (place - wreck.place).norm() <= earshot;
         let lost = self.wrecks.iter().filter(|other| other.robot != wreck.robot);
         let may_lack_witness = lost.map(|other| other.place).any(|place| is_near(&place))
             || self.site.access_points.iter().skip(1).any(is_near);
-        if may_lack_witness { farthest } else { farthest.min(wreck.astray + step) }
+        // Each of two moves ends off by its error; one is part of the planning clearance.
+        errors.motion + if may_lack_witness { farthest } else { farthest.min(wreck.astray + step) }
     }
 
     /// Where the robot stays, in case that it is not heard any more: near each place where it has been since

@@ -3,7 +3,6 @@
 use std::sync::{Arc, OnceLock};
 
 use pleach_continuous::Point;
-use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::reliability::LinkReliability;
 use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
@@ -27,8 +26,6 @@ pub(super) struct Neighbour {
     measured_at: Point,
     /// The control period in which it was heard last.
     pub heard_in: u32,
-    /// How far the move leads that it has told of since.
-    astray: f64,
     /// Whether it has been heard in this round.
     is_heard: bool,
     /// Rounds since it was heard.
@@ -61,7 +58,6 @@ impl Neighbour {
             walk: OnceLock::new(),
             measured_at: own,
             heard_in: period,
-            astray: 0.0,
             is_heard: true,
             silent_rounds: 0,
         }
@@ -69,11 +65,10 @@ impl Neighbour {
 
     /// The same node, as last heard, seen from elsewhere.
     pub fn seen_from(&self, own: Point, site: &Site) -> Self {
-        let (is_heard, silent_rounds, astray) = (self.is_heard, self.silent_rounds, self.astray);
+        let (is_heard, silent_rounds) = (self.is_heard, self.silent_rounds);
         Neighbour {
             is_heard,
             silent_rounds,
-            astray,
             ..Neighbour::new(&self.beacon, self.confirmed, self.heard_in, own, site)
         }
     }
@@ -111,9 +106,6 @@ impl Neighbour {
     /// It is heard in the control period `heard_in`; returns whether it was not present before.
     const fn note_heard(&mut self, heard_in: u32, period: u32) -> bool {
         let was_absent = !self.is_present(period);
-        if heard_in > self.heard_in {
-            self.astray = 0.0;
-        }
         (self.heard_in, self.is_heard, self.silent_rounds) = (heard_in, true, 0);
         was_absent
     }
@@ -125,7 +117,7 @@ impl Neighbour {
 
     /// Where its body was when it was heard last.
     pub fn wreck(&self) -> Wreck {
-        Wreck { astray: self.astray, ..Wreck::heard(self.id(), self.position(), self.heard_in) }
+        Wreck::heard(self.id(), self.position(), self.heard_in)
     }
 }
 
@@ -188,9 +180,7 @@ impl Robot {
         let is_newer = known.confirmed < confirmed;
         let confirmed = if is_same { known.confirmed.max(confirmed) } else { confirmed };
         if (known.measured_at, known.position()) != (self.position, beacon.position) {
-            let astray = known.astray;
             *known = Neighbour::new(beacon, confirmed, period, self.position, &self.site);
-            known.astray = astray;
         } else if !is_same {
             (known.beacon, known.confirmed) = (Arc::clone(beacon), confirmed);
         } else {
@@ -264,19 +254,6 @@ impl Robot {
                 || self.is_gone(known.id())
         };
         self.is_called() && self.is_near_trail() && self.neighbours.iter().all(is_sure)
-    }
-
-    /// A robot tells of the move that it intends; returns whether this robot knows where that begins.
-    pub(super) fn note_move(&mut self, from: NodeId, segment: Segment) -> bool {
-        let Ok(at) = self.neighbours.binary_search_by_key(&from, Neighbour::id) else {
-            return false;
-        };
-        let known = &mut self.neighbours[at];
-        let is_known = known.heard_in == self.period && known.position() == segment.from;
-        if is_known {
-            known.astray = known.astray.max(segment.length());
-        }
-        is_known
     }
 
     /// The nodes that the robot hears, and for how many rounds each has been silent.

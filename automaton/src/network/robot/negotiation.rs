@@ -19,6 +19,7 @@ use pleach_discrete::network::{NodeId, Stage};
 
 use super::super::message::Message;
 use super::super::record::MissionEvent;
+use super::super::roll::Wreck;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
@@ -50,16 +51,18 @@ impl Robot {
         self.proposal.unwrap_or(Segment::still(self.position))
     }
 
-    /// The proposal of a neighbour is received. One that does not know where the move begins is no witness
-    /// of it.
+    /// The proposal of a neighbour is received: whoever hears it knows where the robot is, and how far it may
+    /// go.
     pub(super) fn hear_proposal(
         &mut self,
         from: NodeId,
         segment: Segment,
         witness: Option<NodeId>,
     ) {
-        let is_witness = self.note_move(from, segment) && witness == Some(self.id);
-        if (self.relies_on(from) || is_witness) && !self.to_answer.contains(&from) {
+        self.out_of_sight.note(Wreck::setting_off(from, segment, self.period));
+        self.has_news |= self.roll.absent.contains(from);
+        let is_asked = self.relies_on(from) || witness == Some(self.id);
+        if is_asked && !self.to_answer.contains(&from) {
             self.to_answer.push(from);
         }
         match self.heard_moves.iter_mut().find(|(mover, _)| *mover == from) {

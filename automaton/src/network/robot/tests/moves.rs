@@ -4,7 +4,7 @@ use pleach_continuous::network::LinkReliability as _;
 use pleach_continuous::network::acceptance::Segment;
 
 use super::super::super::message::Message;
-use super::super::super::roll::Roll;
+use super::super::super::roll::{Absent, Roll, Wreck};
 use super::super::reservation::{FlowGrant, RequestNumber};
 use super::*;
 use crate::node::Outputs;
@@ -238,7 +238,7 @@ fn a_robot_on_which_nobody_relies_moves_when_a_witness_knows_of_it() {
     assert_eq!(witness(&mut robot), None, "robot 1 has to consent in any case");
 }
 
-/// A witness that could not say where the move begins is none.
+/// Whoever hears of a move knows how far the robot may have gone, also if the beacon from there is lost.
 #[test]
 fn a_witness_knows_how_far_a_robot_may_have_gone() {
     let asked = |from: Point, witness: NodeId| {
@@ -251,24 +251,35 @@ fn a_witness_knows_how_far_a_robot_may_have_gone() {
         let mut outputs = Outputs::of(0);
         robot.judge_moves(&mut outputs);
         let consents = matches!(sent(&mut outputs)[..], [Message::Consent { period: NOW }]);
-        let known = robot.neighbour(5).expect("it is heard").wreck();
-        assert_eq!((known.place, known.heard_in), (west(1.0), NOW));
-        (consents, known.astray)
-    };
-    let near = |(consents, astray): (bool, f64), expected: f64| {
-        assert!((astray - expected).abs() < 1e-12, "{astray}");
+        let known = robot.out_of_sight.iter().next().expect("it is noted");
+        assert_eq!((known.robot, known.place, known.heard_in), (5, from, NOW));
+        assert!((known.astray - 0.06).abs() < 1e-12, "{known:?}");
         consents
     };
-    assert!(near(asked(west(1.0), 0), 0.06));
-    assert!(!near(asked(west(1.0), 3), 0.06), "another one is asked");
-    assert!(!near(asked(west(1.1), 0), 0.0), "the beacon from there is lost");
+    assert!(asked(west(1.0), 0));
+    assert!(!asked(west(1.0), 3), "another one is asked");
+    assert!(asked(west(1.1), 0), "the beacon from there is lost");
+}
+
+/// Of a robot that is heard at the end of its move nothing is left of that.
+#[test]
+fn a_move_that_is_over_is_forgotten() {
     let mut robot = robot();
+    let gone = [5].into_iter().collect();
+    robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
+    let known = |robot: &mut Robot| {
+        let neighbours = std::mem::take(&mut robot.neighbours);
+        neighbours.iter().for_each(|lost| robot.lose_sight_of(lost));
+        robot.locate_wrecks();
+        robot.wrecks[0]
+    };
     robot.hears(beacon(5, west(1.0), redundant(13, 14), &[13, 14]));
-    robot.hear_proposal(5, Segment { from: west(1.0), to: west(0.95) }, None);
+    let segment = Segment { from: west(1.0), to: west(0.95) };
+    robot.hear_proposal(5, segment, None);
+    assert_eq!(known(&mut robot), Wreck::setting_off(5, segment, NOW));
     robot.period += 1;
     robot.hears(beacon(5, west(0.95), redundant(13, 14), &[13, 14]));
-    let known = robot.neighbour(5).expect("it is heard").wreck();
-    assert_eq!((known.place, known.astray), (west(0.95), 0.0), "it has arrived");
+    assert_eq!(known(&mut robot), Wreck::heard(5, west(0.95), NOW + 1));
 }
 
 #[test]

@@ -52,7 +52,7 @@ fn how_far_a_wreck_may_be_from_where_it_was_heard() {
     close(radius(0.0, None), STEP);
     close(radius(0.3 * STEP, None), 1.3 * STEP);
     close(radius(STEP, None), 2.0 * STEP);
-    let earshot = 2.0 + 2.0 * STEP + CLEARANCE;
+    let earshot = 2.0 + 3.0 * STEP + CLEARANCE;
     close(radius(0.0, Some(earshot - LITTLE)), 2.0 * STEP);
     close(radius(0.0, Some(earshot + LITTLE)), STEP);
 }
@@ -67,14 +67,22 @@ fn where_branches_are_is_known_two_links_away() {
     bearer.hears(beacon(4, west(0.5), redundant(24, 99), &[]));
     bearer.locate_branches();
     assert_eq!(*bearer.branches, [Branch { robot: 3, place: east(1.5) }]);
+    let told = Arc::clone(&bearer.branches);
+    bearer.period += 2;
+    bearer.locate_branches();
+    assert!(bearer.branches.is_empty(), "it does not hear it any more");
     let mut robot = robot();
-    let told = Beacon { branches: bearer.branches, ..beacon(5, east(0.5), fixed(20, 99), &[]) };
+    let told = Beacon { branches: told, ..beacon(5, east(0.5), fixed(20, 99), &[]) };
     robot.hears(told);
     let gone = [3, 5].into_iter().collect();
     robot.roll.absent = Arc::new(Absent { gone, ..Absent::default() });
     robot.neighbours.clear();
     robot.locate_wrecks();
-    assert_eq!(*robot.wrecks, [Wreck::heard(3, east(1.5), NOW)]);
+    assert_eq!(
+        *robot.wrecks,
+        [Wreck::heard(3, east(1.5), NOW - 1)],
+        "perhaps before its last move"
+    );
 }
 
 #[test]
