@@ -59,6 +59,7 @@ fn run(scenario: Scenario) -> Mission {
         panic!("{}: the executor stops: {:?}", scenario.name, ending.reason);
     };
     let Jury { referee, periods, events, violation } = jury;
+    let end = End { certificate: referee.account(&end), ..end };
     if let Some(violation) = violation.or_else(|| referee.conclude(&end).err()) {
         panic!("{}: {violation}", scenario.name);
     }
