@@ -92,14 +92,16 @@ impl Robot {
 
     /// How far a robot that does not take part may be from where any node heard it last. It has made no move
     /// that no node knows of. One move may be forgotten, if the node that knew of it has begun again; if another
-    /// node does not take part that could have heard it, more of them may be.
+    /// node does not take part that could have heard it, more of them may be. One that is not gone yet may be cut
+    /// off together with such a node, and move on.
     fn astray(&self, wreck: &Wreck) -> f64 {
         let Settings { step_radius: step, clearance, errors, .. } = self.site.settings;
         let farthest = self.farthest_astray();
         let earshot = self.site.radio.range() + farthest + step + clearance;
         let is_near = |place: &Point| (place - wreck.place).norm() <= earshot;
         let lost = self.wrecks.iter().filter(|other| other.robot != wreck.robot);
-        let may_lack_witness = lost.map(|other| other.place).any(|place| is_near(&place))
+        let may_lack_witness = !self.is_gone(wreck.robot)
+            || lost.map(|other| other.place).any(|place| is_near(&place))
             || self.site.access_points.iter().skip(1).any(is_near);
         // Each of two moves ends off by its error; one is part of the planning clearance.
         errors.motion + if may_lack_witness { farthest } else { farthest.min(wreck.astray + step) }

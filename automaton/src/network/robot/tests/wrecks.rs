@@ -55,6 +55,11 @@ fn how_far_a_wreck_may_be_from_where_it_was_heard() {
     let earshot = 2.0 + 3.0 * STEP + CLEARANCE;
     close(radius(0.0, Some(earshot - LITTLE)), 2.0 * STEP);
     close(radius(0.0, Some(earshot + LITTLE)), STEP);
+    let mut suspended = beside_wreck(0.6);
+    let robots = [1].into_iter().collect();
+    suspended.roll.absent = Arc::new(Absent { suspended: robots, ..Absent::default() });
+    let disc = suspended.keep_out_discs(0.0).next().expect("it is in the way");
+    close(disc.radius, 2.0 * STEP);
 }
 
 /// The only robot that hears another one tells where that is, and is remembered to have told so.
