@@ -6,7 +6,7 @@ use pleach_discrete::network::NodeId;
 
 use super::message::Message;
 use super::site::Site;
-use crate::node::{Delivery, Destination, Envelope, Medium};
+use crate::node::{Arrivals, Delivery, Destination, Envelope, Medium};
 
 /// A synchronous medium in memory: every message arrives at once, over links with R_ij > 0, over
 /// the wire between access points and over that from the user to the first of them.
@@ -17,6 +17,8 @@ pub struct Radio {
     range: f64,
     robots: usize,
     access_points: usize,
+    /// Where the nodes were when audiences were found.
+    bodies: Vec<Point>,
     audiences: Vec<Vec<NodeId>>,
     sent: Vec<Envelope<Message>>,
     delivered: u64,
@@ -29,6 +31,7 @@ impl Radio {
             range: site.radio.range(),
             robots: site.robots,
             access_points: site.access_points.len(),
+            bodies: Vec::new(),
             audiences: Vec::new(),
             sent: Vec::new(),
             delivered: 0,
@@ -60,6 +63,11 @@ impl Radio {
 
 impl Medium<Message, Point> for Radio {
     fn update(&mut self, bodies: &[Point]) {
+        if self.bodies == bodies {
+            return;
+        }
+        self.bodies.clear();
+        self.bodies.extend_from_slice(bodies);
         self.audiences.resize_with(bodies.len(), Vec::new);
         let user = self.robots + self.access_points;
         let with_radio = &bodies[..user.min(bodies.len())];
@@ -96,18 +104,31 @@ impl Medium<Message, Point> for Radio {
         mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
     ) -> Result<(), E> {
         let Radio { audiences, sent, delivered, .. } = self;
-        sent.drain(..).try_for_each(|Envelope { from, to, message }| {
-            let audience = audiences.get(from).map_or(&[][..], Vec::as_slice);
-            let receivers = match to {
-                Destination::Everyone => audience,
-                Destination::One(node) => match audience.binary_search(&node) {
-                    Ok(at) => &audience[at..=at],
-                    Err(_) => &[],
-                },
-            };
+        sent.drain(..).try_for_each(|envelope| {
+            let receivers = receivers(audiences, &envelope);
             *delivered += receivers.len() as u64;
+            let Envelope { from, message, .. } = envelope;
             receivers.iter().try_for_each(|&to| hand_over(Delivery { from, to, message: &message }))
         })
+    }
+
+    fn hand_out(&mut self, arrivals: &mut Arrivals<Message>) -> bool {
+        let Radio { audiences, sent, delivered, .. } = self;
+        arrivals.add(sent, |envelope| receivers(audiences, envelope));
+        *delivered += arrivals.deliveries() as u64;
+        true
+    }
+}
+
+/// The nodes that hear a message.
+fn receivers<'a>(audiences: &'a [Vec<NodeId>], envelope: &Envelope<Message>) -> &'a [NodeId] {
+    let audience = audiences.get(envelope.from).map_or(&[][..], Vec::as_slice);
+    match envelope.to {
+        Destination::Everyone => audience,
+        Destination::One(node) => match audience.binary_search(&node) {
+            Ok(at) => &audience[at..=at],
+            Err(_) => &[],
+        },
     }
 }
 

@@ -99,6 +99,24 @@ impl Node for Member {
         }
     }
 
+    fn fetch(&self) {
+        if let Member::Robot(robot) = self {
+            robot.fetch();
+        }
+    }
+
+    fn fetch_to_hear(&self) {
+        if let Member::Robot(robot) = self {
+            robot.fetch_to_hear();
+        }
+    }
+
+    fn fetch_to_tick(&self) {
+        if let Member::Robot(robot) = self {
+            robot.fetch_to_tick();
+        }
+    }
+
     fn flow(&mut self, duration: f64) {
         match self {
             Member::Robot(robot) => robot.flow(duration),

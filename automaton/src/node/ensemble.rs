@@ -12,8 +12,10 @@
 //! other: the ticks of a round are one joint jump, and so are its deliveries.
 
 use std::convert::Infallible;
+use std::num::NonZeroU32;
 
-use super::{Input, Medium, Node, NodeId, Observed, Outputs};
+use super::abreast::{Leavings, abreast, in_turn};
+use super::{Arrivals, Delivery, Input, Medium, Node, NodeId, Observed, Outputs};
 use crate::Participants;
 use crate::executor::{Round, System};
 
@@ -44,11 +46,14 @@ pub struct Ensemble<N: Node, M> {
     nodes: Vec<N>,
     medium: M,
     outputs: Outputs<N::Message, N::Report>,
+    arrivals: Arrivals<N::Message>,
+    /// What steps that are taken abreast leave; empty between rounds.
+    leavings: Vec<Leavings<N>>,
     bodies: Vec<N::Body>,
     has_moved: bool,
     seats: Vec<Seat>,
     /// The round of ticks at this instant that comes next, from 1.
-    round: usize,
+    round: u32,
 }
 
 /// What the ensemble keeps of each node.
@@ -58,16 +63,20 @@ struct Seat {
     /// Whether the node takes part in the current jump.
     takes_part: bool,
     /// The round at this instant in which it has ticked last; 0 if in none.
-    ticked: usize,
+    ticked: u32,
     /// The round at this instant in which it ticks next, if it hears nothing until then.
-    ticks: Option<usize>,
+    ticks: Option<NonZeroU32>,
 }
 
 impl Seat {
     /// The node has changed: asks it when it ticks next.
     fn ask<N: Node>(&mut self, node: &N) {
         let is_due = node.time_to_tick().is_some_and(|wait| wait <= 0.0);
-        self.ticks = is_due.then(|| self.ticked + 1 + node.rounds_to_pass());
+        let round = || {
+            u32::try_from(node.rounds_to_pass())
+                .map_or(u32::MAX, |passed| self.ticked.saturating_add(1).saturating_add(passed))
+        };
+        self.ticks = if is_due { NonZeroU32::new(round()) } else { None };
     }
 }
 
@@ -78,6 +87,8 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
             bodies: Vec::with_capacity(nodes.len()),
             seats: vec![Seat::default(); nodes.len()],
             outputs: Outputs::of(0),
+            arrivals: Arrivals::new(),
+            leavings: Vec::new(),
             has_moved: true,
             round: 1,
             nodes,
@@ -133,14 +144,14 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     }
 
     fn send(&mut self) {
-        for envelope in self.outputs.drain_sent() {
-            self.seats[envelope.from].traffic.sent += 1;
-            self.medium.send(envelope);
-        }
+        send(&mut self.outputs, &mut self.seats, &mut self.medium);
     }
 
     /// Says whether anything was heard.
     fn deliver(&mut self) -> Result<bool, N::Error> {
+        if self.medium.hand_out(&mut self.arrivals) {
+            return self.hear_abreast();
+        }
         let Ensemble { nodes, medium, outputs, seats, .. } = self;
         let mut is_heard = false;
         medium.deliver(|delivery| {
@@ -159,20 +170,61 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         Ok(is_heard)
     }
 
+    /// Every node hears what arrives for it. What they say in answer is in the order of a medium that
+    /// delivers one message after the other, and so is what goes wrong first.
+    fn hear_abreast(&mut self) -> Result<bool, N::Error> {
+        let Ensemble { nodes, medium: _, outputs, arrivals, leavings, seats, .. } = self;
+        arrivals.sort(nodes.len());
+        let left = abreast(nodes, seats, leavings, |first, nodes, seats, left| {
+            let has_mail = |id, _: &Seat| arrivals.has(id);
+            in_turn(first, nodes, seats, has_mail, N::fetch_to_hear, |id, node: &mut N, seat| {
+                let inbox = arrivals.inbox(id);
+                seat.takes_part = true;
+                seat.traffic.heard += inbox.len() as u64;
+                for (place, Delivery { from, message, .. }) in inbox {
+                    let step = node.step(Input::Heard { from, message }, left.outputs.now_of(id));
+                    left.put_at(place);
+                    if let Err(error) = step {
+                        return left.note_error(place, error);
+                    }
+                }
+                seat.ask(node);
+            });
+        });
+        let errors = left.iter_mut().filter_map(|left| left.error.take());
+        let first = errors.min_by_key(|&(place, _)| place);
+        outputs.append_in_order(left.iter_mut().map(|left| (&mut left.outputs, &mut left.places)));
+        let is_heard = arrivals.deliveries() > 0;
+        arrivals.clear();
+        first.map_or(Ok(is_heard), |(_, error)| Err(error))
+    }
+
     /// Says whether any clock was due.
     fn tick(&mut self) -> Result<bool, N::Error> {
-        let Some(next) = self.seats.iter().filter_map(|seat| seat.ticks).min() else {
+        let Ensemble { nodes, medium, outputs, leavings, seats, .. } = self;
+        let Some(next) = seats.iter().filter_map(|seat| seat.ticks).min() else {
             return Ok(false);
         };
         // What a node has heard may make it tick earlier than it has said, and not in the past.
-        let round = next.max(self.round);
-        for (id, (seat, node)) in self.seats.iter_mut().zip(&mut self.nodes).enumerate() {
-            if seat.ticks.is_some_and(|ticks| ticks <= round) {
-                let passed = round - seat.ticked - 1;
-                node.step(Input::Tick { passed }, self.outputs.now_of(id))?;
+        let round = next.get().max(self.round);
+        let left = abreast(nodes, seats, leavings, |first, nodes, seats, left| {
+            let is_due = |_, seat: &Seat| seat.ticks.is_some_and(|ticks| ticks.get() <= round);
+            in_turn(first, nodes, seats, is_due, N::fetch_to_tick, |id, node: &mut N, seat| {
+                let passed = (round - seat.ticked - 1) as usize;
+                let step = node.step(Input::Tick { passed }, left.outputs.now_of(id));
+                if let Err(error) = step {
+                    return left.note_error(id as u32, error);
+                }
                 (seat.takes_part, seat.ticked) = (true, round);
                 seat.ask(node);
+            });
+        });
+        for left in left {
+            if let Some((_, error)) = left.error.take() {
+                return Err(error);
             }
+            outputs.append_reports(&mut left.outputs);
+            send(&mut left.outputs, seats, medium);
         }
         self.round = round + 1;
         Ok(true)
@@ -199,6 +251,14 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
             }
         });
         self.seats.iter_mut().for_each(|seat| seat.takes_part = false);
+    }
+}
+
+/// Gives messages to the medium, and counts them.
+fn send<M, R, B>(outputs: &mut Outputs<M, R>, seats: &mut [Seat], medium: &mut impl Medium<M, B>) {
+    for envelope in outputs.drain_sent() {
+        seats[envelope.from].traffic.sent += 1;
+        medium.send(envelope);
     }
 }
 
@@ -250,7 +310,6 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
             self.send();
             self.record(round, NodeJump::Heard);
         } else if self.tick()? {
-            self.send();
             self.record(round, NodeJump::Ticked);
         }
         Ok(())

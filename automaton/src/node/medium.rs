@@ -1,6 +1,6 @@
 //! The medium: what becomes of messages between their senders and their receivers.
 
-use super::{Destination, Envelope, NodeId};
+use super::{Arrivals, Destination, Envelope, NodeId};
 
 /// A message that arrives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +39,14 @@ pub trait Medium<M, B> {
         &mut self,
         hand_over: impl FnMut(Delivery<'_, M>) -> Result<(), E>,
     ) -> Result<(), E>;
+
+    /// In place of [`deliver`](Self::deliver): adds all that arrives now to `arrivals`, in the same order,
+    /// and returns whether the medium has done so. Receivers then hear it side by side, which takes less time
+    /// where they are many. A medium need not be able to do this.
+    fn hand_out(&mut self, arrivals: &mut Arrivals<M>) -> bool {
+        let _ = arrivals;
+        false
+    }
 }
 
 /// A medium in which every message arrives at once, at every node that it is for.

@@ -15,11 +15,14 @@
 //! Nothing but messages goes from node to node. What a person wants to know of a node is its
 //! [view](Observed), and nodes cannot ask each other for it.
 
+mod abreast;
+mod arrivals;
 mod ensemble;
 mod medium;
 mod outputs;
 mod weather;
 
+pub use arrivals::Arrivals;
 pub use ensemble::{Ensemble, NodeJump, Traffic};
 pub use medium::{Delivery, FullMesh, Medium};
 pub use outputs::{Destination, Envelope, Outputs};
@@ -47,18 +50,18 @@ pub enum Input<'a, M, S> {
     },
 }
 
-/// A component of an [`Ensemble`].
-pub trait Node {
+/// A component of an [`Ensemble`]. Nodes of one round may take their steps on several threads.
+pub trait Node: Send {
     /// What nodes tell each other.
-    type Message;
+    type Message: Send + Sync;
     /// What the node senses, or what a person asks of it.
     type Sense;
     /// What the node tells observers; no node reads it.
-    type Report;
+    type Report: Send;
     /// What the physical world knows of the node, such as its position.
     type Body;
     /// What can go wrong.
-    type Error;
+    type Error: Send;
 
     /// Takes one input; what the node has to say goes to `outputs`.
     ///
@@ -81,6 +84,17 @@ pub trait Node {
     fn rounds_to_pass(&self) -> usize {
         0
     }
+
+    /// Reads what every step needs of its fields, and does nothing else. An ensemble of many nodes has several
+    /// do so in a row before they take their steps: their memory is then fetched side by side, and not each
+    /// part when a step comes to it.
+    fn fetch(&self) {}
+
+    /// As [`fetch`](Self::fetch), after it: what it needs beside that to hear messages.
+    fn fetch_to_hear(&self) {}
+
+    /// As [`fetch`](Self::fetch), after it: what it needs beside that at a tick.
+    fn fetch_to_tick(&self) {}
 
     /// Lets `duration` > 0 seconds pass, at most [`time_to_tick`](Self::time_to_tick). If it is
     /// exactly that, the tick is due afterwards, whatever rounding does.

@@ -43,6 +43,34 @@ impl<M, R> Outputs<M, R> {
         self
     }
 
+    /// How many messages and how many reports there are.
+    pub(super) const fn counts(&self) -> [usize; 2] {
+        [self.sent.len(), self.reports.len()]
+    }
+
+    /// Takes over the reports that others make after these.
+    pub(super) fn append_reports(&mut self, later: &mut Self) {
+        self.reports.append(&mut later.reports);
+    }
+
+    /// Takes over what the steps at these places have left, the messages in the order of their places and
+    /// the reports in that of theirs.
+    pub(super) fn append_in_order<'a>(
+        &mut self,
+        left: impl Iterator<Item = (&'a mut Self, &'a mut [Vec<u32>; 2])>,
+    ) where
+        M: 'a,
+        R: 'a,
+    {
+        let (mut sent, mut reports) = (Vec::new(), Vec::new());
+        for (outputs, [of_sent, of_reports]) in left {
+            sent.extend(of_sent.drain(..).zip(outputs.sent.drain(..)));
+            reports.extend(of_reports.drain(..).zip(outputs.reports.drain(..)));
+        }
+        append_in_order(&mut self.sent, sent);
+        append_in_order(&mut self.reports, reports);
+    }
+
     /// Sends a message to every node that hears this one.
     pub fn broadcast(&mut self, message: M) {
         self.sent.push(Envelope { from: self.node, to: Destination::Everyone, message });
@@ -72,4 +100,9 @@ impl<M, R> Outputs<M, R> {
     pub fn drain_reports(&mut self) -> std::vec::Drain<'_, (NodeId, R)> {
         self.reports.drain(..)
     }
+}
+
+fn append_in_order<T>(to: &mut Vec<T>, mut placed: Vec<(u32, T)>) {
+    placed.sort_by_key(|&(place, _)| place);
+    to.extend(placed.into_iter().map(|(_, item)| item));
 }

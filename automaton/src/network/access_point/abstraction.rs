@@ -20,9 +20,20 @@ impl AccessPoint {
     /// # Errors
     /// When a guard cannot be evaluated.
     pub fn deliberate_now(&mut self) -> Result<(), TransitionError> {
+        self.has_news = true;
         self.deliberate()?;
         self.heard.clear();
         Ok(())
+    }
+
+    /// Whether processing what it has heard once more would change nothing but the count of rounds.
+    pub(super) fn overlooks_nothing(&self) -> bool {
+        let mut again = self.clone();
+        let is_processed = again.process_messages().is_ok();
+        let counted = std::mem::replace(&mut again.settled_rounds, self.settled_rounds);
+        is_processed
+            && counted == self.settled_rounds + 1
+            && again.account_in_time() == self.account_in_time()
     }
 
     /// In the next round all nodes send again: beacons that are processed are not needed any more.
@@ -110,9 +121,11 @@ impl AccessPoint {
             requested: _,
             // Between two stimuli an access point has nothing left to do.
             heard: _,
+            heard_up_to: _,
             sightings: _,
             wrecks: _,
             silent: _,
+            has_news: _,
             newest: _,
             rounds: _,
             acts: _,

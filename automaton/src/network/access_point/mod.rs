@@ -6,7 +6,6 @@
 #[cfg(feature = "abstraction")]
 mod abstraction;
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -53,12 +52,17 @@ pub struct AccessPoint {
     position: Point,
     /// The beacon heard last of each node in range, by their senders.
     heard: Vec<Arc<Beacon>>,
+    /// Where among them the next beacon is expected.
+    heard_up_to: usize,
     /// Where each robot was when it was heard last.
     sightings: Sightings,
     /// Where robots that do not take part were heard last, here or by the nodes that are heard.
     wrecks: Arc<Vec<Wreck>>,
-    /// The senders of which nothing has been heard in this control period yet.
-    silent: BTreeSet<NodeId>,
+    /// The senders of which nothing has been heard in this control period yet, ascending.
+    silent: Vec<NodeId>,
+    /// Whether anything has changed since it last processed what it has heard: what it hears, or its own
+    /// state.
+    has_news: bool,
     bulletin: Bulletin,
     /// The newest bulletin that it has heard and not taken up.
     newest: Option<Bulletin>,
@@ -119,9 +123,11 @@ impl AccessPoint {
             roll: Roll::default(),
             site,
             heard: Vec::new(),
+            heard_up_to: 0,
             sightings: Sightings::default(),
             wrecks: Arc::default(),
-            silent: BTreeSet::new(),
+            silent: Vec::new(),
+            has_news: true,
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             newest: None,
             announced: None,
@@ -212,22 +218,39 @@ impl AccessPoint {
         }
     }
 
-    /// Processes the messages of one round.
+    /// Processes the messages of one round. Where neither they nor its own state have changed since it last did,
+    /// only rounds are counted; one that keeps attendance hears in every round who is there.
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
     fn deliberate(&mut self) -> Result<(), TransitionError> {
+        self.heard_up_to = 0;
+        let has_news = std::mem::take(&mut self.has_news);
+        if has_news || self.keeps_attendance() {
+            self.process_messages()?;
+        } else {
+            #[cfg(feature = "abstraction")]
+            debug_assert!(self.overlooks_nothing(), "access point {} overlooks news", self.number);
+            self.settled_rounds += 1;
+        }
+        self.locate_wrecks();
+        Ok(())
+    }
+
+    /// Processes what it has heard, whether or not it contains news.
+    fn process_messages(&mut self) -> Result<(), TransitionError> {
         self.hear_notices()?;
         self.find_route();
         self.survey_robots();
-        self.locate_wrecks();
         Ok(())
     }
 
     /// Takes in a beacon. One that arrives after a newer one of its sender is ignored, and so is one
     /// that has been late since an earlier control period.
     fn hear(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
-        if self.roll.merge(roll) && self.is_new {
+        let differs = self.roll.merge(roll);
+        self.has_news |= differs;
+        if differs && self.is_new {
             self.recall(roll);
         }
         if period < self.period {
@@ -237,11 +260,28 @@ impl AccessPoint {
             self.is_behind = !self.is_new;
             self.period = period - u32::from(self.is_behind);
         }
-        self.silent.remove(&beacon.sender);
-        match self.heard.binary_search_by_key(&beacon.sender, |held| held.sender) {
+        if let Ok(at) = self.silent.binary_search(&beacon.sender) {
+            self.silent.remove(at);
+        }
+        // Beacons of a round mostly come in the order of their senders, and have no news.
+        let expected = self.heard.get(self.heard_up_to);
+        let known = match expected.is_some_and(|held| Arc::ptr_eq(held, beacon)) {
+            true => Ok(self.heard_up_to),
+            false => self.heard.binary_search_by_key(&beacon.sender, |held| held.sender),
+        };
+        let (Ok(at) | Err(at)) = known;
+        self.heard_up_to = at + 1;
+        match known {
+            Ok(at) if Arc::ptr_eq(&self.heard[at], beacon) => {}
             Ok(at) if beacon.is_older_than(&self.heard[at]) => {}
-            Ok(at) => self.heard[at] = Arc::clone(beacon),
-            Err(at) => self.heard.insert(at, Arc::clone(beacon)),
+            Ok(at) => {
+                self.heard[at] = Arc::clone(beacon);
+                self.has_news = true;
+            }
+            Err(at) => {
+                self.heard.insert(at, Arc::clone(beacon));
+                self.has_news = true;
+            }
         }
         if beacon.duty.is_some() {
             let (robot, place) = (beacon.sender, beacon.position);
@@ -267,7 +307,10 @@ impl AccessPoint {
             return;
         }
         let silent = std::mem::take(&mut self.silent);
-        self.heard.retain(|beacon| !silent.contains(&beacon.sender));
+        if !silent.is_empty() {
+            self.heard.retain(|beacon| silent.binary_search(&beacon.sender).is_err());
+            self.has_news = true;
+        }
     }
 
     /// The first access point sends the user the newest notice.
@@ -286,6 +329,8 @@ impl AccessPoint {
             self.newest = Some(newest);
             self.jump()?;
             self.newest = None;
+            // Whether or not it has taken up what is newer, there is more to do.
+            self.has_news = true;
         }
         for beacon in &self.heard {
             self.stretched |= beacon.stretched;
@@ -321,7 +366,8 @@ impl AccessPoint {
     /// Takes a row of the service, if one is enabled.
     fn jump(&mut self) -> Result<(), TransitionError> {
         let site = Arc::clone(&self.site);
-        site.automata.service.step_in_place::<Serving>(self)?;
+        let jump = site.automata.service.step_in_place::<Serving>(self)?;
+        self.has_news |= jump.is_some();
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! Listening: the table of neighbours and what each of them last sent.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use pleach_continuous::Point;
 use pleach_continuous::network::reliability::LinkReliability;
@@ -21,7 +22,7 @@ pub(super) struct Neighbour {
     pub confirmed: Option<u32>,
     pub distance: f64,
     pub reliability: f64,
-    walk: OnceLock<f64>,
+    walk: Measured,
     /// Where the robot stood when it measured the link.
     measured_at: Point,
     /// The control period in which it was heard last.
@@ -31,6 +32,39 @@ pub(super) struct Neighbour {
     /// Rounds since it was heard.
     silent_rounds: u8,
 }
+
+/// A length that is measured when it is asked for first, in no more room than it takes.
+#[derive(Debug)]
+struct Measured(AtomicU64);
+
+impl Measured {
+    /// The bits of a length that has not been measured: no length is below 0.
+    const NOT_YET: u64 = (-1.0_f64).to_bits();
+
+    const fn not_yet() -> Self {
+        Measured(AtomicU64::new(Self::NOT_YET))
+    }
+
+    fn get_or(&self, measure: impl FnOnce() -> f64) -> f64 {
+        match self.0.load(Ordering::Relaxed) {
+            Self::NOT_YET => {
+                let length = measure();
+                self.0.store(length.to_bits(), Ordering::Relaxed);
+                length
+            }
+            known => f64::from_bits(known),
+        }
+    }
+}
+
+impl Clone for Measured {
+    fn clone(&self) -> Self {
+        Measured(AtomicU64::new(self.0.load(Ordering::Relaxed)))
+    }
+}
+
+/// As long as every neighbour is a cache line, a message from one of them touches no more than that.
+const _: () = assert!(size_of::<Neighbour>() == 64);
 
 /// A beacon is sent in this many rounds, at the beginning of a control period and whenever it has
 /// changed, so that all of these messages but one may be lost. A neighbour that is silent in as many
@@ -55,7 +89,7 @@ impl Neighbour {
             confirmed,
             distance,
             reliability: site.link.reliability(distance),
-            walk: OnceLock::new(),
+            walk: Measured::not_yet(),
             measured_at: own,
             heard_in: period,
             is_heard: true,
@@ -136,6 +170,7 @@ impl Robot {
         if period > self.period {
             self.hear_of_later_period(period);
         }
+        self.has_heard = true;
         // Beacons of a round mostly come in the order of their senders, and have no news.
         let expected = self.neighbours.get_mut(self.heard_up_to);
         if let Some(known) = expected
@@ -195,6 +230,9 @@ impl Robot {
     pub(super) fn end_round(&mut self) {
         self.heard_up_to = 0;
         let counts_silence = self.round_count.count() <= ROUNDS_TO_BE_HEARD;
+        if !std::mem::take(&mut self.has_heard) && !counts_silence {
+            return;
+        }
         let mut at = 0;
         while at < self.neighbours.len() {
             let is_heard = std::mem::take(&mut self.neighbours[at].is_heard);
@@ -269,7 +307,7 @@ impl Robot {
 
     /// The geodesic length of the link to a neighbour.
     pub(super) fn walk_to(&self, neighbour: &Neighbour) -> f64 {
-        *neighbour.walk.get_or_init(|| self.site.walk(self.position, neighbour.position()))
+        neighbour.walk.get_or(|| self.site.walk(self.position, neighbour.position()))
     }
 
     pub(super) fn neighbour(&self, id: NodeId) -> Option<&Neighbour> {

@@ -99,37 +99,71 @@ const POSTS_OF_A_PERIOD: u32 = 8;
 #[derive(Clone, Debug)]
 #[repr(C, align(64))] // in this order, from the beginning of a cache line
 pub struct Robot {
-    // What most messages touch stands together at the beginning: its place, its neighbours and its
-    // links.
+    // What messages and ticks touch stands together, in groups of a cache line each. What it hears of routes:
+    // its links, and the robots that send their demand here in a sweep, ascending, each with what has been
+    // heard of it.
     id: NodeId,
+    links: Vec<RouteLink>,
+    /// The link whose other end is expected to tell its multiplier next.
+    expected_link: usize,
+    demands: Vec<(NodeId, Option<f64>)>,
+
+    // What it hears in beacons.
     /// x.
     position: Point,
     neighbours: Vec<Neighbour>,
-    /// How many control periods have begun.
-    period: u32,
     /// The newest roll that it knows.
     roll: Roll,
-    /// Where in the table of neighbours the next beacon is expected.
-    heard_up_to: usize,
-    /// The link whose other end is expected to tell its multiplier next.
-    expected_link: usize,
-    links: Vec<RouteLink>,
-    /// The robots that send their demand here in a sweep, ascending, each with what has been heard
-    /// of it.
-    demands: Vec<(NodeId, Option<f64>)>,
+    /// How many control periods have begun.
+    period: u32,
+    /// Whether it has heard anyone since the last round of beacons was over.
+    has_heard: bool,
+    /// Another parent would be better, and is not confirmed yet.
+    awaits_confirmation: bool,
 
-    // What it knows from the beginning.
-    rate: f64,
+    // Where it stands in its control period and in rounds of beacons, sweeps or negotiation, and what has
+    // changed since it last processed messages, sent its beacon, measured its facts and told its flows.
     site: Arc<Site>,
-
-    // Where it stands in its control period, rounds of beacons, sweeps or negotiation, what it does
-    // now, and whether that is its first period.
     control: Current<Control>,
     round_count: Rounds,
-    acts: Acts,
+    /// Where in the table of neighbours the next beacon is expected.
+    heard_up_to: usize,
+    /// In how many rounds of this period it has told its beacon as it is now.
+    beacon_told: usize,
     is_new: bool,
     /// Another node has begun the next control period.
     is_behind: bool,
+    has_news: bool,
+    has_unsent_news: bool,
+    is_unmeasured: bool,
+    is_quiet: bool,
+    has_flow_news: bool,
+    has_swept: bool,
+    has_no_reserve: bool,
+    has_shortage_news: bool,
+    has_untold_flows: bool,
+    is_unsettled: bool,
+    must_judge_moves: bool,
+
+    // What it does at ticks: communication variables.
+    acts: Acts,
+    inflow: f64,
+    inflows: Vec<(NodeId, f64)>,
+    residual: f64,
+    /// ε of (14) over the links as they are now.
+    dual_step: f64,
+    routing: routing::RoutingState,
+    /// The parent to which it sends its demand in this period.
+    upstream: Option<NodeId>,
+    reservations: Vec<Reservation>,
+    last_request: RequestNumber,
+    /// What it generates; it knows that from the beginning.
+    rate: f64,
+    // What it reports to observers; no robot reads it.
+    log: Vec<MissionEvent>,
+    /// In this sweep.
+    demands_passed_on: usize,
+    last_beacon: LastBeacon,
 
     // Where robots were that it does not hear any more, and those that are gone.
     out_of_sight: Sightings,
@@ -148,15 +182,6 @@ pub struct Robot {
     posts_made: u32,
     mission: Current<Mission>,
     facts: Facts,
-    is_quiet: bool,
-
-    // What has changed since it last processed messages, sent its beacon and measured its facts.
-    has_news: bool,
-    has_unsent_news: bool,
-    is_unmeasured: bool,
-    last_beacon: LastBeacon,
-    /// In how many rounds of this period it has told its beacon as it is now.
-    beacon_told: usize,
 
     // The exchange of duties that it is engaged in.
     exchange: Current<Exchange>,
@@ -183,8 +208,6 @@ pub struct Robot {
     reattaches_to: Option<NodeId>,
     /// How recently the way from its post has been confirmed.
     confirmation: Confirmation,
-    /// Another parent would be better, and is not confirmed yet.
-    awaits_confirmation: bool,
     can_detach: bool,
     unused_periods: u32,
     /// It has joined a mission under way, and not taken a new post yet.
@@ -214,24 +237,6 @@ pub struct Robot {
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
 
-    // Communication variables.
-    routing: routing::RoutingState,
-    /// The parent to which it sends its demand in this period.
-    upstream: Option<NodeId>,
-    inflow: f64,
-    inflows: Vec<(NodeId, f64)>,
-    residual: f64,
-    reservations: Vec<Reservation>,
-    last_request: RequestNumber,
-    has_flow_news: bool,
-    has_swept: bool,
-    /// In this sweep.
-    demands_passed_on: usize,
-    has_no_reserve: bool,
-    has_shortage_news: bool,
-    has_untold_flows: bool,
-    is_unsettled: bool,
-
     // Motion.
     destination: Option<Destination>,
     waypoint: Option<Point>,
@@ -241,7 +246,6 @@ pub struct Robot {
     /// Problem (21) of the last sample, if it has one: the region in which the robot moves.
     problem: Option<MotionProblem>,
     heard_moves: Vec<(NodeId, Segment)>,
-    must_judge_moves: bool,
     /// The robots that consent to its move, and those that wait for its own consent.
     consents: Vec<NodeId>,
     to_answer: Vec<NodeId>,
@@ -251,9 +255,6 @@ pub struct Robot {
     /// Where it has been, from the last place on, each off those before.
     resting_places: VecDeque<Point>,
     still_periods: u32,
-
-    // What it reports to observers; no robot reads it.
-    log: Vec<MissionEvent>,
 }
 
 impl Robot {
@@ -281,6 +282,7 @@ impl Robot {
             has_news: true,
             has_unsent_news: true,
             is_unmeasured: true,
+            has_heard: false,
             last_beacon: LastBeacon::default(),
             beacon_told: 0,
             exchange: Current::new(Exchange::Free(exchange::Free(Offers::new()))),
@@ -325,6 +327,7 @@ impl Robot {
             longest_wait: 0,
             followed_post: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
+            dual_step: 0.0,
             links: Vec::new(),
             upstream: None,
             expected_link: 0,

@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 use super::super::message::Message;
 use super::super::record::MissionEvent;
 use super::Robot;
+use super::hearing::Neighbour;
 use super::routing::{RESIDUAL_ROUNDING, RouteLink, link_at};
 use crate::node::Outputs;
 
@@ -106,6 +107,11 @@ pub(super) struct Reservation {
 type Out = Outputs<Message, MissionEvent>;
 
 impl HeldFlow {
+    /// Whether packets flow, or shall.
+    pub(super) fn is_in_use(&self) -> bool {
+        self.flow > 0.0 || self.wanted > 0.0
+    }
+
     /// What the plan and the receiver's grant allow.
     fn allowed(&self) -> f64 {
         self.wanted.min(self.granted)
@@ -140,25 +146,27 @@ impl Robot {
     /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
     pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
         let (period, robots) = (self.period, self.site.robots);
-        let patience = PATIENCE_WITH_ACCESS_POINTS * self.lease();
         self.reservations.retain(|kept| kept.until >= period);
         for at in 0..self.links.len() {
-            let heard_in = self.neighbour(self.links[at].to).map_or(0, |known| known.heard_in);
+            let to = self.links[at].to;
+            let heard_in = |known: &Neighbour| known.heard_in;
+            // An access point takes everything, as long as it is there.
+            let is_there_until = (to >= robots).then(|| {
+                let patience = PATIENCE_WITH_ACCESS_POINTS * self.lease();
+                self.neighbour(to).map_or(0, heard_in).saturating_add(patience)
+            });
             let link = &mut self.links[at];
             // Where flows are not reported, the plan can be none.
             let planned = link.flow().clamp(0.0, link.reliability);
             let held = &mut link.held;
             held.wanted = if link.is_retiring { 0.0 } else { planned };
-            if link.to >= robots {
-                // An access point takes everything, as long as it is there.
-                let until = heard_in.saturating_add(patience);
+            if let Some(until) = is_there_until {
                 (held.granted, held.until) = (f64::INFINITY, until);
             }
             if held.until < period {
                 (held.flow, held.granted) = (0.0, 0.0);
             }
-            let is_in_use = held.flow > 0.0 || held.wanted > 0.0;
-            held.is_due = link.to < robots && (is_in_use || held.is_open);
+            held.is_due = link.to < robots && (held.is_in_use() || held.is_open);
         }
         self.settle_flows(outputs);
     }
@@ -245,14 +253,16 @@ impl Robot {
         let promised = self.promised_until();
         for _ in 0..PASSES {
             let mut change = 0.0;
-            let mut room = 1.0 - self.links.iter().map(|link| link.load()).sum::<f64>();
-            for link in &mut self.links {
+            let used = self.links.iter().filter(|link| link.is_in_use());
+            let mut room = 1.0 - used.map(|link| link.load()).sum::<f64>();
+            // Of the others no flow can be raised or lowered.
+            for link in self.links.iter_mut().filter(|link| link.is_in_use()) {
                 let more = link.held.raise(room.max(0.0) * link.reliability);
                 room -= more / link.reliability;
                 change += more;
             }
             let mut spare = self.lasting_outflow(promised) - needed;
-            for link in &mut self.links {
+            for link in self.links.iter_mut().filter(|link| link.is_in_use()) {
                 let less = link.held.lower(spare.max(0.0));
                 spare -= less;
                 change += less;
@@ -278,6 +288,9 @@ impl Robot {
     /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
     /// granted for as long as these last.
     fn grant_flows(&mut self, needed: f64, promised: u32, outputs: &mut Out) {
+        if self.reservations.is_empty() {
+            return;
+        }
         let wanted = self.reservations.iter().map(|kept| (kept.wanted - kept.flow).max(0.0));
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
         let until = self.lasts_until(carried).min(self.period.saturating_add(self.lease()));

@@ -55,7 +55,8 @@ impl RoutingState {
 }
 
 /// A link over which the robot may send.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
+#[repr(C, align(64))] // in this order: what every iteration reads is the first cache line
 pub struct RouteLink {
     /// The receiver.
     pub to: NodeId,
@@ -63,14 +64,16 @@ pub struct RouteLink {
     pub reliability: f64,
     /// w_ij.
     pub weight: f64,
-    /// How the neighbour last reported its equation to stand; none for an access point.
-    pub report: Option<NeighbourReport>,
+    /// λ_j as the neighbour last reported it; 0 until it has, and for an access point.
+    pub multiplier: f64,
     /// T_ij.
     pub share: f64,
     /// T_ij as the routing method left it, before the sweep.
     iterate: f64,
     /// F_ij of the plan as the receiver has been told in this period.
     told: f64,
+    /// All that the neighbour last reported, where the method is ADAL; none for an access point.
+    report: Option<Box<NeighbourReport>>,
     /// Whether it is too unreliable to be planned with, and stays only until its flow has ended.
     pub(super) is_retiring: bool,
     /// The flow in use.
@@ -81,6 +84,11 @@ impl RouteLink {
     /// F_ij = T_ij R_ij.
     pub fn flow(&self) -> f64 {
         self.share * self.reliability
+    }
+
+    /// Whether packets flow over it, or shall.
+    pub(super) fn is_in_use(&self) -> bool {
+        self.held.is_in_use()
     }
 
     /// T_ij of the flow in use.
@@ -99,7 +107,7 @@ impl Robot {
     pub(super) fn survey_links(&mut self) {
         (self.has_no_reserve, self.has_shortage_news) = (false, false);
         (self.has_untold_flows, self.is_unsettled) = (true, true);
-        let old = std::mem::take(&mut self.links);
+        let old = std::mem::replace(&mut self.links, Vec::with_capacity(self.neighbours.len()));
         let tree = self.tree_links();
         let aversion = self.site.settings.slope_aversion;
         for neighbour in &self.neighbours {
@@ -117,7 +125,8 @@ impl Robot {
                 to,
                 reliability,
                 weight: weight(aversion, &self.site.link, neighbour.distance),
-                report: known.and_then(|link| link.report),
+                multiplier: known.map_or(0.0, |link| link.multiplier),
+                report: known.and_then(|link| link.report.clone()),
                 share: iterate,
                 iterate,
                 told: 0.0,
@@ -126,6 +135,7 @@ impl Robot {
             });
         }
         self.expected_link = 0;
+        self.dual_step = self.safe_dual_step();
         self.upstream = self.tree_parent();
         self.inflow = 0.0;
         self.inflows.clear();
@@ -170,8 +180,12 @@ impl Robot {
         report: NeighbourReport,
         parent: Option<NodeId>,
     ) {
+        let is_adal = self.site.settings.routing_method == RoutingMethod::Adal;
         if let Some(link) = self.link_to(from) {
-            link.report = Some(report);
+            link.multiplier = report.multiplier;
+            if is_adal {
+                link.report = Some(Box::new(report));
+            }
         }
         if parent == Some(self.id)
             && let Err(at) = self.demands.binary_search_by_key(&from, |&(child, _)| child)
@@ -223,7 +237,7 @@ impl Robot {
             .map(|link| LinkOffer {
                 reliability: link.reliability,
                 weight: link.weight,
-                neighbour_multiplier: link.report.map_or(0.0, |report| report.multiplier),
+                neighbour_multiplier: link.multiplier,
             })
             .collect();
         let mut shares = Vec::with_capacity(offers.len());
@@ -242,7 +256,7 @@ impl Robot {
                 reliability: link.reliability,
                 weight: link.weight,
                 share: link.share,
-                report: link.report,
+                report: link.report.as_deref().copied(),
             })
             .collect();
         state.primal_step(&mut links, &AdalSettings::default(), &mut Workspace::default());
@@ -309,7 +323,6 @@ impl Robot {
     pub(super) fn dual_step(&mut self) {
         self.add_up_inflow();
         let (residual, reserve) = (self.balance(), self.site.settings.routing_reserve);
-        let step = self.safe_dual_step();
         match &mut self.routing {
             RoutingState::Adal(state) => {
                 state.dual_step(residual, reserve, &AdalSettings::default())
@@ -317,9 +330,10 @@ impl Robot {
             RoutingState::Dual(state) => {
                 *state = match self.site.settings.routing_method {
                     RoutingMethod::Dual => {
-                        DualState::new(dual_step(state.multiplier(), step, residual, reserve))
+                        let multiplier = state.multiplier();
+                        DualState::new(dual_step(multiplier, self.dual_step, residual, reserve))
                     }
-                    _ => state.step(step, residual, reserve),
+                    _ => state.step(self.dual_step, residual, reserve),
                 };
             }
         }

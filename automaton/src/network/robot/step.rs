@@ -5,6 +5,7 @@
 //! messages of the others, up to the next tick. When it has set off, its next tick is at the next sample.
 
 use std::collections::VecDeque;
+use std::hint::black_box;
 
 use pleach_continuous::Point;
 use std::sync::Arc;
@@ -101,6 +102,31 @@ impl Node for Robot {
         Robot::rounds_to_pass(self)
     }
 
+    /// The cache lines at its beginning.
+    fn fetch(&self) {
+        black_box((self.id, self.period, self.round_count));
+    }
+
+    /// Its neighbours in rounds of beacons, else its links.
+    fn fetch_to_hear(&self) {
+        match self.stage() {
+            Stage::Moving | Stage::Beacons => {
+                self.neighbours.iter().for_each(|known| _ = black_box(known.heard_in));
+            }
+            Stage::Reserving | Stage::Planning | Stage::Negotiation => {
+                self.links.iter().for_each(|link| _ = black_box((link.share, link.held.flow)));
+            }
+            _ => self.links.iter().for_each(|link| _ = black_box(link.share)),
+        }
+    }
+
+    /// The same, and its communication variables.
+    fn fetch_to_tick(&self) {
+        black_box((self.inflow, self.upstream, self.log.len()));
+        black_box((self.inflows.first(), self.reservations.first()));
+        self.fetch_to_hear();
+    }
+
     /// By the flow of the stage.
     fn flow(&mut self, duration: f64) {
         let site = Arc::clone(&self.site);
@@ -133,7 +159,9 @@ impl Robot {
 
     /// Tells observers what has happened.
     pub(super) fn tell_observers(&mut self, outputs: &mut Out) {
-        self.log.drain(..).for_each(|event| outputs.report(event));
+        if !self.log.is_empty() {
+            self.log.drain(..).for_each(|event| outputs.report(event));
+        }
     }
 
     /// The robot stands at `position`, and has not got on for `still_periods` control periods.
