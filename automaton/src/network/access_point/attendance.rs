@@ -159,7 +159,7 @@ impl Attendee {
     }
 
     /// What decides on its standing from now on; how long a wait has been over does not matter.
-    #[cfg(feature = "abstraction")]
+    #[cfg(any(test, feature = "abstraction"))]
     pub(super) fn account(&self) -> (Attendance, Option<u32>, u32) {
         let silence = self.silence.map(|silence| silence.min(PATIENCE + 1));
         (self.standing.location(), silence, self.age.min(self.validity + 1))
@@ -364,9 +364,7 @@ mod tests {
     type Record = ((Attendance, Option<u32>, u32), u32, u32);
 
     fn record_of(attendee: &Attendee, present: u32, gone: u32) -> Record {
-        let silence = attendee.silence.map(|silence| silence.min(PATIENCE + 1));
-        let standing = (attendee.standing.location(), silence, attendee.age.min(VALIDITY + 1));
-        (standing, present.min(VALIDITY + 1), gone.min(VALIDITY + 1))
+        (attendee.account(), present.min(VALIDITY + 1), gone.min(VALIDITY + 1))
     }
 
     /// The assumption of the lemma `roll.smt2`, exhaustively: between a roll that lets a robot move and one

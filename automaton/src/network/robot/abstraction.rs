@@ -42,8 +42,12 @@ impl Numbers {
 impl<'a> RobotView<'a> {
     /// The beacon that the robot would send now, without what matters only when time passes or for motion.
     pub fn beacon(self) -> Beacon {
-        let (strays, serves, branches) = Default::default();
-        Beacon { strays, serves, branches, ..self.robot().public_state() }
+        Beacon {
+            strays: Arc::default(),
+            serves: Arc::default(),
+            branches: Arc::default(),
+            ..self.robot().public_state()
+        }
     }
 
     /// The beacon that the robot sends where control periods count. Where bodies are is left out: it matters

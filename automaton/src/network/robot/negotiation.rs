@@ -51,8 +51,8 @@ impl Robot {
         self.proposal.unwrap_or(Segment::still(self.position))
     }
 
-    /// The proposal of a neighbour is received: whoever hears it knows where the robot is, and how far it may
-    /// go.
+    /// The proposal of a neighbour is received. Every robot that hears it knows where the sender is and how
+    /// far it may go.
     pub(super) fn hear_proposal(
         &mut self,
         from: NodeId,
@@ -96,18 +96,16 @@ impl Robot {
     }
 
     /// The node that it asks to be the witness of its move, where nobody relies on it: its parent if that is
-    /// heard. Where it does not get on, the nodes that it hears take turns.
+    /// heard. While it makes no progress, the nodes that it hears take turns.
     fn witness(&self) -> Option<NodeId> {
         if self.reliant().next().is_some() {
             return None;
         }
-        let is_heard = |known: &&Neighbour| known.heard_in == self.period;
-        let is_parent = |known: &Neighbour| Some(known.id()) == self.parent;
-        let heard = || self.neighbours.iter().filter(is_heard);
-        let (parent, others): (Vec<_>, Vec<_>) = heard().partition(|known| is_parent(known));
-        let candidates = [parent, others].concat();
+        let heard = self.neighbours.iter().filter(|known| known.heard_in == self.period);
+        let mut candidates: Vec<NodeId> = heard.map(Neighbour::id).collect();
+        candidates.sort_by_key(|&node| Some(node) != self.parent); // the parent first
         let turn = self.still_periods as usize % candidates.len().max(1);
-        candidates.get(turn).map(|known| known.id())
+        candidates.get(turn).copied()
     }
 
     /// A node that relies on this one, or is its witness, consents to its move.
