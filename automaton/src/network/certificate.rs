@@ -55,7 +55,7 @@ pub struct Bound {
     pub length: f64,
     /// No link of a tree is longer.
     pub longest_link: f64,
-    /// So many robots any tree has at least; more than `robots`.
+    /// The least number of robots of any tree; more than `robots`.
     pub least: usize,
     /// How many there are.
     pub robots: usize,

@@ -257,7 +257,7 @@ impl Workspace {
         Ok(Workspace::of_rings(polygons, holes))
     }
 
-    /// The workspace that rings bound with W on their left: the outer one, then so many holes, then what else
+    /// The workspace that rings bound with W on their left: the outer one, then the given number of holes, then what else
     /// belongs to ∂W.
     pub(super) fn of_rings(polygons: Vec<Vec<Point>>, holes: usize) -> Workspace {
         let tree = EdgeTree::new(polygons.iter().flat_map(|vertices| edges_of(vertices)));

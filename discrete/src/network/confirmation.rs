@@ -148,7 +148,7 @@ mod tests {
             (1..NODES).any(|post| self.above(post).any(|node| node == post))
         }
 
-        /// The newest confirmation that was ever passed on from a node, whoever held it.
+        /// The newest confirmation that was ever passed on from a node, by any of its holders.
         fn newest_ever(&self, node: usize) -> Option<u32> {
             self.told.iter().filter(|told| told.0 == node).map(|told| told.1).max()
         }

@@ -27,8 +27,8 @@ use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::{MARGIN, ROUNDING};
 
-/// A robot that is gone is at most this many steps from where it was heard last, whoever knows of its last
-/// move.
+/// A robot that is gone is at most this many steps from where it was heard last, even if its last moves are
+/// not known.
 const ASTRAY: f64 = 2.0;
 
 impl Robot {

@@ -238,7 +238,7 @@ fn a_robot_on_which_nobody_relies_moves_when_a_witness_knows_of_it() {
     assert_eq!(witness(&mut robot), None, "robot 1 has to consent in any case");
 }
 
-/// Whoever hears of a move knows how far the robot may have gone, also if the beacon from there is lost.
+/// Every robot that hears a proposal knows how far the sender may have gone, even if the sender's beacon is lost.
 #[test]
 fn a_witness_knows_how_far_a_robot_may_have_gone() {
     let asked = |from: Point, witness: NodeId| {
