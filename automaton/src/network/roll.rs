@@ -81,6 +81,11 @@ impl Sightings {
         }
     }
 
+    /// Only these are still of interest.
+    pub fn retain(&mut self, is_of_interest: impl FnMut(&Wreck) -> bool) {
+        self.0.retain(is_of_interest);
+    }
+
     pub fn iter(&self) -> impl Iterator<Item = Wreck> {
         self.0.iter().copied()
     }

@@ -165,14 +165,17 @@ impl Site {
         Site { measure: Some(Box::new(measure)), ..self }
     }
 
-    /// Some steps more than the 2ρ + 2σ from which two robots could come into contact in one control
-    /// period, and so far inside the range of the radio that no step leads out of it. With errors, robots
-    /// that measure 2 (ρ + e + m) + 2σ are truly 2ρ + 2 (σ + m) apart, and a step is σ + m long.
+    /// Some steps more than the distance from which two robots could come into contact in one control period,
+    /// and well in range.
     fn watch_radius(settings: &Settings, link: &Link) -> f64 {
-        let step = settings.step_radius + settings.errors.motion;
-        let meeting = 2.0 * (settings.planning_clearance() + settings.step_radius);
-        let well_in_range = link.range() - 2.0 * step;
-        (meeting + WATCHED_STEPS * step).min(well_in_range).max(meeting)
+        let meeting = settings.meeting_distance();
+        let watched = meeting + WATCHED_STEPS * settings.longest_step();
+        watched.min(Self::well_in_range(settings, link)).max(meeting)
+    }
+
+    /// From where no step of two robots leads out of the range of the radio.
+    fn well_in_range(settings: &Settings, link: &Link) -> f64 {
+        link.range() - 2.0 * settings.longest_step()
     }
 
     /// How long links of the tree may be, before and after no robot was left that can be recruited.
@@ -203,6 +206,26 @@ impl Site {
             return false;
         }
         distance <= self.watch_radius
+    }
+
+    /// Whether two robots could come into contact in this control period that were this far apart when one
+    /// of them was heard last, so many periods ago.
+    pub fn could_meet(&self, distance: f64, periods: u32) -> bool {
+        #[cfg(feature = "abstraction")]
+        if self.measure.is_some() {
+            return false;
+        }
+        let way = f64::from(periods) * self.settings.longest_step();
+        distance <= self.settings.meeting_distance() + way
+    }
+
+    /// Whether a robot that is not heard any more, and was this far away, has not just gone out of range.
+    pub fn is_well_in_range(&self, distance: f64) -> bool {
+        #[cfg(feature = "abstraction")]
+        if self.measure.is_some() {
+            return false;
+        }
+        distance <= Self::well_in_range(&self.settings, &self.link)
     }
 
     /// Control periods for which a roll is valid: as long as it may take to reach every robot, some

@@ -17,7 +17,7 @@ use super::super::roll::{Absent, Roll};
 use super::AccessPoint;
 
 /// Control periods after which a robot that is not heard of is missed.
-const PATIENCE: u32 = 8;
+pub(in crate::network) const PATIENCE: u32 = 8;
 
 /// The automaton of a robot's attendance.
 pub type AttendanceAutomaton = Automaton<Attendance, AttendanceEvent, Attendee>;

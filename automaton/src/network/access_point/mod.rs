@@ -33,6 +33,7 @@ use crate::located::{Current, Place as _};
 use crate::node::{Input, Node, Outputs};
 
 use attendance::Attendee;
+pub(super) use attendance::PATIENCE;
 pub use attendance::{ATTENDANCE_GLOSSARY, AttendanceAutomaton, attendance_automaton};
 pub use rounds::{RoundAct, RoundActs, RoundAutomaton, round_automaton};
 pub use service::{ACCESS_POINT_GLOSSARY, ServiceAutomaton, ServiceEffect, service_automaton};

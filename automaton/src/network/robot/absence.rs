@@ -20,6 +20,7 @@ use pleach_continuous::geometry::{Disc, HalfPlane};
 use pleach_continuous::network::reliability::LinkReliability;
 use pleach_discrete::network::NodeId;
 
+use super::super::access_point::PATIENCE;
 use super::super::beacon::{Beacon, Branch};
 use super::super::roll::{Roll, Wreck};
 use super::super::scenario::Settings;
@@ -31,6 +32,10 @@ use super::motion::{MARGIN, ROUNDING};
 /// not known.
 const ASTRAY: f64 = 2.0;
 
+/// A roll that is called so many control periods after a robot was heard last tells whether it takes part: the
+/// first access point misses it after its patience, and reports of it may be as old when they arrive.
+const TOLD_AFTER: u32 = 2 * PATIENCE;
+
 impl Robot {
     /// A roll is received.
     #[inline]
@@ -41,6 +46,7 @@ impl Robot {
         }
         if self.roll.called > called {
             self.trail.retain(|&(period, _)| period >= self.roll.called);
+            self.missing.retain(|lost| lost.heard_in.saturating_add(TOLD_AFTER) > self.roll.called);
         }
     }
 
@@ -56,9 +62,25 @@ impl Robot {
 
     /// A robot is out of sight: where it was heard last.
     pub(super) fn lose_sight_of(&mut self, lost: &Neighbour) {
-        if !lost.is_access_point() {
-            self.out_of_sight.note(lost.wreck());
+        if lost.is_access_point() {
+            return;
         }
+        self.out_of_sight.note(lost.wreck());
+        if self.site.is_well_in_range(lost.distance) && !self.is_gone(lost.id()) {
+            self.missing.note(lost.wreck());
+        }
+    }
+
+    /// A robot is heard that was out of sight.
+    pub(super) fn find(&mut self, robot: NodeId) {
+        self.missing.retain(|lost| lost.robot != robot);
+    }
+
+    /// Whether a robot that was heard here last may be on its way, and so near by now that the two could come
+    /// into contact in this control period.
+    pub(super) fn may_meet(&self, lost: &Wreck) -> bool {
+        let periods = self.period.saturating_sub(lost.heard_in);
+        self.site.could_meet((lost.place - self.position).norm(), periods)
     }
 
     /// Where robots that do not take part were heard last, by this robot or by the nodes that it hears.

@@ -286,6 +286,7 @@ impl Robot {
             orphaned_periods: _,
             roll: _,
             out_of_sight: _,
+            missing: _,
             wrecks: _,
             branches: _,
             trail: _,

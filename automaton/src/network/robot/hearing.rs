@@ -160,6 +160,7 @@ impl Robot {
                 let neighbour =
                     Neighbour::new(beacon, confirmed, period, self.position, &self.site);
                 self.neighbours.insert(at, neighbour);
+                self.find(beacon.sender);
                 self.note_branches(beacon, period);
                 self.receive_news();
             }
@@ -241,7 +242,7 @@ impl Robot {
 
     /// Whether the robot may leave its place in this control period: it takes part, is where others allow
     /// for it if they do not hear it any more, and has heard in this period where each robot is that was near
-    /// when it was heard last, but those that are gone.
+    /// when it was heard last, or could have come near since, but those that are gone.
     ///
     /// If one of two robots that could meet moves, it so knows where the other is. If both move, each
     /// keeps to its own side of the line between them (17); if one stays, its place lies on its own
@@ -250,10 +251,13 @@ impl Robot {
         let is_sure = |known: &Neighbour| {
             known.heard_in == self.period
                 || known.is_access_point()
-                || !self.site.is_near(known.distance)
+                || !self.site.is_near(known.distance) && !self.may_meet(&known.wreck())
                 || self.is_gone(known.id())
         };
-        self.is_called() && self.is_near_trail() && self.neighbours.iter().all(is_sure)
+        self.is_called()
+            && self.is_near_trail()
+            && self.neighbours.iter().all(is_sure)
+            && !self.missing.iter().any(|lost| self.may_meet(&lost))
     }
 
     /// The nodes that the robot hears, and for how many rounds each has been silent.

@@ -136,6 +136,9 @@ pub struct Robot {
     // Where robots were that it does not hear any more or has only heard of, those that do not take part,
     // and those that are attached to it.
     out_of_sight: Sightings,
+    /// Robots that it does not hear any more although they were well in range, until a roll tells whether
+    /// they take part.
+    missing: Sightings,
     wrecks: Arc<Vec<Wreck>>,
     branches: Arc<Vec<Branch>>,
     /// Where it has set off since its roll was called, each with the control period.
@@ -301,6 +304,7 @@ impl Robot {
             period: 0,
             roll: Roll::default(),
             out_of_sight: Sightings::default(),
+            missing: Sightings::default(),
             wrecks: Arc::default(),
             branches: Arc::default(),
             trail: Vec::new(),

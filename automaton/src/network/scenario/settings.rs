@@ -118,6 +118,17 @@ impl Settings {
         self.errors.planning_clearance(self.clearance)
     }
 
+    /// 2 (ρ + e + m) + 2σ: from how far apart, by what they know, two robots could come into contact in one
+    /// control period. With errors, robots that measure this are truly 2ρ + 2 (σ + m) apart.
+    pub fn meeting_distance(&self) -> f64 {
+        2.0 * (self.planning_clearance() + self.step_radius)
+    }
+
+    /// σ + m: how far a move leads at most.
+    pub fn longest_step(&self) -> f64 {
+        self.step_radius + self.errors.motion
+    }
+
     /// δ − e: a robot that measures itself within this distance of a place is truly within δ of it.
     pub fn arrival_radius(&self) -> f64 {
         self.service_radius - self.errors.position

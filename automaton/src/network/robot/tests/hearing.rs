@@ -216,6 +216,43 @@ fn a_robot_moves_only_if_it_has_heard_all_that_are_near_in_this_period() {
     assert!(!robot.may_leave_place(), "the roll is not valid any more");
 }
 
+/// A robot that has fallen silent well in range may come nearer unheard. A roll that is called late enough tells
+/// whether it takes part.
+#[test]
+fn a_robot_that_has_fallen_silent_may_have_come_near() {
+    let far = |robot: &Robot| {
+        let settings = &robot.site.settings;
+        settings.meeting_distance() + 10.5 * settings.longest_step()
+    };
+    let may_leave_after = |robot: &mut Robot, periods: u32, called: u32| {
+        robot.hear_roll(&Roll { called: NOW + called, ..Roll::default() });
+        robot.period = NOW + periods;
+        robot.may_leave_place()
+    };
+    let lost = || {
+        let mut robot = robot();
+        robot.hears(beacon(1, east(far(&robot)), redundant(11, 12), &[]));
+        silent_rounds(&mut robot, ROUNDS_TO_BE_HEARD + 1);
+        assert!(hears(&robot).is_empty());
+        robot
+    };
+    let mut robot = lost();
+    assert!(
+        may_leave_after(&mut robot, 10, 9),
+        "it is more than a step farther than where they could meet"
+    );
+    assert!(!may_leave_after(&mut robot, 11, 10));
+    assert!(!may_leave_after(&mut robot, 16, 15), "it may be on its way, and nobody misses it yet");
+    assert!(
+        may_leave_after(&mut robot, 17, 16),
+        "it takes part, or is among those that are absent"
+    );
+    let mut robot = lost();
+    assert!(!may_leave_after(&mut robot, 11, 10));
+    robot.hears(beacon(1, east(far(&robot)), redundant(11, 12), &[]));
+    assert!(may_leave_after(&mut robot, 11, 10), "it is heard");
+}
+
 #[test]
 fn the_holder_of_a_post_is_the_robot_that_has_not_promised_it() {
     let mut robot = robot();
