@@ -65,7 +65,7 @@ impl<'a> Search<'a> {
         let is_usable = |corner: &Point| {
             space.contains(*corner) && avoids(&Segment::new(*corner, *corner), discs)
         };
-        nodes.extend(discs.iter().flat_map(rim).filter(is_usable));
+        nodes.extend(discs.iter().flat_map(|disc| rim(disc, from)).filter(is_usable));
         Search { space, discs, nodes, first_rim }
     }
 
@@ -148,12 +148,14 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Corners of the regular polygon about a disc, turned so that its sides face the axes.
-fn rim(disc: &Disc) -> impl Iterator<Item = Point> {
+/// Corners of the regular polygon about a disc, turned so that one of its sides faces `from`: where that lies
+/// at the disc, the ways round both sides begin there.
+fn rim(disc: &Disc, from: Point) -> impl Iterator<Item = Point> {
     let Disc { center, radius } = *disc;
-    let half = PI / SIDES as f64;
+    let ahead = from - center;
+    let (facing, half) = (ahead.y.atan2(ahead.x), PI / SIDES as f64);
     (0..SIDES).map(move |corner| {
-        let angle = (2 * corner + 1) as f64 * half;
+        let angle = facing + (2 * corner + 1) as f64 * half;
         center + Vector::new(angle.cos(), angle.sin()) * (radius / half.cos())
     })
 }

@@ -1,5 +1,5 @@
-use pleach_continuous::Point;
 use pleach_continuous::geometry::{Disc, FreeSpace, Segment, Workspace};
+use pleach_continuous::{Point, Vector};
 use proptest::prelude::*;
 
 use super::environments::{CLEARANCE, environment, place, ring, space_round_hole};
@@ -62,6 +62,10 @@ fn outside_there_is_no_path() {
     assert_eq!(free_space.distance_to(inside, &free_space.destination(hole)), f64::INFINITY);
 }
 
+fn turned(angle: f64) -> Vector {
+    Vector::new(angle.cos(), angle.sin())
+}
+
 #[test]
 fn detour_follows_an_octagon() {
     let boundary = ring(&[(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (0.0, 2.0)]);
@@ -83,6 +87,18 @@ fn detour_follows_an_octagon() {
     );
     assert!(free_space.detour(from, to, &[disc(0.9, 1.0, 0.4)]).is_some(), "around the start");
     assert!(free_space.detour(from, to, &[disc(1.0, 1.0, 0.4)]).is_some(), "at the start");
+
+    // From the rim of a disc a way begins on the side on which the goal lies, wherever on the rim that is.
+    let round = disc(2.0, 1.0, 0.4);
+    for number in 0..64 {
+        let angle = std::f64::consts::TAU * f64::from(number) / 64.0;
+        let from = round.center + round.radius * turned(angle);
+        for goal in [1.2, -1.2].map(|turn| round.center + 0.45 * turned(angle + turn)) {
+            let way = free_space.detour(from, goal, &[round]).unwrap();
+            let step = way.waypoints[0] - from;
+            assert!(step.dot(&(goal - from)) > 0.0, "from {from} to {goal} by {:?}", way.waypoints);
+        }
+    }
 
     let wall = [disc(2.0, 0.4, 0.4), disc(2.0, 1.0, 0.4), disc(2.0, 1.6, 0.4)];
     assert_eq!(free_space.detour(from, to, &wall), None, "nothing leads through");
@@ -151,13 +167,13 @@ proptest! {
             .map(|center| Disc { center: free_space.nearest(center), radius: radius * CLEARANCE })
             .filter(|disc| !disc.contains(a) && !disc.contains(b))
             .collect();
-        let corners: Vec<Point> = discs.iter().flat_map(plain::octagon).collect();
-        let shortest = |allowed: fn(&[Disc], Point, Point) -> bool| {
-            let allowed = |a, b| allowed(&discs, a, b);
+        let corners: Vec<Point> = discs.iter().flat_map(|disc| plain::octagon(disc, a)).collect();
+        let shortest = |allowed: &dyn Fn(Point, Point) -> bool| {
             plain::shortest(free_space.outline(), &corners, allowed, a, b, tolerance / 4.0)
         };
         // Paths bend at corners of octagons, and may cut the octagons, but not the discs.
-        let (lower, upper) = (shortest(plain::avoids), shortest(plain::avoids_octagons));
+        let lower = shortest(&|from, to| plain::avoids(&discs, from, to));
+        let upper = shortest(&|from, to| plain::avoids_octagons(&discs, a, from, to));
         let length = free_space.detour(a, b, &discs).map_or(f64::INFINITY, |path| path.length);
         let rounding = 40.0 * tolerance;
         prop_assert!(lower - rounding <= length, "{length} {lower}");

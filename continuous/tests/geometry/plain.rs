@@ -84,19 +84,20 @@ pub fn avoids(discs: &[Disc], a: Point, b: Point) -> bool {
     discs.iter().all(|disc| distance(&[(a, b)], disc.center) >= disc.radius * (1.0 - 1e-6))
 }
 
-/// Corners of the octagon about a disc.
-pub fn octagon(disc: &Disc) -> Vec<Point> {
+/// Corners of the octagon about a disc, one side of which faces `from`.
+pub fn octagon(disc: &Disc, from: Point) -> Vec<Point> {
     let reach = disc.radius / (PI / 8.0).cos();
-    let angles = (0..8).map(|k| PI / 8.0 + f64::from(k) * PI / 4.0);
+    let ahead = from - disc.center;
+    let angles = (0..8).map(|k| ahead.y.atan2(ahead.x) + PI / 8.0 + f64::from(k) * PI / 4.0);
     angles.map(|angle| disc.center + reach * Vector::new(angle.cos(), angle.sin())).collect()
 }
 
-/// Whether a segment keeps out of the octagons about all discs, up to a millionth.
-pub fn avoids_octagons(discs: &[Disc], a: Point, b: Point) -> bool {
+/// Whether a segment keeps out of the octagons about all discs, as seen from `from`, up to a millionth.
+pub fn avoids_octagons(discs: &[Disc], from: Point, a: Point, b: Point) -> bool {
     discs.iter().all(|disc| {
         // The part of the segment within all eight sides of a slightly smaller octagon.
         let (mut first, mut last) = (0.0_f64, 1.0_f64);
-        for (corner, next) in edges(&[octagon(disc)]) {
+        for (corner, next) in edges(&[octagon(disc, from)]) {
             let inwards = Vector::new(corner.y - next.y, next.x - corner.x).normalize();
             let depth = |point: Point| inwards.dot(&(point - corner)) - 1e-6 * disc.radius;
             let (from, to) = (depth(a), depth(b));

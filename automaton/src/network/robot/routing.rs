@@ -108,7 +108,8 @@ impl Robot {
             let in_tree = tree.iter().any(|link| link.to == to);
             let known = link_at(&old, to).map(|at| &old[at]);
             let held = known.map_or(HeldFlow::default(), |link| link.held);
-            let is_retiring = reliability < LEAST_USEFUL_RELIABILITY && !in_tree;
+            let at_worst = self.site.link.reliability(neighbour.distance + self.stray());
+            let is_retiring = at_worst < LEAST_USEFUL_RELIABILITY && !in_tree;
             if is_retiring && held.flow == 0.0 || reliability <= 0.0 {
                 continue;
             }

@@ -19,9 +19,10 @@ const WAY_AHEAD: f64 = 4.0;
 const PASSING: f64 = 2.2;
 /// Robots within this many ρ of a mover do not settle: they would close the way again.
 const COURTESY: f64 = 4.0;
-/// Places considered when stepping aside: directions, and multiples of ρ.
+/// Places considered when stepping aside: directions, and how many paces, each of this many ρ.
 const DIRECTIONS: u32 = 16;
-const PACES: u32 = 3;
+const PACES: u32 = 6;
+const PACE: f64 = 0.5;
 /// A place is better only if it is farther from the way by this share of ρ.
 const WORTH_A_STEP: f64 = 0.1;
 
@@ -51,15 +52,22 @@ impl Robot {
         let leash =
             self.site.settings.leash_radius().max((self.position - station.reference).norm());
         let room = |place: Point| asking.distance(place).min(PASSING * self.clearance());
+        // It does not pass the mover: there may be no room for both.
+        let is_away = |step: Vector| step.dot(&(asking.from - self.position)) <= 0.0;
+        let begins = |place: Point| {
+            let way = self.site.free_space.geodesic(self.position, place)?;
+            self.next_corner(&way).map(|corner| corner - self.position)
+        };
         let mut best = (room(self.position) + WORTH_A_STEP * self.clearance(), None);
         for pace in 1..=PACES {
             for direction in 0..DIRECTIONS {
                 let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
-                let step = Vector::new(angle.cos(), angle.sin()) * f64::from(pace);
+                let step = Vector::new(angle.cos(), angle.sin()) * PACE * f64::from(pace);
                 let place = self.position + step * self.clearance();
                 if room(place) > best.0
                     && (place - station.reference).norm() <= leash
-                    && self.site.free_space.sees(self.position, place)
+                    && self.site.free_space.contains(place)
+                    && begins(place).is_some_and(is_away)
                 {
                     best = (room(place), Some(place));
                 }
