@@ -30,17 +30,26 @@ pub struct TaskSummary {
     pub position: [f64; 2],
     /// The control period in which it was serviced, and the robot that did.
     pub serviced: Option<(usize, usize)>,
-    /// The robot that stays close to it now; duties are exchanged, so it may be another one.
+    /// The robot that stays close to it now; duties are exchanged, so it may be another one. None if that has
+    /// stopped, or is not heard.
     pub holder: Option<usize>,
 }
 
 impl TaskSummary {
-    /// By which robot it was serviced, and which holds it now if that is another one.
+    /// By which robot it was serviced, and which holds it now if that is another one, or none.
     pub(crate) fn robots(&self) -> Option<String> {
         let (_, robot) = self.serviced?;
-        let other = self.holder.filter(|holder| *holder != robot);
-        let held = other.map(|holder| format!(", held by robot {holder} at the end"));
-        Some(format!("by robot {robot}{}", held.unwrap_or_default()))
+        let held = match self.holder {
+            Some(holder) if holder == robot => String::new(),
+            Some(holder) => format!(", held by robot {holder} at the end"),
+            None => ", held by none at the end".to_owned(),
+        };
+        Some(format!("by robot {robot}{held}"))
+    }
+
+    /// Whether it has been serviced, and a robot still stays close to it.
+    fn is_serviced(&self) -> bool {
+        self.serviced.is_some() && self.holder.is_some()
     }
 }
 
@@ -117,9 +126,9 @@ impl Summary {
         self.recruits
     }
 
-    /// The number of tasks serviced.
+    /// The number of tasks serviced; one that was left again, since its robot has stopped, does not count.
     pub fn serviced(&self) -> usize {
-        self.tasks.iter().filter(|task| task.serviced.is_some()).count()
+        self.tasks.iter().filter(|task| task.is_serviced()).count()
     }
 
     /// The number of control periods.
@@ -151,6 +160,9 @@ impl Watcher for Summary {
                 }
                 _ => {}
             }
+        }
+        for task in &mut self.tasks {
+            task.holder = None;
         }
         for &(task, robot) in &snapshot.serviced {
             if let Some(task) = self.tasks.get_mut(task) {

@@ -1,8 +1,8 @@
 //! The summary says what happened, between the instants too.
 
-use crate::common::{end, room, show};
+use crate::common::{end, reports, room, show};
 use pleach::automaton::network::KernelTimes;
-use pleach::mission::Completed;
+use pleach::mission::{Completed, Watcher};
 use pleach::summary::Summary;
 use pleach::verify::network::{Extreme, Extremes, Instant};
 use std::time::Duration;
@@ -36,6 +36,19 @@ fn events_are_counted() {
     assert_eq!(summary.recruits(), 1);
     assert_eq!(summary.stationary_points(), 1);
     assert_eq!(summary.tasks()[0].serviced, Some((2, 1)));
+}
+
+/// The robot that has serviced the task stops after the last report.
+#[test]
+fn a_task_whose_robot_has_stopped_does_not_count() {
+    let mut summary = Summary::new(&room());
+    show(&mut summary);
+    assert_eq!(summary.serviced(), 1);
+    let last = reports().pop().expect("there are reports").snapshot;
+    let robot = summary.tasks()[0].holder.expect("it is held");
+    summary.observe(&last.without(vec![robot]), &[]).expect("it writes nothing");
+    assert_eq!((summary.serviced(), summary.tasks()[0].holder), (0, None));
+    assert!(summary.to_string().contains("by robot 1, held by none at the end"), "{summary}");
 }
 
 #[test]

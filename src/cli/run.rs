@@ -112,12 +112,16 @@ pub fn status_of(record: &Record) -> Status {
     Status::of_number(record.status)
 }
 
-/// What is told before the mission: tasks that no robot can service, with which it will end, and what is taken
-/// otherwise than it stands in the file.
+/// What is told before the mission: tasks that no robot can service, with which it will end, what is taken
+/// otherwise than it stands in the file, and what keeps robots from moving where messages are lost.
 pub fn warn_of(run: &Planned) {
     use pleach::automaton::network::scenario::Remark;
     let remarks = run.scenario.remarks();
-    let told = remarks.iter().filter(|remark| !matches!(remark, Remark::ThroughWalls { .. }));
+    let told = remarks.iter().filter(|remark| match remark {
+        Remark::ThroughWalls { .. } => false,
+        Remark::FewRounds { .. } => run.faults.messages,
+        _ => true,
+    });
     for line in remarks::lines(told) {
         output::tell(format_args!("warning: {}: {line}", run.source));
     }

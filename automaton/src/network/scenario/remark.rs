@@ -6,6 +6,7 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::Repair;
 use pleach_continuous::network::LinkReliability;
 
+use super::super::robot::ROUNDS_TO_BE_HEARD;
 use super::buckets::Buckets;
 use super::placement::key_of_repair;
 use super::{KeyPath, ValidScenario};
@@ -38,6 +39,11 @@ pub enum Remark {
         /// All pairs of nodes with R > 0 at the start, but for pairs of access points.
         links: usize,
     },
+    /// A control period has so few rounds that beacons are not repeated as often as they are otherwise.
+    FewRounds {
+        /// How many rounds it has.
+        rounds: usize,
+    },
 }
 
 /// Why no robot can service a task.
@@ -65,6 +71,7 @@ impl Remark {
             Remark::Task { task, .. } => KeyPath::root().key("task").index(*task).key("position"),
             Remark::Outline(repair) => key_of_repair(repair),
             Remark::LongLinks { .. } | Remark::ThroughWalls { .. } => KeyPath::root().key("link"),
+            Remark::FewRounds { .. } => KeyPath::root().key("control").key("rounds_per_period"),
         }
     }
 }
@@ -102,6 +109,11 @@ impl fmt::Display for Remark {
                 "{crossing} of the {links} links at the start cross walls, which the model of \
                  the radio does not see; ranges should be those that hold through walls"
             ),
+            Remark::FewRounds { rounds } => write!(
+                formatter,
+                "{rounds} where {ROUNDS_TO_BE_HEARD} repeat each beacon as often as is useful: with fewer, \
+                 robots seldom move when messages are lost"
+            ),
         }
     }
 }
@@ -121,7 +133,9 @@ impl ValidScenario {
         });
         let (links, crossing) = self.count_links();
         let walls = (crossing > 0).then_some(Remark::ThroughWalls { crossing, links });
-        tasks.chain(outline).chain(long).chain(walls).collect()
+        let rounds = site.settings.rounds_per_period;
+        let few = (rounds < ROUNDS_TO_BE_HEARD).then_some(Remark::FewRounds { rounds });
+        tasks.chain(outline).chain(long).chain(walls).chain(few).collect()
     }
 
     /// Why no robot can service a task at this place, if none can; robots decide alike.
