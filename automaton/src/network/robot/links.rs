@@ -20,12 +20,12 @@ pub struct TreeLink {
 }
 
 impl Robot {
-    /// Its parent in the tree: the node that its duty names or, while that is not heard, the one before. A
-    /// post that is attached to nothing has none.
+    /// Its parent in the tree: the node that its duty names or, while that is not
+    /// heard, the one before.
     pub(super) fn tree_parent(&self) -> Option<NodeId> {
-        let is_detached = self.duty.post().is_some_and(|post| post.parent.is_none());
-        let before = || self.parent.filter(|&it| !is_detached && self.neighbour(it).is_some());
-        self.named_parent().filter(|&parent| parent != self.id).or_else(before)
+        self.named_parent()
+            .filter(|&parent| parent != self.id)
+            .or_else(|| self.parent.filter(|&parent| self.neighbour(parent).is_some()))
     }
 
     /// Stores its parent.

@@ -411,17 +411,3 @@ fn an_access_point_hears_of_whom_a_branch_reports() {
     robot.look_after_place().expect("it goes on");
     assert_eq!((&*robot.below, &*robot.strays), (&*set(&[0]), &*set(&[])));
 }
-
-#[test]
-fn the_parent_in_the_tree_is_the_last_one_unless_the_post_is_attached_to_nothing() {
-    let mut robot = robot();
-    let mut own = fixed(20, 13);
-    robot.holds(own);
-    robot.hears(beacon(1, east(0.5), fixed(13, 14), &[13, 14]));
-    robot.remember_parent();
-    robot.hears(Beacon { offers_made: 1, ..beacon(1, east(0.5), fixed(15, 14), &[15, 14]) });
-    assert_eq!(robot.tree_parent(), Some(1), "nobody is heard that holds the post ahead");
-    own.parent = None;
-    robot.holds(own);
-    assert_eq!(robot.tree_parent(), None);
-}
