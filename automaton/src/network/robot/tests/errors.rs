@@ -284,3 +284,17 @@ fn a_sender_reckons_with_where_its_receiver_may_measure_itself() {
     let anew = full(1.2 + 2.0 * POSITION_ERROR);
     assert!(!objects(anew - 1e-4, 1.2, false) && objects(anew + 1e-4, 1.2, false));
 }
+
+/// A link of which errors could leave too little after a move carries nothing.
+#[test]
+fn links_are_as_reliable_as_errors_leave_them() {
+    let is_used = |away: f64| {
+        let mut robot = unsure();
+        robot.hears(beacon(5, west(away), fixed(13, 14), &[13, 14]));
+        robot.survey_links();
+        !robot.links.is_empty()
+    };
+    let site = Arc::clone(&unsure().site);
+    let limit = site.link.distance_at(0.3) - (2.0 * POSITION_ERROR + MOTION_ERROR);
+    assert!(is_used(limit - 1e-3) && !is_used(limit + 1e-3), "{limit}");
+}
