@@ -1,5 +1,6 @@
 //! What a robot makes of errors of its position and its moves.
 
+use pleach_continuous::network::reliability::LinkReliability as _;
 use pleach_discrete::network::MissionStep;
 
 use super::super::super::duty::{Hop, PathPlace};
