@@ -88,15 +88,22 @@ fn it_steps_aside_as_far_as_it_takes_and_no_farther_than_its_leash() {
     assert!(place.y < short.position.y, "{place}");
 }
 
-/// Beside a mover that goes south there is as much room to the north, but the way there passes the mover.
+/// Along a wall, and as far south as its leash allows, a robot steps aside to the north alone: not past a mover
+/// that comes from there.
 #[test]
 fn it_does_not_pass_the_mover() {
-    let mut robot = posted();
-    let mover = Vector::new(2.0, 0.8) * CLEARANCE;
-    let way = Some(HERE + mover - Vector::new(0.0, CLEARANCE));
-    robot.hears(Beacon { position: HERE + mover, way, ..asking(0.1) });
-    let place = robot.place_aside().expect("there is room to the west");
-    assert!((place - HERE).dot(&mover) <= 0.0, "{place}");
+    let steps_aside = |from_north: f64| {
+        let mut robot = posted();
+        robot.position = Point::new(CLEARANCE + 1e-3, 5.0);
+        robot.holds(fixed(20, 13));
+        robot.position.y -= SERVICE_RADIUS - 0.1 * CLEARANCE;
+        robot.arrival = robot.position;
+        let mover = robot.position + Vector::new(2.0, from_north) * CLEARANCE;
+        let way = Some(mover - Vector::new(0.0, from_north.signum()) * CLEARANCE);
+        robot.hears(Beacon { position: mover, way, ..asking(0.1) });
+        robot.place_aside().is_some()
+    };
+    assert!(steps_aside(-0.8) && !steps_aside(0.8));
 }
 
 #[test]
