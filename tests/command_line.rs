@@ -63,6 +63,17 @@ fn faults_are_asked_for_and_checked() {
 }
 
 #[test]
+fn a_stop_after_the_end_is_told() {
+    let mission = "scenarios/redundant-node.toml";
+    let output =
+        pleach(&["run", mission, "--no-figures", "--stop", "0@40..60", "--stop", "1@5000"]);
+    assert_eq!(output.status.code(), Some(0));
+    let told = said(&output.stderr);
+    assert!(told.contains("robot 1 has not stopped: the mission ends before control period 5000"));
+    assert!(!told.contains("robot 0 has not stopped"), "{told}");
+}
+
+#[test]
 fn a_trace_that_cannot_be_written_ends_with_status_2() {
     let output = pleach(&["run", "scenarios/study-1.toml", "--trace", "no/such/folder/t.jsonl"]);
     assert_eq!(output.status.code(), Some(2));

@@ -18,7 +18,7 @@ pub struct FaultArguments {
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub loss_seed: u64,
     /// Stop a robot in control period FROM: ROBOT@FROM for good, or ROBOT@FROM..TO until period TO, when
-    /// it restarts and has forgotten everything
+    /// it restarts and has forgotten everything; repeat the option for other robots, each of which stops once
     #[arg(long, value_name = "ROBOT@FROM[..TO]")]
     pub stop: Vec<Stop>,
 }

@@ -2,6 +2,7 @@
 
 use super::arguments::RunArguments;
 use super::batch;
+use super::faults::Stop;
 use super::interrupt::Interrupt;
 use super::job::{self, Finished, Outputs};
 use super::output;
@@ -47,6 +48,13 @@ fn run_one(
     let mut progress = Progress::new(&run.scenario, arguments.quiet);
     let finished = job::run(run, &outputs, &mut progress, interrupt)?;
     write_tables(arguments, std::slice::from_ref(&finished.record))?;
+    let periods = finished.summary.periods();
+    for stop in arguments.faults.stop.iter().filter(|stop| stop.from >= periods) {
+        let Stop { robot, from, .. } = stop;
+        output::tell(format_args!(
+            "warning: robot {robot} has not stopped: the mission ends before control period {from}"
+        ));
+    }
     say(arguments, &told(&finished, arguments.trace.as_deref()))?;
     Ok(status_of(&finished.record))
 }
