@@ -14,8 +14,7 @@ const PERIODS: usize = 600;
 /// Control periods for robots that keep larger clearances and shorter links.
 const PERIODS_WITH_ERRORS: usize = 1_200;
 
-/// A mission in a storm without partitions: robots that approach each other while no message gets
-/// through between them cannot know of each other.
+/// A mission in a storm.
 fn storm(name: &str, kind: Kind, seed: u64) -> Verdict {
     storm_for(PERIODS, name, kind, seed)
 }
@@ -24,8 +23,7 @@ fn storm_for(periods: usize, name: &str, kind: Kind, seed: u64) -> Verdict {
     println!("{name}, {}, seed {seed}", kind.name());
     let scenario = shipped(name);
     let scenario = allowing_for(kind, &scenario).expect("there is room for errors");
-    let mut storm = draw(kind, seed, &scenario, DURATION);
-    storm.weather.partitions.clear();
+    let storm = draw(kind, seed, &scenario, DURATION);
     let is_exact = kind.errors(&scenario).are_none();
     let periods = if is_exact { periods } else { PERIODS_WITH_ERRORS };
     ride(&scenario, &storm, periods).expect("nodes go on whatever they receive")
