@@ -59,6 +59,7 @@ impl IdSet {
     }
 
     /// Adds every number of `other`; returns whether any is new.
+    #[inline]
     pub fn merge(&mut self, other: &IdSet) -> bool {
         let mut grown = other.first & !self.first != 0;
         self.first |= other.first;
@@ -84,8 +85,10 @@ impl IdSet {
     }
 
     /// Whether every number of `other` is in the set.
+    #[inline]
     pub fn includes(&self, other: &IdSet) -> bool {
-        other.words().all(|theirs| theirs.bits & !self.word(theirs.at) == 0)
+        other.first & !self.first == 0
+            && other.rest.iter().all(|theirs| theirs.bits & !self.word(theirs.at) == 0)
     }
 
     /// How many numbers there are.

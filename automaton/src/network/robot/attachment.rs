@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, Phase, PostId};
+use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, Phase, Post, PostId};
 
 use crate::automaton::TransitionError;
 use crate::located::Place as _;
@@ -94,11 +94,12 @@ impl Robot {
 
     /// The number of branches attached to `post`.
     pub(super) fn branches_of(&self, post: PostId) -> usize {
-        let posts = || self.children_of(post).filter_map(Neighbour::post);
+        let (primary, others): (Vec<&Post>, Vec<&Post>) =
+            self.children_of(post).filter_map(Neighbour::post).partition(|post| post.is_primary());
         // During a hand-over two robots hold the same post.
         let fixed: BTreeSet<PostId> =
-            posts().filter(|post| post.is_fixed()).map(|post| post.id).collect();
-        fixed.len() + usize::from(posts().any(|post| post.is_primary()))
+            others.iter().filter(|post| post.is_fixed()).map(|post| post.id).collect();
+        fixed.len() + usize::from(!primary.is_empty())
     }
 
     pub(super) fn anchor(&self) -> Option<Anchor> {

@@ -9,7 +9,6 @@ use super::super::beacon::{Announced, Announcement, Notice};
 use super::super::mission::{Advance, LeaderElection};
 use super::super::record::MissionEvent;
 use super::Robot;
-use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
 
 /// Distances in bids are compared in units of this share of the full range l: finer differences
@@ -115,13 +114,14 @@ impl Robot {
     /// The newest announcement by which robots go that it hears, if it does not go by it yet. Their notices come
     /// first: by these it gives up a task that has been announced again without it.
     pub(super) fn newer_announcement(&self) -> Option<&Announced> {
-        let own_notice = self.notice_id();
-        let is_known = |it: &&Neighbour| !it.beacon.bulletin.id().is_newer_than(own_notice);
-        let heard = self.neighbours.iter().filter(is_known);
-        let heard = heard.filter_map(|known| known.beacon.announced.as_ref());
         let own = self.announced.as_ref().map(|(id, _)| *id);
-        let is_newer = |(id, _): &&Announced| Some(*id) > own && id.epoch() >= self.epoch;
-        heard.filter(is_newer).max_by_key(|(id, _)| *id)
+        let own_notice = self.notice_id();
+        let newer = self.neighbours.iter().filter_map(|known| {
+            let announced = known.beacon.announced.as_ref();
+            let announced = announced.filter(|(id, _)| Some(*id) > own && id.epoch() >= self.epoch);
+            announced.filter(|_| !known.beacon.bulletin.id().is_newer_than(own_notice))
+        });
+        newer.max_by_key(|(id, _)| *id)
     }
 
     /// The winner of the election that this robot takes part in, as far as it knows.

@@ -16,6 +16,8 @@
 //! A grant says until when it holds, which is never longer than the flows of the receiver last that carry it:
 //! where grants are not renewed, flows end at those who send first.
 
+use std::iter::successors;
+
 use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Spare, holds, renewed};
 use serde::{Deserialize, Serialize};
@@ -109,7 +111,24 @@ pub(super) struct Reservation {
 
 type Out = Outputs<Message, MissionEvent>;
 
+impl Reservation {
+    /// Whether its request waits for an answer, or for more than has been granted.
+    fn is_unmet(&self) -> bool {
+        !self.is_answered || self.wanted > self.flow + SAME_FLOW
+    }
+}
+
 impl HeldFlow {
+    /// Whether packets flow, or shall. Of other links nothing is raised, lowered or lasting.
+    const fn is_in_use(&self) -> bool {
+        self.flow > 0.0 || self.wanted > 0.0
+    }
+
+    /// Whether the flow is to be raised or lowered.
+    fn is_to_change(&self) -> bool {
+        self.allowed() > self.flow + SAME_FLOW || self.wanted < self.flow - SAME_FLOW
+    }
+
     /// What the plan and the receiver's grant allow.
     fn allowed(&self) -> f64 {
         self.wanted.min(self.granted)
@@ -140,6 +159,10 @@ impl HeldFlow {
     }
 }
 
+fn links_in_use(links: &mut [RouteLink]) -> impl Iterator<Item = &mut RouteLink> {
+    links.iter_mut().filter(|link| link.held.is_in_use())
+}
+
 impl Robot {
     /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
     pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
@@ -161,8 +184,7 @@ impl Robot {
             if !holds(held.until, period) {
                 (held.flow, held.granted) = (0.0, 0.0);
             }
-            let is_in_use = held.flow > 0.0 || held.wanted > 0.0;
-            held.is_due = link.to < robots && (is_in_use || held.is_open);
+            held.is_due = link.to < robots && (held.is_in_use() || held.is_open);
         }
         self.settle_flows(outputs);
     }
@@ -240,30 +262,12 @@ impl Robot {
         }
     }
 
-    /// Raises flows as they are granted, lowers others that are not needed, makes the requests that
-    /// are due, gives back what it does not use, and grants what it can forward. Every request gets an
-    /// answer.
+    /// Raises flows as they are granted and lowers others that are not needed, makes the requests that are
+    /// due, gives back what it does not use, and grants what it can forward. Every request gets an answer.
     fn settle_flows(&mut self, outputs: &mut Out) {
         self.has_flow_news = false;
-        let needed = self.granted_to_others() + self.rate;
-        let promised = self.promised_until();
-        for _ in 0..PASSES {
-            let mut change = 0.0;
-            let mut room = 1.0 - self.links.iter().map(|link| link.load()).sum::<f64>();
-            for link in &mut self.links {
-                let more = link.held.raise(room.max(0.0) * link.reliability);
-                room -= more / link.reliability;
-                change += more;
-            }
-            let mut spare = self.lasting_outflow(promised) - needed;
-            for link in &mut self.links {
-                let less = link.held.lower(spare.max(0.0));
-                spare -= less;
-                change += less;
-            }
-            if change == 0.0 {
-                break;
-            }
+        if self.links_in_use().any(|link| link.held.is_to_change()) {
+            self.change_flows();
         }
         for at in 0..self.links.len() {
             let held = &mut self.links[at].held;
@@ -276,12 +280,39 @@ impl Robot {
                 self.ask(at, outputs);
             }
         }
-        self.grant_flows(needed, promised, outputs);
+        if self.reservations.iter().any(Reservation::is_unmet) {
+            self.grant_flows(outputs);
+        }
+    }
+
+    /// Raises flows as far as they are granted and there is time to send, and lowers others as far as the rest
+    /// carries what it has granted, for as long.
+    fn change_flows(&mut self) {
+        let (needed, promised) = (self.needed_outflow(), self.promised_until());
+        for _ in 0..PASSES {
+            let mut change = 0.0;
+            let mut room = 1.0 - self.links_in_use().map(RouteLink::load).sum::<f64>();
+            for link in links_in_use(&mut self.links) {
+                let more = link.held.raise(room.max(0.0) * link.reliability);
+                room -= more / link.reliability;
+                change += more;
+            }
+            let mut spare = self.lasting_outflow(promised) - needed;
+            for link in links_in_use(&mut self.links) {
+                let less = link.held.lower(spare.max(0.0));
+                spare -= less;
+                change += less;
+            }
+            if change == 0.0 {
+                break;
+            }
+        }
     }
 
     /// Answers requests: grants more as far as its own flows carry that for as long, and all that it has
     /// granted for as long as these last.
-    fn grant_flows(&mut self, needed: f64, promised: u32, outputs: &mut Out) {
+    fn grant_flows(&mut self, outputs: &mut Out) {
+        let (needed, promised) = (self.needed_outflow(), self.promised_until());
         let wanted = self.reservations.iter().map(|kept| (kept.wanted - kept.flow).max(0.0));
         let carried = (needed + wanted.sum::<f64>()).min(self.held_outflow());
         let until = self.lasts_until(carried).min(self.period.saturating_add(self.lease()));
@@ -308,22 +339,35 @@ impl Robot {
         LEASE.saturating_add(self.longest_wait() as u32)
     }
 
+    fn links_in_use(&self) -> impl Iterator<Item = &RouteLink> {
+        self.links.iter().filter(|link| link.held.is_in_use())
+    }
+
+    /// What its own flows have to carry: its rate and what others may send.
+    fn needed_outflow(&self) -> f64 {
+        self.granted_to_others() + self.rate
+    }
+
     fn held_outflow(&self) -> f64 {
-        self.links.iter().map(|link| link.held.flow).sum()
+        self.links_in_use().map(|link| link.held.flow).sum()
     }
 
     /// The flows that last up to this control period, even if no grant is renewed.
     fn lasting_outflow(&self, period: u32) -> f64 {
-        let lasting = self.links.iter().filter(|link| holds(link.held.until, period));
+        let lasting = self.links_in_use().filter(|link| holds(link.held.until, period));
         lasting.map(|link| link.held.flow).sum()
     }
 
     /// The last control period up to which flows last that carry this much.
     fn lasts_until(&self, carried: f64) -> u32 {
-        let ends = self.links.iter().filter(|link| link.held.flow > 0.0);
-        let ends = ends.map(|link| link.held.until);
+        let latest_end = |until: u32| {
+            let ends = self.links_in_use().filter(|link| link.held.flow > 0.0);
+            ends.map(|link| link.held.until).filter(|&end| end <= until).max()
+        };
+        let mut ends =
+            successors(latest_end(u32::MAX), |end| end.checked_sub(1).and_then(latest_end));
         let lasts = |&end: &u32| self.lasting_outflow(end) >= carried - SAME_FLOW;
-        ends.filter(lasts).max().unwrap_or(self.period)
+        ends.find(lasts).unwrap_or(self.period)
     }
 
     /// The last control period for which it has granted a flow; what it grants more may be used as long.
