@@ -98,9 +98,14 @@ impl<'a> LabelPlaces<'a> {
                 (area, gap + rank as f64 * 0.5)
             })
         });
-        let best = candidates
-            .map(|(area, preference)| (self.cost(&area) + preference, area))
-            .min_by(|one, other| one.0.total_cmp(&other.0));
+        let mut best: Option<(f64, Area)> = None;
+        for (area, preference) in candidates {
+            // No place costs less than nothing.
+            if best.is_none_or(|(least, _)| preference < least) {
+                let cost = self.cost(&area) + preference;
+                best = best.filter(|&(least, _)| least <= cost).or(Some((cost, area)));
+            }
+        }
         let Some((_, area)) = best else { return mark };
         self.taken.push(area);
         [(area.low[0] + area.high[0]) / 2.0, area.high[1] - size * 0.08]

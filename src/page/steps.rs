@@ -131,18 +131,27 @@ impl Links {
 
 /// The coordinates of a list of points, two that are no numbers for each point that is missing.
 fn optional_points(points: &Value) -> Vec<f64> {
-    let coordinates = |point: &Value| match point {
-        Value::Null => vec![f64::NAN; 2],
-        point => numbers(point),
-    };
-    points.as_array().into_iter().flatten().flat_map(coordinates).collect()
+    let mut coordinates = Vec::new();
+    for point in points.as_array().into_iter().flatten() {
+        match point {
+            Value::Null => coordinates.extend([f64::NAN; 2]),
+            point => gather(point, &mut coordinates),
+        }
+    }
+    coordinates
 }
 
-/// The numbers of a list, those of points one after the other. JSON writes what is not a
-/// number as `null`.
+/// The numbers of a list, those of points one after the other.
 fn numbers(value: &Value) -> Vec<f64> {
+    let mut numbers = Vec::new();
+    gather(value, &mut numbers);
+    numbers
+}
+
+/// JSON writes what is not a number as `null`.
+fn gather(value: &Value, numbers: &mut Vec<f64>) {
     match value {
-        Value::Array(entries) => entries.iter().flat_map(numbers).collect(),
-        other => vec![other.as_f64().unwrap_or(f64::NAN)],
+        Value::Array(entries) => entries.iter().for_each(|entry| gather(entry, numbers)),
+        other => numbers.push(other.as_f64().unwrap_or(f64::NAN)),
     }
 }

@@ -159,10 +159,6 @@ impl HeldFlow {
     }
 }
 
-fn links_in_use(links: &mut [RouteLink]) -> impl Iterator<Item = &mut RouteLink> {
-    links.iter_mut().filter(|link| link.held.is_in_use())
-}
-
 impl Robot {
     /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
     pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
@@ -289,16 +285,19 @@ impl Robot {
     /// carries what it has granted, for as long.
     fn change_flows(&mut self) {
         let (needed, promised) = (self.needed_outflow(), self.promised_until());
+        let in_use = self.links.iter_mut().filter(|link| link.held.is_in_use());
+        let mut in_use: Vec<&mut RouteLink> = in_use.collect();
         for _ in 0..PASSES {
             let mut change = 0.0;
-            let mut room = 1.0 - self.links_in_use().map(RouteLink::load).sum::<f64>();
-            for link in links_in_use(&mut self.links) {
+            let mut room = 1.0 - in_use.iter().map(|link| link.load()).sum::<f64>();
+            for link in &mut in_use {
                 let more = link.held.raise(room.max(0.0) * link.reliability);
                 room -= more / link.reliability;
                 change += more;
             }
-            let mut spare = self.lasting_outflow(promised) - needed;
-            for link in links_in_use(&mut self.links) {
+            let lasting = in_use.iter().filter(|link| holds(link.held.until, promised));
+            let mut spare = lasting.map(|link| link.held.flow).sum::<f64>() - needed;
+            for link in &mut in_use {
                 let less = link.held.lower(spare.max(0.0));
                 spare -= less;
                 change += less;

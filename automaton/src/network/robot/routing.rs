@@ -99,7 +99,8 @@ impl Robot {
     pub(super) fn survey_links(&mut self) {
         (self.has_no_reserve, self.has_shortage_news) = (false, false);
         (self.has_untold_flows, self.is_unsettled) = (true, true);
-        let old = std::mem::take(&mut self.links);
+        let links = Vec::with_capacity(self.neighbours.len());
+        let old = std::mem::replace(&mut self.links, links);
         let tree = self.tree_links();
         let aversion = self.site.settings.slope_aversion;
         for neighbour in &self.neighbours {
