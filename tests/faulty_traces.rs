@@ -103,7 +103,7 @@ fn last_step(lines: &mut [Value]) -> &mut Value {
     lines.iter_mut().rev().find(is_step).unwrap()
 }
 
-const SPOILS: [Spoil; 9] = [
+const SPOILS: [Spoil; 10] = [
     (
         "a robot leaps",
         |lines| {
@@ -156,6 +156,14 @@ const SPOILS: [Spoil; 9] = [
         Property::Outcome,
     ),
     (
+        "the mission is given up, and all tasks are serviced",
+        |lines| {
+            let end = lines.last_mut().unwrap();
+            (end["outcome"], end["task"]) = (json!("blocked"), json!(0));
+        },
+        Property::Outcome,
+    ),
+    (
         "a control period is left out",
         |lines| lines.retain(|line| line["k"] != 20),
         Property::Record,
@@ -177,6 +185,16 @@ fn spoiled_traces_with_losses_are_refused() {
             Verdict::Sound { .. } => panic!("{name}: it is judged sound"),
         }
     }
+}
+
+#[test]
+fn a_task_is_announced_when_those_before_it_have_been_serviced() {
+    let mut lines = trace_of("leaf-leader", &lossy());
+    assert!(matches!(verdict(&lines), Verdict::Sound { .. }));
+    lines.retain(|line| line["event"] != "task_serviced" || line["task"] != 1);
+    let Verdict::Violated(violation) = verdict(&lines) else { panic!("it is judged sound") };
+    assert_eq!(violation.property, Property::Events);
+    assert!(violation.to_string().contains("task 1 has not been serviced"), "{violation}");
 }
 
 #[test]

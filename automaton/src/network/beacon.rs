@@ -236,6 +236,7 @@ impl Beacon {
     }
 
     /// Adds the robots that have forgotten what became of an announcement, if the sender goes by the same one.
+    #[inline]
     pub(super) fn tell_forgetful(&self, own: Option<&Announced>, known: &mut Arc<IdSet>) {
         let goes_by = |announced: Option<&Announced>| announced.map(|(id, _)| *id);
         if !known.includes(&self.forgetful) && goes_by(self.announced.as_ref()) == goes_by(own) {

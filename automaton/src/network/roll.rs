@@ -120,6 +120,7 @@ impl Absent {
 
 impl Roll {
     /// Takes over `heard` if it was called later; returns whether other robots are absent now.
+    #[inline]
     pub fn merge(&mut self, heard: &Roll) -> bool {
         if heard.called <= self.called {
             return false;

@@ -71,6 +71,7 @@ impl Agreement {
     }
 
     /// Takes the maximum with what a neighbour sent.
+    #[inline]
     pub fn merge(&mut self, heard: &Agreement) {
         if heard.id == self.id {
             self.voted.merge(&heard.voted);

@@ -285,8 +285,8 @@ impl Robot {
     /// carries what it has granted, for as long.
     fn change_flows(&mut self) {
         let (needed, promised) = (self.needed_outflow(), self.promised_until());
-        let in_use = self.links.iter_mut().filter(|link| link.held.is_in_use());
-        let mut in_use: Vec<&mut RouteLink> = in_use.collect();
+        let mut in_use: Vec<&mut RouteLink> = Vec::with_capacity(self.links.len());
+        in_use.extend(self.links.iter_mut().filter(|link| link.held.is_in_use()));
         for _ in 0..PASSES {
             let mut change = 0.0;
             let mut room = 1.0 - in_use.iter().map(|link| link.load()).sum::<f64>();

@@ -19,8 +19,9 @@ use crate::network::{instant, link};
 /// What it holds a record against is what no fault breaks: distances between robots and to walls, the
 /// length of steps, shares, loads, the length of links of the tree, and, as long as all nodes run,
 /// that no robot is sent more than it forwards. Of events it checks that robots are at the tasks that
-/// they service, and of the outcome that all tasks have been serviced where it says so. What nodes
-/// know of each other may differ, and is not compared.
+/// they service, and that a task is announced when those before it have been serviced; of the outcome, that all
+/// tasks have been serviced where it says so, and, as long as all nodes run, that not all of them have where a
+/// mission is given up. What nodes know of each other may differ, and is not compared.
 ///
 /// Nodes that do not run or are not heard ([`Snapshot::absent`]) are bodies, and nothing else.
 #[derive(Clone, Debug)]
@@ -32,6 +33,8 @@ pub struct Safety {
     /// Whether a node has been absent: what flowed there is lost.
     has_lost_nodes: bool,
     serviced: BTreeSet<usize>,
+    /// The task that has been announced last, until it is serviced.
+    pursued: Option<usize>,
     extremes: Extremes,
 }
 
@@ -45,6 +48,7 @@ impl Safety {
             previous: None,
             has_lost_nodes: false,
             serviced: BTreeSet::new(),
+            pursued: None,
             extremes: Extremes::default(),
         }
     }
@@ -67,12 +71,41 @@ impl Safety {
         self.observe_instant(snapshot)?;
         for event in events {
             claims::names_exist(event, &self.limits).map_err(told)?;
-            if let MissionEvent::TaskServiced { task, robot } = *event {
-                claims::is_at_task(task, robot, snapshot, &self.limits).map_err(told)?;
+            self.enter(event, snapshot).map_err(told)?;
+        }
+        self.announcements_follow(events).map_err(told)?;
+        self.previous = Some(snapshot.clone());
+        Ok(())
+    }
+
+    fn enter(&mut self, event: &MissionEvent, snapshot: &Snapshot) -> Result<(), Dispute> {
+        match *event {
+            MissionEvent::TaskAnnounced { task } | MissionEvent::TaskReannounced { task, .. } => {
+                self.pursued = Some(task);
+            }
+            MissionEvent::TaskServiced { task, robot } => {
+                claims::is_at_task(task, robot, snapshot, &self.limits)?;
                 self.serviced.insert(task);
+                self.pursued = self.pursued.filter(|&pursued| pursued != task);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Tasks are announced one after another. Nodes tell the events of a control period in no order.
+    fn announcements_follow(&self, events: &[MissionEvent]) -> Result<(), Dispute> {
+        let announced = events.iter().filter_map(|event| match *event {
+            MissionEvent::TaskAnnounced { task } => Some(task),
+            _ => None,
+        });
+        for task in announced {
+            if let Some(before) = (0..task).find(|before| !self.serviced.contains(before)) {
+                let sentence =
+                    format!("task {task} is announced, and task {before} has not been serviced");
+                return Err(Dispute::of(Property::Events, &[], sentence));
             }
         }
-        self.previous = Some(snapshot.clone());
         Ok(())
     }
 
@@ -107,10 +140,20 @@ impl Safety {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
         let last = self.previous.as_ref().map(|snapshot| snapshot.step);
         let counts = (self.serviced.len(), self.limits.tasks().len());
-        match self.clock.contradiction(end, last, counts) {
+        match self.clock.contradiction(end, last, counts).or_else(|| self.needless_end(end)) {
             None => Ok(()),
             Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),
         }
+    }
+
+    /// A mission is given up over a task. Where nodes stop or are cut off, the one that gives it up need not know
+    /// that it has been serviced.
+    fn needless_end(&self, end: &End) -> Option<String> {
+        let all_run = !self.faults.nodes && !self.has_lost_nodes;
+        let is_done = self.serviced.len() == self.limits.tasks().len() && self.pursued.is_none();
+        let is_needless = end.outcome.is_given_up() && all_run && is_done;
+        is_needless
+            .then(|| format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
     }
 
     /// How near the mission has come to its bounds so far.
