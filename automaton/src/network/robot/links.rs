@@ -4,7 +4,7 @@
 //! robots then stands for them: going up the tree each is attached to the next, going down each is
 //! attached to the one before, and the break points at both ends hold the chain.
 
-use pleach_discrete::network::{Anchor, NodeId};
+use pleach_discrete::network::{Anchor, NodeId, PostId};
 
 use super::super::duty::{Duty, Shifting};
 use super::Robot;
@@ -114,11 +114,16 @@ impl Robot {
         Some(self.site.robots + nearest)
     }
 
-    /// The robot of the chain that stands for a post whose holder has left it.
-    fn stand_in_for(&self, post: pleach_discrete::network::PostId) -> Option<NodeId> {
+    /// The robot of the chain that stands for a post whose holder has left it. The first post of every
+    /// subgroup but the first has been taken by the one before: if its holder is not heard, nobody else stands
+    /// for it.
+    fn stand_in_for(&self, post: PostId) -> Option<NodeId> {
         let shift = self.mission.shift()?;
         let (path, active) = (&shift.path, shift.active()?);
         let place = path.place_of(post)?;
+        if place == active.first && shift.arrived > 0 {
+            return None;
+        }
         match path.descends(active.first) {
             true => self.robot_at(place),
             false => self.robot_at(place.checked_sub(1)?),

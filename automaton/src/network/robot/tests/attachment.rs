@@ -2,7 +2,7 @@
 
 use pleach_discrete::network::{Anchor, IdSet, PostId, Role};
 
-use super::super::super::duty::Waiting;
+use super::super::super::duty::{Hop, PathPlace, Waiting};
 use super::super::attachment::PATIENCE_WITH_UNUSED_POSTS;
 use super::*;
 
@@ -155,6 +155,31 @@ fn while_a_path_is_sought_only_robots_without_a_parent_look_for_one() {
     attached.hears(heard());
     attached.keep_place().expect("it goes on");
     assert_eq!(attached.desired_parent, None);
+}
+
+/// The second subgroup of Σ has left the posts 11 and 12, of which the first has taken post 11.
+#[test]
+fn nobody_stands_for_a_post_that_the_subgroup_before_has_taken() {
+    let hop = |robot: usize, post: Post| Hop {
+        robot,
+        post,
+        place: PathPlace { reference: HERE, position: HERE },
+        crossing: Vec::new(),
+    };
+    let posts = [redundant(10, 11), fixed(11, 20), fixed(12, 11), fixed(13, 12)];
+    let hops = posts.into_iter().zip(1..).map(|(post, robot)| hop(robot, post)).collect();
+    let path = Arc::new(Path { hops, releases_leader: false });
+    let subgroups = pleach_discrete::network::path::subgroups(&[0, 1, 3]).collect();
+    let mut robot = robot();
+    robot.mission = Current::new(Mission::Shift(Shift { path, subgroups, arrived: 1 }));
+    for place in [1, 2] {
+        let leaves = Duty::Shifting(Shifting { place, left: None });
+        robot.hears(Beacon { duty: Some(leaves), ..Beacon::silent(place + 1, east(0.5)) });
+    }
+    robot.holds(redundant(0, 12));
+    assert_eq!(robot.named_parent(), Some(3), "robot 3 leaves post 12, and stands for it meanwhile");
+    robot.holds(redundant(0, 11));
+    assert_eq!(robot.named_parent(), None, "robot 1 holds post 11, and is not heard");
 }
 
 /// Robot 0 holds a fixed post whose parent, post 21, has had no holder for `periods` control periods.
