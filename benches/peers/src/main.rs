@@ -9,6 +9,12 @@
 //! the run; the times themselves, which depend on the machine, go to the standard error.
 //!
 //! ```sh
+//! cargo run --release --manifest-path benches/peers/Cargo.toml -- ways
+//! ```
+//!
+//! This prints the table of shortest ways alone.
+//!
+//! ```sh
 //! cargo run --release --manifest-path benches/peers/Cargo.toml -- one orbit run 1e-9 100
 //! cargo run --release --manifest-path benches/peers/Cargo.toml -- one bounces 1000 1
 //! ```
@@ -21,6 +27,7 @@ mod events;
 mod problems;
 mod report;
 mod solvers;
+mod ways;
 
 use std::hint::black_box;
 use std::io;
@@ -34,6 +41,12 @@ use solvers::tolerance_for;
 fn main() -> io::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    if let ["ways"] = arguments[..] {
+        let mut report = Report::default();
+        ways::all(&mut report);
+        print!("{report}");
+        return Ok(());
+    }
     if let ["one", rest @ ..] = &arguments[..] {
         return one(rest).ok_or_else(|| io::Error::other("one NAME [WAY] NUMBER TIMES"));
     }
@@ -51,6 +64,7 @@ fn main() -> io::Result<()> {
     compare(&chain(), &mut report);
     compare(&orbit(), &mut report);
     events::all(&mut report);
+    ways::all(&mut report);
     print!("{report}");
     arguments.first().map_or(Ok(()), |document| report.put_into(Path::new(document)))
 }
