@@ -5,12 +5,11 @@
 
 use crate::floor_plans::{Family, scenario};
 use crate::generated::{keep_up_to_date, read};
-use crate::missions::{Noted, shipped, shipped_names, valid};
+use crate::missions::{Acts, counted, shipped, shipped_mission, shipped_names, valid};
 use crate::stressed::stressed_scenarios;
 use pleach::automaton::Executor;
+use pleach::automaton::network::NamedRow;
 use pleach::automaton::network::scenario::{RoutingMethod, ValidScenario};
-use pleach::automaton::network::{NamedRow, Network, Site};
-use pleach::mission;
 use pleach::verify::network::storm::{Kind, draw, network_on};
 use pleach_exploration::network::QUICK;
 use rayon::prelude::*;
@@ -62,67 +61,29 @@ const REASONS: &[([&str; 4], &str)] = &[
     (["user", "", "", ""], "the message from the access point is late or repeated"),
 ];
 
-/// What acts in missions: how many they are, and in how many of them each row is taken and each kind of
-/// message heard.
-#[derive(Default)]
-struct Acts {
-    missions: usize,
-    rows: BTreeMap<NamedRow, usize>,
-    heard: BTreeMap<&'static str, usize>,
+/// What acts in the shipped scenarios.
+fn in_shipped() -> Acts {
+    let names = shipped_names();
+    names.par_iter().map(|name| shipped_mission(name).1.clone()).reduce(Acts::default, Acts::and)
 }
 
-impl Acts {
-    fn of(scenarios: impl Iterator<Item = ValidScenario> + Send) -> Self {
-        let in_each = scenarios.par_bridge().map(|scenario| {
-            let site = counted(&scenario);
-            let medium = Noted::new(&site);
-            let mut network = Network::with_medium(&scenario, Arc::clone(&site), medium).unwrap();
-            mission::run_network(&scenario, &mut network, &mut []).unwrap();
-            Acts::in_one(&site, network.medium().counts())
-        });
-        in_each.reduce(Acts::default, Acts::and)
-    }
-
-    fn in_storms() -> Self {
-        let in_each = STORMS.par_iter().map(|&(name, kind, seed)| {
-            let scenario = valid(shipped(name));
-            let site = counted(&scenario);
-            let storm = draw(kind, seed, &scenario, DURATION_OF_STORMS);
-            let mut network = network_on(Arc::clone(&site), &scenario, &storm).unwrap();
-            let executor = Executor::new(HORIZON_OF_STORMS, 1_000_000).unwrap();
-            executor.run(&mut network, &mut ()).unwrap();
-            Acts::in_one(&site, &BTreeMap::new())
-        });
-        in_each.reduce(Acts::default, Acts::and)
-    }
-
-    /// What has acted in one mission.
-    fn in_one(site: &Site, heard: &BTreeMap<&'static str, u64>) -> Self {
-        let mut acts = Acts { missions: 1, ..Acts::default() };
-        for (row, times) in site.automata.taken() {
-            *acts.rows.entry(row).or_default() += usize::from(times > 0);
-        }
-        acts.heard.extend(heard.keys().map(|&kind| (kind, 1)));
-        acts
-    }
-
-    fn and(mut self, other: Acts) -> Self {
-        self.missions += other.missions;
-        for (row, times) in other.rows {
-            *self.rows.entry(row).or_default() += times;
-        }
-        for (kind, times) in other.heard {
-            *self.heard.entry(kind).or_default() += times;
-        }
-        self
-    }
+/// What acts in these.
+fn in_missions_of(scenarios: impl Iterator<Item = ValidScenario> + Send) -> Acts {
+    let in_each = scenarios.par_bridge().map(|scenario| Acts::in_mission(&scenario, &mut []).1);
+    in_each.reduce(Acts::default, Acts::and)
 }
 
-/// The site of a scenario, with automata that count.
-fn counted(scenario: &ValidScenario) -> Arc<Site> {
-    let mut site = Site::new(scenario).unwrap();
-    site.automata = site.automata.counted();
-    Arc::new(site)
+fn in_storms() -> Acts {
+    let in_each = STORMS.par_iter().map(|&(name, kind, seed)| {
+        let scenario = valid(shipped(name));
+        let site = counted(&scenario);
+        let storm = draw(kind, seed, &scenario, DURATION_OF_STORMS);
+        let mut network = network_on(Arc::clone(&site), &scenario, &storm).unwrap();
+        let executor = Executor::new(HORIZON_OF_STORMS, 1_000_000).unwrap();
+        executor.run(&mut network, &mut ()).unwrap();
+        Acts::in_one(&site, &BTreeMap::new())
+    });
+    in_each.reduce(Acts::default, Acts::and)
 }
 
 /// Storms in which robots stop, come back, join late and lose what they say.
@@ -143,10 +104,6 @@ const STORMS: &[(&str, Kind, u64)] = &[
 ];
 const DURATION_OF_STORMS: f64 = 300.0;
 const HORIZON_OF_STORMS: f64 = 900.0;
-
-fn shipped_scenarios() -> impl Iterator<Item = ValidScenario> {
-    shipped_names().into_iter().map(|name| valid(shipped(&name)))
-}
 
 /// Random missions, some under stress, one with routes by ADAL, one with rates that links cannot carry,
 /// and one without a task.
@@ -181,8 +138,8 @@ fn reason(row: &NamedRow) -> Option<&'static str> {
 
 #[test]
 fn every_row_is_taken_or_has_a_reason() {
-    let in_scenarios = Acts::of(shipped_scenarios());
-    let (in_others, in_storms) = (Acts::of(drawn_scenarios()), Acts::in_storms());
+    let in_scenarios = in_shipped();
+    let (in_others, in_storms) = (in_missions_of(drawn_scenarios()), in_storms());
     let (configurations, in_explored) = explored();
     let mut page = format!(
         "<!-- Generated: PLEACH_UPDATE_DOCS=1 cargo test --test it coverage -->\n\n\
