@@ -31,7 +31,8 @@ fn all_met(campaigns: &[Campaign]) -> Findings {
 #[test]
 fn everything_holds_in_every_state_of_the_quick_campaigns() {
     let findings = all_met(QUICK);
-    let rows = findings.rows.iter().map(|(row, configurations)| format!("{configurations} {row}\n"));
+    let rows =
+        findings.rows.iter().map(|(row, configurations)| format!("{configurations} {row}\n"));
     keep_up_to_date("tests/rows.txt", &rows.collect::<String>(), "campaigns");
 }
 
