@@ -1,7 +1,8 @@
 //! Which rows of their tables the nodes take, and what they say to each other: in the shipped scenarios,
 //! in other missions, in storms, and where everything that can happen to a few robots is explored.
 //!
-//! `PLEACH_UPDATE_DOCS=1 cargo test --test it coverage` writes the page anew.
+//! `PLEACH_UPDATE_DOCS=1 cargo test --test it coverage` writes the page anew, after
+//! `PLEACH_UPDATE_DOCS=1 cargo test -p pleach-exploration --test it campaigns` has written what is explored.
 
 use crate::floor_plans::{Family, scenario};
 use crate::generated::{keep_up_to_date, read};
