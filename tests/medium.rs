@@ -2,7 +2,7 @@
 
 use crate::missions::{
     Arrival, AskedTwice, Filtered, Mission, Period, Written, network_over, run, run_over,
-    run_unmonitored, shipped, valid,
+    run_unmonitored, shipped, shipped_mission, valid,
 };
 use pleach::automaton::network::Radio;
 use pleach::automaton::network::record::{Faults, MissionEvent as Event, Outcome};
@@ -13,11 +13,9 @@ use pleach::discrete::network::activity::may_follow;
 use pleach::verify::network::Referee;
 use std::cell::Cell;
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
 
 fn study_one() -> &'static Mission {
-    static MISSION: OnceLock<Mission> = OnceLock::new();
-    MISSION.get_or_init(|| run(shipped("study-1")))
+    &shipped_mission("study-1").0
 }
 
 // ---- Messages go over links --------------------------------------------------------------------

@@ -1,6 +1,6 @@
 //! Every mission ends, with an outcome that says what happened.
 
-use crate::missions::{Arrival, Filtered, Mission, run, run_over, shipped};
+use crate::missions::{Arrival, Filtered, Mission, run, run_over, shipped, shipped_mission};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Route};
 use pleach::automaton::network::scenario::{
     AccessPoint, Control, LinkModel, LinkRanges, RobotStart, Scenario, Task, WorkspaceOutline,
@@ -88,7 +88,7 @@ fn a_task_farther_from_the_free_space_is_unreachable() {
 
 #[test]
 fn a_task_in_another_component_is_unreachable() {
-    assert_unserviced(&run(shipped("unreachable")), Outcome::UnreachableTask, 1);
+    assert_unserviced(&shipped_mission("unreachable").0, Outcome::UnreachableTask, 1);
 }
 
 /// What was serviced before stays serviced, and what comes after an impossible task is not tried.

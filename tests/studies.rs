@@ -1,7 +1,7 @@
 //! The shipped scenarios as whole missions: how each ends, the story it was made to tell, and
 //! what an oracle that knows nothing of the monitor reads out of its trace.
 
-use crate::missions::{Mission, Period, run, shipped, shipped_names};
+use crate::missions::{Mission, Period, shipped_mission, shipped_names};
 use crate::oracle::audit;
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::Settings;
@@ -11,7 +11,6 @@ use pleach::mission::Watcher;
 use pleach::trace::{TraceReader, TraceWriter};
 use pleach::verify::network::SLACK;
 use std::collections::BTreeSet;
-use std::sync::OnceLock;
 
 /// Every shipped scenario with its outcome and the number of tasks serviced.
 const SHIPPED: [(&str, Outcome, usize); 13] = [
@@ -30,12 +29,9 @@ const SHIPPED: [(&str, Outcome, usize); 13] = [
     ("unreachable", Outcome::UnreachableTask, 1),
 ];
 
-/// The mission of a shipped scenario, run once for all tests.
+/// The mission of a shipped scenario.
 fn mission(name: &str) -> &'static Mission {
-    static MISSIONS: [OnceLock<Mission>; SHIPPED.len()] =
-        [const { OnceLock::new() }; SHIPPED.len()];
-    let at = SHIPPED.iter().position(|(shipped, ..)| *shipped == name).unwrap();
-    MISSIONS[at].get_or_init(|| run(shipped(name)))
+    &shipped_mission(name).0
 }
 
 // ---- How missions end --------------------------------------------------------------------------

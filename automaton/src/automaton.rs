@@ -86,8 +86,6 @@ pub struct Automaton<L, E, S> {
     /// How often each row has been taken, if that is counted.
     pub(crate) tally: Option<Tally>,
     /// Propositions of which at most one is true at a time.
-    pub(crate) exclusive: Vec<Vec<String>>,
-    /// The same by numbers.
     pub(crate) exclusion: Exclusion<S>,
 }
 

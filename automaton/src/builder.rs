@@ -46,8 +46,6 @@ pub struct Builder<L, E, S> {
     /// What changes alike in all locations.
     throughout: Vec<Rate>,
     /// Propositions of which at most one is true at a time.
-    exclusive: Vec<Vec<String>>,
-    /// The same by numbers.
     exclusion: Exclusion<S>,
     /// What is chosen at samples.
     commands: Vec<(L, Command)>,
@@ -75,7 +73,6 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             known: None,
             parameters: Vec::new(),
             throughout: Vec::new(),
-            exclusive: Vec::new(),
             exclusion: Exclusion::none(),
             commands: Vec::new(),
             observed: None,
@@ -152,7 +149,6 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             modes,
             leaving,
             tally: None,
-            exclusive: self.exclusive,
             exclusion: self.exclusion,
         })
     }
@@ -243,7 +239,6 @@ impl<L: Location, E: Event, S: Observed> Builder<L, E, S> {
     /// States are made such that at most one of these propositions is true at a time: checks look
     /// nowhere else, and in builds with debug assertions every step of the automaton watches it.
     pub fn at_most_one(mut self, propositions: &[&str]) -> Self {
-        self.exclusive.push(propositions.iter().map(|&name| name.to_owned()).collect());
         self.exclusion = self.exclusion.and(propositions);
         self
     }
@@ -270,7 +265,6 @@ impl<L: Location, E: Event, S: Coordinates> Builder<L, E, S> {
             known: automaton.known.clone(),
             parameters: automaton.parameters.clone(),
             ranges: automaton.ranges.clone(),
-            exclusive: automaton.exclusive.clone(),
             exclusion: automaton.exclusion.clone(),
             ..Builder::new(TransitionTable::new(&[]), initial)
         }

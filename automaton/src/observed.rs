@@ -222,35 +222,49 @@ impl<S> Watch<S> {
     }
 }
 
-/// Groups of propositions of which at most one is true at a time, by their numbers.
+/// Groups of propositions of which at most one is true at a time.
 pub(crate) struct Exclusion<S> {
-    groups: Vec<Vec<usize>>,
-    names: &'static [&'static str],
+    groups: Vec<Vec<Excluded>>,
     proposition: fn(&S, usize) -> bool,
+}
+
+/// A proposition of such a group, with its number if the state knows it.
+#[derive(Clone, Debug)]
+struct Excluded {
+    name: String,
+    number: Option<usize>,
 }
 
 impl<S> Exclusion<S> {
     /// Nothing is excluded.
     pub(crate) fn none() -> Self {
-        Exclusion { groups: Vec::new(), names: &[], proposition: |_, _| false }
+        Exclusion { groups: Vec::new(), proposition: |_, _| false }
+    }
+
+    /// The names in each group.
+    pub(crate) fn names(&self) -> Vec<Vec<&str>> {
+        self.groups.iter().map(|group| group.iter().map(|it| &*it.name).collect()).collect()
     }
 
     /// Two propositions of one group that are both true.
-    pub(crate) fn violation(&self, state: &S) -> Option<[&'static str; 2]> {
+    pub(crate) fn violation(&self, state: &S) -> Option<[&str; 2]> {
+        let is_true = |number| (self.proposition)(state, number);
         self.groups.iter().find_map(|group| {
-            let mut true_ones =
-                group.iter().copied().filter(|&number| (self.proposition)(state, number));
-            Some([self.names[true_ones.next()?], self.names[true_ones.next()?]])
+            let mut true_ones = group.iter().filter(|it| it.number.is_some_and(is_true));
+            Some([&*true_ones.next()?.name, &*true_ones.next()?.name])
         })
     }
 }
 
 impl<S: Observed> Exclusion<S> {
-    /// One more group; names that the state does not know are left out.
+    /// One more group.
     pub(crate) fn and(mut self, propositions: &[&str]) -> Self {
-        let numbers = propositions.iter().filter_map(|name| number(S::PROPOSITIONS, name));
-        self.groups.push(numbers.collect());
-        Exclusion { names: S::PROPOSITIONS, proposition: S::proposition, ..self }
+        let excluded = |name: &&str| Excluded {
+            name: (*name).to_owned(),
+            number: number(S::PROPOSITIONS, name),
+        };
+        self.groups.push(propositions.iter().map(excluded).collect());
+        Exclusion { proposition: S::proposition, ..self }
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) struct Outline<'a> {
     pub(crate) parameters: &'a [(String, f64)],
     pub(crate) ranges: &'a [(String, RangeInclusive<f64>)],
     /// Propositions of which at most one is true at a time.
-    pub(crate) exclusive: &'a [Vec<String>],
+    pub(crate) exclusive: Vec<Vec<&'a str>>,
     /// The coordinates of which no other component may say how they move.
     pub(crate) own: &'a [&'static str],
 }
@@ -103,7 +103,7 @@ impl<L: Location, E: Event, S: Valuation> Automaton<L, E, S> {
             known: self.known.as_deref(),
             parameters: &self.parameters,
             ranges: &self.ranges,
-            exclusive: &self.exclusive,
+            exclusive: self.exclusion.names(),
             own: &self.own,
         }
     }

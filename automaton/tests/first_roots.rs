@@ -109,6 +109,10 @@ fn events_at_the_horizon_and_right_behind_it() {
     assert_eq!(count(speed.at_most(0.0), FRAC_PI_2 + 1e-12), 1);
     let third = go(body([0.0; 2], [(1.0 / 3.0).into(), 0.0.into()]), place.at_least(1.0), 3.0);
     assert_eq!(third.jumps().len(), 1);
+    // What happens there is in no doubt.
+    let [.., time] = coordinates();
+    let last = go(wave(false), time.at_least(2.0), 2.0);
+    assert_eq!((last.jumps().len(), last.doubts()), (1, &[][..]));
 }
 
 /// Where rounding and the errors of solutions decide whether something happens at the horizon.

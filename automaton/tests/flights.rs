@@ -340,3 +340,44 @@ fn the_last_number_with_a_value_is_met() {
         assert_near(trajectory.ending().at.t, end, 0.0);
     }
 }
+
+/// The instant at which p, a function of the time, is first at least 0.
+fn first_instant(height: impl Fn(f64) -> f64 + Clone + Send + Sync + 'static, horizon: f64) -> f64 {
+    let [place, ..] = coordinates();
+    let start = Body { place: height(0.0), speed: 0.0, time: 0.0 };
+    let moved = Flow::exact("a function", move |body: &mut Body, duration| {
+        body.time += duration;
+        body.place = height(body.time);
+    });
+    let parts = Automaton::<Place, Cue, Body>::starting_in(Here).initially(start).flow(Here, moved);
+    let parts = parts.transition(from(Here).on(Go).to(There).must(place.at_least(0.0)));
+    let trajectory = run(parts, horizon);
+    assert_eq!(trajectory.jumps().len(), 1, "{:?}", trajectory.ending());
+    trajectory.jumps()[0].at.t
+}
+
+/// A function that comes as near as rounding without getting there, and a little later does for a moment.
+#[test]
+fn what_nearly_happens_hides_nothing_after_it() {
+    for spacings in 1..=16 {
+        let below = f64::from(spacings) * f64::EPSILON;
+        let height = move |time: f64| {
+            let (touch, bump) = (time - 1.0, time - 1.65);
+            -below - touch * touch * (bump * bump - 0.0025)
+        };
+        assert_near(first_instant(height, 4.0), 1.6, 1e-12);
+    }
+}
+
+/// √h ≤ c, where h falls at 1 from 1 on: right before its last value, and not at it.
+#[test]
+fn what_holds_before_the_last_value_happens_before_it() {
+    let [place, ..] = coordinates();
+    for power in 1..=7 {
+        let bound = 10f64.powi(-power);
+        let fall = body([1.0, 0.0], [(-1.0).into(), 0.0.into()]);
+        let go = from(Here).on(Go).to(There).must(place.power(0.5).at_most(bound));
+        let trajectory = run(fall.transition(go), 3.0);
+        assert_near(trajectory.jumps()[0].at.t, 1.0 - bound * bound, 1e-15);
+    }
+}

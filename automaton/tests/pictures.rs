@@ -323,3 +323,78 @@ fn a_connection_shows_what_its_reader_calls_what_it_reads() {
     assert!(read_as("T").contains("c0 == \"T\" ==> c1"), "{}", read_as("T"));
     assert!(read_as("seen").contains("c0 == \"T → seen\" ==> c1"), "{}", read_as("seen"));
 }
+
+/// The numbers in the attribute `name` of all elements of a class, in their order; shapes and paths alike.
+fn numbers_of(picture: &str, class: &str, name: &str) -> Vec<Vec<f64>> {
+    let tag = format!("class=\"{class}\"");
+    let elements = picture.lines().filter(|line| line.contains(&tag));
+    let attribute = |line: &str| -> Vec<f64> {
+        let start = line.find(&format!(" {name}=\"")).expect("it has one") + name.len() + 3;
+        let text = line[start..].split('"').next().expect("it ends");
+        text.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+    };
+    elements.map(attribute).collect()
+}
+
+/// One number for each element.
+fn number_of(picture: &str, class: &str, name: &str) -> Vec<f64> {
+    numbers_of(picture, class, name).concat()
+}
+
+/// A label is a line above the frames that goes down to each participant, a connection an arrow below them from
+/// the one that is read to the one that reads.
+#[test]
+fn what_joins_components_ends_at_their_frames() {
+    let only = Name::new("reading");
+    let state = Record::new([("T", 20.0)]).expect("there is one name");
+    let reader = Automaton::<Name, Name, Record>::starting_in(only).initially(state);
+    let reader = reader.build().expect("it is sound");
+    let house = crate::common::classics::house_parts().add("a thermometer on the wall", &reader);
+    let house = house.connect("heater.T", "a thermometer on the wall.T").build();
+    let picture = diagram::composition_svg(&house.expect("the parts fit"));
+
+    let [lefts, tops, widths, heights] =
+        ["x", "y", "width", "height"].map(|name| number_of(&picture, "frame", name));
+    let (top, bottom) = (tops[0], tops[0] + heights[0]);
+    assert_eq!((&tops, &heights), (&vec![tops[0]; 3], &vec![heights[0]; 3]), "side by side");
+    let rights: Vec<f64> = lefts.iter().zip(&widths).map(|(left, width)| left + width).collect();
+    assert!(rights.iter().zip(&lefts[1..]).all(|(right, next)| (next - right - 28.0).abs() < 0.1));
+    let root = picture.lines().next().expect("there is a root");
+    let sheet = root.split("viewBox=\"").nth(1).and_then(|rest| rest.split('"').next());
+    let sheet: Vec<f64> =
+        sheet.expect("it has a size").split(' ').map(|it| it.parse().expect("a number")).collect();
+    assert!((sheet[2] - rights[2] - lefts[0]).abs() < 0.1, "as much on the right as on the left");
+
+    let frame_of = |x: f64| (0..3).find(|&at| lefts[at] < x && x < rights[at]).expect("in a frame");
+    let is_name =
+        |words: &str| ["heater", "controller", "a thermometer on the wall"].contains(&words);
+    let names = texts(&picture).into_iter().filter(|(words, ..)| is_name(words));
+    let places = names.map(|(_, [x, y], _)| (frame_of(x), top < y && y < top + 32.0));
+    assert_eq!(places.collect::<Vec<_>>(), [(0, true), (1, true), (2, true)]);
+
+    // Labels: a line across and a way down to each participant, with a dot.
+    let dots: Vec<f64> = number_of(&picture, "wire-dot", "cx");
+    assert_eq!(dots.iter().map(|&x| frame_of(x)).collect::<Vec<_>>(), [0, 1, 0, 1]);
+    assert!(dots[0] < dots[2] && dots[1] < dots[3], "each in a place of its own");
+    assert_eq!(number_of(&picture, "wire-dot", "cy"), [top; 4]);
+    let wires = numbers_of(&picture, "wire", "d");
+    let [first, second] = [wires[0][1], wires[3][1]];
+    assert!(0.0 < first && first + 16.0 < second && second + 8.0 < top, "{first}, {second}, {top}");
+    let across =
+        |y: f64, from: f64, to: f64| vec![vec![from, y, to], vec![from, y, top], vec![to, y, top]];
+    assert_eq!(wires, [across(first, dots[0], dots[1]), across(second, dots[2], dots[3])].concat());
+
+    // Connections: both from the heater, to the others.
+    let pipes = numbers_of(&picture, "pipe", "d");
+    let ends: Vec<_> = pipes.iter().map(|pipe| [frame_of(pipe[0]), frame_of(pipe[3])]).collect();
+    assert_eq!(ends, [[0, 1], [0, 2]]);
+    assert!(pipes[0][0] < pipes[1][0], "each in a place of its own");
+    assert!(pipes.iter().flat_map(|pipe| [pipe[1], pipe[4]]).all(|y| (y - bottom).abs() < 0.1));
+    let [first, second] = [pipes[0][2], pipes[1][2]];
+    assert!(bottom + 8.0 < first && first + 16.0 < second && second + 8.0 < sheet[3]);
+    for ((words, [x, y], _), pipe) in
+        texts(&picture).into_iter().filter(|(_, _, class)| class == "pipe-text").zip(&pipes)
+    {
+        assert!(pipe[0] < x && x < pipe[3] && y < pipe[2] && pipe[2] < y + 20.0, "{words}");
+    }
+}

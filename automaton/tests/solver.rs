@@ -243,7 +243,7 @@ fn kinks_of_integrated_waves_add_no_errors() {
             } else {
                 run([0.0; 2], [rate, constant(0.0)], until).value("p", until)
             };
-            assert_near(found.expect("the run lasts"), 2.0 * turns, 4e-8 * turns);
+            assert_near(found.expect("the run lasts"), 2.0 * turns, 4e-9 * turns);
         }
     }
 }
@@ -286,4 +286,41 @@ fn two_spikes_add_both_integrals() {
         let exact = 2.0 * PI.sqrt();
         assert!((found - exact).abs() < 1e-4 * exact, "{centres:?}: {found} is not {exact}");
     }
+}
+
+/// A spike costs few steps wherever it is, and none if it is too small to matter.
+#[test]
+fn spikes_cost_few_steps() {
+    let [_, _, time] = coordinates();
+    for width in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
+        for centre in [1.0, 33.3, 60.0, 99.0] {
+            let spike = (-((&time - centre) / width).power(2.0)).exp();
+            for (height, step_limit) in [(1.0 / width, 60), (1e-10, 12), (1e-14, 12)] {
+                let rates = [height * &spike + 0.1, constant(0.0)];
+                let machine = body([0.0; 2], rates).build().expect("it is sound");
+                let settings = Settings { step_limit, ..Settings::default() };
+                let trajectory = machine.run_with(settings, 100.0).expect("it can be run");
+                let reason = &trajectory.ending().reason;
+                assert_eq!(reason, &Reason::Horizon, "{height} at {centre} for {width}");
+            }
+        }
+    }
+}
+
+/// Flows are solved up to the horizon and not beyond it, also after a jump.
+#[test]
+fn a_jump_costs_hardly_any_steps() {
+    let [p, _, time] = coordinates();
+    let rates = || [p.rate(time.sin()), time.rate(1.0)];
+    let still = || body([0.0; 2], [time.sin(), constant(0.0)]).flow(There, rates());
+    let jumping = still().transition(from(Here).on(Go).to(There).must(time.at_least(50.0)));
+    let is_enough = |machine: &Automaton<Place, Cue, Body>, step_limit: u64| {
+        let settings = Settings { step_limit, ..Settings::default() };
+        let trajectory = machine.run_with(settings, 100.0).expect("it can be run");
+        trajectory.ending().reason == Reason::Horizon
+    };
+    let [still, jumping] = [still(), jumping].map(|parts| parts.build().expect("it is sound"));
+    let needed = (0..1000).step_by(20).find(|&steps| is_enough(&still, steps));
+    let needed = needed.expect("it comes to its horizon");
+    assert!(needed > 100 && is_enough(&jumping, needed + 40), "{needed}");
 }

@@ -1,19 +1,22 @@
 //! The protocol, explored exhaustively: how many states there are, and that everything holds in
 //! each of them.
 
+use crate::generated::keep_up_to_date;
 use pleach_exploration::network::{
     Campaign, Configuration, Faults, Findings, Medium, PlaceGraph, QUICK, THOROUGH,
 };
 
 /// What fails is told before counts are compared: a fault in the protocol changes both.
-fn assert_all_met(campaigns: &[Campaign]) {
+fn all_met(campaigns: &[Campaign]) -> Findings {
     let mut told = Vec::new();
     let mut counts = Vec::new();
+    let mut all = Findings::default();
     for campaign in campaigns {
         match campaign.run() {
             Ok(findings) => {
                 told.extend(findings.failures.iter().map(ToString::to_string));
                 counts.push((campaign.name, findings.counts));
+                all = all.and(findings);
             }
             Err(error) => told.push(format!("{}: {error}", campaign.name)),
         }
@@ -21,17 +24,22 @@ fn assert_all_met(campaigns: &[Campaign]) {
     assert!(told.is_empty(), "{}", told.join("\n"));
     let expected = campaigns.iter().map(|campaign| (campaign.name, campaign.expected));
     assert_eq!(counts, expected.collect::<Vec<_>>());
+    all
 }
 
+/// In how many configurations each row of the tables is taken is kept for `docs/coverage.md`.
 #[test]
 fn everything_holds_in_every_state_of_the_quick_campaigns() {
-    assert_all_met(QUICK);
+    let findings = all_met(QUICK);
+    let rows =
+        findings.rows.iter().map(|(row, configurations)| format!("{configurations} {row}\n"));
+    keep_up_to_date("tests/rows.txt", &rows.collect::<String>(), "campaigns");
 }
 
 #[test]
 #[ignore = "takes minutes: cargo test --release -p pleach-exploration --test it campaigns -- --ignored"]
 fn everything_holds_in_every_state_of_the_thorough_campaigns() {
-    assert_all_met(THOROUGH);
+    all_met(THOROUGH);
 }
 
 /// How many states a network has in all of which everything holds, and which lead to an end.

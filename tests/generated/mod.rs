@@ -5,13 +5,13 @@ use std::path::Path;
 
 const UPDATE: &str = "PLEACH_UPDATE_DOCS";
 
-/// The folder of the project.
+/// The folder of the package.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The text of a file of the project.
-#[allow(dead_code)] // not every test reads
+/// The text of a file of the package.
+#[allow(dead_code)] // not every package reads
 pub fn read(path: &str) -> String {
     fs::read_to_string(root().join(path)).unwrap()
 }
@@ -29,8 +29,9 @@ pub fn keep_up_to_date(path: &str, document: &str, test: &str) {
         fs::write(&file, document).unwrap();
     }
     let kept = fs::read_to_string(&file).unwrap_or_default();
+    let package = env!("CARGO_PKG_NAME");
     assert!(
         kept == document,
-        "{path} is out of date; refresh it with `{UPDATE}=1 cargo test --test it {test}`"
+        "{path} is out of date; refresh it with `{UPDATE}=1 cargo test -p {package} --test it {test}`"
     );
 }

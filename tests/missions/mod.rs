@@ -2,6 +2,7 @@
 
 #![allow(dead_code)] // not every test needs everything
 
+mod acts;
 mod medium;
 
 use crate::floor_plans::in_storms;
@@ -14,11 +15,13 @@ use pleach::continuous::Point;
 use pleach::mission::{self, Completed, Watcher};
 use pleach::story;
 use pleach::verify::network::Extremes;
+use std::collections::BTreeMap;
 use std::io;
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock, OnceLock};
 
-pub use medium::{Arrival, AskedTwice, Filtered, Noted, Written};
+pub use acts::{Acts, counted};
+pub use medium::{Arrival, AskedTwice, Filtered, Written};
 
 /// What a control period showed.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +52,18 @@ pub fn shipped_names() -> Vec<String> {
 /// The scenario of that name among those that are shipped.
 pub fn shipped(name: &str) -> Scenario {
     in_storms::shipped(name).into_scenario()
+}
+
+/// The mission of a shipped scenario and what acts in it, run once for all tests.
+pub fn shipped_mission(name: &str) -> &'static (Mission, Acts) {
+    static MISSIONS: LazyLock<BTreeMap<String, OnceLock<(Mission, Acts)>>> =
+        LazyLock::new(|| shipped_names().into_iter().map(|name| (name, OnceLock::new())).collect());
+    MISSIONS[name].get_or_init(|| {
+        let mut recorder = Recorder::default();
+        let scenario = valid(shipped(name));
+        let (completed, acts) = Acts::in_mission(&scenario, &mut [&mut recorder]);
+        (Mission::new(scenario.into_scenario(), recorder, completed), acts)
+    })
 }
 
 /// The scenario, from which a mission can start.

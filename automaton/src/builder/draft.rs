@@ -30,7 +30,7 @@ pub(super) struct Draft<'a> {
     throughout: &'a [Rate],
     ranges: &'a [(String, RangeInclusive<f64>)],
     parameters: &'a [(String, f64)],
-    exclusive: &'a [Vec<String>],
+    exclusive: Vec<Vec<&'a str>>,
     known: Option<&'a [&'static str]>,
     observed: Option<Names>,
     initial_state: Option<&'a dyn Valuation>,
@@ -94,7 +94,7 @@ impl<L: Location, E: Event, S: Valuation> Builder<L, E, S> {
             throughout: &self.throughout,
             ranges: &self.ranges,
             parameters: &self.parameters,
-            exclusive: &self.exclusive,
+            exclusive: self.exclusion.names(),
             known: self.known.as_deref(),
             observed: self.observed,
             initial_state: self.initial_state.as_ref().map(|state| state as &dyn Valuation),
@@ -314,9 +314,9 @@ impl<'a> Draft<'a> {
         let invariants = invariants.map(|(location, one)| (self.locations[*location], *one));
         let commands = self.commands.iter();
         let commands = commands.map(|(location, one)| (self.locations[*location], &one.guard));
-        let unknown = self.exclusive.iter().flatten().find(|name| !known.contains(&name.as_str()));
-        if let Some(name) = unknown {
-            let (place, proposition) = ("propositions that exclude each other", name.clone());
+        let unknown = self.exclusive.iter().flatten().find(|name| !known.contains(name));
+        if let Some(&name) = unknown {
+            let (place, proposition) = ("propositions that exclude each other", name.to_owned());
             return Err(BuildError::UnknownProposition { place, proposition });
         }
         for (place, predicate) in guards.chain(invariants).chain(commands) {

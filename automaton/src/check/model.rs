@@ -235,7 +235,7 @@ impl Transition {
 }
 
 /// At most one of these propositions is true, in numbers.
-fn at_most_one(propositions: &[String]) -> Predicate {
+fn at_most_one(propositions: &[&str]) -> Predicate {
     let sum: Expression = propositions.iter().map(|name| variable(name)).sum();
     sum.at_most(1.0)
 }
@@ -256,7 +256,7 @@ fn in_numbers(predicate: &Predicate) -> Predicate {
 fn propositions_of(automaton: &Outline<'_>) -> BTreeSet<String> {
     let predicates = automaton.invariants().chain(automaton.guards());
     let named = predicates.flat_map(Predicate::propositions);
-    named.map(str::to_owned).chain(automaton.exclusive.iter().flatten().cloned()).collect()
+    named.chain(automaton.exclusive.iter().flatten().copied()).map(str::to_owned).collect()
 }
 
 fn motion(flow: outline::Motion<'_>) -> Motion {

@@ -5,6 +5,7 @@
 //! path, who exchanges duties with whom.
 
 mod best_routes;
+mod composed;
 mod decisions;
 mod faults;
 mod routes;

@@ -132,6 +132,28 @@ fn without_errors_nothing_changes() {
     }
 }
 
+/// Nearer than allowed: away by m from each direction in which the other one may be.
+#[test]
+fn robots_that_are_too_near_go_away_from_wherever_the_other_may_be() {
+    for (position, motion, apart) in [(0.3, 0.2, 2.1), (0.5, 0.0, 2.9), (0.1, 0.5, 0.5)] {
+        let (errors, towards) = (Errors { position, motion }, polar(0.7, 1.0));
+        let (here, other) = (Point::new(0.4, -0.2), Point::new(0.4, -0.2) + towards * apart);
+        let away = errors.voronoi_half_planes(here, &[other], 1.0, 1.0 + MORE);
+        let sines = away.iter().map(|half_plane| towards.perp(&half_plane.normal));
+        let sine: f64 = 2.0 * position / apart;
+        for (found, expected) in sines.zip([sine, -sine]) {
+            assert!((found - expected).abs() < ROUNDING, "{found} is not {expected}");
+        }
+        for half_plane in &away {
+            assert!((half_plane.normal.norm() - 1.0).abs() < ROUNDING);
+            assert!(half_plane.normal.dot(&towards) > 0.0);
+            let needed = half_plane.normal.dot(&here.coords) - half_plane.offset;
+            assert!((needed - motion).abs() < ROUNDING, "away by {needed}");
+        }
+        assert_eq!(away.len(), 2);
+    }
+}
+
 #[test]
 fn errors_of_places_and_of_moves_add_up() {
     let errors = |position, motion| Errors { position, motion };

@@ -11,5 +11,6 @@ mod parry;
 mod plain;
 mod reentry;
 mod repair;
+mod shapes;
 mod taut;
 mod workspace;

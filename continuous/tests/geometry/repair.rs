@@ -85,6 +85,18 @@ fn repeated_vertices_and_spikes_out_of_the_workspace_are_left_out() {
     };
 }
 
+/// A hole with a spike that ends within another hole, which it touches.
+#[test]
+fn spikes_into_other_holes_are_left_out() {
+    let mut left = square_at(1.0, 1.0);
+    left.splice(2..2, ring(&[(2.0, 1.5), (2.5, 1.5), (2.0, 1.5)]));
+    let beside = ring(&[(2.0, 1.2), (3.0, 1.2), (3.0, 1.8), (2.0, 1.8)]);
+    let (_, repairs) = repaired(room(), vec![left, beside]);
+    let is_left_out =
+        |repair: &Repair| matches!(repair, Repair::Spike { polygon: Polygon::Hole(0), .. });
+    assert!(repairs.iter().any(is_left_out), "{repairs:?}");
+}
+
 /// A line that runs into the room and back, and a hole that is nothing but a line: robots keep off both.
 #[test]
 fn lines_there_and_back_are_walls() {
@@ -176,6 +188,17 @@ fn what_is_wrong_besides_contact_is_told_of_the_map_as_it_was_given() {
     let refused = Workspace::repaired(twice.clone(), crossing);
     let Err(WorkspaceError::Crossing { first, second }) = refused else { panic!("{refused:?}") };
     assert_eq!((first.polygon, second.polygon), (Polygon::Hole(1), Polygon::Hole(2)));
+    // What is left out before, a hole that is a line and a vertex, changes no name.
+    let line = ring(&[(1.0, 0.3), (2.0, 0.3), (1.5, 0.3)]);
+    let mut square = square_at(2.0, 1.0);
+    square.insert(1, square[0]);
+    let holes = vec![line, square, square_at(2.5, 1.5)];
+    let refused = Workspace::repaired(room(), holes.clone());
+    let Err(WorkspaceError::Crossing { first, second }) = refused else { panic!("{refused:?}") };
+    for (edge, hole) in [(first, 1), (second, 2)] {
+        assert_eq!(edge.polygon, Polygon::Hole(hole));
+        assert_eq!(holes[hole][edge.index], edge.segment.from, "{edge}");
+    }
     twice[4].y = f64::INFINITY;
     let refused = Workspace::repaired(twice, vec![]);
     assert!(matches!(refused, Err(WorkspaceError::NotFinite { vertex: 4, .. })), "{refused:?}");

@@ -15,6 +15,7 @@ mod report;
 mod running;
 mod weaving;
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
@@ -43,10 +44,10 @@ struct Arguments {
     skip: Vec<String>,
     /// Runs a sample, one mutant in this many
     #[arg(long, default_value_t = 1)]
-    one_in: usize,
-    /// How many mutants come before the first one of the sample
+    one_in: u64,
+    /// Another seed draws another sample
     #[arg(long, default_value_t = 0)]
-    after: usize,
+    seed: u64,
     /// Only the mutants whose names stand at the ends of lines of this file
     #[arg(long)]
     only: Option<PathBuf>,
@@ -92,9 +93,15 @@ fn chosen(root: &Path, arguments: &Arguments) -> Result<Vec<Mutant>, Error> {
         let names = fs::read_to_string(only)?;
         mutants.retain(|mutant| names.lines().any(|line| line.ends_with(&mutant.name)));
     }
-    let sample = mutants.into_iter().skip(arguments.after).step_by(arguments.one_in.max(1));
-    let mutants: Vec<Mutant> = sample.collect();
+    mutants.retain(|mutant| is_drawn(mutant, arguments.one_in, arguments.seed));
     if mutants.is_empty() { Err(Error::Nothing(arguments.package.clone())) } else { Ok(mutants) }
+}
+
+/// Whether a mutant is in the sample, which its name and the seed decide.
+fn is_drawn(mutant: &Mutant, one_in: u64, seed: u64) -> bool {
+    let mut hasher = DefaultHasher::new();
+    (seed, &mutant.name).hash(&mut hasher);
+    hasher.finish().is_multiple_of(one_in.max(1))
 }
 
 /// What becomes of each mutant, with its name where no test fails for it.

@@ -53,6 +53,8 @@ fn links_are_made_up_to_d_build() {
         let heard = [beacon(1, east(length), fixed(11, 13), &[11, 13])];
         assert_eq!(choice(&mut robot(), heard), expected, "{length} of {build}");
     }
+    let robot = robot();
+    assert!(robot.may_build(build.next_up()), "what rounding makes longer is as long");
 }
 
 /// Around the pillar the way is longer than the straight line between two robots.

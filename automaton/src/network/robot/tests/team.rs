@@ -15,6 +15,16 @@ fn leader() -> Robot {
     robot
 }
 
+/// Nobody else services a task by standing beside it.
+#[test]
+fn only_who_leads_is_near_to_the_task() {
+    assert_eq!(robot().facts_now().distance, f64::INFINITY, "no task is known");
+    let mut robot = leader();
+    assert_eq!(robot.facts_now().distance, 3.0);
+    robot.holds(primary(30, Some(29), 13));
+    assert_eq!(robot.facts_now().distance, f64::INFINITY, "it follows");
+}
+
 #[test]
 fn the_first_of_the_team_is_followed_by_nobody() {
     let mut robot = leader();

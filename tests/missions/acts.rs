@@ -1,0 +1,59 @@
+//! What acts in missions: which rows of their tables the nodes take, and what they say to each other.
+
+use super::medium::Noted;
+use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::network::{NamedRow, Network, Site};
+use pleach::mission::{self, Completed, Watcher};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How many missions there are, and in how many of them each row is taken and each kind of message heard.
+#[derive(Clone, Debug, Default)]
+pub struct Acts {
+    pub missions: usize,
+    pub rows: BTreeMap<NamedRow, usize>,
+    pub heard: BTreeMap<&'static str, usize>,
+}
+
+impl Acts {
+    /// Runs the mission of a scenario, with the monitor watching.
+    pub fn in_mission(
+        scenario: &ValidScenario,
+        watchers: &mut [&mut dyn Watcher],
+    ) -> (Completed, Self) {
+        let site = counted(scenario);
+        let medium = Noted::new(&site);
+        let mut network = Network::with_medium(scenario, Arc::clone(&site), medium).unwrap();
+        let completed = mission::run_network(scenario, &mut network, watchers)
+            .expect("a mission without errors");
+        (completed, Acts::in_one(&site, network.medium().counts()))
+    }
+
+    /// What has acted in one mission on this site.
+    pub fn in_one(site: &Site, heard: &BTreeMap<&'static str, u64>) -> Self {
+        let mut acts = Acts { missions: 1, ..Acts::default() };
+        for (row, times) in site.automata.taken() {
+            *acts.rows.entry(row).or_default() += usize::from(times > 0);
+        }
+        acts.heard.extend(heard.keys().map(|&kind| (kind, 1)));
+        acts
+    }
+
+    pub fn and(mut self, other: Acts) -> Self {
+        self.missions += other.missions;
+        for (row, times) in other.rows {
+            *self.rows.entry(row).or_default() += times;
+        }
+        for (kind, times) in other.heard {
+            *self.heard.entry(kind).or_default() += times;
+        }
+        self
+    }
+}
+
+/// The site of a scenario, with automata that count.
+pub fn counted(scenario: &ValidScenario) -> Arc<Site> {
+    let mut site = Site::new(scenario).unwrap();
+    site.automata = site.automata.counted();
+    Arc::new(site)
+}
