@@ -6,6 +6,7 @@ use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 
 use super::clock::Clock;
+use super::terms::Terms;
 use super::{Dispute, claims};
 use crate::network::extremes::{Extremes, keep_larger, keep_smaller};
 use crate::network::limits::{Limits, SLACK};
@@ -19,7 +20,8 @@ use crate::network::{instant, link};
 /// What it holds a record against is what no fault breaks: distances between robots and to walls, the
 /// length of steps, shares, loads, the length of links of the tree, and, as long as all nodes run,
 /// that no robot is sent more than it forwards. Of events it checks that robots are at the tasks that
-/// they service, and of the outcome that all tasks have been serviced where it says so. What nodes
+/// they service, that tasks are announced, taken back and ended as the user wants it, and of the outcome that
+/// all tasks have been serviced, or are over, where it says so. What nodes
 /// know of each other may differ, and is not compared.
 ///
 /// Nodes that do not run or are not heard ([`Snapshot::absent`]) are bodies, and nothing else.
@@ -32,6 +34,7 @@ pub struct Safety {
     /// Whether a node has been absent: what flowed there is lost.
     has_lost_nodes: bool,
     serviced: BTreeSet<usize>,
+    terms: Terms,
     extremes: Extremes,
 }
 
@@ -45,6 +48,7 @@ impl Safety {
             previous: None,
             has_lost_nodes: false,
             serviced: BTreeSet::new(),
+            terms: Terms::of(scenario),
             extremes: Extremes::default(),
         }
     }
@@ -67,6 +71,7 @@ impl Safety {
         self.observe_instant(snapshot)?;
         for event in events {
             claims::names_exist(event, &self.limits).map_err(told)?;
+            self.terms.enter(event, snapshot.step).map_err(told)?;
             if let MissionEvent::TaskServiced { task, robot } = *event {
                 claims::is_at_task(task, robot, snapshot, &self.limits).map_err(told)?;
                 self.serviced.insert(task);
@@ -106,8 +111,9 @@ impl Safety {
     pub fn conclude(&self, end: &End) -> Result<(), Violation> {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
         let last = self.previous.as_ref().map(|snapshot| snapshot.step);
-        let counts = (self.serviced.len(), self.limits.tasks().len());
-        match self.clock.contradiction(end, last, counts) {
+        let done = self.terms.done(self.serviced.iter().copied());
+        let contradiction = self.clock.contradiction(end, last, (done, self.limits.tasks().len()));
+        match contradiction.or_else(|| self.terms.contradiction(end.outcome)) {
             None => Ok(()),
             Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),
         }
