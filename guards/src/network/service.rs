@@ -83,9 +83,11 @@ fn nothing_left() -> Predicate {
     !proposition("task_left") & !proposition("task_to_come")
 }
 
-/// The task that is pursued has been taken back.
+/// The task that is pursued has been taken back, and no secondary team is on its way: each of its robots is at
+/// the post that it holds.
 pub fn withdraws() -> Guard {
-    named("withdraws", pursues() & proposition("pursues_withdrawn"))
+    let in_vain = proposition("pursues_withdrawn") & !proposition("path_announced");
+    named("withdraws", pursues() & in_vain)
 }
 
 /// A task that is not pursued has been taken back, or has lasted as long as it should.

@@ -84,6 +84,8 @@ crate::observed! {
         task_over: point.next_closing().is_some(),
         /// The task that is pursued has been taken back.
         pursues_withdrawn: point.pursues_withdrawn(),
+        /// The newest notice that it has taken up announces a path Σ.
+        path_announced: matches!(point.notice(), Notice::Path(_)),
         /// It knows the roster of the election.
         knows_electors: point.announced().is_some(),
         /// The token of every robot that takes part is known.

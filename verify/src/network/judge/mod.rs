@@ -113,6 +113,8 @@ pub struct Judge<'a> {
     terms: Terms,
     /// The step at which the task that was pursued has been taken back.
     dissolved: Option<usize>,
+    /// The last step at which a recruit was called for or a secondary team was on its way.
+    busy: usize,
     places: Places,
     tried: Tried,
     scenario: ValidScenario,
@@ -134,6 +136,7 @@ impl<'a> Judge<'a> {
             conclusions: Conclusions::new(nodes),
             terms: Terms::of(scenario),
             dissolved: None,
+            busy: 0,
             places: Places::new(robots),
             tried: Tried::default(),
             scenario: scenario.clone(),
@@ -187,7 +190,10 @@ impl<'a> Judge<'a> {
         } else if *self.dissolved.get_or_insert(snapshot.step) + patience < snapshot.step {
             self.ledger.forget_outdated();
         }
-        let overdue = || self.terms.overdue(snapshot.step, patience);
+        if matches!(self.ledger.stage(), Stage::Calling | Stage::Shifting) {
+            self.busy = snapshot.step;
+        }
+        let overdue = || self.terms.overdue(snapshot.step, self.busy, patience);
         match (snapshot.phase != Phase::Ended).then(overdue).flatten() {
             None => Ok(()),
             Some(sentence) => Err(Dispute::of(Property::Duties, &[], sentence)),

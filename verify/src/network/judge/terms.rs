@@ -64,12 +64,14 @@ impl Terms {
     }
 
     /// A task that should have been closed more than `patience` steps ago, in a sentence: one that was
-    /// announced and is taken back, or one that has lasted as long as it should.
-    pub(super) fn overdue(&self, step: usize, patience: usize) -> Option<String> {
+    /// announced and is taken back, after a secondary team has come to its end, or one that has lasted as long as
+    /// it should. `busy` is the last step at which there was one.
+    pub(super) fn overdue(&self, step: usize, busy: usize, patience: usize) -> Option<String> {
         let open = self.announced.iter().filter(|task| !self.closed.contains(task));
         open.filter_map(|&task| {
-            let [taken_back, end] = [self.tasks[task].withdrawn, self.end_of(task)]
-                .map(|due| due.filter(|&due| due as usize + patience < step));
+            let is_past = |due: usize| due + patience < step;
+            let taken_back = self.tasks[task].withdrawn.filter(|&it| is_past(busy.max(it as usize)));
+            let end = self.end_of(task).filter(|&due| is_past(due as usize));
             let since = |due, what| format!("task {task} is {what} at k = {due}, and its robots go on");
             taken_back
                 .map(|due| since(due, "taken back"))
