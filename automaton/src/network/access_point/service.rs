@@ -187,7 +187,7 @@ impl AccessPoint {
 
     /// The task to announce next: the first that has been serviced and is not any more, or the first after
     /// all that have been; none that is over.
-    fn next_task(&self) -> Option<usize> {
+    pub(super) fn next_task(&self) -> Option<usize> {
         let asked_for = self.errands().count();
         let new = || (self.tasks_serviced.len()..asked_for).find(|&task| self.is_open(task));
         self.abandoned_task().filter(|&task| task < asked_for).or_else(new)
