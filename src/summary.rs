@@ -52,7 +52,9 @@ impl TaskSummary {
     pub(crate) fn robots(&self) -> Option<String> {
         let (_, robot) = self.serviced?;
         let held = match self.holder {
-            _ if self.closed.is_some() => self.closing().map_or(String::new(), |it| format!(", {it}")),
+            _ if self.closed.is_some() => {
+                self.closing().map_or(String::new(), |it| format!(", {it}"))
+            }
             Some(holder) if holder == robot => String::new(),
             Some(holder) => format!(", held by robot {holder} at the end"),
             None => ", held by none at the end".to_owned(),

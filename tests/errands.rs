@@ -108,7 +108,13 @@ fn so_it_goes_where_messages_are_lost() {
         let storm = draw(kind, seed, &scenario, 600.0);
         let mut summary = Summary::new(&scenario);
         let completed = run_in_storm(&scenario, &storm, &mut [&mut summary]).unwrap();
-        assert_eq!(completed.end.outcome, Outcome::Serviced, "{}: {:?}", kind.name(), completed.end);
+        assert_eq!(
+            completed.end.outcome,
+            Outcome::Serviced,
+            "{}: {:?}",
+            kind.name(),
+            completed.end
+        );
         assert!(summary.tasks().iter().all(|task| task.closed.is_some()), "{}", kind.name());
         assert!(summary.serviced() >= 3, "{}", kind.name());
     }
@@ -227,9 +233,7 @@ fn a_robot_that_never_hears_that_its_task_is_over_is_told() {
     let (robot, step) = (service_of(errands(), 0).1, 185);
     let (property, sentence) = complaint(|mission| {
         for period in &mut mission.periods[step..] {
-            let mut same = |event: &Event| {
-                !matches!(event, Event::RoleChanged { robot: it, .. } if *it == robot)
-            };
+            let mut same = |event: &Event| !matches!(event, Event::RoleChanged { robot: it, .. } if *it == robot);
             period.events.retain(&mut same);
             period.snapshot.roles[robot] = Role::Leaf;
             if !period.snapshot.serviced.iter().any(|(task, _)| *task == 0) {
@@ -240,5 +244,8 @@ fn a_robot_that_never_hears_that_its_task_is_over_is_told() {
             }
         }
     });
-    assert!(property == Property::Duties && sentence.contains("task 0"), "{property:?}: {sentence}");
+    assert!(
+        property == Property::Duties && sentence.contains("task 0"),
+        "{property:?}: {sentence}"
+    );
 }

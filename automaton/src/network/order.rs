@@ -43,10 +43,7 @@ impl Order {
             lasts: task.lasts,
             withdrawn: task.withdrawn.is_some_and(|withdrawn| withdrawn <= period),
         };
-        Order {
-            tasks: tasks[..count].iter().map(errand).collect(),
-            continues: count < tasks.len(),
-        }
+        Order { tasks: tasks[..count].iter().map(errand).collect(), continues: count < tasks.len() }
     }
 
     /// Whether it was surely given before `other`: a medium may deliver copies late, and a user that begins

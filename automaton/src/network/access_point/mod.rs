@@ -34,9 +34,9 @@ use crate::automaton::TransitionError;
 use crate::located::{Current, Place as _};
 use crate::node::{Input, Node, Outputs};
 
-use attendance::{Attendee, TaskRecord};
 pub(super) use attendance::PATIENCE;
 pub use attendance::{ATTENDANCE_GLOSSARY, AttendanceAutomaton, attendance_automaton};
+use attendance::{Attendee, TaskRecord};
 pub use rounds::{RoundAct, RoundActs, RoundAutomaton, round_automaton};
 pub use service::{ACCESS_POINT_GLOSSARY, ServiceAutomaton, ServiceEffect, service_automaton};
 

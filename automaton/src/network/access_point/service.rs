@@ -195,8 +195,10 @@ impl AccessPoint {
 
     /// Whether the user will ask for another task, or one is serviced that is to end.
     fn expects_task(&self) -> bool {
-        let is_to_end = |(task, errand): (usize, Errand)| errand.lasts.is_some() && self.is_open(task);
-        self.requested.as_ref().is_some_and(|order| order.continues) || self.errands().any(is_to_end)
+        let is_to_end =
+            |(task, errand): (usize, Errand)| errand.lasts.is_some() && self.is_open(task);
+        self.requested.as_ref().is_some_and(|order| order.continues)
+            || self.errands().any(is_to_end)
     }
 
     /// Whether the task that is pursued has been taken back.
@@ -352,11 +354,7 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
 }
 
 /// The user has taken back the task that is pursued: those who pursue it stop, and its team is dissolved.
-fn withdraw<A: Knows>(
-    place: &A,
-    point: &AccessPoint,
-    effects: &mut Effects,
-) -> Option<Serviced> {
+fn withdraw<A: Knows>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Serviced> {
     let task = place.announced()?.task;
     if point.is_open(task) {
         effects.push(ServiceEffect::Report(MissionEvent::TaskWithdrawn { task }));

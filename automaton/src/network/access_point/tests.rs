@@ -17,8 +17,8 @@ use super::super::scenario::{Scenario, Task};
 use super::super::service::{Announced, Serviced, Serving, UnderWay};
 use super::super::shared::Shared;
 use super::super::site::Site;
-use super::attendance::TaskRecord;
 use super::AccessPoint;
+use super::attendance::TaskRecord;
 use crate::located::{Current, Place as _};
 use crate::node::{Input, Node as _, Outputs};
 

@@ -227,7 +227,13 @@ fn every_kind_of_message_is_read_back_as_it_was_written() {
     assert_eq!(kinds.len(), 12);
     let named: BTreeSet<_> = duties().iter().map(|duty| duty.location()).collect();
     assert_eq!(named.len(), Activity::ALL.len());
-    assert_eq!(notices().iter().map(kind_of_notice).collect::<BTreeSet<_>>().len(), 7);
+    assert_eq!(notices().iter().map(kind_of_notice).collect::<BTreeSet<_>>().len(), 8);
+}
+
+/// A user asks for a task at this place.
+fn request_for(position: Value) -> Value {
+    let errand = json!({"position": position, "lasts": null, "withdrawn": false});
+    json!({"request": {"tasks": [errand], "continues": false}})
 }
 
 /// What is said of a message that is not one.
@@ -261,8 +267,9 @@ fn malformed_messages_are_refused() {
             json!({"grant_flow": {"number": {"period": 1, "number": 0}, "flow": null}}),
             "expected f64",
         ),
-        (json!({"request": [[0.0, null]]}), "expected f64"),
-        (json!({"request": [[0.0]]}), "array"),
+        (request_for(json!([0.0, null])), "expected f64"),
+        (request_for(json!([0.0])), "array"),
+        (json!({"request": {"tasks": []}}), "missing field `continues`"),
         (json!({"proposal": {"period": 0, "segment": {"from": [0, 0]}}}), "missing field `to`"),
         (json!({"consent": {}}), "missing field `period`"),
         (json!({"multiplier": {"parent": null}}), "missing field `report`"),

@@ -70,9 +70,11 @@ impl Terms {
         let open = self.announced.iter().filter(|task| !self.closed.contains(task));
         open.filter_map(|&task| {
             let is_past = |due: usize| due + patience < step;
-            let taken_back = self.tasks[task].withdrawn.filter(|&it| is_past(busy.max(it as usize)));
+            let taken_back =
+                self.tasks[task].withdrawn.filter(|&it| is_past(busy.max(it as usize)));
             let end = self.end_of(task).filter(|&due| is_past(due as usize));
-            let since = |due, what| format!("task {task} is {what} at k = {due}, and its robots go on");
+            let since =
+                |due, what| format!("task {task} is {what} at k = {due}, and its robots go on");
             taken_back
                 .map(|due| since(due, "taken back"))
                 .or_else(|| end.map(|due| since(due, "to end")))
