@@ -4,13 +4,14 @@
 use crate::missions::{Mission, Period, run, shipped, valid};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
 use pleach::automaton::network::scenario::{Scenario, Task};
+use pleach::automaton::node::Weather;
 use pleach::discrete::network::Role;
 use pleach::discrete::network::activity::may_follow;
 use pleach::mission::{Watcher, run_in_storm};
 use pleach::story;
 use pleach::summary::{Closing, Summary};
 use pleach::trace::TraceWriter;
-use pleach::verify::network::storm::{Kind, draw};
+use pleach::verify::network::storm::{Kind, Storm, draw};
 use pleach::verify::network::{Judge, Property, Violation};
 use std::sync::OnceLock;
 
@@ -99,24 +100,29 @@ fn a_user_is_told_what_became_of_each_task() {
 #[test]
 fn so_it_goes_where_messages_are_lost() {
     let scenario = valid(shipped("errands"));
-    for (kind, seed) in [
-        (Kind::Loss { rate: 0.3, later: false }, 1),
-        (Kind::Loss { rate: 0.3, later: true }, 2),
-        (Kind::Loss { rate: 0.6, later: true }, 1),
-        (Kind::Copies, 1),
-    ] {
-        let storm = draw(kind, seed, &scenario, 600.0);
+    for (loss, seed) in [(0.3, 1), (0.3, 2), (0.5, 1), (0.5, 2)] {
+        let weather = Weather { loss, ..Weather::default() };
+        let storm = Storm { seed, weather, troubles: Vec::new() };
         let mut summary = Summary::new(&scenario);
         let completed = run_in_storm(&scenario, &storm, &mut [&mut summary]).unwrap();
-        assert_eq!(
-            completed.end.outcome,
-            Outcome::Serviced,
-            "{}: {:?}",
-            kind.name(),
-            completed.end
-        );
-        assert!(summary.tasks().iter().all(|task| task.closed.is_some()), "{}", kind.name());
-        assert!(summary.serviced() >= 3, "{}", kind.name());
+        assert_eq!(completed.end.outcome, Outcome::Serviced, "{loss}: {:?}", completed.end);
+        assert!(summary.tasks().iter().all(|task| task.closed.is_some()), "{loss}, seed {seed}");
+        assert!(summary.serviced() >= 2, "{loss}, seed {seed}");
+    }
+}
+
+/// Whatever else fails, nothing is broken that no fault may break.
+#[test]
+fn no_storm_closes_a_task_before_its_time() {
+    let mut scenario = shipped("errands");
+    scenario.control.max_steps = Some(900);
+    let scenario = valid(scenario);
+    for kind in [Kind::Partition, Kind::Crash, Kind::Restart, Kind::Late, Kind::Copies] {
+        for seed in 0..2 {
+            let storm = draw(kind, seed, &scenario, 600.0);
+            let end = run_in_storm(&scenario, &storm, &mut []).unwrap().end;
+            assert_ne!(end.outcome, Outcome::InvariantViolated, "{}: {}", kind.name(), end.reason);
+        }
     }
 }
 
@@ -220,7 +226,6 @@ fn tasks_are_closed_only_as_the_user_wants_it() {
     closed(160, Event::TaskEnded { task: 0 }, "task 0 ends, and it is to end at k = 185");
     closed(300, Event::TaskWithdrawn { task: 0 }, "and it is never taken back");
     closed(350, Event::TaskWithdrawn { task: 2 }, "and it is taken back at k = 360");
-    closed(500, Event::TaskWithdrawn { task: 1 }, "task 1");
     closed(479, Event::TaskAnnounced { task: 3 }, "and it is asked for at k = 480");
     let (property, sentence) =
         complaint(|mission| tell(mission, 200, Event::TaskEnded { task: 0 }));
@@ -230,22 +235,24 @@ fn tasks_are_closed_only_as_the_user_wants_it() {
 /// Robots that go on with a task that is over are told.
 #[test]
 fn a_robot_that_never_hears_that_its_task_is_over_is_told() {
-    let (robot, step) = (service_of(errands(), 0).1, 185);
+    let ended = when(errands(), &Event::TaskEnded { task: 0 }).unwrap();
+    let robot = service_of(errands(), 0).1;
+    let held = &errands().periods[ended - 1].snapshot.posts;
+    let post = *held.iter().find(|post| post.holder == robot).unwrap();
     let (property, sentence) = complaint(|mission| {
-        for period in &mut mission.periods[step..] {
-            let mut same = |event: &Event| !matches!(event, Event::RoleChanged { robot: it, .. } if *it == robot);
-            period.events.retain(&mut same);
-            period.snapshot.roles[robot] = Role::Leaf;
-            if !period.snapshot.serviced.iter().any(|(task, _)| *task == 0) {
-                period.snapshot.serviced.insert(0, (0, robot));
-            }
-            for post in period.snapshot.posts.iter_mut().filter(|post| post.holder == robot) {
-                post.task = Some(0);
-            }
+        for period in &mut mission.periods[ended..] {
+            let is_its = |event: &Event| matches!(event, Event::RoleChanged { robot: it, .. } if *it == robot);
+            period.events.retain(|event| !is_its(event));
+            let now = &mut period.snapshot;
+            now.roles[robot] = Role::Leaf;
+            now.serviced.retain(|(task, _)| *task != 0);
+            now.serviced.insert(0, (0, robot));
+            now.posts.retain(|it| it.holder != robot);
+            now.posts.push(post);
         }
     });
     assert!(
-        property == Property::Duties && sentence.contains("task 0"),
+        property == Property::Duties && sentence.contains("answers for task 0, and that is over"),
         "{property:?}: {sentence}"
     );
 }

@@ -161,7 +161,7 @@ impl Brief {
                 .map(|it| RobotStart { position: place(it.position), ..it })
                 .collect(),
             task: (scenario.task.into_iter())
-                .map(|it| Task { position: place(it.position), ..*it })
+                .map(|it| Task { position: place(it.position), ..it })
                 .collect(),
             ..scenario
         }

@@ -48,7 +48,7 @@ impl Safety {
             previous: None,
             has_lost_nodes: false,
             serviced: BTreeSet::new(),
-            terms: Terms::of(scenario),
+            terms: Terms::under_faults(scenario),
             extremes: Extremes::default(),
         }
     }

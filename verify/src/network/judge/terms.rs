@@ -13,9 +13,11 @@ use crate::network::property::Property;
 pub(super) struct Terms {
     tasks: Vec<Task>,
     announced: BTreeSet<usize>,
-    /// The tasks that have been serviced, each with the step at which it was last.
+    /// The tasks that have been serviced, each with the step at which it was first.
     serviced: BTreeMap<usize, usize>,
     closed: BTreeSet<usize>,
+    /// How many control periods fewer than those of the record may have passed by the clock of an access point.
+    slack: u32,
 }
 
 impl Terms {
@@ -25,7 +27,13 @@ impl Terms {
             announced: BTreeSet::new(),
             serviced: BTreeMap::new(),
             closed: BTreeSet::new(),
+            slack: 0,
         }
+    }
+
+    /// The same where clocks may be shifted against each other by any part of a period.
+    pub(super) fn under_faults(scenario: &Scenario) -> Self {
+        Terms { slack: 1, ..Terms::of(scenario) }
     }
 
     /// An event that is told of the period that ends with `step`.
@@ -41,7 +49,7 @@ impl Terms {
                 not_before(step, asked, || format!("task {task} is announced"), "asked for")
             }
             MissionEvent::TaskServiced { task, .. } => {
-                self.serviced.insert(task, step);
+                self.serviced.entry(task).or_insert(step);
                 Ok(())
             }
             MissionEvent::TaskWithdrawn { task } => {
@@ -51,7 +59,8 @@ impl Terms {
             }
             MissionEvent::TaskEnded { task } => {
                 self.closed.insert(task);
-                not_before(step, self.end_of(task), || format!("task {task} ends"), "to end")
+                let end = self.end_of(task).map(|end| end.saturating_sub(self.slack));
+                not_before(step, end, || format!("task {task} ends"), "to end")
             }
             _ => Ok(()),
         }
