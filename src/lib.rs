@@ -77,7 +77,7 @@
 //!     control: Control::default(),
 //!     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
 //!     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
-//!     task: vec![Task { position: [0.9, 0.3] }],
+//!     task: vec![Task::at([0.9, 0.3])],
 //! })?;
 //! assert!(scenario.remarks().is_empty()); // every task can be reached, and no link crosses a wall
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -103,7 +103,7 @@
 //! #     control: Control::default(),
 //! #     access_point: vec![AccessPoint { position: [0.1, 0.3] }],
 //! #     robot: vec![robot(0.1, 0.1), robot(0.25, 0.2), robot(0.1, 0.5)],
-//! #     task: vec![Task { position: [0.9, 0.3] }],
+//! #     task: vec![Task::at([0.9, 0.3])],
 //! # })?;
 //! use pleach::automaton::network::record::Outcome;
 //! use pleach::summary::Summary;

@@ -181,6 +181,10 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             format!("robots {gone:?} do not answer any more: task {task} is announced again"),
             None,
         ),
+        MissionEvent::TaskEnded { task } => {
+            (format!("task {task} has ended: it was serviced for as long as it was to be"), None)
+        }
+        MissionEvent::TaskWithdrawn { task } => (format!("task {task} is taken back"), None),
         other => (format!("{other:?}"), None),
     }
 }

@@ -33,13 +33,28 @@ pub struct TaskSummary {
     /// The robot that stays close to it now; duties are exchanged, so it may be another one. None if that has
     /// stopped, or is not heard.
     pub holder: Option<usize>,
+    /// The control period since which it is over, and how that came.
+    pub closed: Option<(usize, Closing)>,
+}
+
+/// How a task came to be over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Closing {
+    /// It was serviced for as long as it was to be.
+    Ended,
+    /// The user took it back.
+    Withdrawn,
 }
 
 impl TaskSummary {
-    /// By which robot it was serviced, and which holds it now if that is another one, or none.
+    /// By which robot it was serviced, and since when it is over, or which holds it now if that is another
+    /// one, or none.
     pub(crate) fn robots(&self) -> Option<String> {
         let (_, robot) = self.serviced?;
         let held = match self.holder {
+            _ if self.closed.is_some() => {
+                self.closing().map_or(String::new(), |it| format!(", {it}"))
+            }
             Some(holder) if holder == robot => String::new(),
             Some(holder) => format!(", held by robot {holder} at the end"),
             None => ", held by none at the end".to_owned(),
@@ -47,9 +62,22 @@ impl TaskSummary {
         Some(format!("by robot {robot}{held}"))
     }
 
-    /// Whether it has been serviced, and a robot still stays close to it.
+    /// Since when it is over, and how that came.
+    pub(crate) fn closing(&self) -> Option<String> {
+        self.closed.map(|(step, closing)| match closing {
+            Closing::Ended => format!("ended at k = {step}"),
+            Closing::Withdrawn => format!("taken back at k = {step}"),
+        })
+    }
+
+    /// What became of it if it was not serviced.
+    pub(crate) fn unserviced(&self) -> String {
+        self.closing().unwrap_or_else(|| "not serviced".to_owned())
+    }
+
+    /// Whether it has been serviced, and is over or a robot still stays close to it.
     fn is_serviced(&self) -> bool {
-        self.serviced.is_some() && self.holder.is_some()
+        self.serviced.is_some() && (self.holder.is_some() || self.closed.is_some())
     }
 }
 
@@ -99,7 +127,12 @@ impl Summary {
             name: scenario.name.clone(),
             settings: Settings::resolve(scenario),
             tasks: (scenario.task.iter())
-                .map(|task| TaskSummary { position: task.position, serviced: None, holder: None })
+                .map(|task| TaskSummary {
+                    position: task.position,
+                    serviced: None,
+                    holder: None,
+                    closed: None,
+                })
                 .collect(),
             recruits: 0,
             stationary_points: 0,
@@ -124,6 +157,12 @@ impl Summary {
     /// The number of recruits elected.
     pub fn recruits(&self) -> usize {
         self.recruits
+    }
+
+    fn close(&mut self, task: usize, step: usize, closing: Closing) {
+        if let Some(task) = self.tasks.get_mut(task) {
+            task.closed = Some((step, closing));
+        }
     }
 
     /// The number of tasks serviced; one that was left again, since its robot has stopped, does not count.
@@ -157,6 +196,12 @@ impl Watcher for Summary {
                     if let Some(task) = self.tasks.get_mut(task) {
                         task.serviced = Some((snapshot.step, robot));
                     }
+                }
+                MissionEvent::TaskEnded { task } => {
+                    self.close(task, snapshot.step, Closing::Ended);
+                }
+                MissionEvent::TaskWithdrawn { task } => {
+                    self.close(task, snapshot.step, Closing::Withdrawn);
                 }
                 _ => {}
             }
@@ -219,7 +264,7 @@ impl Summary {
                 Some(((step, _), robots)) => {
                     writeln!(formatter, "serviced at k = {step} {robots}")?;
                 }
-                None => writeln!(formatter, "not serviced")?,
+                None => writeln!(formatter, "{}", task.unserviced())?,
             }
         }
         Ok(())

@@ -55,6 +55,14 @@ const REASONS: &[([&str; 4], &str)] = &[
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
     (["service", "serviced", "no robot", ""], "the robots are all gone after a task"),
     (
+        ["service", "", "closes", ""],
+        "a task is over in the very rounds in which robots gather or elect",
+    ),
+    (
+        ["service", "electing", "withdraws", ""],
+        "the task is taken back in the very rounds in which robots elect",
+    ),
+    (
         ["service", "", "heard", ""],
         "another access point has gone on although this one has not heard of it",
     ),

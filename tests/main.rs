@@ -22,6 +22,7 @@ mod command_line;
 mod coverage;
 mod determinism;
 mod documents;
+mod errands;
 mod faulty_traces;
 mod found_missions;
 mod harnesses;

@@ -31,7 +31,7 @@ fn room(task: [f64; 2]) -> Scenario {
         },
         access_point: vec![AccessPoint { position: [0.3, 0.5] }],
         robot: places.map(|position| RobotStart { position, rate: 0.075 }).into(),
-        task: vec![Task { position: task }],
+        task: vec![Task::at(task)],
     }
 }
 
@@ -95,7 +95,7 @@ fn a_task_in_another_component_is_unreachable() {
 #[test]
 fn an_impossible_task_ends_the_mission() {
     let mut scenario = room([1.5, 0.5]);
-    scenario.task.extend([[1.1, 0.5], [1.5, 0.2]].map(|position| Task { position }));
+    scenario.task.extend([[1.1, 0.5], [1.5, 0.2]].map(Task::at));
     let mission = run(scenario);
     assert_unserviced(&mission, Outcome::UnreachableTask, 1);
     assert_eq!(mission.last().serviced.len(), 1);

@@ -54,7 +54,7 @@ fn scattered(seed: u64) -> Scenario {
         control: Control::default(),
         access_point: vec![AccessPoint { position: places[0] }],
         robot: robots.collect(),
-        task: vec![Task { position: [0.5, 0.5] }],
+        task: vec![Task::at([0.5, 0.5])],
     }
 }
 

@@ -51,7 +51,7 @@ fn trace(scenario: &ValidScenario) -> Vec<Value> {
 #[test]
 fn every_line_of_a_trace_is_what_the_schema_says() {
     let schema = Schema::new();
-    for name in ["too-few", "unreachable", "leaf-leader", "redundant-node"] {
+    for name in ["too-few", "unreachable", "leaf-leader", "redundant-node", "errands"] {
         let mut scenario = missions::shipped(name);
         if name == "too-few" {
             scenario.link.model = LinkModel::Logistic;

@@ -65,7 +65,7 @@ pub fn hall(robots: usize, tasks: usize) -> ValidScenario {
         robot: (0..robots).map(|robot| RobotStart { position: place(robot), rate: RATE }).collect(),
         task: (0..tasks)
             .map(|task| (task as f64 + 0.5) / tasks as f64 * height)
-            .map(|y| Task { position: [width - 0.1, y] })
+            .map(|y| Task::at([width - 0.1, y]))
             .collect(),
     };
     ValidScenario::new(scenario).expect("a hall is a valid scenario")

@@ -131,8 +131,7 @@ impl Crew {
         if has_user {
             let user = Member::User(Box::new(User::new(Arc::clone(site))));
             let mut seat = Seat::of(site.nodes(), user);
-            let tasks = scenario.task.iter().map(|task| task.position.into()).collect();
-            seat.step(Input::Sensed(Sense::Tasks(tasks)))?;
+            seat.step(Input::Sensed(Sense::Tasks(Arc::from(&*scenario.task))))?;
             seats.push(seat);
         }
         Ok(Crew { seats })

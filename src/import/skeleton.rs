@@ -150,7 +150,7 @@ pub fn skeleton(
         true => places.far_apart(&site, choices.far_tasks),
     }
     .into_iter()
-    .map(|position| Task { position })
+    .map(Task::at)
     .collect();
     let unreached = places.unreached(&site);
     if unreached > 0.005 {
@@ -369,7 +369,7 @@ pub fn text(scenario: &Scenario, origin: &str, notes: &[String]) -> String {
     for RobotStart { position, rate } in &scenario.robot {
         let _ = write!(text, "\n[[robot]]\nposition = {position:?}\nrate = {rate}\n");
     }
-    for Task { position } in &scenario.task {
+    for Task { position, .. } in &scenario.task {
         let _ = write!(text, "\n[[task]]\nposition = {position:?}\n");
     }
     text

@@ -64,7 +64,15 @@ pub(super) const SCENARIO: &[Entry] = &[
             optional("rate", Shape::Number),
         ])),
     ),
-    optional("task", Shape::ListOf(&Shape::Table(&[required("position", Shape::Point)]))),
+    optional(
+        "task",
+        Shape::ListOf(&Shape::Table(&[
+            required("position", Shape::Point),
+            optional("announced", Shape::Count),
+            optional("withdrawn", Shape::Count),
+            optional("lasts", Shape::Count),
+        ])),
+    ),
 ];
 
 /// The keys of `[control]`, each with the shape of its values.

@@ -100,7 +100,7 @@ impl Brief {
         let mut places = Places::new(&scenario)?;
         for target in &self.targets {
             let position = places.task(*target, dice)?;
-            scenario.task.push(Task { position });
+            scenario.task.push(Task::at(position));
         }
         let robots = (places.robots_needed() + self.spare).max(self.least_robots);
         places.park(&self.parked);
@@ -161,7 +161,7 @@ impl Brief {
                 .map(|it| RobotStart { position: place(it.position), ..it })
                 .collect(),
             task: (scenario.task.into_iter())
-                .map(|it| Task { position: place(it.position) })
+                .map(|it| Task { position: place(it.position), ..it })
                 .collect(),
             ..scenario
         }

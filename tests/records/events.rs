@@ -38,6 +38,8 @@ fn rename(record: &mut Record, site: usize, kind: Kind) {
     let next = |robot: &mut usize| *robot = (*robot + 1) % robots;
     match event {
         Event::TaskAnnounced { task }
+        | Event::TaskEnded { task }
+        | Event::TaskWithdrawn { task }
         | Event::ElectionRepeated { task }
         | Event::TaskReannounced { task, .. } => {
             *task = usize::from(*task == 0);

@@ -47,6 +47,11 @@ pub enum Notice {
         /// Its number.
         task: usize,
     },
+    /// The user has taken back the task that was pursued: the team is dissolved.
+    Withdrawn {
+        /// Its number.
+        task: usize,
+    },
     /// The mission has ended.
     Ended {
         /// How.
@@ -147,6 +152,10 @@ pub struct Beacon {
     /// The tasks that all of them service.
     #[serde(with = "wire")]
     pub serves: Arc<IdSet>,
+    /// The tasks that are over, as far as it knows: they have lasted as long as they should, or the user has
+    /// taken them back.
+    #[serde(with = "wire")]
+    pub closed: Arc<IdSet>,
     /// What it does; none for an access point.
     pub duty: Option<Duty>,
     /// Whether it stands still unless it is asked for.
@@ -207,6 +216,7 @@ impl Beacon {
             below: Arc::default(),
             strays: Arc::default(),
             serves: Arc::default(),
+            closed: Arc::default(),
             duty: None,
             parked: false,
             way: None,
@@ -241,6 +251,13 @@ impl Beacon {
         let goes_by = |announced: Option<&Announced>| announced.map(|(id, _)| *id);
         if !known.includes(&self.forgetful) && goes_by(self.announced.as_ref()) == goes_by(own) {
             Arc::make_mut(known).merge(&self.forgetful);
+        }
+    }
+
+    /// Adds the tasks that are over by the sender. None of them is ever taken up again.
+    pub(super) fn tell_closed(&self, known: &mut Arc<IdSet>) {
+        if !known.includes(&self.closed) {
+            Arc::make_mut(known).merge(&self.closed);
         }
     }
 

@@ -157,8 +157,7 @@ impl<M: Medium<Message, Point>, N: RobotNode> Network<M, N> {
     ) -> Result<Self, NetworkError> {
         let user = members.len().saturating_sub(1);
         let mut nodes = Ensemble::new(members, medium);
-        let tasks = scenario.task.iter().map(|task| task.position.into()).collect();
-        nodes.sense(user, Sense::Tasks(tasks))?;
+        nodes.sense(user, Sense::Tasks(Arc::from(&*scenario.task)))?;
         Ok(Network {
             site,
             nodes,

@@ -8,6 +8,7 @@ use super::access_point::AccessPoint;
 use super::message::Message;
 use super::record::MissionEvent;
 use super::robot::{Robot, RobotError, RobotView};
+use super::scenario::Task;
 use super::user::User;
 use crate::node::{Input, Node, Observed, Outputs};
 
@@ -30,8 +31,8 @@ pub enum Sense {
     Position(Point),
     /// At a sample, the position of a robot as its localisation measures it.
     Fix(Point),
-    /// The tasks that a person requests, in their order.
-    Tasks(Arc<[Point]>),
+    /// The tasks that a person wants, in order of announcement.
+    Tasks(Arc<[Task]>),
 }
 
 /// A node as observers see it.

@@ -20,13 +20,13 @@ mod tests;
 
 use std::sync::Arc;
 
-use pleach_continuous::Point;
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::network::routing::adal::NeighbourReport;
 use pleach_discrete::network::NodeId;
 use serde::{Deserialize, Serialize};
 
 use super::beacon::{Beacon, Bulletin};
+use super::order::Order;
 use super::robot::{FlowGrant, FlowRequest};
 use super::roll::Roll;
 use super::wire;
@@ -88,8 +88,8 @@ pub enum Message {
         /// The control period.
         period: u32,
     },
-    /// The tasks of a user in their order, to the first access point.
-    Request(#[serde(with = "wire")] Arc<[Point]>),
+    /// All that a user has asked for so far, to the first access point.
+    Request(Order),
     /// The newest notice on the mission, from the first access point to the user.
     News(Bulletin),
 }

@@ -15,6 +15,7 @@ pub mod member;
 pub mod message;
 pub mod mission;
 pub mod observer;
+pub mod order;
 pub mod record;
 pub mod robot;
 pub mod roll;

@@ -62,7 +62,7 @@ impl RobotReport {
     /// The report of a robot that has sent and heard as many messages, and whose body is here.
     pub fn of(robot: RobotView<'_>, body: Point, traffic: Traffic) -> Self {
         let task = match robot.notice() {
-            Notice::Quiet | Notice::Serviced { .. } => None,
+            Notice::Quiet | Notice::Serviced { .. } | Notice::Withdrawn { .. } => None,
             Notice::Task(announcement) => Some(announcement.task),
             Notice::Ended { task, .. } => *task,
             _ => robot.current_task(),

@@ -174,6 +174,10 @@ pub enum MissionEvent {
     /// Robots are gone that take part in the elections for the task, or serviced it: it is announced again
     /// to those that are left.
     TaskReannounced { task: usize, gone: Vec<usize> },
+    /// A task has been serviced for as long as it was to be: its robot is free.
+    TaskEnded { task: usize },
+    /// The user has taken a task back: whoever services or pursues it is free.
+    TaskWithdrawn { task: usize },
 }
 
 /// How a mission ended.

@@ -85,10 +85,32 @@ fn default_rate() -> f64 {
     0.075
 }
 
-/// A task: a place that a robot must stay close to.
+/// A task: a place that a robot must stay close to, for ever unless it says otherwise. Its times count control
+/// periods, like the k of traces.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Task {
     /// q_v: where it is.
     pub position: [f64; 2],
+    /// The control period from which on the user asks for it; not stated: from the beginning.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub announced: Option<u32>,
+    /// The control period in which the user takes it back; not stated: never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub withdrawn: Option<u32>,
+    /// For how many control periods, from its service on, it has to be serviced; not stated: for ever.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lasts: Option<u32>,
+}
+
+impl Task {
+    /// A task that is asked for from the beginning, and for ever.
+    pub const fn at(position: [f64; 2]) -> Self {
+        Task { position, announced: None, withdrawn: None, lasts: None }
+    }
+
+    /// The control period from which on the user asks for it.
+    pub fn asked_for(&self) -> u32 {
+        self.announced.unwrap_or_default()
+    }
 }

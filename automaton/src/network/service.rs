@@ -14,7 +14,7 @@ crate::places_of! {
         Electing(Electing),
         /// The leader pursues its task, or a recruit is on its way to it.
         UnderWay(UnderWay),
-        /// The task announced last is serviced.
+        /// The task announced last is serviced, or has been taken back.
         Serviced(Serviced),
         /// The mission has ended.
         Over(Over),

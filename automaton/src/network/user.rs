@@ -1,4 +1,7 @@
 //! The user: a person with a list of tasks, at the first access point.
+//!
+//! Tasks may have times: control periods, counted from the user's first one, in which it begins to ask for
+//! them and in which it takes them back.
 
 use std::sync::Arc;
 
@@ -12,8 +15,10 @@ use super::act::{Act, acting};
 use super::beacon::{Bulletin, Notice};
 use super::member::Sense;
 use super::message::Message;
+use super::order::Order;
 use super::record::{End, MissionEvent, Outcome};
 use super::robot::{RobotError, RobotFault};
+use super::scenario::Task;
 use super::service::{Asked, Asking, Deserted, Informed, Preparing, Waiting};
 use super::shared::Shared;
 use super::site::Site;
@@ -23,16 +28,18 @@ use crate::{Automaton, BuildError, Flow, Transfer};
 
 /// A user sends its tasks to the first access point and receives notices from it.
 ///
-/// The network is given one control period to connect. The user then repeats its request in every
-/// period until the mission ends: an access point that restarts has forgotten it. If the access point
-/// stops for good, the mission ends for the user.
+/// The network is given one control period to connect. From then on the user tells in every period all that
+/// it has asked for so far, until the mission ends: messages may be lost, and an access point that restarts
+/// has forgotten it. If the access point stops for good, the mission ends for the user.
 #[derive(Clone, Debug)]
 pub struct User {
     site: Arc<Site>,
     request: Current<Asked>,
     /// The remaining acts of the row that was taken last.
     acts: UserActs,
-    tasks: Arc<[Point]>,
+    tasks: Arc<[Task]>,
+    /// Control periods that are over.
+    passed: u32,
     news: Bulletin,
     clock: f64,
     /// Control periods that are over since the first access point was heard.
@@ -49,9 +56,11 @@ const PATIENCE: u32 = 100;
 pub enum UserAct {
     /// τ := 0.
     RestartClock,
+    /// Another control period is over.
+    CountPeriod,
     /// Another control period without news.
     CountSilence,
-    /// It sends its tasks to the first access point.
+    /// It sends all that it has asked for so far to the first access point.
     Ask,
 }
 
@@ -103,6 +112,7 @@ impl Act for UserAct {
     fn name(self) -> &'static str {
         match self {
             UserAct::RestartClock => "τ := 0",
+            UserAct::CountPeriod => "count the period",
             UserAct::CountSilence => "count the silence",
             UserAct::Ask => "ask for the tasks",
         }
@@ -124,9 +134,9 @@ fn row<A: DataOf<Asked>, B: DataOf<Asked>>(
 /// Never with the table and guards of this crate; they are checked all the same.
 pub fn request_automaton() -> Result<RequestAutomaton, BuildError> {
     use RequestEvent as On;
-    use UserAct::{Ask, CountSilence, RestartClock};
+    use UserAct::{Ask, CountPeriod, CountSilence, RestartClock};
     use guards::{access_point_missed, another_period, answer_heard, prepared, request_over};
-    const ANOTHER_PERIOD: UserActs = &[RestartClock, CountSilence, Ask];
+    const ANOTHER_PERIOD: UserActs = &[RestartClock, CountPeriod, CountSilence, Ask];
     let builder = Automaton::builder(REQUESTS, Request::Preparing).observing();
     let builder = Request::ALL.iter().fold(builder, |builder, &location| {
         let flow = Flow::exact("τ̇ = 1", |user: &mut User, duration| user.clock += duration);
@@ -159,6 +169,7 @@ impl User {
             request: Current::new(Asked::Preparing(Preparing)),
             acts: &[],
             tasks: Arc::from([]),
+            passed: 0,
             news: Bulletin::first(Shared::new(Notice::Quiet)),
             clock: site.settings.period,
             silence: 0,
@@ -207,9 +218,11 @@ impl User {
         for act in std::mem::take(&mut self.acts) {
             match act {
                 UserAct::RestartClock => self.clock = 0.0,
+                UserAct::CountPeriod => self.passed = self.passed.saturating_add(1),
                 UserAct::CountSilence => self.silence = self.silence.saturating_add(1),
                 UserAct::Ask => {
-                    outputs.send(self.desk(), Message::Request(Arc::clone(&self.tasks)))
+                    let order = Order::by(self.passed, &self.tasks);
+                    outputs.send(self.desk(), Message::Request(order));
                 }
             }
         }

@@ -12,6 +12,7 @@ use pleach_continuous::network::routing::adal::NeighbourReport;
 use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
+use super::order::Errand;
 use super::robot::{FlowGrant, FlowRequest};
 use super::shared::Shared;
 
@@ -174,6 +175,16 @@ impl Part for Arc<str> {
 
     fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         String::deserialize(deserializer).map(Arc::from)
+    }
+}
+
+impl Part for Arc<[Errand]> {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        <[Errand]>::serialize(self, serializer)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Vec::<Errand>::deserialize(deserializer).map(Arc::from)
     }
 }
 

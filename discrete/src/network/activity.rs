@@ -76,6 +76,8 @@ vocabulary! {
         RelayResumed = "relay resumed",
         /// Another task is announced before it was released: it goes on as a leaf.
         LeafResumed = "leaf resumed",
+        /// The task that it services is over: its post becomes one of a relay.
+        Discharged = "discharged",
         /// A second branch parts from its post.
         Branched = "branched",
         /// Only one branch is left at its post.
@@ -281,6 +283,7 @@ pub const DUTIES: TransitionTable<Activity, DutyEvent> = {
         last(Relay, On::Attached, Relay),
         last(Junction, On::Attached, Junction),
         later(Leaf, On::Attached, Leaf),
+        last(Leaf, On::Discharged, Relay),
         later(Following, On::Attached, Following),
         later(Leading, On::Attached, Leading),
         last(Standby, On::Promoted, Relay),

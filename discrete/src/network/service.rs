@@ -12,7 +12,7 @@ vocabulary! {
         Electing = "electing",
         /// The leader pursues its task, or a recruit is on its way to it.
         UnderWay = "under way",
-        /// The task announced last is serviced.
+        /// The task announced last is serviced, or has been taken back: none is pursued.
         Serviced = "serviced",
         /// The mission has ended.
         Over = "over",
@@ -24,7 +24,7 @@ vocabulary! {
         ElectionHeard = "election heard",
         /// It hears that a path Σ is announced, or that the primary team advances.
         ProgressHeard = "progress heard",
-        /// It hears that the task is serviced.
+        /// It hears that the task is serviced, or has been taken back.
         ServiceHeard = "service heard",
         /// It hears that the mission has ended.
         EndHeard = "end heard",
@@ -32,6 +32,11 @@ vocabulary! {
         Announces = "announces",
         /// A robot that takes part in its elections is gone: it announces the task again.
         AnnouncesAgain = "announces again",
+        /// The user has taken back the task that is pursued.
+        Withdraws = "withdraws",
+        /// A task that is not pursued is over: it has lasted as long as it should, or the user has taken it
+        /// back.
+        Closes = "closes",
         /// There is no robot to announce the next task to.
         NoRobot = "no robot",
         /// There is no task left.
@@ -82,7 +87,8 @@ const fn row(
 
 /// The table of an access point.
 ///
-/// Priority 0: what others report. Priority 1: what the first access point does by itself.
+/// Priority 0: what others report. Priority 1: the task that is pursued is given up. Priority 2: others are
+/// over. Priority 3: what the first access point does by itself.
 pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
     use Service::*;
     use ServiceEvent as On;
@@ -91,30 +97,36 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(0, Gathering, On::ProgressHeard, UnderWay),
         row(0, Gathering, On::ServiceHeard, Serviced),
         row(0, Gathering, On::EndHeard, Over),
-        row(1, Gathering, On::Announces, Electing),
-        row(1, Gathering, On::NoRobot, Over),
-        row(1, Gathering, On::AllServiced, Over),
+        row(2, Gathering, On::Closes, Gathering),
+        row(3, Gathering, On::Announces, Electing),
+        row(3, Gathering, On::NoRobot, Over),
+        row(3, Gathering, On::AllServiced, Over),
         row(0, Electing, On::ElectionHeard, Electing),
         row(0, Electing, On::ProgressHeard, UnderWay),
         row(0, Electing, On::ServiceHeard, Serviced),
         row(0, Electing, On::EndHeard, Over),
-        row(1, Electing, On::AnnouncesAgain, Electing),
-        row(1, Electing, On::NoRobot, Over),
-        row(1, Electing, On::NoBid, Over),
-        row(1, Electing, On::NoAnswer, Over),
+        row(1, Electing, On::Withdraws, Serviced),
+        row(2, Electing, On::Closes, Electing),
+        row(3, Electing, On::AnnouncesAgain, Electing),
+        row(3, Electing, On::NoRobot, Over),
+        row(3, Electing, On::NoBid, Over),
+        row(3, Electing, On::NoAnswer, Over),
         row(0, UnderWay, On::ElectionHeard, Electing),
         row(0, UnderWay, On::ProgressHeard, UnderWay),
         row(0, UnderWay, On::ServiceHeard, Serviced),
         row(0, UnderWay, On::EndHeard, Over),
-        row(1, UnderWay, On::AnnouncesAgain, Electing),
-        row(1, UnderWay, On::NoRobot, Over),
+        row(1, UnderWay, On::Withdraws, Serviced),
+        row(2, UnderWay, On::Closes, UnderWay),
+        row(3, UnderWay, On::AnnouncesAgain, Electing),
+        row(3, UnderWay, On::NoRobot, Over),
         row(0, Serviced, On::ElectionHeard, Electing),
         row(0, Serviced, On::ProgressHeard, UnderWay),
         row(0, Serviced, On::ServiceHeard, Serviced),
         row(0, Serviced, On::EndHeard, Over),
-        row(1, Serviced, On::Announces, Electing),
-        row(1, Serviced, On::NoRobot, Over),
-        row(1, Serviced, On::AllServiced, Over),
+        row(2, Serviced, On::Closes, Serviced),
+        row(3, Serviced, On::Announces, Electing),
+        row(3, Serviced, On::NoRobot, Over),
+        row(3, Serviced, On::AllServiced, Over),
     ])
 };
 

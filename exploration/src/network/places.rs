@@ -199,7 +199,7 @@ impl PlaceGraph {
             robot: (0..self.robots)
                 .map(|place| RobotStart { position: at(place), rate: RATE })
                 .collect(),
-            task: self.tasks.iter().map(|&place| Task { position: at(place) }).collect(),
+            task: self.tasks.iter().map(|&place| Task::at(at(place))).collect(),
         }
     }
 }

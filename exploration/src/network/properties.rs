@@ -192,6 +192,7 @@ fn serviced(protocol: &Protocol, state: &State) -> usize {
         .locals(state)
         .map(|local| match local.notice() {
             Notice::Task(announcement) => announcement.task,
+            Notice::Withdrawn { task } => *task,
             Notice::Serviced { task } => task + 1,
             _ => local.robot().and_then(RobotView::current_task).unwrap_or_default(),
         })

@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use pleach_automaton::network::beacon::Notice;
+use pleach_automaton::network::order::Order;
 use pleach_automaton::network::robot::RobotError;
 use pleach_automaton::network::{
     AccessPoint, Automata, Message, Robot, RobotView, Site, SiteError,
@@ -177,7 +178,7 @@ impl Protocol {
             .map(|number| AccessPoint::new(number, Arc::clone(&site)))
             .map(|access_point| Node::AccessPoint(Box::new(access_point)));
         let user = scenario.robot.len() + scenario.access_point.len();
-        let request = Message::Request(places.task_positions().into());
+        let request = Message::Request(Order::by(0, &scenario.task));
         let mut locals = Vec::with_capacity(user);
         for mut node in robots.chain(access_points) {
             // The first control period begins, and does not end until the explorer ends it.
@@ -567,7 +568,7 @@ impl Protocol {
         let first = self.configuration.places.robots();
         let is_due = matches!(
             self.nodes.local(state.locals[first]).notice(),
-            Notice::Quiet | Notice::Serviced { .. }
+            Notice::Quiet | Notice::Serviced { .. } | Notice::Withdrawn { .. }
         );
         match is_due {
             true => self.one(state, first, Stimulus::Announce).map(Some),

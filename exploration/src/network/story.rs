@@ -108,6 +108,7 @@ fn word(notice: &Notice) -> String {
         }
         Notice::Advance { joined } => format!("advance {:?}", joined.map(|(a, b)| (a.0, b.0))),
         Notice::Serviced { task } => format!("task {task} serviced"),
+        Notice::Withdrawn { task } => format!("task {task} taken back"),
         Notice::Ended { outcome, reason, .. } => format!("ended, {}: {reason}", outcome.name()),
         other => format!("{other:?}"),
     }

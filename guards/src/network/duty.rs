@@ -147,6 +147,11 @@ pub fn promoted() -> Guard {
     disengaged("promoted", variable("branches").at_least(1.0))
 }
 
+/// The task that is serviced from its post is over.
+pub fn discharged() -> Guard {
+    disengaged("discharged", proposition("task_closed"))
+}
+
 /// A second branch parts from its post.
 pub fn branched() -> Guard {
     named("branched", variable("branches").at_least(2.0))

@@ -16,7 +16,7 @@ pub fn progress_heard() -> Guard {
     named("progress heard", proposition("hears_progress"))
 }
 
-/// It hears that the task is serviced.
+/// It hears that the task is serviced, or has been taken back.
 pub fn service_heard() -> Guard {
     named("service heard", proposition("hears_service"))
 }
@@ -70,12 +70,29 @@ pub fn no_robot_next() -> Guard {
 
 /// There is no task at all.
 pub fn nothing_to_service() -> Guard {
-    first("all serviced", !proposition("task_left"))
+    first("all serviced", nothing_left())
 }
 
 /// There is no other task.
 pub fn all_serviced() -> Guard {
-    next("all serviced", !proposition("task_left"))
+    next("all serviced", nothing_left())
+}
+
+/// No task is to be announced, none will be asked for, and none is serviced that is to end.
+fn nothing_left() -> Predicate {
+    !proposition("task_left") & !proposition("task_to_come")
+}
+
+/// The task that is pursued has been taken back, and no secondary team is on its way: each of its robots is at
+/// the post that it holds.
+pub fn withdraws() -> Guard {
+    let in_vain = proposition("pursues_withdrawn") & !proposition("path_announced");
+    named("withdraws", pursues() & in_vain)
+}
+
+/// A task that is not pursued has been taken back, or has lasted as long as it should.
+pub fn closes() -> Guard {
+    next("closes", proposition("task_over"))
 }
 
 /// The leader election is over, and no robot has bid.

@@ -1,5 +1,6 @@
 //! The monitor: every property, over every snapshot of a mission.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
@@ -28,6 +29,8 @@ pub struct Monitor<'a> {
     role_table: RoleTable<'a>,
     role_relation: RoleRelation,
     previous: Option<Snapshot>,
+    /// The tasks that are over.
+    closed: BTreeSet<usize>,
     extremes: Extremes,
 }
 
@@ -40,8 +43,18 @@ impl<'a> Monitor<'a> {
             role_relation: duty::closure(&role_table),
             role_table: Arc::new(role_table),
             previous: None,
+            closed: BTreeSet::new(),
             extremes: Extremes::default(),
         }
+    }
+
+    /// Takes note of what is told of the period that ends with the next snapshot: robots leave tasks that are
+    /// over.
+    pub fn expect(&mut self, events: &[MissionEvent]) {
+        self.closed.extend(events.iter().filter_map(|event| match *event {
+            MissionEvent::TaskEnded { task } | MissionEvent::TaskWithdrawn { task } => Some(task),
+            _ => None,
+        }));
     }
 
     /// Checks the period that ends with this snapshot, and the snapshot.
@@ -63,7 +76,7 @@ impl<'a> Monitor<'a> {
     }
 
     fn observe_period(&mut self, period: &Period) -> Result<(), Violation> {
-        let Monitor { limits, extremes, .. } = self;
+        let Monitor { limits, extremes, closed, .. } = self;
         keep_smaller(&mut extremes.pair_distance, period::separation(period, limits)?);
         keep_smaller(&mut extremes.clearance, period::clearance(period, limits)?);
         period::step_length(period, limits)?;
@@ -71,7 +84,7 @@ impl<'a> Monitor<'a> {
         keep_larger(&mut extremes.load, period::load(period, limits)?);
         period::tree_range(period, limits)?;
         period::role_transitions(period, &self.role_relation)?;
-        period::duties(period)?;
+        period::duties(period, closed)?;
         period::service(period, limits)?;
         period::occupancy(period, limits)
     }

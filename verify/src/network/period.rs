@@ -4,6 +4,8 @@
 //! approach in closed form ([`motion`](super::motion)) and "never farther than" is a check of
 //! the two ends; the same goes for loads (see [`link`]).
 
+use std::collections::BTreeSet;
+
 use pleach_automaton::network::record::{Route, Snapshot};
 use pleach_continuous::geometry::Segment;
 
@@ -284,14 +286,15 @@ pub fn role_transitions(period: &Period, relation: &RoleRelation) -> Result<(), 
     Ok(())
 }
 
-/// [`Property::Duties`]: of the tasks serviced before, each is serviced after, once.
+/// [`Property::Duties`]: of the tasks serviced before that are not `closed`, each is serviced after, once.
 ///
 /// # Errors
 ///
 /// The tasks before and after, if they differ.
-pub fn duties(period: &Period) -> Result<(), Violation> {
+pub fn duties(period: &Period, closed: &BTreeSet<usize>) -> Result<(), Violation> {
     let tasks = |snapshot: &Snapshot| -> Vec<usize> {
-        snapshot.serviced.iter().map(|&(task, _)| task).collect()
+        let tasks = snapshot.serviced.iter().map(|&(task, _)| task);
+        tasks.filter(|task| !closed.contains(task)).collect()
     };
     let before = tasks(period.before);
     let after = tasks(period.after);

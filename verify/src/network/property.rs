@@ -220,11 +220,12 @@ impl Property {
             }
             Property::RoleTransition => "A role changes only along the table of transitions.",
             Property::Duties => {
-                "A serviced task stays the duty of exactly one robot: a hand-over neither loses \
-                 nor doubles a duty."
+                "A serviced task stays the duty of exactly one robot until it has ended or is taken back: \
+                 a hand-over neither loses nor doubles a duty, and what is over is nobody's."
             }
             Property::Service => {
-                "At every instant after a task is serviced, some robot is within δ of it, eq. (2)."
+                "At every instant after a task is serviced and before it is over, some robot is within δ \
+                 of it, eq. (2)."
             }
             Property::Occupancy => {
                 "At every instant the place of a junction, and one from which a task is serviced, \

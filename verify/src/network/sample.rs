@@ -38,7 +38,7 @@ pub(super) fn stated() -> Scenario {
         control: Control::default(),
         access_point: vec![AccessPoint { position: [0.0, 0.0] }],
         robot: robots.into_iter().map(|position| RobotStart { position, rate: RATE }).collect(),
-        task: vec![Task { position: [0.3, 0.02] }, Task { position: [1.5, 0.0] }],
+        task: vec![Task::at([0.3, 0.02]), Task::at([1.5, 0.0])],
     }
 }
 

@@ -77,7 +77,8 @@ impl AccessPoint {
     pub fn account_in_time(&self) -> String {
         let attendees: Vec<_> = self.attendees.iter().map(Attendee::account).collect();
         let patience = self.patience_with_tasks() + 1;
-        let tasks: Vec<u32> = self.tasks_serviced.iter().map(|&it| it.min(patience)).collect();
+        let tasks: Vec<u32> =
+            self.tasks_serviced.iter().map(|task| task.silence.min(patience)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
         let told = (self.period, &self.roll, reports, (self.is_new, self.is_behind));
         format!("{}{:?}", self.account(), (told, attendees, tasks))
@@ -104,7 +105,8 @@ impl AccessPoint {
             roster,
             settled_rounds,
             service,
-            // Constant: the request comes before the first state, and does not change.
+            closed,
+            // Constant: the request comes before the first state, and does not change. No task of it ends.
             site: _,
             position: _,
             requested: _,
@@ -141,6 +143,7 @@ impl AccessPoint {
             (
                 (number, bulletin, announced, &**service, election, rounds),
                 (agreement, route, crossing, stretched, longest_wait, (attached, roster), settled),
+                closed,
             )
         )
     }

@@ -61,6 +61,28 @@ pub struct Attendee {
     validity: u32,
 }
 
+/// A task that has been serviced, as an access point knows it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct TaskRecord {
+    /// Control periods since it was heard of as one that is serviced.
+    pub silence: u32,
+    /// Control periods since its service was announced last.
+    pub age: u32,
+}
+
+impl TaskRecord {
+    /// Another control period begins.
+    fn pass_period(&mut self) {
+        self.silence = self.silence.saturating_add(1);
+        self.age = self.age.saturating_add(1);
+    }
+
+    /// Whether it has been serviced for so many control periods, and is heard of now.
+    pub(super) fn has_lasted(self, periods: u32) -> bool {
+        self.age >= periods && self.silence == 0
+    }
+}
+
 crate::observed! {
     impl Observed for Attendee as attendee;
     /// What the guards of attendance read.
@@ -185,9 +207,7 @@ impl AccessPoint {
         for attendee in &mut self.attendees {
             attendee.review(&site.automata.attendance)?;
         }
-        for silence in &mut self.tasks_serviced {
-            *silence = silence.saturating_add(1);
-        }
+        self.tasks_serviced.iter_mut().for_each(TaskRecord::pass_period);
         if self.is_first() {
             let absent = self.absent();
             let is_same = *self.roll.absent == absent;
@@ -229,11 +249,14 @@ impl AccessPoint {
         }
     }
 
-    /// The first task that has been serviced, and has not been for as long as it takes to give a robot
-    /// up.
+    /// The first task that has been serviced, is not over, and has not been serviced for as long as it takes
+    /// to give a robot up.
     pub(super) fn abandoned_task(&self) -> Option<usize> {
         let patience = self.patience_with_tasks();
-        self.tasks_serviced.iter().position(|&silence| silence > patience)
+        let is_abandoned = |&(task, known): &(usize, &TaskRecord)| {
+            known.silence > patience && !self.closed.contains(task)
+        };
+        self.tasks_serviced.iter().enumerate().find(is_abandoned).map(|(task, _)| task)
     }
 
     pub(super) fn patience_with_tasks(&self) -> u32 {

@@ -1,7 +1,8 @@
 //! Access points: fixed sinks of information that relay messages, wired to each other.
 //!
 //! An access point passes on what it hears like a robot does. The first of them also serves the
-//! user: it announces the tasks one after another, each when the one before is serviced.
+//! user: it announces the tasks one after another, each when the one before is serviced, and says which
+//! of them are over.
 
 #[cfg(feature = "abstraction")]
 mod abstraction;
@@ -22,6 +23,7 @@ use super::beacon::{Announced, Beacon, Bulletin, LastBeacon, Notice, Reports};
 use super::duty::Hop;
 use super::member::Sense;
 use super::message::Message;
+use super::order::Order;
 use super::record::MissionEvent;
 use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
 use super::roll::{Roll, Sightings, Wreck};
@@ -32,9 +34,9 @@ use crate::automaton::TransitionError;
 use crate::located::{Current, Place as _};
 use crate::node::{Input, Node, Outputs};
 
-use attendance::Attendee;
 pub(super) use attendance::PATIENCE;
 pub use attendance::{ATTENDANCE_GLOSSARY, AttendanceAutomaton, attendance_automaton};
+use attendance::{Attendee, TaskRecord};
 pub use rounds::{RoundAct, RoundActs, RoundAutomaton, round_automaton};
 pub use service::{ACCESS_POINT_GLOSSARY, ServiceAutomaton, ServiceEffect, service_automaton};
 
@@ -88,12 +90,14 @@ pub struct AccessPoint {
     /// The newest roll.
     roll: Roll,
     settled_rounds: usize,
-    /// For how many control periods each task that has been serviced has not been.
-    tasks_serviced: Vec<u32>,
+    /// What it knows of each task that has been serviced; of one that was passed over, that it is closed.
+    tasks_serviced: Vec<TaskRecord>,
     /// The tasks that are serviced by robots attached here.
     serves: Arc<IdSet>,
+    /// The tasks that are over.
+    closed: Arc<IdSet>,
     /// What the user has asked for.
-    requested: Option<Arc<[Point]>>,
+    requested: Option<Order>,
     /// Its state in the service of the tasks, and its stage in the control period.
     service: Current<Serving>,
     rounds: Current<Rounds>,
@@ -140,6 +144,7 @@ impl AccessPoint {
             settled_rounds: 0,
             tasks_serviced: Vec::new(),
             serves: Arc::default(),
+            closed: Arc::default(),
             requested: None,
             service: Current::new(Serving::Gathering(Gathering)),
             rounds: Current::new(Rounds::Resting(Resting)),
@@ -199,6 +204,7 @@ impl AccessPoint {
             below: Arc::clone(&self.attached),
             strays: Arc::clone(&self.strays),
             serves: Arc::clone(&self.serves),
+            closed: Arc::clone(&self.closed),
             duty: None,
             parked: false,
             way: None,
@@ -310,6 +316,7 @@ impl AccessPoint {
         }
         for beacon in &self.heard {
             beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
+            beacon.tell_closed(&mut self.closed);
         }
     }
 
@@ -341,13 +348,28 @@ impl AccessPoint {
                 self.crossing.clear();
             }
             Notice::Path(_) => self.agreement = Some(Agreement::new(id)),
-            Notice::Serviced { task } if task >= self.tasks_serviced.len() => {
-                self.tasks_serviced.resize(task + 1, 0);
+            Notice::Serviced { task } => {
+                self.expect_serviced(task + 1);
+                self.tasks_serviced[task] = TaskRecord::default();
             }
-            Notice::Serviced { task } => self.tasks_serviced[task] = 0,
+            Notice::Withdrawn { task } => {
+                self.expect_serviced(task);
+                self.close(task);
+            }
             _ => {}
         }
         self.bulletin = bulletin;
+    }
+
+    /// The tasks before this one have been serviced, or are closed.
+    fn expect_serviced(&mut self, end: usize) {
+        let known = self.tasks_serviced.len().max(end);
+        self.tasks_serviced.resize(known, TaskRecord::default());
+    }
+
+    /// A task is over: from now on its robots hear so.
+    fn close(&mut self, task: usize) {
+        Arc::make_mut(&mut self.closed).insert(task);
     }
 
     /// The way to the robot that calls: through a robot that is attached here, or through another
@@ -433,8 +455,8 @@ impl AccessPoint {
             }
         }
         for task in reports.serves.iter() {
-            if let Some(silence) = self.tasks_serviced.get_mut(task) {
-                *silence = 0;
+            if let Some(known) = self.tasks_serviced.get_mut(task) {
+                known.silence = 0;
             }
         }
     }
@@ -480,8 +502,11 @@ impl Node for AccessPoint {
             Input::Heard { message: Message::Beacon { period, roll, beacon, .. }, .. } => {
                 self.hear(*period, roll, beacon);
             }
-            Input::Heard { message: Message::Request(tasks), .. } => {
-                self.requested = Some(Arc::clone(tasks));
+            Input::Heard { message: Message::Request(order), .. } => {
+                let is_old = |known: &Order| order.is_older_than(known);
+                if !self.requested.as_ref().is_some_and(is_old) {
+                    self.requested = Some(order.clone());
+                }
                 self.begin_attendance();
             }
             Input::Heard { from, message: Message::Proposal { period, segment, witness } }

@@ -9,6 +9,7 @@ use crate::located::{Current, DataOf, Holds};
 use crate::{Automaton, BuildError, Transfer};
 
 use super::super::beacon::{Announcement, Bulletin, Notice};
+use super::super::order::Errand;
 use super::super::record::{MissionEvent, Outcome};
 use super::super::service::{Announced, Electing, Gathering, Over, Serviced, Serving, UnderWay};
 use super::super::shared::Shared;
@@ -66,14 +67,25 @@ crate::observed! {
         hears_election: matches!(point.heard_notice(), Some(Notice::Task(_) | Notice::Call { .. })),
         /// The newest notice received announces a path Σ, or that the team advances.
         hears_progress: matches!(point.heard_notice(), Some(Notice::Path(_) | Notice::Advance { .. })),
-        /// The newest notice received says that the task is serviced.
-        hears_service: matches!(point.heard_notice(), Some(Notice::Serviced { .. })),
+        /// The newest notice received says that the task is serviced, or has been taken back.
+        hears_service: matches!(
+            point.heard_notice(),
+            Some(Notice::Serviced { .. } | Notice::Withdrawn { .. })
+        ),
         /// The newest notice received says that the mission has ended.
         hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
         /// The user has asked it for tasks.
         asked: point.requested.is_some(),
         /// There is a task after the one announced last.
         task_left: point.next_task().is_some(),
+        /// A task is still to come, or to end: the user will ask for it, or it is serviced for a time.
+        task_to_come: point.expects_task(),
+        /// A task that is not pursued is over, and not closed yet.
+        task_over: point.next_closing().is_some(),
+        /// The task that is pursued has been taken back.
+        pursues_withdrawn: point.pursues_withdrawn(),
+        /// The newest notice that it has taken up announces a path Σ.
+        path_announced: matches!(point.notice(), Notice::Path(_)),
         /// It knows the roster of the election.
         knows_electors: point.announced().is_some(),
         /// The token of every robot that takes part is known.
@@ -95,6 +107,8 @@ pub enum ServiceEffect {
     Issue(Notice),
     /// It issues a notice that supersedes those that others issue meanwhile.
     Supersede(Notice),
+    /// This task is over: its robots hear so.
+    Close(usize),
     /// It reports to observers.
     Report(MissionEvent),
 }
@@ -122,6 +136,7 @@ impl Holds<Serving> for AccessPoint {
                 ServiceEffect::Supersede(notice) => {
                     self.take_up(self.bulletin.superseding(self.id(), Shared::new(notice)));
                 }
+                ServiceEffect::Close(task) => self.close(task),
                 ServiceEffect::Report(event) => self.log.push(event),
             }
         }
@@ -160,11 +175,54 @@ impl AccessPoint {
         self.forgetful.iter().filter(elects)
     }
 
-    /// The task to announce next: the first that has been serviced and is not any more, or the one after
-    /// all that have been.
-    fn next_task(&self) -> Option<usize> {
-        let next = self.abandoned_task().unwrap_or(self.tasks_serviced.len());
-        self.requested.as_ref().is_some_and(|tasks| next < tasks.len()).then_some(next)
+    /// What the user has asked for, by number.
+    fn errands(&self) -> impl Iterator<Item = (usize, Errand)> {
+        let tasks = self.requested.iter().flat_map(|order| order.tasks.iter().copied());
+        tasks.enumerate()
+    }
+
+    fn is_open(&self, task: usize) -> bool {
+        !self.closed.contains(task)
+    }
+
+    /// The task to announce next: the first that has been serviced and is not any more, or the first after
+    /// all that have been; none that is over.
+    pub(super) fn next_task(&self) -> Option<usize> {
+        let asked_for = self.errands().count();
+        let new = || (self.tasks_serviced.len()..asked_for).find(|&task| self.is_open(task));
+        self.abandoned_task().filter(|&task| task < asked_for).or_else(new)
+    }
+
+    /// Whether the user will ask for another task, or one is serviced that is to end.
+    fn expects_task(&self) -> bool {
+        let is_to_end =
+            |(task, errand): (usize, Errand)| errand.lasts.is_some() && self.is_open(task);
+        self.requested.as_ref().is_some_and(|order| order.continues)
+            || self.errands().any(is_to_end)
+    }
+
+    /// Whether the task that is pursued has been taken back.
+    fn pursues_withdrawn(&self) -> bool {
+        let withdrawn = |task| self.errands().any(|(it, errand)| it == task && errand.withdrawn);
+        self.announced().is_some_and(|it| !self.is_open(it.task) || withdrawn(it.task))
+    }
+
+    /// The first task that is not pursued and is over, with what has become of it.
+    fn next_closing(&self) -> Option<(usize, MissionEvent)> {
+        let pursued = self.announced().map(|announced| announced.task);
+        let open = self.errands().filter(|&(task, _)| self.is_open(task) && pursued != Some(task));
+        open.filter_map(|(task, errand)| {
+            let serviced = self.tasks_serviced.get(task);
+            let has_ended = |periods| serviced.is_some_and(|known| known.has_lasted(periods));
+            match errand.lasts {
+                _ if errand.withdrawn => Some((task, MissionEvent::TaskWithdrawn { task })),
+                Some(periods) if has_ended(periods) => {
+                    Some((task, MissionEvent::TaskEnded { task }))
+                }
+                _ => None,
+            }
+        })
+        .next()
     }
 
     /// The robots that have not answered in the election under way.
@@ -177,11 +235,10 @@ impl AccessPoint {
     /// The notice by which a task is announced to the robots that take part now.
     fn task_notice(&self, task: usize) -> Option<Notice> {
         let requested = self.requested.as_ref()?;
-        let serviced = requested.get(..self.tasks_serviced.len()).unwrap_or(requested);
         Some(Notice::Task(Shared::new(Announcement {
             task,
-            position: *requested.get(task)?,
-            before: Arc::from(serviced),
+            position: requested.tasks.get(task)?.position,
+            before: requested.positions(self.tasks_serviced.len().max(task)),
             roster: Arc::clone(&self.roster),
             eligible: Arc::new((0..self.site.access_points.len()).collect()),
         })))
@@ -276,7 +333,7 @@ fn hear_progress<A: Knows>(
 
 fn hear_service<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Serviced> {
     match take_up(point, effects)? {
-        Notice::Serviced { task } => Some(Serviced { task }),
+        Notice::Serviced { task } | Notice::Withdrawn { task } => Some(Serviced { task }),
         _ => None,
     }
 }
@@ -294,6 +351,23 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
     }));
     effects.push(point.issue(notice));
     Some(point.electing(task, 0))
+}
+
+/// The user has taken back the task that is pursued: those who pursue it stop, and its team is dissolved.
+fn withdraw<A: Knows>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Serviced> {
+    let task = place.announced()?.task;
+    if point.is_open(task) {
+        effects.push(ServiceEffect::Report(MissionEvent::TaskWithdrawn { task }));
+    }
+    effects.push(ServiceEffect::Supersede(Notice::Withdrawn { task }));
+    Some(Serviced { task })
+}
+
+/// A task is over that is not pursued.
+fn close<A: Clone>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<A> {
+    let (task, event) = point.next_closing()?;
+    effects.extend([ServiceEffect::Close(task), ServiceEffect::Report(event)]);
+    Some(place.clone())
 }
 
 /// The task is announced again, to the robots that are left.
@@ -336,8 +410,15 @@ fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> O
 }
 
 fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
-    let count = point.requested.as_ref().map_or(0, |tasks| tasks.len());
-    end(point, effects, Outcome::Serviced, None, format!("all {count} tasks are serviced"))
+    let (count, closed) = (point.errands().count(), point.closed.len());
+    let reason = match closed {
+        0 => format!("all {count} tasks are serviced"),
+        _ => format!(
+            "of {count} tasks {} are serviced, and {closed} have ended or been taken back",
+            count - closed.min(count)
+        ),
+    };
+    end(point, effects, Outcome::Serviced, None, reason)
 }
 
 fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
@@ -399,6 +480,15 @@ fn announces_again<A: DataOf<Serving> + Knows>(guard: Guard) -> Row {
     Transfer::where_known(ServiceEvent::AnnouncesAgain, guard, name, announce_again::<A>)
 }
 
+fn withdraws<A: DataOf<Serving> + Knows>() -> Row {
+    let (guard, name) = (guards::withdraws(), "announce that the task is taken back");
+    Transfer::where_known(ServiceEvent::Withdraws, guard, name, withdraw::<A>)
+}
+
+fn closes<A: DataOf<Serving> + Clone>() -> Row {
+    Transfer::where_known(ServiceEvent::Closes, guards::closes(), "close the task", close::<A>)
+}
+
 fn no_robot<A: DataOf<Serving>>(guard: Guard) -> Row {
     let name = "end the mission: insufficient robots";
     Transfer::new(ServiceEvent::NoRobot, guard, name, end_without_robots::<A>)
@@ -434,6 +524,12 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(end_heard::<Electing>())
         .carried_out(end_heard::<UnderWay>())
         .carried_out(end_heard::<Serviced>())
+        .carried_out(withdraws::<Electing>())
+        .carried_out(withdraws::<UnderWay>())
+        .carried_out(closes::<Gathering>())
+        .carried_out(closes::<Electing>())
+        .carried_out(closes::<UnderWay>())
+        .carried_out(closes::<Serviced>())
         .carried_out(announces::<Gathering>(guards::announces_first()))
         .carried_out(announces::<Serviced>(guards::announces_next()))
         .carried_out(announces_again::<Electing>(guards::elects_again()))

@@ -7,13 +7,19 @@ use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{NodeId, Post, PostId};
 use serde_json::json;
 
-use super::super::beacon::Beacon;
-use super::super::duty::{Duty, Held, Standby, Station};
+use super::super::beacon::{Beacon, Notice};
+use super::super::duty::{Duty, Held, Path, Standby, Station};
 use super::super::message::Message;
+use super::super::order::Order;
+use super::super::record::MissionEvent;
 use super::super::roll::{Absent, Roll, Wreck};
-use super::super::scenario::Scenario;
+use super::super::scenario::{Scenario, Task};
+use super::super::service::{Announced, Serviced, Serving, UnderWay};
+use super::super::shared::Shared;
 use super::super::site::Site;
 use super::AccessPoint;
+use super::attendance::TaskRecord;
+use crate::located::{Current, Place as _};
 use crate::node::{Input, Node as _, Outputs};
 
 /// The first access point of a hall, which hears robots 0 and 1.
@@ -96,4 +102,116 @@ fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
     let heard = Beacon { wrecks, ..beacon(0, west) };
     assert_eq!(told(3, &without_one, vec![heard]), [wreck(1, farther, 2)]);
     assert_eq!(told(4, &roll(4, &[]), vec![beacon(0, west)]), [], "it takes part again");
+}
+
+// ---- Tasks with times ------------------------------------------------------------------------
+
+impl AccessPoint {
+    /// The user asks for these tasks as it does in a control period.
+    fn is_asked(&mut self, tasks: &[Task], period: u32) {
+        let message = Message::Request(Order::by(period, tasks));
+        let heard = Input::Heard { from: 3, message: &message };
+        self.step(heard, &mut Outputs::of(4)).expect("guards have values");
+    }
+
+    /// It has heard that a task is serviced, so many control periods ago.
+    fn has_heard_of(&mut self, task: usize, age: u32, silence: u32) {
+        self.service = Current::new(Serving::Serviced(Serviced { task }));
+        self.expect_serviced(task + 1);
+        self.tasks_serviced[task] = TaskRecord { silence, age };
+    }
+
+    /// It pursues a task, and has taken up this notice.
+    fn pursues(&mut self, task: usize, notice: Notice) {
+        let roster = Arc::new([0, 1].into_iter().collect());
+        let announced = Some(Announced { task, roster, unanswered: 0 });
+        self.service = Current::new(Serving::UnderWay(UnderWay { announced }));
+        self.bulletin = self.bulletin.next(0, Shared::new(notice));
+    }
+
+    /// What it tells observers when it serves the user.
+    fn serves_user(&mut self) -> Vec<MissionEvent> {
+        self.serve().expect("guards have values");
+        std::mem::take(&mut self.log)
+    }
+}
+
+const THERE: [f64; 2] = [9.0, 9.0];
+
+#[test]
+fn a_late_copy_of_a_request_takes_nothing_back() {
+    let tasks = [Task { withdrawn: Some(9), ..Task::at(THERE) }, Task::at(THERE)];
+    let later = [tasks[0], Task { announced: Some(5), ..tasks[1] }];
+    let mut point = access_point();
+    let known = |point: &AccessPoint| point.requested.as_ref().map(|order| order.tasks.len());
+    point.is_asked(&later, 4);
+    assert_eq!(known(&point), Some(1));
+    point.is_asked(&later, 5);
+    point.is_asked(&later, 4);
+    assert_eq!(known(&point), Some(2));
+    point.is_asked(&later, 9);
+    point.is_asked(&later, 8);
+    assert!(point.requested.as_ref().is_some_and(|order| order.tasks[0].withdrawn));
+}
+
+#[test]
+fn a_task_ends_when_it_has_lasted_and_is_heard_of() {
+    let closing = |age, silence| {
+        let mut point = access_point();
+        point.is_asked(&[Task { lasts: Some(80), ..Task::at(THERE) }], 1);
+        point.has_heard_of(0, age, silence);
+        let events = point.serves_user();
+        assert_eq!(point.public_state().closed.contains(0), !events.is_empty());
+        (events, point.service.location())
+    };
+    use pleach_discrete::network::Service;
+    assert_eq!(closing(79, 0), (vec![], Service::Serviced), "the mission waits for its end");
+    assert_eq!(closing(80, 1), (vec![], Service::Serviced), "its robot may have stopped");
+    assert_eq!(closing(80, 0), (vec![MissionEvent::TaskEnded { task: 0 }], Service::Serviced));
+    let mut point = access_point();
+    point.is_asked(&[Task::at(THERE)], 1);
+    point.has_heard_of(0, 9_999, 0);
+    assert_eq!(point.serves_user(), [], "it is serviced for ever");
+    assert_eq!(point.service.location(), Service::Over);
+}
+
+#[test]
+fn a_task_that_is_over_is_not_abandoned() {
+    let mut point = access_point();
+    point.is_asked(&[Task { lasts: Some(80), ..Task::at(THERE) }], 1);
+    point.has_heard_of(0, 90, 5_000);
+    assert_eq!((point.abandoned_task(), point.next_task()), (Some(0), Some(0)));
+    point.close(0);
+    assert_eq!((point.abandoned_task(), point.next_task()), (None, None));
+}
+
+#[test]
+fn what_is_taken_back_before_it_is_announced_never_is() {
+    let mut point = access_point();
+    point.is_asked(&[Task::at(THERE), Task { withdrawn: Some(3), ..Task::at(THERE) }], 3);
+    point.has_heard_of(0, 0, 0);
+    assert_eq!(point.next_task(), Some(1));
+    assert_eq!(point.serves_user(), [MissionEvent::TaskWithdrawn { task: 1 }]);
+    assert_eq!(point.next_task(), None);
+}
+
+/// While a secondary team is on its way some posts have two robots that answer for them, and some none.
+#[test]
+fn a_task_that_is_pursued_is_given_up_when_no_secondary_team_is_on_its_way() {
+    let taken_back = |notice: Notice, period: u32| {
+        let mut point = access_point();
+        point.is_asked(&[Task { withdrawn: Some(3), ..Task::at(THERE) }], period);
+        point.pursues(0, notice);
+        let epoch = point.bulletin.id().epoch();
+        let events = point.serves_user();
+        let has_superseded = point.bulletin.id().epoch() > epoch;
+        assert_eq!(has_superseded, *point.notice() == Notice::Withdrawn { task: 0 });
+        assert_eq!(has_superseded, point.public_state().closed.contains(0));
+        events
+    };
+    let advance = || Notice::Advance { joined: None };
+    let path = Notice::Path(Arc::new(Path { hops: Vec::new(), releases_leader: false }));
+    assert_eq!(taken_back(advance(), 2), []);
+    assert_eq!(taken_back(advance(), 3), [MissionEvent::TaskWithdrawn { task: 0 }]);
+    assert_eq!(taken_back(path, 3), []);
 }

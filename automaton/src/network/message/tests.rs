@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use pleach_continuous::Point;
 use pleach_discrete::Location as _;
 use pleach_discrete::network::{
     Activity, Agreement, Anchor, Bid, Election, IdSet, Lineage, NoticeId, Offer, Post, PostId,
@@ -14,6 +15,7 @@ use super::super::duty::{
     AwaitingRelease, Bound, Duty, Following, Held, Hop, Junction, Leading, Leaf, Path, PathPlace,
     Relay, Shifting, Standby, Station, Waiting,
 };
+use super::super::order::Errand;
 use super::super::record::Outcome;
 use super::super::robot::RequestNumber;
 use super::super::roll::{Absent, Wreck};
@@ -76,6 +78,7 @@ fn notices() -> Vec<Notice> {
         Notice::Advance { joined: None },
         Notice::Advance { joined: Some((PostId(4), PostId(5))) },
         Notice::Serviced { task: 0 },
+        Notice::Withdrawn { task: 1 },
         Notice::Ended {
             outcome: Outcome::Blocked, reason: "no way: “δ” 😀".into(), task: Some(1)
         },
@@ -105,6 +108,7 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
         strays: Arc::new(IdSet::singleton(4)),
         forgetful: Arc::new(IdSet::singleton(2)),
         serves: Arc::new(IdSet::singleton(1)),
+        closed: Arc::new(IdSet::singleton(0)),
         duty: Some(duty),
         parked: true,
         way: Some(Point::new(-0.5, 0.25)),
@@ -147,6 +151,10 @@ fn messages() -> Vec<Message> {
     let report = NeighbourReport { multiplier: 0.1, mismatch: -0.2, crowding: 1.0 };
     let segment = Segment::new(Point::new(0.1, 0.2), Point::new(1.0 / 3.0, 0.2));
     let number = RequestNumber { period: 3, number: 1 };
+    let errands = [
+        Errand { position: Point::new(1.33, 1.42), lasts: None, withdrawn: true },
+        Errand { position: Point::new(1.6, 0.52), lasts: Some(90), withdrawn: false },
+    ];
     let mut messages = vec![
         beacon(silent()),
         Message::Multiplier { report, parent: None },
@@ -159,8 +167,8 @@ fn messages() -> Vec<Message> {
         Message::Proposal { period: 5, segment, witness: Some(2) },
         Message::Objection { period: 5 },
         Message::Consent { period: 5 },
-        Message::Request(Arc::from([])),
-        Message::Request(Arc::from([Point::new(1.33, 1.42), Point::new(1.6, 0.52)])),
+        Message::Request(Order { tasks: Arc::from([]), continues: true }),
+        Message::Request(Order { tasks: Arc::from(errands), continues: false }),
     ];
     messages.extend(duties().into_iter().map(of_duty));
     messages.extend(notices().into_iter().skip(1).map(of_notice));
@@ -194,6 +202,7 @@ fn kind_of_notice(notice: &Notice) -> &'static str {
         Notice::Path(_) => "path",
         Notice::Advance { .. } => "advance",
         Notice::Serviced { .. } => "serviced",
+        Notice::Withdrawn { .. } => "withdrawn",
         Notice::Ended { .. } => "ended",
     }
 }
@@ -218,7 +227,13 @@ fn every_kind_of_message_is_read_back_as_it_was_written() {
     assert_eq!(kinds.len(), 12);
     let named: BTreeSet<_> = duties().iter().map(|duty| duty.location()).collect();
     assert_eq!(named.len(), Activity::ALL.len());
-    assert_eq!(notices().iter().map(kind_of_notice).collect::<BTreeSet<_>>().len(), 7);
+    assert_eq!(notices().iter().map(kind_of_notice).collect::<BTreeSet<_>>().len(), 8);
+}
+
+/// A user asks for a task at this place.
+fn request_for(position: Value) -> Value {
+    let errand = json!({"position": position, "lasts": null, "withdrawn": false});
+    json!({"request": {"tasks": [errand], "continues": false}})
 }
 
 /// What is said of a message that is not one.
@@ -252,8 +267,9 @@ fn malformed_messages_are_refused() {
             json!({"grant_flow": {"number": {"period": 1, "number": 0}, "flow": null}}),
             "expected f64",
         ),
-        (json!({"request": [[0.0, null]]}), "expected f64"),
-        (json!({"request": [[0.0]]}), "array"),
+        (request_for(json!([0.0, null])), "expected f64"),
+        (request_for(json!([0.0])), "array"),
+        (json!({"request": {"tasks": []}}), "missing field `continues`"),
         (json!({"proposal": {"period": 0, "segment": {"from": [0, 0]}}}), "missing field `to`"),
         (json!({"consent": {}}), "missing field `period`"),
         (json!({"multiplier": {"parent": null}}), "missing field `report`"),

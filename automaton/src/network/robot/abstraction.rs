@@ -246,6 +246,7 @@ impl Robot {
             stretched,
             longest_wait: _, // told, with its own depth
             followed_post,
+            closed,
             posts_made,
             neighbours: _, // by their beacons and their silence
             // Constant.
@@ -336,7 +337,7 @@ impl Robot {
                 (id, position, still_periods, &**duty, posts_made, &**mission, unused_periods),
                 (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
                 ((bulletin, epoch, announced), election, bid, waited, route),
-                (agreement, team, stretched, self.longest_wait(), followed_post, silences),
+                (agreement, team, stretched, self.longest_wait(), followed_post, closed, silences),
             )
         )
     }

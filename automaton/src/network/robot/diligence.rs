@@ -68,6 +68,7 @@ impl Robot {
             "strays": now.strays, then.strays;
             "robots that have forgotten": now.forgetful, then.forgetful;
             "tasks serviced below": now.serves, then.serves;
+            "tasks that are over": now.closed, then.closed;
             "wrecks": now.wrecks, then.wrecks;
             "branches": now.branches, then.branches;
             "exchange of duties": self.exchange, before.exchange;

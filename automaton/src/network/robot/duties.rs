@@ -165,6 +165,12 @@ impl Robot {
         matches!(*self.duty, Duty::Leading(_)) && self.is_first() && bears_fixed()
     }
 
+    /// Whether the task that is serviced from its post is over.
+    pub(super) fn services_closed_task(&self) -> bool {
+        let task = self.duty.post().and_then(|post| post.task);
+        task.is_some_and(|task| self.closed.contains(task))
+    }
+
     /// Whether the path Σ that it learns of now passes its post, before or at the last break point.
     pub(super) fn is_on_coming_path(&self) -> bool {
         self.coming_place().is_some()
@@ -425,6 +431,13 @@ fn service(leading: &Leading, robot: &Robot, _: &mut Effects) -> Leaf {
     Leaf(held)
 }
 
+/// Its task is over: the post stays one of the tree as long as branches need it.
+fn discharge(leaf: &Leaf, _: &Robot, _: &mut Effects) -> Relay {
+    let mut held = leaf.0;
+    held.station.post.task = None;
+    Relay(held)
+}
+
 fn promote(standby: &Standby, _: &Robot, _: &mut Effects) -> Relay {
     Relay(with_kind(standby.0, PostKind::Fixed))
 }
@@ -647,6 +660,12 @@ pub fn duty_automaton() -> Result<DutyAutomaton, BuildError> {
             guards::promoted(),
             "make the post a fixed one",
             promote,
+        ))
+        .carried_out(Transfer::new(
+            On::Discharged,
+            guards::discharged(),
+            "service nothing any more",
+            discharge,
         ))
         .carried_out(Transfer::new(
             On::Branched,

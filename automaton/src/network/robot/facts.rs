@@ -107,6 +107,8 @@ facts! {
         finds_better_parent,
         /// It leads alone, and a fixed post has been attached to its own.
         burdened,
+        /// The task that is serviced from its post is over.
+        task_closed,
     }
     of the robot robot {
         quantities {
@@ -297,6 +299,7 @@ impl Robot {
         facts.may_set_out = self.may_set_out();
         facts.finds_better_parent = self.finds_better_parent();
         facts.burdened = self.is_burdened();
+        facts.task_closed = self.services_closed_task();
         facts
     }
 

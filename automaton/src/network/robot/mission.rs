@@ -136,6 +136,7 @@ impl Robot {
                 own.merge(heard);
             }
             neighbour.beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
+            neighbour.beacon.tell_closed(&mut self.closed);
         }
         match self.phase() {
             Phase::LeaderElection => self.answer_announcement(),

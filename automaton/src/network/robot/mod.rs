@@ -186,6 +186,8 @@ pub struct Robot {
     below: Arc<IdSet>,
     strays: Arc<IdSet>,
     serves: Arc<IdSet>,
+    /// The tasks that are over, as far as it has heard.
+    closed: Arc<IdSet>,
     /// The parent in the tree that it has found to be best, none if it has looked for none.
     desired_parent: Option<Option<Anchor>>,
     /// The node that p₁ finds to be a better parent.
@@ -316,6 +318,7 @@ impl Robot {
             below: Arc::new(IdSet::singleton(id)),
             strays: Arc::default(),
             serves: Arc::default(),
+            closed: Arc::default(),
             desired_parent: None,
             reattaches_to: None,
             confirmation: Confirmation::default(),
@@ -452,6 +455,7 @@ impl Robot {
             below: Arc::clone(&self.below),
             strays: Arc::clone(&self.strays),
             serves: Arc::clone(&self.serves),
+            closed: Arc::clone(&self.closed),
             duty: Some(*self.duty),
             parked: self.is_parked(),
             way: self.way_asked_for(),

@@ -147,6 +147,18 @@ pub enum Problem {
     /// There is no robot.
     #[error("there is none: a mission needs at least one [[robot]]")]
     NoRobot,
+    /// A task that is asked for before one that stands before it.
+    #[error(
+        "{announced} is before task[{other}] is announced, at {earliest}: list tasks in order of \
+         announcement"
+    )]
+    AnnouncedOutOfOrder { announced: u32, other: usize, earliest: u32 },
+    /// A task that is taken back before it is asked for.
+    #[error(
+        "{withdrawn} is not after the task is announced, at {announced}: it must be a later control \
+         period, or be left out where the task is never taken back"
+    )]
+    WithdrawnTooEarly { withdrawn: u32, announced: u32 },
     /// Places for another number of robots than there are.
     #[error("there are {stated} robots and places for {given}: give one place for each")]
     OtherNumber { stated: usize, given: usize },

@@ -120,7 +120,29 @@ fn values_are_in_range(scenario: &Scenario) -> Vec<Fault> {
     let mut faults: Vec<Fault> =
         name.into_iter().chain(link).chain(steepness).chain(control).chain(rates).collect();
     faults.extend(table_faults(scenario));
+    faults.extend(errand_faults(scenario));
     faults
+}
+
+/// Times of tasks that no user can mean.
+fn errand_faults(scenario: &Scenario) -> Vec<Fault> {
+    let key = |row, name| KeyPath::root().key("task").index(row).key(name);
+    let tasks = || scenario.task.iter().enumerate();
+    let out_of_order = tasks().zip(tasks().skip(1)).filter_map(|((other, before), (row, task))| {
+        let (announced, earliest) = (task.asked_for(), before.asked_for());
+        let problem = Problem::AnnouncedOutOfOrder { announced, other, earliest };
+        (announced < earliest).then(|| problem.at(key(row, "announced")))
+    });
+    let taken_back = tasks().filter_map(|(row, task)| {
+        let (withdrawn, announced) = (task.withdrawn?, task.asked_for());
+        let problem = Problem::WithdrawnTooEarly { withdrawn, announced };
+        (withdrawn <= announced).then(|| problem.at(key(row, "withdrawn")))
+    });
+    let without_time = tasks().filter(|(_, task)| task.lasts == Some(0));
+    out_of_order
+        .chain(taken_back)
+        .chain(without_time.map(|(row, _)| Problem::Zero.at(key(row, "lasts"))))
+        .collect()
 }
 
 fn control_problem(values: Values, scenario: &Scenario, range: f64) -> Option<Problem> {

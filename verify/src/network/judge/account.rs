@@ -13,6 +13,7 @@ use super::Judge;
 use super::certificate::{AT_LIMIT, PASSAGE, SATURATED, SPENT, TOUCHED};
 use super::ground::Ground;
 use super::ledger::Stage;
+use super::terms::all_stay;
 use super::verdicts::{Trial, parent_of, tree_of};
 use crate::network::bound::Spans;
 
@@ -47,6 +48,9 @@ fn unreachable(judge: &Judge, task: usize) -> Option<Unreachable> {
 }
 
 fn bound(judge: &Judge, task: usize) -> Option<Bound> {
+    if !all_stay(&judge.scenario, task + 1) {
+        return None;
+    }
     let spans = Spans::of(&judge.scenario).ok()?;
     let (least, robots) = (spans.least_robots(task + 1)?, judge.scenario.robot.len());
     (least > robots).then(|| Bound {

@@ -15,6 +15,7 @@ use pleach_discrete::network::Role;
 use super::Judge;
 use super::ground::Ground;
 use super::ledger::Stage;
+use super::terms::all_stay;
 use super::verdicts::{Trial, tree_of};
 use crate::network::bound::Spans;
 use crate::network::limits::SLACK;
@@ -110,6 +111,9 @@ fn is_out_of_reach(judge: &Judge, claim: &Unreachable, task: Option<usize>) -> C
 
 fn takes_more(judge: &Judge, claim: &Bound, task: Option<usize>) -> Complaint {
     let tasks = task.map_or(0, |task| task + 1).min(judge.monitor.limits().tasks().len());
+    if !all_stay(&judge.scenario, tasks) {
+        return Err("tasks are over that any tree is claimed to service".to_owned());
+    }
     let robots = judge.scenario.robot.len();
     let Ok(spans) = Spans::of(&judge.scenario) else { return Ok(()) };
     let longest_link = judge.monitor.limits().longest_tree_link();

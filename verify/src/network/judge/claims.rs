@@ -27,7 +27,10 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
     let mut robots = Vec::new();
     let mut task = None;
     match event {
-        MissionEvent::TaskAnnounced { task: it } | MissionEvent::ElectionRepeated { task: it } => {
+        MissionEvent::TaskAnnounced { task: it }
+        | MissionEvent::TaskEnded { task: it }
+        | MissionEvent::TaskWithdrawn { task: it }
+        | MissionEvent::ElectionRepeated { task: it } => {
             task = Some(*it);
         }
         MissionEvent::TaskReannounced { task: it, gone } => {
@@ -158,10 +161,19 @@ fn divides(
     ledger: &Ledger,
     scene: &Scene,
 ) -> Result<(), Dispute> {
-    let derived = |snapshot: &Snapshot| break_points_by_tree(path, ledger, snapshot);
-    let before = scene.previous.map(derived);
-    let now = derived(scene.snapshot);
-    if now == break_points || before.as_deref() == Some(break_points) {
+    let of_tasks = |serve: bool| -> Vec<usize> {
+        // Robots whose task is over may vote before they know.
+        let discharging = ledger.discharging.values().filter(|_| serve);
+        ledger.serviced.values().chain(discharging).copied().collect()
+    };
+    let derived = |snapshot: &Snapshot, serve: bool| {
+        break_points_by_tree(path, &of_tasks(serve), ledger.awaits_release, snapshot)
+    };
+    let now = derived(scene.snapshot, false);
+    let is_derived = |snapshot: &Snapshot| {
+        [false, true].into_iter().any(|serve| derived(snapshot, serve) == break_points)
+    };
+    if is_derived(scene.snapshot) || scene.previous.is_some_and(is_derived) {
         return Ok(());
     }
     let sentence = format!(
@@ -173,7 +185,12 @@ fn divides(
 
 /// The recruit, the last robot that is relieved, and between them each robot that services a task,
 /// has a neighbour in the tree off Σ, or stands where Σ leaves the tree.
-fn break_points_by_tree(path: &[usize], ledger: &Ledger, snapshot: &Snapshot) -> Vec<usize> {
+fn break_points_by_tree(
+    path: &[usize],
+    servicing: &[usize],
+    releases_leader: bool,
+    snapshot: &Snapshot,
+) -> Vec<usize> {
     let robots = snapshot.positions.len();
     let mut parents = vec![None; robots];
     // A robot with two parents is told by another property.
@@ -185,14 +202,14 @@ fn break_points_by_tree(path: &[usize], ledger: &Ledger, snapshot: &Snapshot) ->
         parents[robot].is_some_and(|parent| !is_on(parent))
             || (0..robots).any(|child| parents[child] == Some(robot) && !is_on(child))
     };
-    let Some(last) = path.len().checked_sub(if ledger.awaits_release { 1 } else { 2 }) else {
+    let Some(last) = path.len().checked_sub(if releases_leader { 1 } else { 2 }) else {
         return Vec::new();
     };
     let is_break_point = |place: usize| {
         let robot = path[place];
         place == 0
             || place == last
-            || ledger.serviced.values().any(|&holder| holder == robot)
+            || servicing.contains(&robot)
             || bears_others(robot)
             || !joins(path[place - 1], robot)
             || !joins(robot, path[place + 1])
@@ -284,8 +301,11 @@ pub(super) fn teams_are_those(
         else {
             continue;
         };
-        // With the mission the team ends, and its members leave it one by one.
-        let is_dissolving = snapshot.phase == Phase::Ended && is_part(team, &ledger.primary_team);
+        // With the mission the team ends, and its members leave it one by one; so they do when their task is
+        // taken back.
+        let outdated = ledger.outdated.as_ref().map(|outdated| &outdated.primary_team);
+        let is_dissolving = snapshot.phase == Phase::Ended && is_part(team, &ledger.primary_team)
+            || outdated.is_some_and(|known| is_part(team, known));
         if *team != ledger.primary_team && !is_dissolving {
             let sentence = format!(
                 "an event names the primary team {team:?}, which is {:?}",

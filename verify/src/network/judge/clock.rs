@@ -48,7 +48,7 @@ impl Clock {
         }
     }
 
-    /// What contradicts the end of a mission, in which `serviced` of `tasks` tasks are serviced and
+    /// What contradicts the end of a mission, in which `serviced` of `tasks` tasks are serviced or over, and
     /// `last` is the last step on record.
     pub(super) fn contradiction(
         &self,

@@ -112,6 +112,9 @@ impl Conclusions {
 
     /// The ledger after an event.
     fn update(&mut self, ledger: &Ledger, step: usize) {
+        if let Some(outdated) = &ledger.outdated {
+            self.update(outdated, step);
+        }
         let patience = self.patience;
         let remaining = ledger.walk.as_ref().map_or(&[][..], |walk| walk.remaining());
         self.task.update(ledger.task(), step, patience);
@@ -176,12 +179,15 @@ impl Conclusions {
         let next = under_way.map(|_| ledger.after_arrival());
         self.teams_are_those(ledger, next.as_ref(), snapshot)?;
         self.path_is_that(ledger, next.as_ref(), snapshot)?;
-        self.duties_are_those(next.as_ref(), snapshot)?;
+        self.duties_are_those(ledger, next.as_ref(), snapshot)?;
         let moves = |robot| self.primary_team.values().any(|team| team.contains(&robot));
         posts::are_held(moves, snapshot)?;
         // A subgroup under way has left its posts: which branches part is seen when it is there.
         match self.is_settled(snapshot.step) && ledger.walk.is_none() {
-            true => posts::are_those(ledger, snapshot),
+            true => {
+                posts::serve_what_is_open(ledger, snapshot)?;
+                posts::are_those(ledger, snapshot)
+            }
             false => Ok(()),
         }
     }
@@ -289,13 +295,22 @@ impl Conclusions {
         Err(Dispute::of(Property::Teams, path, sentence))
     }
 
-    fn duties_are_those(&self, next: Option<&Ledger>, snapshot: &Snapshot) -> Result<(), Dispute> {
+    fn duties_are_those(
+        &self,
+        ledger: &Ledger,
+        next: Option<&Ledger>,
+        snapshot: &Snapshot,
+    ) -> Result<(), Dispute> {
         let next: Option<Vec<_>> =
             next.map(|next| next.serviced.iter().map(|(&task, &robot)| (task, robot)).collect());
         let is_alone = |robot: usize| !self.apart(&[robot]).is_empty();
+        // Who has held a task that is over hears so sooner or later.
+        let is_open = |(task, _): &&(usize, usize)| !ledger.closed.contains(task);
         let agrees = |known: &Vec<(usize, usize)>| {
-            known.len() == snapshot.serviced.len()
-                && known.iter().zip(&snapshot.serviced).all(|(known, seen)| {
+            let known: Vec<_> = known.iter().filter(is_open).collect();
+            let seen: Vec<_> = snapshot.serviced.iter().filter(is_open).collect();
+            known.len() == seen.len()
+                && known.iter().zip(&seen).all(|(known, seen)| {
                     known.0 == seen.0
                         && (known.1 == seen.1 || !is_alone(known.1) && !is_alone(seen.1))
                 })

@@ -3,7 +3,7 @@
 //! The ledger is kept from the events alone. An event that cannot follow those before it is
 //! disputed; whether it is true of the world is for [`claims`](super::claims) to say.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use pleach_automaton::network::record::MissionEvent;
 use pleach_discrete::network::Role;
@@ -22,6 +22,12 @@ pub struct Ledger {
     pub announced: usize,
     /// The tasks serviced, each with the robot that holds it.
     pub serviced: BTreeMap<usize, usize>,
+    /// The tasks that are over: they have ended, or been taken back.
+    pub closed: BTreeSet<usize>,
+    /// The tasks that were serviced when that was told, each with the robot that held it: it may not know yet.
+    pub discharging: BTreeMap<usize, usize>,
+    /// What robots go by that have not heard yet that the task is taken back that they pursue.
+    pub outdated: Option<Box<Ledger>>,
     /// The leader, from its election until its task is serviced.
     pub leader: Option<usize>,
     /// L_b: whether the leader has past duties from which it is not released yet.
@@ -64,6 +70,9 @@ impl Ledger {
             roles: vec![Role::Redundant; robots],
             announced: 0,
             serviced: BTreeMap::new(),
+            closed: BTreeSet::new(),
+            discharging: BTreeMap::new(),
+            outdated: None,
             leader: None,
             awaits_release: false,
             primary_team: Vec::new(),
@@ -75,9 +84,10 @@ impl Ledger {
         }
     }
 
-    /// The task that is pursued: the one announced that is not serviced.
+    /// The task that is pursued: the one announced that is neither serviced nor over.
     pub fn task(&self) -> Option<usize> {
-        (0..self.announced).find(|task| !self.serviced.contains_key(task))
+        let is_done = |task: &usize| self.serviced.contains_key(task) || self.closed.contains(task);
+        (0..self.announced).find(|task| !is_done(task))
     }
 
     /// What the mission is at.
@@ -106,6 +116,33 @@ impl Ledger {
     ///
     /// Why it cannot follow those before it.
     pub fn enter(&mut self, event: &MissionEvent) -> Result<(), Dispute> {
+        let entered = self.enter_now(event);
+        if let (Err(_), Some(mut outdated)) = (&entered, self.outdated.clone())
+            && outdated.enter(event).is_ok()
+        {
+            self.take_over_holders(&outdated);
+            self.outdated = Some(outdated);
+            return Ok(());
+        }
+        entered
+    }
+
+    /// Robots that have not heard yet that their task is taken back have gone on: who holds which task is as
+    /// they have it.
+    fn take_over_holders(&mut self, outdated: &Ledger) {
+        let known = outdated.serviced.iter().map(|(&task, &robot)| (task, robot));
+        let (mut closed, open): (BTreeMap<_, _>, _) =
+            known.partition(|(task, _)| self.closed.contains(task));
+        self.serviced = open;
+        self.discharging.append(&mut closed);
+    }
+
+    /// Everybody has heard by now that the task is taken back.
+    pub fn forget_outdated(&mut self) {
+        self.outdated = None;
+    }
+
+    fn enter_now(&mut self, event: &MissionEvent) -> Result<(), Dispute> {
         match event {
             MissionEvent::TaskAnnounced { task } => self.announce(*task),
             MissionEvent::LeaderElected { task, robot, conflict } => {
@@ -124,17 +161,19 @@ impl Ledger {
             MissionEvent::Released { robot } => self.release(*robot),
             MissionEvent::RoleChanged { robot, from, to } => self.change_role(*robot, *from, *to),
             MissionEvent::TaskServiced { task, robot } => self.service(*task, *robot),
+            MissionEvent::TaskEnded { task } => self.end(*task),
+            MissionEvent::TaskWithdrawn { task } => self.withdraw(*task),
             MissionEvent::DutiesExchanged { mover, parked } => self.exchange(*mover, *parked),
             MissionEvent::Reattached { .. } | MissionEvent::RouteInfeasible { .. } => Ok(()),
             other => dispute(&[], format!("the judge does not know the event {other:?}")),
         }
     }
 
-    /// Tasks are announced in their order, each when the one before is serviced.
+    /// Tasks are announced in their order, each when the one before is serviced, but for those that are over.
     fn announce(&mut self, task: usize) -> Result<(), Dispute> {
         let pursued = self.task();
-        if task != self.announced || pursued.is_some() {
-            let next = self.announced;
+        let next = (self.announced..).find(|task| !self.closed.contains(task)).unwrap_or_default();
+        if task != next || pursued.is_some() {
             return dispute(
                 &[],
                 match pursued {
@@ -145,8 +184,45 @@ impl Ledger {
                 },
             );
         }
-        self.announced += 1;
+        self.announced = task + 1;
         Ok(())
+    }
+
+    /// A task has been serviced for as long as it was to be.
+    fn end(&mut self, task: usize) -> Result<(), Dispute> {
+        let Some(robot) = self.serviced.remove(&task) else {
+            return dispute(&[], format!("task {task} ends, and no robot services it"));
+        };
+        self.closed.insert(task);
+        self.discharging.insert(task, robot);
+        Ok(())
+    }
+
+    /// The user takes a task back: one that is serviced, one that is still to be announced, or the one that is
+    /// pursued. Then the team is dissolved.
+    fn withdraw(&mut self, task: usize) -> Result<(), Dispute> {
+        if self.closed.contains(&task) {
+            return dispute(&[], format!("task {task} is taken back, and it is over"));
+        }
+        if self.serviced.contains_key(&task) {
+            return self.end(task);
+        }
+        let outdated = (self.task() == Some(task)).then(|| Box::new(self.clone()));
+        self.closed.insert(task);
+        if let Some(outdated) = outdated {
+            let dismissed = std::mem::take(&mut self.primary_team);
+            self.begin_anew();
+            (self.dismissed, self.outdated) = (dismissed, Some(outdated));
+        }
+        Ok(())
+    }
+
+    /// No task is pursued any more, or one from the beginning.
+    fn begin_anew(&mut self) {
+        let Ledger { roles, announced, serviced, closed, discharging, stretched, .. } =
+            std::mem::replace(self, Ledger::new(0));
+        *self =
+            Ledger { roles, announced, serviced, closed, discharging, stretched, ..Ledger::new(0) };
     }
 
     /// Algorithm 1: one leader for the task that is pursued.
@@ -165,7 +241,8 @@ impl Ledger {
     /// Robots are gone: the task that is pursued begins anew, or one that was serviced is pursued again.
     fn reannounce(&mut self, task: usize, gone: &[usize]) -> Result<(), Dispute> {
         let is_pursued = self.task().is_none_or(|pursued| pursued == task);
-        if task >= self.announced || !is_pursued || gone.is_empty() {
+        let is_over = task >= self.announced || self.closed.contains(&task);
+        if is_over || !is_pursued || gone.is_empty() {
             let sentence = format!(
                 "task {task} is announced again without robots {gone:?}, while task {:?} is pursued \
                  and {} tasks have been announced",
@@ -175,9 +252,7 @@ impl Ledger {
             return dispute(gone, sentence);
         }
         self.serviced.remove(&task);
-        let (roles, announced) = (std::mem::take(&mut self.roles), self.announced);
-        let (serviced, stretched) = (std::mem::take(&mut self.serviced), self.stretched);
-        *self = Ledger { roles, announced, serviced, stretched, ..Ledger::new(0) };
+        self.begin_anew();
         Ok(())
     }
 
@@ -300,7 +375,7 @@ impl Ledger {
         let takeovers: BTreeMap<usize, usize> =
             places.map(|place| (walk.path[place + 1], walk.path[place])).collect();
         (walk.is_under_way, walk.arrived) = (false, walk.arrived + 1);
-        for holder in self.serviced.values_mut() {
+        for holder in self.serviced.values_mut().chain(self.discharging.values_mut()) {
             *holder = takeovers.get(holder).copied().unwrap_or(*holder);
         }
     }
@@ -382,6 +457,10 @@ impl Ledger {
             return Err(Dispute::of(Property::RoleTransition, &[robot], sentence));
         }
         self.roles[robot] = to;
+        // Along Σ a leaf leaves its task to the robot behind.
+        if (from, to) == (Role::Leaf, Role::Node) && self.walk.is_none() {
+            self.discharging.retain(|_, holder| *holder != robot);
+        }
         Ok(())
     }
 
@@ -415,7 +494,7 @@ impl Ledger {
         };
         self.primary_team.iter_mut().for_each(swap);
         self.leader.iter_mut().for_each(swap);
-        self.serviced.values_mut().for_each(swap);
+        self.serviced.values_mut().chain(self.discharging.values_mut()).for_each(swap);
         if let Some(walk) = &mut self.walk {
             walk.path.iter_mut().for_each(swap);
         }

@@ -29,6 +29,7 @@ mod posts;
 mod referee;
 mod safety;
 mod states;
+mod terms;
 mod verdicts;
 mod walk;
 
@@ -38,7 +39,7 @@ use pleach_automaton::network::certificate::{Certificate, Then};
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_continuous::Point;
-use pleach_discrete::network::Role;
+use pleach_discrete::network::{Phase, Role};
 
 use super::extremes::Extremes;
 use super::limits::Limits;
@@ -51,6 +52,7 @@ pub use ledger::{Ledger, Stage};
 use places::Places;
 pub use referee::Referee;
 pub use safety::{Safety, relayed};
+use terms::Terms;
 pub use verdicts::missing;
 use verdicts::{Trial, Tried};
 pub use walk::Walk;
@@ -108,6 +110,11 @@ pub struct Judge<'a> {
     clock: Clock,
     ledger: Ledger,
     conclusions: Conclusions,
+    terms: Terms,
+    /// The step at which the task that was pursued has been taken back.
+    dissolved: Option<usize>,
+    /// The last step at which a recruit was called for or a secondary team was on its way.
+    busy: usize,
     places: Places,
     tried: Tried,
     scenario: ValidScenario,
@@ -127,6 +134,9 @@ impl<'a> Judge<'a> {
             clock: Clock::of(scenario),
             ledger: Ledger::new(robots),
             conclusions: Conclusions::new(nodes),
+            terms: Terms::of(scenario),
+            dissolved: None,
+            busy: 0,
             places: Places::new(robots),
             tried: Tried::default(),
             scenario: scenario.clone(),
@@ -148,6 +158,7 @@ impl<'a> Judge<'a> {
         events: &[MissionEvent],
     ) -> Result<(), Violation> {
         let now = Instant::of(snapshot);
+        self.monitor.expect(events);
         self.monitor.observe(snapshot)?;
         let opens = self.previous.is_none();
         self.clock.check(snapshot, opens).map_err(|dispute| dispute.at(now))?;
@@ -157,6 +168,7 @@ impl<'a> Judge<'a> {
             self.monitor.observe_event(event)?;
         }
         self.enter_all(events, snapshot).map_err(|dispute| dispute.at(now))?;
+        self.tasks_are_closed(snapshot).map_err(|dispute| dispute.at(now))?;
         self.conclude_period(snapshot, events).map_err(|dispute| dispute.at(now))?;
         self.recent.push_back(snapshot.positions.clone());
         if self.recent.len() > RECENT {
@@ -167,6 +179,25 @@ impl<'a> Judge<'a> {
         }
         self.previous = Some(snapshot.clone());
         Ok(())
+    }
+
+    /// Tasks that are taken back, and those that have lasted as long as they should, are closed before news
+    /// can be everywhere.
+    fn tasks_are_closed(&mut self, snapshot: &Snapshot) -> Result<(), Dispute> {
+        let patience = self.monitor.limits().nodes();
+        if self.ledger.outdated.is_none() {
+            self.dissolved = None;
+        } else if *self.dissolved.get_or_insert(snapshot.step) + patience < snapshot.step {
+            self.ledger.forget_outdated();
+        }
+        if matches!(self.ledger.stage(), Stage::Calling | Stage::Shifting) {
+            self.busy = snapshot.step;
+        }
+        let overdue = || self.terms.overdue(snapshot.step, self.busy, patience);
+        match (snapshot.phase != Phase::Ended).then(overdue).flatten() {
+            None => Ok(()),
+            Some(sentence) => Err(Dispute::of(Property::Duties, &[], sentence)),
+        }
     }
 
     /// Enters the events of a period, each as soon as it can follow those before it.
@@ -213,6 +244,7 @@ impl<'a> Judge<'a> {
         let scene = self.scene(snapshot, events);
         claims::is_true(event, &self.ledger, &scene)?;
         self.stretches_for_want_of_a_robot(event)?;
+        self.terms.clone().enter(event, snapshot.step)?;
         let mut ledger = self.ledger.clone();
         ledger.enter(event)?;
         Ok(ledger)
@@ -242,6 +274,7 @@ impl<'a> Judge<'a> {
     ) -> Result<(), Dispute> {
         self.tried.enter(event, &self.ledger, [self.previous.as_ref(), Some(snapshot)]);
         self.ledger = ledger;
+        self.terms.enter(event, snapshot.step)?;
         self.places.enter(event, snapshot);
         self.conclusions.enter(event, &self.ledger, snapshot.step)
     }
@@ -275,9 +308,12 @@ impl<'a> Judge<'a> {
     /// [`Property::Outcome`] if the record does not show what the outcome says.
     pub fn conclude(&self, end: &End) -> Result<(), Violation> {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
-        let (serviced, tasks) = (self.ledger.serviced.len(), self.monitor.limits().tasks().len());
+        let done = self.terms.done(self.ledger.serviced.keys().copied());
+        let tasks = self.monitor.limits().tasks().len();
         let last = self.previous.as_ref().map(|snapshot| snapshot.step);
-        let complaint = self.clock.contradiction(end, last, (serviced, tasks));
+        let complaint = self.clock.contradiction(end, last, (done, tasks));
+        let complaint = complaint.or_else(|| self.terms.contradiction(end.outcome));
+        let is_done = done == tasks && self.terms.contradiction(Outcome::Serviced).is_none();
         let complaint = complaint.or_else(|| match end.outcome {
             _ if self.conclusions.overdue(now.step) => {
                 Some("the robots had given up, and the mission went on".to_owned())
@@ -292,7 +328,7 @@ impl<'a> Judge<'a> {
                 ))
             }
             Outcome::Serviced | Outcome::StepLimit => None,
-            _ if serviced == tasks && tasks > 0 => {
+            _ if is_done && tasks > 0 => {
                 Some(format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
             }
             _ if end.outcome.is_given_up() => {

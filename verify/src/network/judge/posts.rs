@@ -104,6 +104,20 @@ pub fn are_held(in_team: impl Fn(usize) -> bool, snapshot: &Snapshot) -> Result<
     Ok(())
 }
 
+/// Part of [`Property::Duties`]: no robot but a leader that awaits its release answers for a task that is over.
+pub fn serve_what_is_open(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
+    let is_over = |&&(task, robot): &&(usize, usize)| {
+        ledger.closed.contains(&task) && snapshot.roles[robot] != Role::Leader
+    };
+    match snapshot.serviced.iter().find(is_over) {
+        None => Ok(()),
+        Some(&(task, robot)) => {
+            let sentence = format!("robot {robot} answers for task {task}, and that is over");
+            Err(Dispute::of(Property::Duties, &[robot], sentence))
+        }
+    }
+}
+
 /// Part of [`Property::Posts`]: the task of a post is the one that its holder answers for, a leaf
 /// has one, and a post is a junction if more than one branch parts there. The primary team is one branch,
 /// also while a member of it has yet to attach to the newcomer.

@@ -6,6 +6,7 @@ use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 
 use super::clock::Clock;
+use super::terms::Terms;
 use super::{Dispute, claims};
 use crate::network::extremes::{Extremes, keep_larger, keep_smaller};
 use crate::network::limits::{Limits, SLACK};
@@ -19,9 +20,10 @@ use crate::network::{instant, link};
 /// What it holds a record against is what no fault breaks: distances between robots and to walls, the
 /// length of steps, shares, loads, the length of links of the tree, and, as long as all nodes run,
 /// that no robot is sent more than it forwards. Of events it checks that robots are at the tasks that
-/// they service, and that a task is announced when those before it have been serviced; of the outcome, that all
-/// tasks have been serviced where it says so, and, as long as all nodes run, that not all of them have where a
-/// mission is given up. What nodes know of each other may differ, and is not compared.
+/// they service, that tasks are announced one after another, taken back and ended as the user wants it; of the
+/// outcome, that all tasks have been serviced, or are over, where it says so, and, as long as all nodes run, that
+/// not all of them are where a mission is given up. What nodes know of each other may differ, and is not
+/// compared.
 ///
 /// Nodes that do not run or are not heard ([`Snapshot::absent`]) are bodies, and nothing else.
 #[derive(Clone, Debug)]
@@ -33,8 +35,9 @@ pub struct Safety {
     /// Whether a node has been absent: what flowed there is lost.
     has_lost_nodes: bool,
     serviced: BTreeSet<usize>,
-    /// The task that has been announced last, until it is serviced.
+    /// The task that has been announced last, until it is serviced or over.
     pursued: Option<usize>,
+    terms: Terms,
     extremes: Extremes,
 }
 
@@ -49,6 +52,7 @@ impl Safety {
             has_lost_nodes: false,
             serviced: BTreeSet::new(),
             pursued: None,
+            terms: Terms::under_faults(scenario),
             extremes: Extremes::default(),
         }
     }
@@ -79,9 +83,13 @@ impl Safety {
     }
 
     fn enter(&mut self, event: &MissionEvent, snapshot: &Snapshot) -> Result<(), Dispute> {
+        self.terms.enter(event, snapshot.step)?;
         match *event {
             MissionEvent::TaskAnnounced { task } | MissionEvent::TaskReannounced { task, .. } => {
                 self.pursued = Some(task);
+            }
+            MissionEvent::TaskWithdrawn { task } | MissionEvent::TaskEnded { task } => {
+                self.pursued = self.pursued.filter(|&pursued| pursued != task);
             }
             MissionEvent::TaskServiced { task, robot } => {
                 claims::is_at_task(task, robot, snapshot, &self.limits)?;
@@ -100,7 +108,7 @@ impl Safety {
             _ => None,
         });
         for task in announced {
-            if let Some(before) = (0..task).find(|before| !self.serviced.contains(before)) {
+            if let Some(before) = self.terms.unfinished_before(task) {
                 let sentence =
                     format!("task {task} is announced, and task {before} has not been serviced");
                 return Err(Dispute::of(Property::Events, &[], sentence));
@@ -139,8 +147,11 @@ impl Safety {
     pub fn conclude(&self, end: &End) -> Result<(), Violation> {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
         let last = self.previous.as_ref().map(|snapshot| snapshot.step);
-        let counts = (self.serviced.len(), self.limits.tasks().len());
-        match self.clock.contradiction(end, last, counts).or_else(|| self.needless_end(end)) {
+        let (done, tasks) =
+            (self.terms.done(self.serviced.iter().copied()), self.limits.tasks().len());
+        let contradiction = self.clock.contradiction(end, last, (done, tasks));
+        let contradiction = contradiction.or_else(|| self.terms.contradiction(end.outcome));
+        match contradiction.or_else(|| self.needless_end(end, done)) {
             None => Ok(()),
             Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),
         }
@@ -148,9 +159,9 @@ impl Safety {
 
     /// A mission is given up over a task. Where nodes stop or are cut off, the one that gives it up need not know
     /// that it has been serviced.
-    fn needless_end(&self, end: &End) -> Option<String> {
+    fn needless_end(&self, end: &End, done: usize) -> Option<String> {
         let all_run = !self.faults.nodes && !self.has_lost_nodes;
-        let is_done = self.serviced.len() == self.limits.tasks().len() && self.pursued.is_none();
+        let is_done = done == self.limits.tasks().len() && self.pursued.is_none();
         let is_needless = end.outcome.is_given_up() && all_run && is_done;
         is_needless
             .then(|| format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))

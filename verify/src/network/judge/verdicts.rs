@@ -12,6 +12,7 @@ use pleach_automaton::network::scenario::ValidScenario;
 use pleach_discrete::network::Role;
 
 use super::ledger::{Ledger, Stage};
+use super::terms::all_stay;
 use crate::network::bound::Spans;
 
 /// What has been tried for the task that is pursued.
@@ -122,8 +123,12 @@ impl Tried {
     }
 }
 
-/// How many robots the tasks announced so far take at least, if that is more than there are.
+/// How many robots the tasks announced so far take at least, if that is more than there are; none where some of
+/// them may be over before the last is announced.
 pub fn missing(scenario: &ValidScenario, announced: usize) -> Option<usize> {
+    if !all_stay(scenario, announced) {
+        return None;
+    }
     let least = Spans::of(scenario).ok()?.least_robots(announced)?;
     (least > scenario.robot.len()).then_some(least)
 }

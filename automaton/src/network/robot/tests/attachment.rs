@@ -179,7 +179,11 @@ fn nobody_stands_for_a_post_that_the_subgroup_before_has_taken() {
         robot.hears(Beacon { duty: Some(leaves), ..Beacon::silent(place + 1, east(0.5)) });
     }
     robot.holds(redundant(0, 12));
-    assert_eq!(robot.named_parent(), Some(3), "robot 3 leaves post 12, and stands for it meanwhile");
+    assert_eq!(
+        robot.named_parent(),
+        Some(3),
+        "robot 3 leaves post 12, and stands for it meanwhile"
+    );
     robot.holds(redundant(0, 11));
     assert_eq!(robot.named_parent(), None, "robot 1 holds post 11, and is not heard");
 }

@@ -2,6 +2,7 @@
 
 mod attachment;
 mod elections;
+mod errands;
 mod errors;
 pub(super) mod flows;
 mod hearing;

@@ -1,0 +1,58 @@
+//! What a robot does when the task is over that it services or pursues.
+
+use pleach_discrete::network::{Activity, IdSet, Phase};
+
+use super::super::super::duty::{Bound, Leaf};
+use super::super::duties::Label;
+use super::*;
+use crate::located::Place as _;
+
+/// A post from which task 2 is serviced.
+fn held() -> Held {
+    let post = Post { parent: Some(Anchor::Access(0)), task: Some(2), ..fixed(0, 0) };
+    Held { station: Station { post, reference: HERE }, left: None }
+}
+
+/// Robot 0 with this duty, which hears that these tasks are over.
+fn told(duty: Duty, closed: &[usize]) -> Robot {
+    let mut robot = robot();
+    robot.duty = Current::new(duty);
+    let closed: Arc<IdSet> = Arc::new(closed.iter().copied().collect());
+    robot.hears(Beacon { closed, ..beacon(1, east(0.5), fixed(1, 0), &[1]) });
+    robot.hear_notices();
+    robot.measures();
+    robot.jump_duty(Label::Alone).expect("guards have values");
+    robot
+}
+
+#[test]
+fn a_leaf_whose_task_is_over_holds_a_plain_post() {
+    let task = |robot: &Robot| robot.duty.post().and_then(|post| post.task);
+    let other = told(Duty::Leaf(Leaf(held())), &[0, 1]);
+    assert_eq!((other.duty.location(), task(&other)), (Activity::Leaf, Some(2)));
+    let robot = told(Duty::Leaf(Leaf(held())), &[0, 2]);
+    assert_eq!((robot.duty.location(), task(&robot)), (Activity::Relay, None));
+    assert_eq!(robot.duty.post().map(|post| post.parent), Some(held().station.post.parent));
+    assert!(robot.public_state().closed.contains(2), "it passes on what it has heard");
+}
+
+/// A leader that is bound answers for its post until it is released.
+#[test]
+fn a_bound_leader_keeps_its_post() {
+    let robot = told(Duty::Bound(Bound(held())), &[2]);
+    assert_eq!(robot.duty.location(), Activity::Bound);
+}
+
+/// The notice supersedes what others issue meanwhile: whatever a robot is at, it goes on without the task.
+#[test]
+fn a_team_whose_task_is_taken_back_is_dissolved() {
+    let mut robot = robot();
+    robot.holds(primary(0, None, 1));
+    robot.advances_to(east(3.0));
+    let notice = Shared::new(Notice::Withdrawn { task: 0 });
+    robot.bulletin = robot.bulletin.superseding(ROBOTS, notice);
+    robot.measures();
+    assert!(robot.jump_mission().expect("guards have values"));
+    assert_eq!((robot.phase(), robot.duty.location()), (Phase::Idle, Activity::Relay));
+    assert!(!robot.jump_mission().expect("guards have values"), "it has nothing else to give up");
+}
