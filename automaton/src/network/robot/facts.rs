@@ -64,6 +64,10 @@ facts! {
         radius,
         /// The number of branches attached to its post.
         branches,
+        /// Geodesic distance from the parent of p₁ to where its task is serviced from.
+        way_left,
+        /// How far from there the leader gets at most, with as many links as the team has.
+        reach_left,
     }
     propositions {
         /// A task is announced whose election this robot has not begun.
@@ -208,6 +212,12 @@ facts! {
             off_place_ahead: robot.is_off_place_ahead(),
             /// The primary team is the active team.
             advances: robot.phase() == Phase::Advance,
+            /// Recruits are called for ahead of a standstill.
+            eager: robot.is_eager(),
+            /// A recruit is sought, or on its way.
+            recruiting: robot.tree_is_frozen(),
+            /// It has called for a recruit ahead of a standstill since one joined last, and none could come.
+            in_vain: robot.mission.has_called_in_vain(),
             /// A redundant robot is attached to its post.
             bears_redundant: robot.bears_redundant(),
             /// This round of a sweep is for demands.
@@ -293,6 +303,9 @@ impl Robot {
             Phase::Advance => self.measure_team(&mut facts),
             _ => {}
         }
+        if self.phase() == Phase::Advance || self.goes_on_while_recruiting() {
+            self.measure_distance(&mut facts);
+        }
         facts.branches = self.branches() as f64;
         facts.may_set_out = self.may_set_out();
         facts.finds_better_parent = self.finds_better_parent();
@@ -373,6 +386,15 @@ impl Robot {
                 None => f64::from(self.still_periods),
             };
         }
+        if facts.first
+            && self.is_eager()
+            && let Some((way, reach)) = self.way_and_reach_left()
+        {
+            (facts.way_left, facts.reach_left) = (way, reach);
+        }
+    }
+
+    fn measure_distance(&self, facts: &mut Facts) {
         if self.duty.post().is_some_and(|post| post.is_leading())
             && let Some(announcement) = self.announcement()
         {

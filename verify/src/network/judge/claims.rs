@@ -50,6 +50,8 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
         MissionEvent::SubgroupStarted { robots: members, .. }
         | MissionEvent::SubgroupArrived { robots: members, .. } => robots.extend(members),
         MissionEvent::Released { robot }
+        | MissionEvent::RecruitCalled { robot }
+        | MissionEvent::CalledInVain { robot }
         | MissionEvent::LinksStretched { robot }
         | MissionEvent::RoleChanged { robot, .. }
         | MissionEvent::RouteInfeasible { robot } => robots.push(*robot),

@@ -161,7 +161,7 @@ impl Robot {
 
     /// The primary team is the active team, and goes to the task at `place`.
     fn advances_to(&mut self, place: Point) {
-        self.mission = Current::new(Mission::Advance(Advance { path: None }));
+        self.mission = Current::new(Mission::Advance(Advance { path: None, in_vain: false }));
         self.knows_task(place);
         self.target = Some(place);
     }
