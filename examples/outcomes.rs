@@ -22,7 +22,7 @@
 mod floor_plans;
 
 use clap::Parser;
-use floor_plans::{Family, scenario};
+use floor_plans::{Family, scenario, strategies};
 use pleach::automaton::network::record::{MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::discrete::network::{Phase, Role};
@@ -40,16 +40,8 @@ struct Arguments {
     /// Where scenarios that are not serviced are written
     folder: Option<PathBuf>,
     /// When recruits are called for: paper or eager
-    #[arg(long, value_parser = strategy)]
+    #[arg(long, value_parser = strategies::named)]
     strategy: Option<Strategy>,
-}
-
-fn strategy(name: &str) -> Result<Strategy, String> {
-    match name {
-        "paper" => Ok(Strategy::Paper),
-        "eager" => Ok(Strategy::Eager),
-        _ => Err("there are: paper, eager".into()),
-    }
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -66,9 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let count = if family == Family::Hall { missions.div_ceil(10) } else { missions };
         let (mut results, mut spent_here) = (Vec::new(), Spent::default());
         for seed in 1..=count {
-            let mut scenario = scenario(family, seed).scenario().clone();
-            scenario.control.strategy = strategy;
-            let scenario = ValidScenario::new(scenario)?;
+            let scenario = strategies::following(strategy, scenario(family, seed));
             results.push(mission(&scenario, folder, &mut spent_here)?);
         }
         println!("{}", row(family.name(), &results));

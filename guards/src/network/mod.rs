@@ -71,7 +71,9 @@ pub mod mission {
     /// that were attached to p₁ have left it, and unless such a call has been in vain.
     pub fn foreseen() -> Guard {
         let needed = variable("way_left").more_than(variable("reach_left"));
-        let ready = !proposition("pending") & !proposition("bears_redundant");
+        let ready = !proposition("pending")
+            & !proposition("bears_redundant")
+            & !proposition("hears_nearer_parent");
         let eager = proposition("eager") & !proposition("in_vain");
         let first = proposition("first") & !proposition("bound");
         disengaged("foreseen", first.and(needed).and(ready).and(eager))

@@ -214,6 +214,8 @@ facts! {
             advances: robot.phase() == Phase::Advance,
             /// Recruits are called for ahead of a standstill.
             eager: robot.is_eager(),
+            /// It hears a node that is nearer to its target than its parent, and that it may come to attach to.
+            hears_nearer_parent: robot.hears_nearer_parent(),
             /// A recruit is sought, or on its way.
             recruiting: robot.tree_is_frozen(),
             /// It has called for a recruit ahead of a standstill since one joined last, and none could come.
