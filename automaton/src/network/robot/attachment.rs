@@ -274,6 +274,7 @@ impl Robot {
         }
         if let Some(awaited) = self.awaited_parent()
             && let Some(newcomer) = self.holder(awaited)
+            && self.is_sure_of(newcomer)
             && self.may_build(self.walk_to(newcomer))
         {
             return Some(Some(Anchor::Post(awaited)));
@@ -281,6 +282,12 @@ impl Robot {
         let (anchor, parent) = self.nearer_parent(self.build_length())?;
         self.reattaches_to = Some(parent);
         Some(Some(anchor))
+    }
+
+    /// Whether a newcomer is where p₁ takes it to be, or nearer. In the paper's order p₁ stands, and the newcomer
+    /// comes up to it; while both move p₁ has to hear it.
+    fn is_sure_of(&self, newcomer: &Neighbour) -> bool {
+        !self.is_eager() || newcomer.is_heard_in(self.period)
     }
 
     /// Whether p₁ hears a node that it could attach to if it came near enough, and that is nearer to its target

@@ -110,6 +110,11 @@ impl Neighbour {
         was_absent
     }
 
+    /// Whether it has been heard in this control period, and has not been silent since.
+    pub const fn is_heard_in(&self, period: u32) -> bool {
+        self.heard_in == period && self.silent_rounds == 0
+    }
+
     /// Whether it has been silent for so long that it is out of range, or does not run.
     pub fn is_silent(&self) -> bool {
         usize::from(self.silent_rounds) == ROUNDS_TO_BE_HEARD

@@ -4,9 +4,10 @@ use std::f64::consts::TAU;
 
 use pleach_continuous::geometry::Disc;
 use pleach_continuous::{Point, Vector};
-use pleach_discrete::network::{NodeId, Phase, Post, PostId, PostKind};
+use pleach_discrete::network::{Anchor, NodeId, Phase, Post, PostId, PostKind};
 
 use super::super::beacon::{Notice, TeamReport};
+use super::super::duty::Hop;
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
 use super::super::scenario::Strategy;
@@ -130,10 +131,20 @@ impl Robot {
             PostKind::Primary { follows: None } => self.leader_goal(),
             PostKind::Primary { follows: Some(ahead) } => match self.holder(ahead) {
                 Some(neighbour) => Some(neighbour.position()),
-                // Not heard yet: where it stood when it called.
-                None => self.mission.path()?.hops.last().map(|hop| hop.place.position),
+                None => self.mission.path()?.hops.last().map(|caller| self.whereabouts_of(caller)),
             },
             _ => None,
+        }
+    }
+
+    /// Where p₁ is found that called from here and is not heard yet: where it stood then or, if it has gone on,
+    /// near the access point that it was attached to.
+    fn whereabouts_of(&self, caller: &Hop) -> Point {
+        match caller.post.parent {
+            Some(Anchor::Access(access)) if self.is_eager() => {
+                self.site.free_space.nearest(self.site.access_points[access])
+            }
+            _ => caller.place.position,
         }
     }
 
