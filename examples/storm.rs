@@ -243,11 +243,7 @@ fn count(broken: &mut Vec<(String, usize)>, name: &str) {
 }
 
 /// Runs missions on all cores, and tells the first that breaks a promise.
-fn many(
-    first: u64,
-    missions: u64,
-    strategy: Option<Strategy>,
-) -> Result<ExitCode, Box<dyn Error>> {
+fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCode, Box<dyn Error>> {
     let start = Instant::now();
     let (mut serviced, mut broken) = (0, Vec::new());
     let seeds: Vec<u64> = (first..first + missions).collect();

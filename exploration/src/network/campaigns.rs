@@ -91,14 +91,6 @@ pub const QUICK: &[Campaign] = &[
         ..robots(3, Counts { configurations: 44, states: 182_880, transitions: 282_522 })
     },
     Campaign {
-        name: "four robots in a line that call ahead, a message lost",
-        graphs: Graphs::Line,
-        steps: &[2],
-        medium: ONE_LOST,
-        strategy: Strategy::Eager,
-        ..robots(4, Counts { configurations: 5, states: 0, transitions: 0 })
-    },
-    Campaign {
         name: "three robots, a message lost",
         medium: ONE_LOST,
         ..robots(3, Counts { configurations: 44, states: 81_335, transitions: 160_164 })

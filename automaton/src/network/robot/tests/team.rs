@@ -136,8 +136,9 @@ fn the_team_knows_how_long_it_has_stood_still_and_who_has_room() {
         robot.review_team();
         robot.team.expect("the robot ahead has told")
     };
-    assert_eq!(follows(report(7, None, None), 9), report(7, None, None));
-    assert_eq!(follows(report(7, Some(3), Some(2)), 5), report(5, Some(3), Some(2)));
+    let behind = |report: TeamReport| TeamReport { members: 3, ..report };
+    assert_eq!(follows(report(7, None, None), 9), behind(report(7, None, None)));
+    assert_eq!(follows(report(7, Some(3), Some(2)), 5), behind(report(5, Some(3), Some(2))));
 
     robot.mission = Current::new(Mission::Idle(super::super::super::mission::Idle));
     robot.review_team();
