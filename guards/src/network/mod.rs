@@ -67,8 +67,9 @@ pub mod mission {
     }
 
     /// A recruit will be needed: no chain of as many links as the team has reaches from the parent of p₁ to the
-    /// task. Where recruits are called for ahead of a standstill, that is enough, once the redundant robots
-    /// that were attached to p₁ have left it, and unless such a call has been in vain.
+    /// task. Where recruits are called for ahead of a standstill, that is enough, once p₁ hears no node nearer to
+    /// the task that it might attach to, the redundant robots that were attached to it have left it, and unless
+    /// such a call has been in vain.
     pub fn foreseen() -> Guard {
         let needed = variable("way_left").more_than(variable("reach_left"));
         let ready = !proposition("pending")

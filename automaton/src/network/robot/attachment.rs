@@ -287,7 +287,7 @@ impl Robot {
     /// Whether a newcomer is where p₁ takes it to be, or nearer. In the paper's order p₁ stands, and the newcomer
     /// comes up to it; while both move p₁ has to hear it.
     fn is_sure_of(&self, newcomer: &Neighbour) -> bool {
-        !self.is_eager() || newcomer.is_heard_in(self.period)
+        !self.is_eager() || newcomer.was_heard()
     }
 
     /// Whether p₁ hears a node that it could attach to if it came near enough, and that is nearer to its target
