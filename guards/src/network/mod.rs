@@ -73,7 +73,7 @@ pub mod mission {
     pub fn foreseen() -> Guard {
         let needed = variable("way_left").more_than(variable("reach_left"));
         let ready = !proposition("pending")
-            & !proposition("bears_redundant")
+            & !proposition("bears_leavers")
             & !proposition("hears_nearer_parent");
         let eager = proposition("eager") & !proposition("in_vain");
         let first = proposition("first") & !proposition("bound");

@@ -105,6 +105,10 @@ facts! {
         slack,
         /// p₁ is still on its way to the robot that it joined.
         pending,
+        /// p₁ hears a node that is nearer to its target than its parent, and that it may come to attach to.
+        hears_nearer_parent,
+        /// Redundant robots are attached to p₁ that have yet to leave it.
+        bears_leavers,
         /// Its turn on Σ has come.
         may_set_out,
         /// Another parent in the tree is better than its own.
@@ -214,8 +218,6 @@ facts! {
             advances: robot.phase() == Phase::Advance,
             /// Recruits are called for ahead of a standstill.
             eager: robot.is_eager(),
-            /// It hears a node that is nearer to its target than its parent, and that it may come to attach to.
-            hears_nearer_parent: robot.hears_nearer_parent(),
             /// A recruit is sought, or on its way.
             recruiting: robot.tree_is_frozen(),
             /// It has called for a recruit ahead of a standstill since one joined last, and none could come.
@@ -393,6 +395,8 @@ impl Robot {
             && let Some((way, reach)) = self.way_and_reach_left()
         {
             (facts.way_left, facts.reach_left) = (way, reach);
+            facts.hears_nearer_parent = self.hears_nearer_parent();
+            facts.bears_leavers = self.bears_redundant();
         }
     }
 
