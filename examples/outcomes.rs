@@ -1,6 +1,6 @@
 //! Runs many random missions and tells what became of them, family by family.
 //!
-//! `cargo run --release --example outcomes -- MISSIONS [FOLDER]` runs so many of each family (a tenth
+//! `cargo run --release --example outcomes -- MISSIONS [FOLDER] [--strategy eager]` runs so many of each family (a tenth
 //! as many of the halls, which take fifty times as long) and prints a table:
 //!
 //! - *serviced*, *proved* and *unproved*: all tasks were serviced; robots were too few, by a bound that
@@ -11,16 +11,21 @@
 //! - *time*: their control periods, as a multiple of the ways from access points to all tasks at full
 //!   speed, one after the other, median and worst.
 //!
+//! A second table says what these missions spend their control periods with, in per cent: leaders are
+//! elected, or no task is pursued; the primary team is the active one and *advances* or *stands* still; a
+//! recruit is *called* for; break points are *agreed* upon; subgroups *shift* along Σ. In the *moving* ones,
+//! of whatever kind, a robot of the primary team moves.
+//!
 //! With a folder, scenarios that are not serviced are written there.
 
 #[path = "../tests/floor_plans/mod.rs"]
 mod floor_plans;
 
 use clap::Parser;
-use floor_plans::{Family, scenario};
+use floor_plans::{Family, scenario, strategies};
 use pleach::automaton::network::record::{MissionEvent, Outcome, Snapshot};
-use pleach::automaton::network::scenario::ValidScenario;
-use pleach::discrete::network::Role;
+use pleach::automaton::network::scenario::{Strategy, ValidScenario};
+use pleach::discrete::network::{Phase, Role};
 use pleach::mission::{Watcher, run};
 use pleach::verify::network::Spans;
 use std::error::Error;
@@ -34,10 +39,13 @@ struct Arguments {
     missions: u64,
     /// Where scenarios that are not serviced are written
     folder: Option<PathBuf>,
+    /// When recruits are called for: paper or eager
+    #[arg(long, value_parser = strategies::named)]
+    strategy: Option<Strategy>,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let Arguments { missions, folder } = Arguments::parse();
+    let Arguments { missions, folder, strategy } = Arguments::parse();
     if let Some(folder) = &folder {
         std::fs::create_dir_all(folder)?;
     }
@@ -45,17 +53,25 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "family        missions serviced proved unproved  bad   robots median worst   time median worst"
     );
-    let mut all = Vec::new();
+    let (mut all, mut spent, mut spent_in_all) = (Vec::new(), Vec::new(), Spent::default());
     for family in Family::ALL.into_iter().chain(Family::WINDING) {
         let count = if family == Family::Hall { missions.div_ceil(10) } else { missions };
-        let mut results = Vec::new();
+        let (mut results, mut spent_here) = (Vec::new(), Spent::default());
         for seed in 1..=count {
-            results.push(mission(&scenario(family, seed), folder)?);
+            let scenario = strategies::following(strategy, scenario(family, seed));
+            results.push(mission(&scenario, folder, &mut spent_here)?);
         }
         println!("{}", row(family.name(), &results));
         all.extend(results);
+        spent_in_all.add(&spent_here);
+        spent.push((family.name(), spent_here));
     }
     println!("{}", row("all", &all));
+    println!("\nfamily        electing advancing standing calling agreeing shifting   moving");
+    for (name, spent) in spent {
+        println!("{name:13} {spent}");
+    }
+    println!("{:13} {spent_in_all}", "all");
     Ok(())
 }
 
@@ -76,10 +92,60 @@ struct Usage {
     periods: usize,
     robots: usize,
     tasks: usize,
+    spent: Spent,
+    previous: Option<Snapshot>,
+}
+
+/// Control periods by what they are spent with, in the order of the columns, and those in which the primary
+/// team moves.
+#[derive(Clone, Copy, Default)]
+struct Spent {
+    periods: [usize; 6],
+    moving: usize,
+}
+
+impl Spent {
+    fn add(&mut self, other: &Spent) {
+        self.periods.iter_mut().zip(other.periods).for_each(|(sum, count)| *sum += count);
+        self.moving += other.moving;
+    }
+
+    /// The period between these snapshots.
+    fn count(&mut self, before: &Snapshot, after: &Snapshot) {
+        let moves =
+            before.primary_team.iter().any(|&it| before.positions[it] != after.positions[it]);
+        let column = match before.phase {
+            Phase::Idle | Phase::LeaderElection | Phase::Ended => 0,
+            Phase::Advance if moves => 1,
+            Phase::Advance => 2,
+            Phase::RecruitElection => 3,
+            Phase::PathAgreement => 4,
+            Phase::Shift => 5,
+        };
+        self.periods[column] += 1;
+        self.moving += usize::from(moves);
+    }
+}
+
+impl std::fmt::Display for Spent {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let whole = self.periods.iter().sum::<usize>().max(1) as f64;
+        let [electing, advancing, standing, calling, agreeing, shifting] =
+            self.periods.map(|count| 100.0 * count as f64 / whole);
+        let moving = 100.0 * self.moving as f64 / whole;
+        write!(
+            formatter,
+            "{electing:8.1} {advancing:9.1} {standing:8.1} {calling:7.1} {agreeing:8.1} {shifting:8.1} \
+             {moving:8.1}"
+        )
+    }
 }
 
 impl Watcher for Usage {
     fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        if let Some(before) = self.previous.replace(snapshot.clone()) {
+            self.spent.count(&before, snapshot);
+        }
         self.periods = snapshot.step;
         self.robots = snapshot.roles.iter().filter(|&&role| role != Role::Redundant).count();
         let announced = |event: &&MissionEvent| matches!(event, MissionEvent::TaskAnnounced { .. });
@@ -88,7 +154,11 @@ impl Watcher for Usage {
     }
 }
 
-fn mission(scenario: &ValidScenario, folder: Option<&Path>) -> Result<End, Box<dyn Error>> {
+fn mission(
+    scenario: &ValidScenario,
+    folder: Option<&Path>,
+    spent: &mut Spent,
+) -> Result<End, Box<dyn Error>> {
     let spans = Spans::of(scenario)?;
     let mut usage = Usage::default();
     let (outcome, reason) = match run(scenario, &mut [&mut usage]) {
@@ -98,6 +168,7 @@ fn mission(scenario: &ValidScenario, folder: Option<&Path>) -> Result<End, Box<d
     let tasks = scenario.task.len();
     let end = match outcome {
         Some(Outcome::Serviced) => {
+            spent.add(&usage.spent);
             let links = spans.spanning_tree(tasks) / scenario.site().usual.build;
             let ways: f64 = (0..tasks).map(|task| spans.way_to(task)).sum();
             let periods = ways / scenario.site().settings.step_radius;

@@ -14,8 +14,9 @@ mod floor_plans;
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
 use floor_plans::in_storms::{SHIPPED, mission_in_storm, shipped};
+use floor_plans::strategies;
 use pleach::automaton::network::record::Outcome;
-use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::story;
 use pleach::verify::network::storm::{
     Kind, Storm, Verdict, allowing_for, draw, ride, ride_watched, shrink,
@@ -39,12 +40,20 @@ struct Arguments {
     /// The seed of the first
     #[arg(default_value_t = 0)]
     first: u64,
+    /// When recruits are called for: paper or eager
+    #[arg(long, value_parser = strategies::named)]
+    strategy: Option<Strategy>,
 }
 
 #[derive(Subcommand)]
 enum Command {
     /// Tells the mission of a seed
-    Seed { seed: u64 },
+    Seed {
+        seed: u64,
+        /// When recruits are called for: paper or eager
+        #[arg(long, value_parser = strategies::named)]
+        strategy: Option<Strategy>,
+    },
     /// Tells the mission of a shipped scenario in a kind of storm
     One {
         #[arg(value_parser = PossibleValuesParser::new(SHIPPED))]
@@ -71,17 +80,23 @@ fn kind(name: &str) -> Result<Kind, String> {
 }
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
-    let Arguments { command, missions, first } = Arguments::parse();
+    let Arguments { command, missions, first, strategy } = Arguments::parse();
     match command {
         Some(Command::One { scenario, kind, seed }) => one(&scenario, kind, seed)?,
-        Some(Command::Seed { seed }) => {
-            let (scenario, storm) = mission_in_storm(seed);
+        Some(Command::Seed { seed, strategy }) => {
+            let (scenario, storm) = mission(seed, strategy);
             tell_in_full(&scenario, seed, &storm, MOST_PERIODS)?;
         }
         Some(Command::Table { seeds, kind }) => table(seeds, kind.as_deref())?,
-        None => return many(first, missions.unwrap_or_default()),
+        None => return many(first, missions.unwrap_or_default(), strategy),
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The mission of a seed with this strategy, and its storm.
+fn mission(seed: u64, strategy: Option<Strategy>) -> (ValidScenario, Storm) {
+    let (scenario, storm) = mission_in_storm(seed);
+    (strategies::following(strategy, scenario), storm)
 }
 
 fn is_serviced(verdict: &Verdict) -> bool {
@@ -228,13 +243,13 @@ fn count(broken: &mut Vec<(String, usize)>, name: &str) {
 }
 
 /// Runs missions on all cores, and tells the first that breaks a promise.
-fn many(first: u64, missions: u64) -> Result<ExitCode, Box<dyn Error>> {
+fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCode, Box<dyn Error>> {
     let start = Instant::now();
     let (mut serviced, mut broken) = (0, Vec::new());
     let seeds: Vec<u64> = (first..first + missions).collect();
     for batch in seeds.chunks(BATCH) {
         let run = |&seed: &u64| -> Result<(u64, Verdict), String> {
-            let (scenario, storm) = mission_in_storm(seed);
+            let (scenario, storm) = mission(seed, strategy);
             let verdict = ride(&scenario, &storm, MOST_PERIODS);
             verdict.map(|verdict| (seed, verdict)).map_err(|error| format!("seed {seed}: {error}"))
         };
@@ -243,7 +258,7 @@ fn many(first: u64, missions: u64) -> Result<ExitCode, Box<dyn Error>> {
             serviced += u64::from(is_serviced(&verdict));
             if !verdict.violations.is_empty() {
                 if broken.is_empty() {
-                    let (scenario, storm) = mission_in_storm(seed);
+                    let (scenario, storm) = mission(seed, strategy);
                     tell(&scenario, &storm, &verdict)?;
                 }
                 broken.push((seed, verdict.violations[0].property.name()));

@@ -114,6 +114,12 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
                 format!("stationary-at-{robot}"),
             ),
         ),
+        MissionEvent::RecruitCalled { robot } => {
+            (format!("robot {robot} calls for a recruit: the team is too short for the way"), None)
+        }
+        MissionEvent::CalledInVain { .. } => {
+            ("no recruit can come: the primary team goes on as it is".to_owned(), None)
+        }
         MissionEvent::LinksStretched { .. } => {
             ("no recruit can come: the primary team stretches its links".to_owned(), None)
         }

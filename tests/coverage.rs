@@ -4,13 +4,13 @@
 //! `PLEACH_UPDATE_DOCS=1 cargo test --test it coverage` writes the page anew, after
 //! `PLEACH_UPDATE_DOCS=1 cargo test -p pleach-exploration --test it campaigns` has written what is explored.
 
-use crate::floor_plans::{Family, scenario};
+use crate::floor_plans::{Family, scenario, strategies};
 use crate::generated::{keep_up_to_date, read};
 use crate::missions::{Acts, counted, shipped, shipped_mission, shipped_names, valid};
 use crate::stressed::stressed_scenarios;
 use pleach::automaton::Executor;
 use pleach::automaton::network::NamedRow;
-use pleach::automaton::network::scenario::{RoutingMethod, ValidScenario};
+use pleach::automaton::network::scenario::{RoutingMethod, Strategy, ValidScenario};
 use pleach::verify::network::storm::{Kind, draw, network_on};
 use pleach_exploration::network::QUICK;
 use rayon::prelude::*;
@@ -114,18 +114,20 @@ const STORMS: &[(&str, Kind, u64)] = &[
 const DURATION_OF_STORMS: f64 = 300.0;
 const HORIZON_OF_STORMS: f64 = 900.0;
 
-/// Random missions, some under stress, one with routes by ADAL, one with rates that links cannot carry,
+/// Random missions by either strategy, some under stress, one with routes by ADAL, one with rates that links cannot carry,
 /// and one without a task.
 fn drawn_scenarios() -> impl Iterator<Item = ValidScenario> {
     let random = Family::of_every_day()
         .flat_map(|family| (1..=SEEDS).map(move |seed| scenario(family, seed)));
+    let eager = Family::of_every_day()
+        .map(|family| strategies::following(Some(Strategy::Eager), scenario(family, SEEDS + 1)));
     let mut by_adal = shipped("study-2");
     by_adal.control.routing_method = Some(RoutingMethod::Adal);
     let mut laden = shipped("study-1");
     laden.robot.iter_mut().for_each(|robot| robot.rate = 0.2);
     let mut idle = shipped("study-2");
     idle.task.clear();
-    random.chain(stressed_scenarios().chain([by_adal, laden, idle]).map(valid))
+    random.chain(eager).chain(stressed_scenarios().chain([by_adal, laden, idle]).map(valid))
 }
 
 /// How many configurations the quick campaigns explore, and in how many of them each row is taken, as their own

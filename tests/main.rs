@@ -41,6 +41,7 @@ mod scenario_faults;
 mod spaceex;
 mod storms;
 mod story;
+mod strategies;
 mod streams;
 mod stressed;
 mod studies;

@@ -106,6 +106,8 @@ pub fn every_event() -> Vec<MissionEvent> {
         MissionEvent::LeaderElected { task: 0, robot: 5, conflict: false },
         MissionEvent::LeaderElected { task: 0, robot: 5, conflict: true },
         MissionEvent::Stationary { robot: 4, team: vec![4, 5] },
+        MissionEvent::RecruitCalled { robot: 4 },
+        MissionEvent::CalledInVain { robot: 4 },
         MissionEvent::LinksStretched { robot: 4 },
         MissionEvent::RecruitElected { robot: 1, path: vec![1, 2, 3], break_points: vec![1, 3] },
         MissionEvent::SubgroupStarted { subgroup: 0, robots: vec![1, 2] },

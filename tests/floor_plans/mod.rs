@@ -12,6 +12,7 @@ mod families;
 pub mod in_storms;
 mod outline;
 mod places;
+pub mod strategies;
 
 pub use families::Family;
 

@@ -46,6 +46,8 @@ fn rename(record: &mut Record, site: usize, kind: Kind) {
         }
         Event::LeaderElected { robot, .. }
         | Event::Stationary { robot, .. }
+        | Event::RecruitCalled { robot }
+        | Event::CalledInVain { robot }
         | Event::LinksStretched { robot }
         | Event::RecruitElected { robot, .. }
         | Event::JoinedPrimary { robot, .. }
@@ -271,6 +273,16 @@ pub const FALSE: &[Change] = changes! {
     "false: the team stretches its links" => |record, site| {
         if let Some(&robot) = record.at(site).primary_team.first() {
             tell(record, site, Event::LinksStretched { robot });
+        }
+    };
+    "false: a recruit is called for before the team stands still" => |record, site| {
+        if let Some(&robot) = record.at(site).primary_team.first() {
+            tell(record, site, Event::RecruitCalled { robot });
+        }
+    };
+    "false: a call for a recruit was in vain" => |record, site| {
+        if let Some(&robot) = record.at(site).primary_team.first() {
+            tell(record, site, Event::CalledInVain { robot });
         }
     };
     "false: the election is repeated" => |record, site| {

@@ -110,6 +110,8 @@ pub struct TeamReport {
     /// Geodesic distance from the leader to its task; infinite if no way leads there.
     #[serde(with = "wire::distance")]
     pub remaining: f64,
+    /// How many members there are from the leader back to the sender.
+    pub members: u32,
 }
 
 /// The public state of a node.

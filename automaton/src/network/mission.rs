@@ -39,6 +39,8 @@ pub struct LeaderElection;
 pub struct Advance {
     /// The path Σ along which the robot that joined last has come, if any has.
     pub path: Option<Arc<Path>>,
+    /// Whether this robot has called for a recruit ahead of a standstill since then, and none could come.
+    pub in_vain: bool,
 }
 
 /// The data of [`Phase::RecruitElection`].
@@ -48,6 +50,8 @@ pub struct RecruitElection {
     pub before: Option<Arc<Path>>,
     /// Where this robot calls for one: why.
     pub standstill: Option<Standstill>,
+    /// Whether this robot calls for one ahead of a standstill.
+    pub ahead: bool,
 }
 
 /// What the primary team knows when it gets no farther.
@@ -100,10 +104,23 @@ impl Mission {
             Mission::PathAgreement(PathAgreement { path }) | Mission::Shift(Shift { path, .. }) => {
                 Some(path)
             }
-            Mission::Advance(Advance { path })
+            Mission::Advance(Advance { path, .. })
             | Mission::RecruitElection(RecruitElection { before: path, .. }) => path.as_ref(),
             Mission::Idle(_) | Mission::LeaderElection(_) | Mission::Ended(_) => None,
         }
+    }
+
+    /// The election of a recruit, while one is under way.
+    pub const fn recruit_election(&self) -> Option<&RecruitElection> {
+        match self {
+            Mission::RecruitElection(election) => Some(election),
+            _ => None,
+        }
+    }
+
+    /// Whether this robot has called for a recruit ahead of a standstill since one joined last, in vain.
+    pub const fn has_called_in_vain(&self) -> bool {
+        matches!(self, Mission::Advance(Advance { in_vain: true, .. }))
     }
 
     /// The subgroups of the secondary team and which of them is active, while one is.

@@ -146,6 +146,11 @@ pub enum MissionEvent {
     LeaderElected { task: usize, robot: usize, conflict: bool },
     /// The primary team is at a local stationary point; `robot` is p₁.
     Stationary { robot: usize, team: Vec<usize> },
+    /// The way to the task is longer than the primary team: p₁ `robot` calls for a recruit before the team
+    /// stands still.
+    RecruitCalled { robot: usize },
+    /// No robot could come when p₁ `robot` called for one ahead of a standstill: the primary team goes on alone.
+    CalledInVain { robot: usize },
     /// No robot is left that can be recruited: the primary team of p₁ `robot` stretches its links up to the
     /// longest that the tree allows.
     LinksStretched { robot: usize },

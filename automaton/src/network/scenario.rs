@@ -16,7 +16,7 @@ mod settings;
 mod valid;
 mod validation;
 
-pub use control::{CONTROL, Control, ControlKey, MotionSolver, RoutingMethod, Values};
+pub use control::{CONTROL, Control, ControlKey, MotionSolver, RoutingMethod, Strategy, Values};
 pub use fault::{Fault, InvalidScenario, Problem};
 pub use key_path::{KeyPath, KeyStep};
 pub use radio::{LinkModel, LinkRanges, STEEPEST, STEEPNESS};

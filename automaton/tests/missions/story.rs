@@ -19,6 +19,8 @@ fn tell(event: &MissionEvent) -> Option<String> {
             format!("{robot} leads to task {task}{past}")
         }
         On::Stationary { team, .. } => format!("{} stand still", list(team)),
+        On::RecruitCalled { robot } => format!("{robot} calls"),
+        On::CalledInVain { robot } => format!("{robot} calls in vain"),
         On::LinksStretched { robot } => format!("{robot} stretches links"),
         On::RecruitElected { path, break_points, .. } => {
             format!("{} shift, breaking at {}", list(path), list(break_points))

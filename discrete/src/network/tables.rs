@@ -22,6 +22,8 @@ vocabulary! {
         Bound = "bound",
         /// The primary team is at a local stationary point: p₁ calls for a recruit (L_b = 0).
         Trapped = "trapped",
+        /// The way to the task is longer than the primary team: p₁ calls for a recruit before it stands still.
+        Foreseen = "foreseen",
         /// The primary team cannot move although it has room.
         Blocked = "blocked",
         /// A recruit is called for (Remark 5.4).
@@ -89,11 +91,13 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(1, Phase::Advance, MissionStep::Bound, Phase::RecruitElection),
     step(1, Phase::Advance, MissionStep::Reached, Phase::Idle),
     step(2, Phase::Advance, MissionStep::Trapped, Phase::RecruitElection),
-    step(3, Phase::Advance, MissionStep::Blocked, Phase::Ended),
+    step(3, Phase::Advance, MissionStep::Foreseen, Phase::RecruitElection),
+    step(4, Phase::Advance, MissionStep::Blocked, Phase::Ended),
     step(0, Phase::RecruitElection, MissionStep::Ended, Phase::Ended),
     step(0, Phase::RecruitElection, MissionStep::Announced, Phase::LeaderElection),
     step(0, Phase::RecruitElection, MissionStep::Informed, Phase::RecruitElection),
     step(0, Phase::RecruitElection, MissionStep::Overtaken, Phase::Idle),
+    step(0, Phase::RecruitElection, MissionStep::Called, Phase::RecruitElection),
     step(0, Phase::RecruitElection, MissionStep::PathHeard, Phase::PathAgreement),
     step(0, Phase::RecruitElection, MissionStep::Resumed, Phase::Advance),
     step(1, Phase::RecruitElection, MissionStep::Recruited, Phase::PathAgreement),
@@ -102,12 +106,14 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::PathAgreement, MissionStep::Announced, Phase::LeaderElection),
     step(0, Phase::PathAgreement, MissionStep::Informed, Phase::PathAgreement),
     step(0, Phase::PathAgreement, MissionStep::Overtaken, Phase::Idle),
+    step(0, Phase::PathAgreement, MissionStep::Called, Phase::RecruitElection),
     step(0, Phase::PathAgreement, MissionStep::Resumed, Phase::Advance),
     step(1, Phase::PathAgreement, MissionStep::PointsAgreed, Phase::Shift),
     step(0, Phase::Shift, MissionStep::Ended, Phase::Ended),
     step(0, Phase::Shift, MissionStep::Announced, Phase::LeaderElection),
     step(0, Phase::Shift, MissionStep::Informed, Phase::Shift),
     step(0, Phase::Shift, MissionStep::Overtaken, Phase::Idle),
+    step(0, Phase::Shift, MissionStep::Called, Phase::RecruitElection),
     step(0, Phase::Shift, MissionStep::Resumed, Phase::Advance),
     step(1, Phase::Shift, MissionStep::SubgroupArrived, Phase::Shift),
     step(1, Phase::Shift, MissionStep::Relieved, Phase::Advance),

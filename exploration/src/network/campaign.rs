@@ -6,6 +6,7 @@ use std::fmt;
 use pleach_automaton::network::NamedRow;
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::robot::RobotError;
+use pleach_automaton::network::scenario::Strategy;
 use rayon::prelude::*;
 
 use super::Action;
@@ -50,6 +51,8 @@ pub struct Campaign {
     pub medium: Medium,
     /// How often a parked robot is in a mover's way.
     pub contacts: u32,
+    /// When recruits are called for.
+    pub strategy: Strategy,
     /// What there is to visit.
     pub expected: Counts,
 }
@@ -180,6 +183,7 @@ impl Campaign {
     ) -> Result<(String, Configuration), PlaceGraphError> {
         let name = format!("graph {graph:?} with branches {branches:?}");
         let places = PlaceGraph::with_branches(self.robots, self.access_points, graph, branches)?;
+        let places = places.following(self.strategy);
         let (medium, contacts) = (self.medium, self.contacts);
         Ok((name, Configuration { places, medium, contacts }))
     }

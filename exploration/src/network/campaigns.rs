@@ -1,5 +1,7 @@
 //! The campaigns that are explored, with the exact counts of each.
 
+use pleach_automaton::network::scenario::Strategy;
+
 use super::campaign::{Campaign, Counts, Graphs};
 use super::medium::{Faults, Medium};
 
@@ -47,6 +49,7 @@ const fn robots(robots: usize, expected: Counts) -> Campaign {
         in_a_row: false,
         medium: ROUNDS,
         contacts: 0,
+        strategy: Strategy::Paper,
         expected,
     }
 }
@@ -80,6 +83,12 @@ pub const QUICK: &[Campaign] = &[
         steps: &[1, 2],
         in_a_row: true,
         ..robots(4, Counts { configurations: 40, states: 21_975, transitions: 27_677 })
+    },
+    Campaign {
+        name: "three robots that call ahead",
+        steps: &[2],
+        strategy: Strategy::Eager,
+        ..robots(3, Counts { configurations: 44, states: 182_876, transitions: 282_518 })
     },
     Campaign {
         name: "three robots, a message lost",

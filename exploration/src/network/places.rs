@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 use pleach_automaton::network::scenario::{
-    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Settings, Task, WorkspaceOutline,
+    AccessPoint, Control, LinkRanges, RobotStart, Scenario, Settings, Strategy, Task,
+    WorkspaceOutline,
 };
 use pleach_automaton::network::site::Measure;
 use pleach_continuous::Point;
@@ -35,6 +36,7 @@ pub struct PlaceGraph {
     positions: Vec<Point>,
     /// The length of a step.
     step: f64,
+    strategy: Strategy,
 }
 
 /// Why no exploration starts from a graph.
@@ -86,7 +88,9 @@ impl PlaceGraph {
         }
         let positions = (0..places).map(|place| on_circle(place, places)).collect();
         let tasks = tasks.to_vec();
-        let mut places = PlaceGraph { robots, access_points, tasks, steps, positions, step: 0.0 };
+        let strategy = Strategy::default();
+        let mut places =
+            PlaceGraph { robots, access_points, tasks, steps, positions, step: 0.0, strategy };
         places.step = STEP * Settings::resolve(&places.scenario()).usual_links().build;
         Ok(places)
     }
@@ -114,6 +118,17 @@ impl PlaceGraph {
             tasks.push(last);
         }
         PlaceGraph::new(robots, access_points, places, &edges, &tasks)
+    }
+
+    /// The same graph, where recruits are called for by this strategy.
+    #[must_use]
+    pub fn following(self, strategy: Strategy) -> Self {
+        PlaceGraph { strategy, ..self }
+    }
+
+    /// When recruits are called for.
+    pub const fn strategy(&self) -> Strategy {
+        self.strategy
     }
 
     /// The number of robots.
@@ -192,7 +207,11 @@ impl PlaceGraph {
             },
             link: RANGES,
             // The explorer decides when a control period is over.
-            control: Control { rounds_per_period: Some(usize::MAX), ..Control::default() },
+            control: Control {
+                rounds_per_period: Some(usize::MAX),
+                strategy: Some(self.strategy),
+                ..Control::default()
+            },
             access_point: (self.robots..self.nodes())
                 .map(|place| AccessPoint { position: at(place) })
                 .collect(),

@@ -10,6 +10,7 @@ use pleach_automaton::network::RobotView;
 use pleach_automaton::network::beacon::Notice;
 use pleach_automaton::network::duty::Duty;
 use pleach_automaton::network::record::Outcome;
+use pleach_automaton::network::scenario::Strategy;
 use pleach_discrete::network::{Anchor, NoticeId, Phase, Post, PostId, PostKind, Role, Subgroup};
 
 use super::node::Local;
@@ -269,7 +270,8 @@ pub fn the_best_bidder_is_elected(protocol: &Protocol, state: &State) -> bool {
 }
 
 /// While Σ is walked one team is active: a robot that moves for a task is in the primary team or in a
-/// subgroup, all in the same one; once a robot has failed, of those that go by the newest announcement.
+/// subgroup, all in the same one; once a robot has failed, of those that go by the newest announcement. Where
+/// recruits are called for ahead of a standstill, the primary team may go on while one subgroup is active.
 pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
     let newest = announcements(protocol, state).into_iter().next_back().flatten();
     let of = |is_member: &dyn Fn(RobotView<'_>) -> bool| -> Vec<usize> {
@@ -277,8 +279,11 @@ pub fn exactly_one_team_is_active(protocol: &Protocol, state: &State) -> bool {
         robots.filter(|robot| is_member(*robot)).map(RobotView::id).collect()
     };
     let is_shifting = |robot: RobotView<'_>| matches!(robot.duty(), Duty::Shifting(_));
-    let moving =
-        of(&|robot| robot.is_active() && (is_shifting(robot) || robot.duty().is_primary()));
+    let waits_for_recruits = protocol.configuration().places.strategy() == Strategy::Paper;
+    let moving = of(&|robot| {
+        let counts = waits_for_recruits && robot.duty().is_primary();
+        robot.is_active() && (is_shifting(robot) || counts)
+    });
     let primary_team = of(&|robot| robot.duty().is_primary());
     let known = protocol.robots(state).filter_map(agreed).max_by_key(|&(id, _)| id);
     let subgroups: Vec<Vec<usize>> = known.map_or_else(Vec::new, |(_, groups)| {

@@ -66,6 +66,20 @@ pub mod mission {
         )
     }
 
+    /// A recruit will be needed: no chain of as many links as the team has reaches from the parent of p₁ to the
+    /// task. Where recruits are called for ahead of a standstill, that is enough, once p₁ hears no node nearer to
+    /// the task that it might attach to, the redundant robots that were attached to it have left it, and unless
+    /// such a call has been in vain.
+    pub fn foreseen() -> Guard {
+        let needed = variable("way_left").more_than(variable("reach_left"));
+        let ready = !proposition("pending")
+            & !proposition("bears_leavers")
+            & !proposition("hears_nearer_parent");
+        let eager = proposition("eager") & !proposition("in_vain");
+        let first = proposition("first") & !proposition("bound");
+        disengaged("foreseen", first.and(needed).and(ready).and(eager))
+    }
+
     /// The team, or a robot on Σ, has not moved for long, and no recruit could help.
     pub fn blocked() -> Guard {
         Guard::new("blocked", variable("stalled").at_least(variable("patience")))
@@ -74,6 +88,11 @@ pub mod mission {
     /// A recruit is called for.
     pub fn called() -> Guard {
         disengaged("called", proposition("called"))
+    }
+
+    /// The next recruit is called for, and the robot has not heard before that the last one has joined.
+    pub fn called_again() -> Guard {
+        disengaged("called again", proposition("called") & proposition("eager"))
     }
 
     /// This robot won the recruit election.

@@ -24,14 +24,20 @@ pub fn shifts() -> Predicate {
     free_to_move(proposition("in_active_subgroup") & proposition("off_place_ahead"))
 }
 
-/// The primary team is the active team: eq. (24).
-pub fn follows() -> Predicate {
-    free_to_move(proposition("advances"))
+/// The primary team is the active team or, where recruits are called for ahead of a standstill, goes on while
+/// one is sought and comes.
+fn team_goes_on() -> Predicate {
+    proposition("advances") | (proposition("eager") & proposition("recruiting"))
 }
 
-/// The primary team is the active team, the task is not within reach, and no redundant robot is
-/// attached to the leader: eq. (24).
+/// The primary team goes on: eq. (24).
+pub fn follows() -> Predicate {
+    free_to_move(team_goes_on())
+}
+
+/// The primary team goes on, the task is not within reach, and no redundant robot is attached to the leader:
+/// eq. (24).
 pub fn leads() -> Predicate {
     let away = variable("distance").more_than(variable("reach"));
-    free_to_move(proposition("advances") & away & !proposition("bears_redundant"))
+    free_to_move(team_goes_on() & away & !proposition("bears_redundant"))
 }

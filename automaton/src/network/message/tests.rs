@@ -121,6 +121,7 @@ fn talkative(duty: Duty, notice: Notice) -> Beacon {
             slack: Some(1),
             saturated: Some(2),
             remaining: f64::INFINITY,
+            members: 2,
         }),
         stretched: true,
         longest_wait: 9,

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, Phase, Post, PostId};
+use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, NodeId, Phase, Post, PostId};
 
 use crate::automaton::TransitionError;
 use crate::located::Place as _;
@@ -275,10 +275,31 @@ impl Robot {
         }
         if let Some(awaited) = self.awaited_parent()
             && let Some(newcomer) = self.holder(awaited)
+            && self.is_sure_of(newcomer)
             && self.may_build(self.walk_to(newcomer))
         {
             return Some(Some(Anchor::Post(awaited)));
         }
+        let (anchor, parent) = self.nearer_parent(self.build_length())?;
+        self.reattaches_to = Some(parent);
+        Some(Some(anchor))
+    }
+
+    /// Whether a newcomer is where p₁ takes it to be, or nearer. In the paper's order p₁ stands, and the newcomer
+    /// comes up to it; while both move p₁ has to hear it.
+    fn is_sure_of(&self, newcomer: &Neighbour) -> bool {
+        !self.is_eager() || newcomer.was_heard()
+    }
+
+    /// Whether p₁ hears a node that it could attach to if it came near enough, and that is nearer to its target
+    /// than its parent.
+    pub(super) fn hears_nearer_parent(&self) -> bool {
+        self.nearer_parent(f64::INFINITY).is_some()
+    }
+
+    /// The fixed or redundant robot or access point nearest to the target of p₁ of those that are clearly nearer
+    /// to it than its parent, over links of at most this length.
+    fn nearer_parent(&self, longest: f64) -> Option<(Anchor, NodeId)> {
         let (goal, anchor) = (self.team_goal()?, self.anchor()?);
         let parent = self.neighbour_at(anchor)?;
         let own = self.duty.post().map(|post| post.id);
@@ -293,9 +314,9 @@ impl Robot {
                 });
             if candidate == anchor
                 || is_child
-                || neighbour.distance > self.build_length()
+                || neighbour.distance > longest
                 || (goal - neighbour.position()).norm() >= nearest
-                || self.walk_to(neighbour) > self.build_length()
+                || self.walk_to(neighbour) > longest
             {
                 continue;
             }
@@ -304,9 +325,7 @@ impl Robot {
                 (nearest, better) = (distance, Some((candidate, neighbour.id())));
             }
         }
-        let (anchor, parent) = better?;
-        self.reattaches_to = Some(parent);
-        Some(Some(anchor))
+        better
     }
 }
 

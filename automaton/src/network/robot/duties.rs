@@ -191,8 +191,8 @@ impl Robot {
 
     /// Whether Σ is no longer of use.
     pub(super) fn is_called_off(&self) -> bool {
-        use MissionStep::{Announced, Ended, Overtaken, Resumed, Serviced};
-        [Announced, Ended, Overtaken, Resumed, Serviced]
+        use MissionStep::{Announced, Called, Ended, Overtaken, Resumed, Serviced};
+        [Announced, Called, Ended, Overtaken, Resumed, Serviced]
             .into_iter()
             .any(|step| self.takes_step(step))
     }
@@ -219,6 +219,7 @@ impl Robot {
         self.next_hop().is_some()
             && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
                 || self.takes_step(MissionStep::Resumed)
+                || self.takes_step(MissionStep::Called)
                 || self.is_superseded())
     }
 

@@ -64,6 +64,10 @@ facts! {
         radius,
         /// The number of branches attached to its post.
         branches,
+        /// Geodesic distance from the parent of p₁ to where its task is serviced from.
+        way_left,
+        /// How far from there the leader gets at most, with as many links as the team has.
+        reach_left,
     }
     propositions {
         /// A task is announced whose election this robot has not begun.
@@ -101,6 +105,10 @@ facts! {
         slack,
         /// p₁ is still on its way to the robot that it joined.
         pending,
+        /// p₁ hears a node that is nearer to its target than its parent, and that it may come to attach to.
+        hears_nearer_parent,
+        /// Redundant robots are attached to p₁ that have yet to leave it.
+        bears_leavers,
         /// Its turn on Σ has come.
         may_set_out,
         /// Another parent in the tree is better than its own.
@@ -210,6 +218,12 @@ facts! {
             off_place_ahead: robot.is_off_place_ahead(),
             /// The primary team is the active team.
             advances: robot.phase() == Phase::Advance,
+            /// Recruits are called for ahead of a standstill.
+            eager: robot.is_eager(),
+            /// A recruit is sought, or on its way.
+            recruiting: robot.tree_is_frozen(),
+            /// It has called for a recruit ahead of a standstill since one joined last, and none could come.
+            in_vain: robot.mission.has_called_in_vain(),
             /// A redundant robot is attached to its post.
             bears_redundant: robot.bears_redundant(),
             /// This round of a sweep is for demands.
@@ -295,6 +309,9 @@ impl Robot {
             Phase::Advance => self.measure_team(&mut facts),
             _ => {}
         }
+        if self.phase() == Phase::Advance || self.goes_on_while_recruiting() {
+            self.measure_distance(&mut facts);
+        }
         facts.branches = self.branches() as f64;
         facts.may_set_out = self.may_set_out();
         facts.finds_better_parent = self.finds_better_parent();
@@ -376,6 +393,17 @@ impl Robot {
                 None => f64::from(self.still_periods),
             };
         }
+        if facts.first
+            && self.is_eager()
+            && let Some((way, reach)) = self.way_and_reach_left()
+        {
+            (facts.way_left, facts.reach_left) = (way, reach);
+            facts.hears_nearer_parent = self.hears_nearer_parent();
+            facts.bears_leavers = self.bears_redundant();
+        }
+    }
+
+    fn measure_distance(&self, facts: &mut Facts) {
         if self.duty.post().is_some_and(|post| post.is_leading())
             && let Some(announcement) = self.announcement()
         {

@@ -103,11 +103,16 @@ impl Neighbour {
         self.heard_in.saturating_add(1) >= period
     }
 
-    /// It is heard in the control period `heard_in`; returns whether it was not present before.
+    /// It is heard in the control period `heard_in`; returns whether it was not present before, or silent.
     const fn note_heard(&mut self, heard_in: u32, period: u32) -> bool {
-        let was_absent = !self.is_present(period);
+        let is_back = !self.is_present(period) || !self.was_heard();
         (self.heard_in, self.is_heard, self.silent_rounds) = (heard_in, true, 0);
-        was_absent
+        is_back
+    }
+
+    /// Whether it was heard in the last round in which all robots send.
+    pub const fn was_heard(&self) -> bool {
+        self.silent_rounds == 0
     }
 
     /// Whether it has been silent for so long that it is out of range, or does not run.
@@ -215,7 +220,8 @@ impl Robot {
     fn miss(&mut self, at: usize) -> usize {
         let (own, period) = (self.duty.post().map(|post| post.id), self.period);
         let known = &mut self.neighbours[at];
-        let (was_silent, has_moved) = (known.is_silent(), known.measured_at != self.position);
+        let (was_silent, was_heard) = (known.is_silent(), known.was_heard());
+        let has_moved = known.measured_at != self.position;
         let silent_rounds = known.silent_rounds.saturating_add(1).min(ROUNDS_TO_BE_HEARD as u8);
         if has_moved {
             *known = known.seen_from(self.position, &self.site);
@@ -234,7 +240,7 @@ impl Robot {
             self.receive_news();
             return at;
         }
-        if has_moved || is_silent && !was_silent {
+        if has_moved || was_heard || is_silent && !was_silent {
             self.receive_news();
         }
         at + 1

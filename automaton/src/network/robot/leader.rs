@@ -55,7 +55,7 @@ pub(super) fn conclude(_: &LeaderElection, robot: &Robot, effects: &mut Effects)
             effects.push(MissionEffect::Issue(Notice::Advance { joined: None }));
         }
     }
-    Advance { path: None }
+    Advance { path: None, in_vain: false }
 }
 
 impl Robot {

@@ -199,6 +199,11 @@ fn called<A: DataOf<Mission>>() -> Row {
     Transfer::new(MissionStep::Called, guards::called(), "answer the call", recruit::answer::<A>)
 }
 
+fn called_again<A: DataOf<Mission>>() -> Row {
+    let guard = guards::called_again();
+    Transfer::new(MissionStep::Called, guard, "answer the call", recruit::answer::<A>)
+}
+
 fn path_heard<A: DataOf<Mission>>() -> Row {
     let (guard, name) = (guards::path_heard(), "vote on break points");
     Transfer::where_known(MissionStep::PathHeard, guard, name, path::vote::<A>)
@@ -256,6 +261,9 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         .carried_out(called::<Idle>())
         .carried_out(called::<LeaderElection>())
         .carried_out(called::<Advance>())
+        .carried_out(called_again::<RecruitElection>())
+        .carried_out(called_again::<PathAgreement>())
+        .carried_out(called_again::<Shift>())
         .carried_out(resumed::<Idle>())
         .carried_out(resumed::<LeaderElection>())
         .carried_out(resumed::<RecruitElection>())
@@ -278,6 +286,12 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
             guards::trapped(),
             "call for a recruit",
             recruit::call,
+        ))
+        .carried_out(Transfer::new(
+            Step::Foreseen,
+            guards::foreseen(),
+            "call for a recruit, and go on",
+            recruit::call_ahead,
         ))
         .carried_out(Transfer::new(
             Step::Blocked,

@@ -39,6 +39,9 @@ impl Robot {
     pub(super) fn is_parked(&self) -> bool {
         match *self.duty {
             Duty::Shifting(_) => self.active_subgroup().is_none(),
+            Duty::Following(_) | Duty::Leading(_) if self.goes_on_while_recruiting() => {
+                self.still_periods >= PERSISTENCE
+            }
             Duty::Following(_) | Duty::Leading(_) => self.phase() != Phase::Advance,
             _ => true,
         }

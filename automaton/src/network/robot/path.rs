@@ -53,13 +53,13 @@ pub(super) fn announce_advance(shift: &Shift, robot: &Robot, effects: &mut Effec
         _ => None,
     });
     effects.extend([MissionEffect::Issue(Notice::Advance { joined }), MissionEffect::Restart]);
-    Advance { path: Some(Arc::clone(&shift.path)) }
+    Advance { path: Some(Arc::clone(&shift.path)), in_vain: false }
 }
 
 /// The primary team is the active team again.
 pub(super) fn resume<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Advance {
     effects.push(MissionEffect::Restart);
-    Advance { path: robot.mission.path().cloned() }
+    Advance { path: robot.mission.path().cloned(), in_vain: robot.has_called_in_vain() }
 }
 
 impl Robot {

@@ -34,14 +34,21 @@ pub(super) fn call(advance: &Advance, robot: &Robot, effects: &mut Effects) -> R
         let event = MissionEvent::Stationary { robot: robot.id, team: Vec::new() };
         effects.push(MissionEffect::Report(event));
     }
-    let id = robot.next_notice_id();
-    let route = robot.own_hop(Vec::new()).map(|hop| (id, Shared::new(vec![hop])));
-    effects.extend([
-        MissionEffect::Stay,
-        MissionEffect::Issue(Notice::Call { caller: robot.id, releases_leader }),
-        MissionEffect::Elect(Election::new(id), None, route),
-    ]);
-    RecruitElection { before: advance.path.clone(), standstill: robot.standstill() }
+    effects.push(MissionEffect::Stay);
+    robot.issue_call(releases_leader, effects);
+    let standstill = robot.standstill();
+    RecruitElection { before: advance.path.clone(), standstill, ahead: false }
+}
+
+/// The team of p₁ is too short: it calls for a recruit before it is stuck.
+pub(super) fn call_ahead(
+    advance: &Advance,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> RecruitElection {
+    effects.push(MissionEffect::Report(MissionEvent::RecruitCalled { robot: robot.id }));
+    robot.issue_call(false, effects);
+    RecruitElection { before: advance.path.clone(), standstill: None, ahead: true }
 }
 
 /// A recruit is called for.
@@ -52,7 +59,7 @@ pub(super) fn answer<A>(_: &A, robot: &Robot, effects: &mut Effects) -> RecruitE
     let own = is_caller.then(|| robot.own_hop(Vec::new())).flatten();
     let route = own.map(|hop| (id, Shared::new(vec![hop])));
     effects.push(MissionEffect::Elect(Election::new(id), None, route));
-    RecruitElection { before: robot.mission.path().cloned(), standstill: None }
+    RecruitElection { before: robot.mission.path().cloned(), standstill: None, ahead: false }
 }
 
 /// The recruit announces the path Σ that it has found.
@@ -73,8 +80,8 @@ pub(super) fn announce_path(
     Some(PathAgreement { path })
 }
 
-/// The caller finds that no robot can be recruited: other trees may try, links may be longer from now on, or
-/// the mission ends.
+/// The caller finds that no robot can be recruited: the team goes on alone if it has not come to a standstill;
+/// otherwise other trees may try, links may be longer from now on, or the mission ends.
 pub(super) fn end_unaided(
     phase: &RecruitElection,
     robot: &Robot,
@@ -82,7 +89,12 @@ pub(super) fn end_unaided(
 ) -> RecruitElection {
     let stranded = robot.election.as_ref().is_some_and(|election| election.best().is_some());
     let own_root = robot.lineage().map(|lineage| lineage.root());
-    if let Some(known) = robot.announcement() {
+    if phase.ahead {
+        effects.extend([
+            MissionEffect::Report(MissionEvent::CalledInVain { robot: robot.id }),
+            MissionEffect::Issue(Notice::Advance { joined: None }),
+        ]);
+    } else if let Some(known) = robot.announcement() {
         let task = known.task;
         let others: IdSet = known.eligible.iter().filter(|&root| Some(root) != own_root).collect();
         if stranded && !others.is_empty() {
@@ -108,6 +120,24 @@ pub(super) fn end_unaided(
 }
 
 impl Robot {
+    /// The call for a recruit, which the caller is the first to know the way of.
+    fn issue_call(&self, releases_leader: bool, effects: &mut Effects) {
+        let id = self.next_notice_id();
+        let route = self.own_hop(Vec::new()).map(|hop| (id, Shared::new(vec![hop])));
+        effects.extend([
+            MissionEffect::Issue(Notice::Call { caller: self.id, releases_leader }),
+            MissionEffect::Elect(Election::new(id), None, route),
+        ]);
+    }
+
+    /// Whether this robot has called for a recruit ahead of a standstill, and learns now that the team goes on
+    /// as it is.
+    pub(super) fn has_called_in_vain(&self) -> bool {
+        let went_on_alone = matches!(*self.notice(), Notice::Advance { joined: None });
+        let called = self.mission.recruit_election().is_some_and(|call| call.ahead);
+        called && went_on_alone
+    }
+
     fn standstill(&self) -> Option<Standstill> {
         self.team.map(|TeamReport { remaining, saturated, .. }| Standstill { remaining, saturated })
     }

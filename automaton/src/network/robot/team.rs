@@ -4,11 +4,13 @@ use std::f64::consts::TAU;
 
 use pleach_continuous::geometry::Disc;
 use pleach_continuous::{Point, Vector};
-use pleach_discrete::network::{NodeId, Phase, Post, PostId, PostKind};
+use pleach_discrete::network::{Anchor, NodeId, Phase, Post, PostId, PostKind};
 
 use super::super::beacon::{Notice, TeamReport};
+use super::super::duty::Hop;
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
+use super::super::scenario::Strategy;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect};
@@ -129,10 +131,20 @@ impl Robot {
             PostKind::Primary { follows: None } => self.leader_goal(),
             PostKind::Primary { follows: Some(ahead) } => match self.holder(ahead) {
                 Some(neighbour) => Some(neighbour.position()),
-                // Not heard yet: where it stood when it called.
-                None => self.mission.path()?.hops.last().map(|hop| hop.place.position),
+                None => self.mission.path()?.hops.last().map(|caller| self.whereabouts_of(caller)),
             },
             _ => None,
+        }
+    }
+
+    /// Where p₁ is found that called from here and is not heard yet: where it stood then or, if it has gone on,
+    /// near the access point that it was attached to.
+    fn whereabouts_of(&self, caller: &Hop) -> Point {
+        match caller.post.parent {
+            Some(Anchor::Access(access)) if self.is_eager() => {
+                self.site.free_space.nearest(self.site.access_points[access])
+            }
+            _ => caller.place.position,
         }
     }
 
@@ -182,6 +194,7 @@ impl Robot {
                     still: front.still.min(still),
                     slack: front.slack.or(own_slack),
                     saturated: front.saturated.or(own_saturated),
+                    members: front.members.saturating_add(1),
                     ..front
                 })
             }
@@ -190,8 +203,29 @@ impl Robot {
                 slack: own_slack,
                 saturated: own_saturated,
                 remaining: self.remaining(),
+                members: 1,
             }),
         };
+    }
+
+    /// Whether recruits are called for ahead of a standstill, and the primary team goes on meanwhile.
+    pub(super) fn is_eager(&self) -> bool {
+        self.site.settings.strategy == Strategy::Eager
+    }
+
+    /// Whether it is of a primary team that goes on although it is not the active team.
+    pub(super) fn goes_on_while_recruiting(&self) -> bool {
+        self.is_eager() && self.duty.is_primary() && self.tree_is_frozen()
+    }
+
+    /// Geodesic distance from the parent of p₁ to where the task is serviced from, and how far from there the
+    /// leader gets at most: to the end of a chain of as many links as the team has members, none of them ever
+    /// longer than d_hard, and within [`reach`](Self::reach) of the task.
+    pub(super) fn way_and_reach_left(&self) -> Option<(f64, f64)> {
+        let parent = self.neighbour_at(self.anchor()?)?;
+        let (target, members) = (self.target?, f64::from(self.team?.members));
+        let link = self.hard_length() + 2.0 * self.stray();
+        Some((self.site.distance(parent.position(), target), members * link + self.reach()))
     }
 
     /// Geodesic distance to the announced task.

@@ -28,6 +28,19 @@ pub enum MotionSolver {
     Conic,
 }
 
+/// When a recruit is called for, and what the primary team does meanwhile.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Strategy {
+    /// As in the paper (Sec. V): when the primary team stands still; and it stands until the recruit has joined.
+    #[default]
+    Paper,
+    /// As soon as the way that is left to the task is longer than the links of the team; and it goes on
+    /// meanwhile as far as its links let it.
+    Eager,
+}
+
 /// Settings of the control scheme; a key left out takes the default that its text states.
 /// [`CONTROL`] has the range of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -69,6 +82,9 @@ pub struct Control {
     pub tree_reliability: Option<f64>,
     /// How the motion problem is solved. Default `exact`.
     pub motion_solver: Option<MotionSolver>,
+    /// When a recruit is called for. Default `paper`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strategy: Option<Strategy>,
 }
 
 /// A key of `[control]`.
@@ -128,6 +144,7 @@ pub const CONTROL: &[ControlKey] = &[
     key("build_reliability", Values::Reliability(|control| control.build_reliability)),
     key("tree_reliability", Values::Reliability(|control| control.tree_reliability)),
     key("motion_solver", Values::OneOf(&["exact", "conic"])),
+    key("strategy", Values::OneOf(&["paper", "eager"])),
 ];
 
 const fn key(name: &'static str, values: Values) -> ControlKey {

@@ -2,7 +2,7 @@
 
 use pleach_continuous::geometry::Errors;
 
-use super::{Control, LinkRanges, MotionSolver, RoutingMethod, Scenario};
+use super::{Control, LinkRanges, MotionSolver, RoutingMethod, Scenario, Strategy};
 
 /// The settings of the control scheme, none of them left open.
 ///
@@ -42,6 +42,8 @@ pub struct Settings {
     pub tree_reliability: f64,
     /// How the motion problem is solved.
     pub motion_solver: MotionSolver,
+    /// When a recruit is called for.
+    pub strategy: Strategy,
 }
 
 impl Settings {
@@ -95,6 +97,7 @@ impl Settings {
                 .unwrap_or_else(|| Self::usual_build_reliability(scenario).max(tree_reliability)),
             tree_reliability,
             motion_solver: control.motion_solver.unwrap_or_default(),
+            strategy: control.strategy.unwrap_or_default(),
         }
     }
 
@@ -198,6 +201,7 @@ impl From<Settings> for Control {
             build_reliability: Some(settings.build_reliability),
             tree_reliability: Some(settings.tree_reliability),
             motion_solver: Some(settings.motion_solver),
+            strategy: Some(settings.strategy).filter(|it| *it != Strategy::default()),
         }
     }
 }

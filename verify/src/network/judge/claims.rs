@@ -53,6 +53,8 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
         MissionEvent::SubgroupStarted { robots: members, .. }
         | MissionEvent::SubgroupArrived { robots: members, .. } => robots.extend(members),
         MissionEvent::Released { robot }
+        | MissionEvent::RecruitCalled { robot }
+        | MissionEvent::CalledInVain { robot }
         | MissionEvent::LinksStretched { robot }
         | MissionEvent::RoleChanged { robot, .. }
         | MissionEvent::RouteInfeasible { robot } => robots.push(*robot),
@@ -139,9 +141,12 @@ fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
 /// A recruit is redundant until it is elected, or a node that bears nothing but the robot that calls.
 fn is_free(robot: usize, path: &[usize], scene: &Scene) -> Result<(), Dispute> {
     let Some(previous) = scene.previous else { return Ok(()) };
+    // p₁ may have attached to it, and called, in the period in which it is elected.
     let bears_caller_alone = || {
-        let children = previous.tree.iter().filter(|(_, parent)| *parent == robot);
-        children.map(|(child, _)| child).eq(path.last())
+        [previous, scene.snapshot].into_iter().any(|snapshot| {
+            let children = snapshot.tree.iter().filter(|(_, parent)| *parent == robot);
+            children.map(|(child, _)| child).eq(path.last())
+        })
     };
     match previous.roles[robot] {
         Role::Redundant | Role::Recruit => Ok(()),

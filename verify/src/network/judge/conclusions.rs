@@ -1,6 +1,7 @@
 //! Whether what observers conclude is what the events and the world give.
 
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
+use pleach_automaton::network::scenario::Strategy;
 use pleach_discrete::Location as _;
 use pleach_discrete::network::{Phase, Role};
 
@@ -353,7 +354,11 @@ impl Conclusions {
         scene: &Scene,
     ) -> Result<(), Dispute> {
         let Scene { snapshot, limits, places, .. } = scene;
-        let teams = || self.active_team.values().chain([&snapshot.active_team]).flatten();
+        // The primary team may go on while a recruit is sought and comes.
+        let is_eager = limits.settings().strategy == Strategy::Eager;
+        let primary = || self.primary_team.values().filter(|_| is_eager);
+        let active = || self.active_team.values().chain([&snapshot.active_team]);
+        let teams = || active().chain(primary()).flatten();
         for &robot in &snapshot.active {
             let position = snapshot.positions[robot];
             let Some(place) = places.of(robot).filter(|_| !teams().any(|it| *it == robot)) else {

@@ -62,6 +62,11 @@ impl<'a> Ground<'a> {
         self.space.distance(self.place(one, snapshot), self.place(other, snapshot))
     }
 
+    /// The length of the way from a node to the place nearest to a task where a robot could stand.
+    pub fn way_to(&self, task: Point, node: usize, snapshot: &Snapshot) -> f64 {
+        self.space.distance(self.place(node, snapshot), self.space.nearest(task))
+    }
+
     fn place(&self, node: usize, snapshot: &Snapshot) -> Point {
         let robots = snapshot.positions.len();
         let place = match node.checked_sub(robots) {

@@ -39,6 +39,8 @@ pub struct Ledger {
     pub dismissed: Vec<usize>,
     /// Whether a recruit is called for.
     pub calls: bool,
+    /// Whether that is so although the primary team does not stand still.
+    pub calls_ahead: bool,
     /// Whether a team has found no robot that can be recruited, so that links may be longer.
     pub stretched: bool,
     /// The way of a secondary team along Σ.
@@ -78,6 +80,7 @@ impl Ledger {
             primary_team: Vec::new(),
             dismissed: Vec::new(),
             calls: false,
+            calls_ahead: false,
             stretched: false,
             walk: None,
             untold: Vec::new(),
@@ -150,7 +153,13 @@ impl Ledger {
             }
             MissionEvent::ElectionRepeated { task } => self.repeat_election(*task),
             MissionEvent::TaskReannounced { task, gone } => self.reannounce(*task, gone),
-            MissionEvent::Stationary { robot, .. } => self.call(*robot),
+            MissionEvent::Stationary { robot, .. } => self.call(*robot, "is stationary"),
+            MissionEvent::RecruitCalled { robot } => {
+                self.call(*robot, "is too short")?;
+                self.calls_ahead = true;
+                Ok(())
+            }
+            MissionEvent::CalledInVain { robot } => self.go_on_alone(*robot),
             MissionEvent::LinksStretched { robot } => self.stretch(*robot),
             MissionEvent::RecruitElected { robot, path, break_points } => {
                 self.recruit(*robot, path, break_points)
@@ -259,7 +268,7 @@ impl Ledger {
     /// The robot that calls finds that no robot in its tree can come: others may lead.
     fn repeat_election(&mut self, task: usize) -> Result<(), Dispute> {
         self.expect_pursued(task, "the election is repeated for")?;
-        if self.stage() != Stage::Calling {
+        if self.stage() != Stage::Calling || self.calls_ahead {
             let sentence = format!(
                 "the election for task {task} is repeated, and no robot has called for a recruit"
             );
@@ -270,24 +279,42 @@ impl Ledger {
         Ok(())
     }
 
-    /// Sec. V-B: p₁ calls for a recruit when the primary team is at a stationary point.
-    fn call(&mut self, robot: usize) -> Result<(), Dispute> {
+    /// Sec. V-B: p₁ calls for a recruit when the primary team is at a stationary point, or before.
+    fn call(&mut self, robot: usize, why: &str) -> Result<(), Dispute> {
         let first = self.primary_team.first();
         if first != Some(&robot) || self.stage() != Stage::Advancing {
             let sentence = format!(
-                "robot {robot} reports that the primary team {:?} is stationary: it is not the \
+                "robot {robot} reports that the primary team {:?} {why}: it is not the \
                  first of a team that advances",
                 self.primary_team
             );
             return dispute(&[robot], sentence);
         }
-        self.calls = true;
+        (self.calls, self.calls_ahead) = (true, false);
+        Ok(())
+    }
+
+    /// No recruit can come: the primary team, which does not stand still, goes on as it is.
+    fn go_on_alone(&mut self, robot: usize) -> Result<(), Dispute> {
+        let may = self.stage() == Stage::Calling && self.calls_ahead;
+        if !may || self.primary_team.first() != Some(&robot) {
+            let sentence = format!(
+                "robot {robot} reports that it has called in vain: it is not the first of a team {:?} that has \
+                 called before it stood still",
+                self.primary_team
+            );
+            return dispute(&[robot], sentence);
+        }
+        (self.calls, self.calls_ahead) = (false, false);
         Ok(())
     }
 
     /// No recruit can come: the primary team goes on with longer links. That happens once in a mission.
     fn stretch(&mut self, robot: usize) -> Result<(), Dispute> {
-        let may = self.stage() == Stage::Calling && !self.awaits_release && !self.stretched;
+        let may = self.stage() == Stage::Calling
+            && !self.awaits_release
+            && !self.calls_ahead
+            && !self.stretched;
         if !may || self.primary_team.first() != Some(&robot) {
             let sentence = format!(
                 "robot {robot} reports that the primary team {:?} stretches its links: it is not the first of \
@@ -430,7 +457,7 @@ impl Ledger {
             return dispute(&[robot], sentence);
         }
         self.primary_team.insert(0, robot);
-        self.calls = false;
+        (self.calls, self.calls_ahead) = (false, false);
         Ok(())
     }
 

@@ -37,7 +37,7 @@ use std::collections::VecDeque;
 
 use pleach_automaton::network::certificate::{Certificate, Then};
 use pleach_automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use pleach_automaton::network::scenario::ValidScenario;
+use pleach_automaton::network::scenario::{Strategy, ValidScenario};
 use pleach_continuous::Point;
 use pleach_discrete::network::{Phase, Role};
 
@@ -48,6 +48,7 @@ use super::property::Property;
 use super::violation::{Instant, Violation};
 use clock::Clock;
 use conclusions::Conclusions;
+use ground::Ground;
 pub use ledger::{Ledger, Stage};
 use places::Places;
 pub use referee::Referee;
@@ -245,6 +246,7 @@ impl<'a> Judge<'a> {
         claims::is_true(event, &self.ledger, &scene)?;
         self.stretches_for_want_of_a_robot(event)?;
         self.terms.clone().enter(event, snapshot.step)?;
+        self.calls_for_want_of_length(event, snapshot)?;
         let mut ledger = self.ledger.clone();
         ledger.enter(event)?;
         Ok(ledger)
@@ -263,6 +265,38 @@ impl<'a> Judge<'a> {
                 Err(Dispute::of(Property::Events, &[*robot], sentence))
             }
         }
+    }
+
+    /// A team calls for a recruit before it stands still where its links cannot reach the task.
+    fn calls_for_want_of_length(
+        &self,
+        event: &MissionEvent,
+        snapshot: &Snapshot,
+    ) -> Result<(), Dispute> {
+        let MissionEvent::RecruitCalled { robot } = *event else { return Ok(()) };
+        let limits = self.monitor.limits();
+        let clause = match limits.settings().strategy {
+            Strategy::Eager if self.is_too_short(robot, snapshot) => return Ok(()),
+            Strategy::Eager => "although the links of its team reach the task",
+            _ => "and teams call only when they stand still",
+        };
+        let sentence = format!("robot {robot} calls for a recruit ahead of a standstill, {clause}");
+        Err(Dispute::of(Property::Events, &[robot], sentence))
+    }
+
+    /// Whether the way from the parent of p₁ to the place nearest to the task is longer than as many links as the
+    /// team has robots, at the beginning or at the end of the period.
+    fn is_too_short(&self, first: usize, snapshot: &Snapshot) -> bool {
+        let limits = self.monitor.limits();
+        let ground = Ground::of(&self.scenario, limits);
+        let Some((ground, task)) = ground.zip(self.ledger.task()) else { return false };
+        let reach = self.ledger.primary_team.len() as f64 * self.link_limit();
+        [self.previous.as_ref(), Some(snapshot)].into_iter().flatten().any(|snapshot| {
+            let parent = verdicts::parent_of(first, snapshot);
+            parent.is_some_and(|parent| {
+                ground.way_to(limits.tasks()[task], parent, snapshot) > reach - ground.tolerance()
+            })
+        })
     }
 
     /// Takes an event with the ledger after it.

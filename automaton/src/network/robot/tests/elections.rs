@@ -107,8 +107,11 @@ fn called(own: Post, releases_leader: bool) -> Robot {
     robot.holds(own);
     robot.is_told(Notice::Call { caller: 5, releases_leader });
     robot.knows_task(east(3.0));
-    robot.mission =
-        Current::new(Mission::RecruitElection(RecruitElection { before: None, standstill: None }));
+    robot.mission = Current::new(Mission::RecruitElection(RecruitElection {
+        before: None,
+        standstill: None,
+        ahead: false,
+    }));
     robot.election = Some(Arc::new(Election::new(robot.notice_id())));
     robot
 }

@@ -1,6 +1,7 @@
 //! The rules of robots, one at a time: a robot, the beacons of its neighbours, and what it makes of them.
 
 mod attachment;
+mod eager;
 mod elections;
 mod errands;
 mod errors;
@@ -162,7 +163,7 @@ impl Robot {
 
     /// The primary team is the active team, and goes to the task at `place`.
     fn advances_to(&mut self, place: Point) {
-        self.mission = Current::new(Mission::Advance(Advance { path: None }));
+        self.mission = Current::new(Mission::Advance(Advance { path: None, in_vain: false }));
         self.knows_task(place);
         self.target = Some(place);
     }

@@ -198,7 +198,7 @@ fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
     assert!(!relieved(&|robot, _| robot.facts.path_announced = true), "it has yet to learn Σ");
     let moves = |robot: &mut Robot, _: &mut Beacon| {
         robot.holds(primary(20, None, 13));
-        robot.mission = Current::new(Mission::Advance(Advance { path: None }));
+        robot.mission = Current::new(Mission::Advance(Advance { path: None, in_vain: false }));
     };
     assert!(!relieved(&moves), "it moves itself");
     let on_path = |_: &mut Robot, mover: &mut Beacon| {

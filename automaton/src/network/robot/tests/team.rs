@@ -121,7 +121,7 @@ fn a_leader_on_whose_post_a_branch_depends_is_bound_to_it() {
 }
 
 fn report(still: u32, slack: Option<NodeId>, saturated: Option<NodeId>) -> TeamReport {
-    TeamReport { still, slack, saturated, remaining: 1.5 }
+    TeamReport { still, slack, saturated, remaining: 1.5, members: 2 }
 }
 
 /// A report goes from the leader back to p₁: the member that moved last, and the first that has room.
@@ -146,8 +146,9 @@ fn the_team_knows_how_long_it_has_stood_still_and_who_has_room() {
         robot.review_team();
         robot.team.expect("the robot ahead has told")
     };
-    assert_eq!(follows(report(7, None, None), 9), report(7, None, None));
-    assert_eq!(follows(report(7, Some(3), Some(2)), 5), report(5, Some(3), Some(2)));
+    let behind = |report: TeamReport| TeamReport { members: 3, ..report };
+    assert_eq!(follows(report(7, None, None), 9), behind(report(7, None, None)));
+    assert_eq!(follows(report(7, Some(3), Some(2)), 5), behind(report(5, Some(3), Some(2))));
 
     robot.mission = Current::new(Mission::Idle(super::super::super::mission::Idle));
     robot.review_team();

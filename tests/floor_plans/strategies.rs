@@ -1,0 +1,21 @@
+//! Missions with either strategy of the primary team.
+
+use pleach::automaton::network::scenario::{Strategy, ValidScenario};
+
+/// The strategy of this name.
+///
+/// # Errors
+/// The names that there are.
+pub fn named(name: &str) -> Result<Strategy, String> {
+    let strategies = [("paper", Strategy::Paper), ("eager", Strategy::Eager)];
+    let found = strategies.iter().find(|(known, _)| *known == name);
+    found.map(|(_, strategy)| *strategy).ok_or_else(|| "there are: paper, eager".into())
+}
+
+/// The same mission with this strategy, if one is given.
+pub fn following(strategy: Option<Strategy>, scenario: ValidScenario) -> ValidScenario {
+    let Some(strategy) = strategy else { return scenario };
+    let mut changed = scenario.scenario().clone();
+    changed.control.strategy = Some(strategy);
+    ValidScenario::new(changed).unwrap_or_else(|error| panic!("{}: {error}", scenario.name))
+}
