@@ -3,7 +3,7 @@
 //! Nothing here comes from the crates under test but the reader of traces. Distances along
 //! segments are exact; loads are sampled.
 
-use pleach::automaton::network::record::{Route, Snapshot};
+use pleach::automaton::network::record::{MissionEvent, Route, Snapshot};
 use pleach::automaton::network::scenario::Scenario;
 use pleach::trace::{TraceEntry, TraceReader};
 use std::io::BufRead;
@@ -39,8 +39,20 @@ pub fn audit<R: BufRead>(reader: TraceReader<R>) -> Result<Findings, String> {
         load: 0.0,
     };
     let mut before: Option<Box<Snapshot>> = None;
+    let mut over = Vec::new();
     for entry in reader {
-        let TraceEntry::Step(now) = entry.map_err(|error| error.to_string())? else { continue };
+        let now = match entry.map_err(|error| error.to_string())? {
+            TraceEntry::Step(now) => now,
+            TraceEntry::Event { event, .. } => {
+                over.extend(closed_by(&event));
+                continue;
+            }
+            _ => continue,
+        };
+        // Nobody has to stay with a task that is over.
+        if let Some(last) = &mut before {
+            last.serviced.retain(|(task, _)| !over.contains(task));
+        }
         let fault = |what: String| format!("k = {}: {what}", now.step);
         let start = before.as_deref().unwrap_or(&now);
         plan.journey(start, &now, &mut findings).map_err(fault)?;
@@ -48,6 +60,14 @@ pub fn audit<R: BufRead>(reader: TraceReader<R>) -> Result<Findings, String> {
         before = Some(now);
     }
     Ok(findings)
+}
+
+/// The task that is over from an event on.
+const fn closed_by(event: &MissionEvent) -> Option<usize> {
+    match *event {
+        MissionEvent::TaskEnded { task } | MissionEvent::TaskWithdrawn { task } => Some(task),
+        _ => None,
+    }
 }
 
 /// The scenario as the oracle sees it.
