@@ -48,10 +48,6 @@ const REASONS: &[([&str; 4], &str)] = &[
         ["duty", "", "attached", ""],
         "no robot holds the post of its parent any more: a robot stops on the way along Σ",
     ),
-    (
-        ["mission", "recruit election", "resumed", ""],
-        "the notice between is not heard; taken by `explore -- thorough`",
-    ),
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
     (["service", "serviced", "no robot", ""], "the robots are all gone after a task"),
     (
