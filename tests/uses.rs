@@ -6,6 +6,7 @@ pub type Use = (&'static str, &'static str, &'static str, &'static str);
 const TENSION: &str = "automaton/src/composition/tension.rs";
 const ROBOT_ABSENCE: &str = "automaton/src/network/robot/absence.rs";
 const ROBOT_ATTACHMENT: &str = "automaton/src/network/robot/attachment.rs";
+const ROBOT_DUTIES: &str = "automaton/src/network/robot/duties.rs";
 const ROBOT_EXCHANGE: &str = "automaton/src/network/robot/exchange.rs";
 const ROBOT_FACTS: &str = "automaton/src/network/robot/facts.rs";
 const ROBOT_LEADER: &str = "automaton/src/network/robot/leader.rs";
@@ -18,6 +19,7 @@ const ROBOT_PATH: &str = "automaton/src/network/robot/path.rs";
 const ROBOT_RESERVATION: &str = "automaton/src/network/robot/reservation.rs";
 const ROBOT_ROUTING: &str = "automaton/src/network/robot/routing.rs";
 const ROLL: &str = "automaton/src/network/roll.rs";
+const USER: &str = "automaton/src/network/user.rs";
 const CELL: &str = "continuous/src/geometry/cell.rs";
 const ERRORS: &str = "continuous/src/geometry/errors.rs";
 const ACCEPTANCE: &str = "continuous/src/network/acceptance.rs";
@@ -45,6 +47,7 @@ pub const FOR_USERS: &str = "";
 
 /// By file. Of an item that is used in several ways, harnesses are about the first.
 pub const USES: &[Use] = &[
+    ("by", "automaton/src/network/order.rs", USER, "Order::by(self.passed, &self.tasks)"),
     ("locate", ROLL, ROBOT_ABSENCE, "absent.locate(&mut self.wrecks, seen)"),
     (
         "lets_move",
@@ -185,6 +188,15 @@ pub const USES: &[Use] = &[
         "guards/src/network/control.rs",
         "automaton/src/network/robot/control.rs",
         "guards::sample_due()",
+    ),
+    ("discharged", "guards/src/network/duty.rs", ROBOT_DUTIES, "guards::discharged()"),
+    ("foreseen", "guards/src/network/mod.rs", ROBOT_MISSION, "guards::foreseen()"),
+    ("called_again", "guards/src/network/mod.rs", ROBOT_MISSION, "guards::called_again()"),
+    (
+        "withdraws",
+        "guards/src/network/service.rs",
+        "automaton/src/network/access_point/service.rs",
+        "guards::withdraws()",
     ),
     ("judge", VERDICT, "guards/src/predicate.rs", ".judge("),
     ("are_conserved", DUTY, PERIOD, "duty::are_conserved(&before, &kept)"),

@@ -120,6 +120,8 @@ pub fn every_event() -> Vec<MissionEvent> {
         MissionEvent::Reattached { robot: 3, parent: 7 },
         MissionEvent::ElectionRepeated { task: 0 },
         MissionEvent::TaskReannounced { task: 0, gone: vec![2, 3] },
+        MissionEvent::TaskEnded { task: 0 },
+        MissionEvent::TaskWithdrawn { task: 1 },
     ];
     events.extend(
         (Role::ALL.into_iter().zip(Role::ALL.into_iter().skip(1)))
