@@ -22,7 +22,7 @@ pub struct Arguments {
 
 const EXIT_STATUS: &str = "\
 Exit status:
-  0  all tasks are serviced
+  0  all tasks are serviced, or are over
   1  the program failed
   2  the scenario or the arguments are wrong, and nothing was run
   3  the mission ended with tasks unserviced, the reason is named

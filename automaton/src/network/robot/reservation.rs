@@ -119,7 +119,7 @@ impl Reservation {
 }
 
 impl HeldFlow {
-    /// Whether packets flow, or shall. Of other links nothing is raised, lowered or lasting.
+    /// Whether packets flow, or shall. Other links have nothing to raise, to lower or to keep.
     const fn is_in_use(&self) -> bool {
         self.flow > 0.0 || self.wanted > 0.0
     }

@@ -66,12 +66,12 @@ impl Terms {
         }
     }
 
-    /// A task that was announced before this one, and is neither serviced nor over.
+    /// A task that was announced before this one, and is neither serviced nor over. Tasks are announced in
+    /// their order.
     pub(super) fn unfinished_before(&self, task: usize) -> Option<usize> {
-        let is_open = |other: &&usize| {
-            **other != task && !self.serviced.contains_key(other) && !self.closed.contains(other)
-        };
-        self.announced.iter().find(is_open).copied()
+        let is_open =
+            |other: &&usize| !self.serviced.contains_key(other) && !self.closed.contains(other);
+        self.announced.range(..task).find(is_open).copied()
     }
 
     /// The step at which a task is to end, if it is serviced until then.
@@ -131,4 +131,28 @@ fn not_before(
         None => format!("{}, and it is never {what}", clause()),
     };
     Err(Dispute::of(Property::Events, &[], sentence))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a robot stands at a task already, several are announced in one control period.
+    #[test]
+    fn a_task_that_is_announced_later_need_not_be_serviced_before() {
+        let task = Task::at([3.0, 3.0]);
+        let mut terms = Terms {
+            tasks: vec![task; 3],
+            announced: BTreeSet::new(),
+            serviced: BTreeMap::new(),
+            closed: BTreeSet::new(),
+            slack: 0,
+        };
+        let mut enter = |event| terms.enter(&event, 7).expect("it is in time");
+        enter(MissionEvent::TaskAnnounced { task: 0 });
+        enter(MissionEvent::TaskServiced { task: 0, robot: 0 });
+        enter(MissionEvent::TaskAnnounced { task: 1 });
+        enter(MissionEvent::TaskAnnounced { task: 2 });
+        assert_eq!([0, 1, 2].map(|task| terms.unfinished_before(task)), [None, None, Some(1)]);
+    }
 }
