@@ -1,7 +1,7 @@
 //! Runs many random missions and tells what became of them, family by family.
 //!
-//! `cargo run --release --example outcomes -- MISSIONS [FOLDER] [--strategy eager]` runs so many of each family (a tenth
-//! as many of the halls, which take fifty times as long) and prints a table:
+//! `cargo run --release --example outcomes -- MISSIONS [FOLDER] [--strategy eager]` runs that many missions of
+//! each family (a tenth as many of the halls, which take fifty times as long) and prints a table:
 //!
 //! - *serviced*, *proved* and *unproved*: all tasks were serviced; robots were too few, by a bound that
 //!   rests on lengths alone ([`Spans`]); they were too few by that bound or not, and the mission ended

@@ -98,15 +98,17 @@ impl<'a> LabelPlaces<'a> {
                 (area, gap + rank as f64 * 0.5)
             })
         });
-        let mut best: Option<(f64, Area)> = None;
+        let (mut least, mut best) = (f64::INFINITY, None);
         for (area, preference) in candidates {
             // No place costs less than nothing.
-            if best.is_none_or(|(least, _)| preference < least) {
+            if preference < least {
                 let cost = self.cost(&area) + preference;
-                best = best.filter(|&(least, _)| least <= cost).or(Some((cost, area)));
+                if cost < least {
+                    (least, best) = (cost, Some(area));
+                }
             }
         }
-        let Some((_, area)) = best else { return mark };
+        let Some(area) = best else { return mark };
         self.taken.push(area);
         [(area.low[0] + area.high[0]) / 2.0, area.high[1] - size * 0.08]
     }

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use super::duty::{Duty, Hop, Path};
 use super::record::Outcome;
 use super::roll::Wreck;
-use super::shared::Shared;
+use super::shared::{Shared, merge_set};
 use super::wire;
 
 /// A notice on the mission.
@@ -251,16 +251,14 @@ impl Beacon {
     #[inline]
     pub(super) fn tell_forgetful(&self, own: Option<&Announced>, known: &mut Arc<IdSet>) {
         let goes_by = |announced: Option<&Announced>| announced.map(|(id, _)| *id);
-        if !known.includes(&self.forgetful) && goes_by(self.announced.as_ref()) == goes_by(own) {
-            Arc::make_mut(known).merge(&self.forgetful);
+        if !self.forgetful.is_empty() && goes_by(self.announced.as_ref()) == goes_by(own) {
+            merge_set(known, &self.forgetful);
         }
     }
 
     /// Adds the tasks that are over by the sender. None of them is ever taken up again.
     pub(super) fn tell_closed(&self, known: &mut Arc<IdSet>) {
-        if !known.includes(&self.closed) {
-            Arc::make_mut(known).merge(&self.closed);
-        }
+        merge_set(known, &self.closed);
     }
 
     /// Whether the same sender surely sent this before `other`: it had received, or offered, less.

@@ -181,7 +181,7 @@ pub enum MissionEvent {
     TaskReannounced { task: usize, gone: Vec<usize> },
     /// A task has been serviced for as long as it was to be: its robot is free.
     TaskEnded { task: usize },
-    /// The user has taken a task back: whoever services or pursues it is free.
+    /// The user has taken a task back: the robots that service or pursue it are free.
     TaskWithdrawn { task: usize },
 }
 

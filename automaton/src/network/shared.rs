@@ -3,7 +3,7 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-use pleach_discrete::network::Election;
+use pleach_discrete::network::{Election, IdSet};
 
 /// A value shared between nodes: a node with a newer value shares another one.
 ///
@@ -38,6 +38,14 @@ impl<T> Deref for Shared<T> {
 
     fn deref(&self) -> &T {
         &self.0
+    }
+}
+
+/// Takes in the numbers that a neighbour tells. A set that holds them already stays shared.
+#[inline]
+pub(super) fn merge_set(own: &mut Arc<IdSet>, heard: &IdSet) {
+    if !own.includes(heard) {
+        Arc::make_mut(own).merge(heard);
     }
 }
 

@@ -18,7 +18,7 @@ use crate::report::Report;
 
 /// Ways in each measurement.
 const WAYS: usize = 1000;
-/// Of these so many are held against the search over all pairs.
+/// How many of them are compared with the search over all pairs.
 const CHECKED: usize = 100;
 /// The tolerance of the free space, as a share of its extent: geodesics are exact to about ten times it.
 const TOLERANCE: f64 = 1e-12;

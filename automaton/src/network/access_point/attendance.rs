@@ -77,7 +77,7 @@ impl TaskRecord {
         self.age = self.age.saturating_add(1);
     }
 
-    /// Whether it has been serviced for so many control periods, and is heard of now.
+    /// Whether it has been serviced for at least this many control periods, and is heard of now.
     pub(super) fn has_lasted(self, periods: u32) -> bool {
         self.age >= periods && self.silence == 0
     }

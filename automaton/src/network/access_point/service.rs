@@ -203,15 +203,17 @@ impl AccessPoint {
 
     /// Whether the task that is pursued has been taken back.
     fn pursues_withdrawn(&self) -> bool {
-        let withdrawn = |task| self.errands().any(|(it, errand)| it == task && errand.withdrawn);
-        self.announced().is_some_and(|it| !self.is_open(it.task) || withdrawn(it.task))
+        let errand = |task: usize| self.requested.as_ref().and_then(|order| order.tasks.get(task));
+        let is_withdrawn = |task| errand(task).is_some_and(|errand| errand.withdrawn);
+        self.announced().is_some_and(|it| !self.is_open(it.task) || is_withdrawn(it.task))
     }
 
     /// The first task that is not pursued and is over, with what has become of it.
     fn next_closing(&self) -> Option<(usize, MissionEvent)> {
         let pursued = self.announced().map(|announced| announced.task);
-        let open = self.errands().filter(|&(task, _)| self.is_open(task) && pursued != Some(task));
-        open.filter_map(|(task, errand)| {
+        let mut open =
+            self.errands().filter(|&(task, _)| self.is_open(task) && pursued != Some(task));
+        open.find_map(|(task, errand)| {
             let serviced = self.tasks_serviced.get(task);
             let has_ended = |periods| serviced.is_some_and(|known| known.has_lasted(periods));
             match errand.lasts {
@@ -222,7 +224,6 @@ impl AccessPoint {
                 _ => None,
             }
         })
-        .next()
     }
 
     /// The robots that have not answered in the election under way.

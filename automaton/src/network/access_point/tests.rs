@@ -114,7 +114,7 @@ impl AccessPoint {
         self.step(heard, &mut Outputs::of(4)).expect("guards have values");
     }
 
-    /// It has heard that a task is serviced, so many control periods ago.
+    /// It heard `age` control periods ago that a task is serviced, and `silence` ago of its robot.
     fn has_heard_of(&mut self, task: usize, age: u32, silence: u32) {
         self.service = Current::new(Serving::Serviced(Serviced { task }));
         self.expect_serviced(task + 1);

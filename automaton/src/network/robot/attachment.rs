@@ -94,12 +94,13 @@ impl Robot {
 
     /// The number of branches attached to `post`.
     pub(super) fn branches_of(&self, post: PostId) -> usize {
-        let (primary, others): (Vec<&Post>, Vec<&Post>) =
-            self.children_of(post).filter_map(Neighbour::post).partition(|post| post.is_primary());
+        let branch_of = |post: &Post| match post.is_primary() {
+            true => Some(None),
+            false => post.is_fixed().then_some(Some(post.id)),
+        };
+        let children = self.children_of(post).filter_map(Neighbour::post);
         // During a hand-over two robots hold the same post.
-        let fixed: BTreeSet<PostId> =
-            others.iter().filter(|post| post.is_fixed()).map(|post| post.id).collect();
-        fixed.len() + usize::from(!primary.is_empty())
+        children.filter_map(branch_of).collect::<BTreeSet<Option<PostId>>>().len()
     }
 
     pub(super) fn anchor(&self) -> Option<Anchor> {

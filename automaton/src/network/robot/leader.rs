@@ -117,9 +117,12 @@ impl Robot {
         let own = self.announced.as_ref().map(|(id, _)| *id);
         let own_notice = self.notice_id();
         let newer = self.neighbours.iter().filter_map(|known| {
-            let announced = known.beacon.announced.as_ref();
-            let announced = announced.filter(|(id, _)| Some(*id) > own && id.epoch() >= self.epoch);
-            announced.filter(|_| !known.beacon.bulletin.id().is_newer_than(own_notice))
+            let announced = known.beacon.announced.as_ref()?;
+            let id = announced.0;
+            let is_newer = Some(id) > own
+                && id.epoch() >= self.epoch
+                && !known.beacon.bulletin.id().is_newer_than(own_notice);
+            is_newer.then_some(announced)
         });
         newer.max_by_key(|(id, _)| *id)
     }

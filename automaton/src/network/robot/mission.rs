@@ -12,7 +12,7 @@ use std::sync::Arc;
 use pleach_discrete::network::{
     Agreement, Bid, Election, IdSet, MISSION, MissionStep, NoticeId, Phase,
 };
-use pleach_guards::network::mission as guards;
+use pleach_guards::{Guard, network::mission as guards};
 
 use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Transfer, TransitionError};
@@ -195,12 +195,7 @@ fn informed<A: DataOf<Mission> + Clone>() -> Row {
     Transfer::where_known(MissionStep::Informed, guards::informed(), name, leader::learn::<A>)
 }
 
-fn called<A: DataOf<Mission>>() -> Row {
-    Transfer::new(MissionStep::Called, guards::called(), "answer the call", recruit::answer::<A>)
-}
-
-fn called_again<A: DataOf<Mission>>() -> Row {
-    let guard = guards::called_again();
+fn called<A: DataOf<Mission>>(guard: Guard) -> Row {
     Transfer::new(MissionStep::Called, guard, "answer the call", recruit::answer::<A>)
 }
 
@@ -258,12 +253,12 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         .carried_out(informed::<RecruitElection>())
         .carried_out(informed::<PathAgreement>())
         .carried_out(informed::<Shift>())
-        .carried_out(called::<Idle>())
-        .carried_out(called::<LeaderElection>())
-        .carried_out(called::<Advance>())
-        .carried_out(called_again::<RecruitElection>())
-        .carried_out(called_again::<PathAgreement>())
-        .carried_out(called_again::<Shift>())
+        .carried_out(called::<Idle>(guards::called()))
+        .carried_out(called::<LeaderElection>(guards::called()))
+        .carried_out(called::<Advance>(guards::called()))
+        .carried_out(called::<RecruitElection>(guards::called_again()))
+        .carried_out(called::<PathAgreement>(guards::called_again()))
+        .carried_out(called::<Shift>(guards::called_again()))
         .carried_out(resumed::<Idle>())
         .carried_out(resumed::<LeaderElection>())
         .carried_out(resumed::<RecruitElection>())

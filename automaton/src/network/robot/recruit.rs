@@ -56,8 +56,7 @@ pub(super) fn answer<A>(_: &A, robot: &Robot, effects: &mut Effects) -> RecruitE
     let id = robot.notice_id();
     let is_caller = matches!(*robot.notice(),
         Notice::Call { caller, .. } if caller == robot.id);
-    let own = is_caller.then(|| robot.own_hop(Vec::new())).flatten();
-    let route = own.map(|hop| (id, Shared::new(vec![hop])));
+    let route = is_caller.then(|| robot.own_route(id)).flatten();
     effects.push(MissionEffect::Elect(Election::new(id), None, route));
     RecruitElection { before: robot.mission.path().cloned(), standstill: None, ahead: false }
 }
@@ -123,11 +122,15 @@ impl Robot {
     /// The call for a recruit, which the caller is the first to know the way of.
     fn issue_call(&self, releases_leader: bool, effects: &mut Effects) {
         let id = self.next_notice_id();
-        let route = self.own_hop(Vec::new()).map(|hop| (id, Shared::new(vec![hop])));
         effects.extend([
             MissionEffect::Issue(Notice::Call { caller: self.id, releases_leader }),
-            MissionEffect::Elect(Election::new(id), None, route),
+            MissionEffect::Elect(Election::new(id), None, self.own_route(id)),
         ]);
+    }
+
+    /// The way of a call to the caller itself.
+    fn own_route(&self, call: NoticeId) -> Option<(NoticeId, Shared<Vec<Hop>>)> {
+        self.own_hop(Vec::new()).map(|hop| (call, Shared::new(vec![hop])))
     }
 
     /// Whether this robot has called for a recruit ahead of a standstill, and learns now that the team goes on

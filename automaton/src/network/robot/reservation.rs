@@ -16,7 +16,7 @@
 //! A grant says until when it holds, which is never longer than the flows of the receiver last that carry it:
 //! where grants are not renewed, flows end at those who send first.
 
-use std::iter::successors;
+use std::collections::BTreeSet;
 
 use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Spare, holds, renewed};
@@ -359,14 +359,10 @@ impl Robot {
 
     /// The last control period up to which flows last that carry this much.
     fn lasts_until(&self, carried: f64) -> u32 {
-        let latest_end = |until: u32| {
-            let ends = self.links_in_use().filter(|link| link.held.flow > 0.0);
-            ends.map(|link| link.held.until).filter(|&end| end <= until).max()
-        };
-        let mut ends =
-            successors(latest_end(u32::MAX), |end| end.checked_sub(1).and_then(latest_end));
+        let ends = self.links_in_use().filter(|link| link.held.flow > 0.0);
+        let ends: BTreeSet<u32> = ends.map(|link| link.held.until).collect();
         let lasts = |&end: &u32| self.lasting_outflow(end) >= carried - SAME_FLOW;
-        ends.find(lasts).unwrap_or(self.period)
+        ends.into_iter().rev().find(lasts).unwrap_or(self.period)
     }
 
     /// The last control period for which it has granted a flow; what it grants more may be used as long.

@@ -166,17 +166,16 @@ fn divides(
     ledger: &Ledger,
     scene: &Scene,
 ) -> Result<(), Dispute> {
-    let of_tasks = |serve: bool| -> Vec<usize> {
-        // Robots whose task is over may vote before they know.
-        let discharging = ledger.discharging.values().filter(|_| serve);
-        ledger.serviced.values().chain(discharging).copied().collect()
+    let servicing: Vec<usize> = ledger.serviced.values().copied().collect();
+    // Robots whose task is over may vote before they know.
+    let with_discharging = ledger.serviced.values().chain(ledger.discharging.values());
+    let with_discharging: Vec<usize> = with_discharging.copied().collect();
+    let derived = |snapshot: &Snapshot, servicing: &[usize]| {
+        break_points_by_tree(path, servicing, ledger.awaits_release, snapshot)
     };
-    let derived = |snapshot: &Snapshot, serve: bool| {
-        break_points_by_tree(path, &of_tasks(serve), ledger.awaits_release, snapshot)
-    };
-    let now = derived(scene.snapshot, false);
+    let now = derived(scene.snapshot, &servicing);
     let is_derived = |snapshot: &Snapshot| {
-        [false, true].into_iter().any(|serve| derived(snapshot, serve) == break_points)
+        [&servicing, &with_discharging].into_iter().any(|it| derived(snapshot, it) == break_points)
     };
     if is_derived(scene.snapshot) || scene.previous.is_some_and(is_derived) {
         return Ok(());

@@ -1,7 +1,5 @@
 //! What must hold in a mission with faults, whatever fails.
 
-use std::collections::BTreeSet;
-
 use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 
@@ -34,7 +32,6 @@ pub struct Safety {
     previous: Option<Snapshot>,
     /// Whether a node has been absent: what flowed there is lost.
     has_lost_nodes: bool,
-    serviced: BTreeSet<usize>,
     /// The task that has been announced last, until it is serviced or over.
     pursued: Option<usize>,
     terms: Terms,
@@ -50,7 +47,6 @@ impl Safety {
             clock: Clock::of(scenario),
             previous: None,
             has_lost_nodes: false,
-            serviced: BTreeSet::new(),
             pursued: None,
             terms: Terms::under_faults(scenario),
             extremes: Extremes::default(),
@@ -93,7 +89,6 @@ impl Safety {
             }
             MissionEvent::TaskServiced { task, robot } => {
                 claims::is_at_task(task, robot, snapshot, &self.limits)?;
-                self.serviced.insert(task);
                 self.pursued = self.pursued.filter(|&pursued| pursued != task);
             }
             _ => {}
@@ -147,8 +142,7 @@ impl Safety {
     pub fn conclude(&self, end: &End) -> Result<(), Violation> {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
         let last = self.previous.as_ref().map(|snapshot| snapshot.step);
-        let (done, tasks) =
-            (self.terms.done(self.serviced.iter().copied()), self.limits.tasks().len());
+        let (done, tasks) = (self.terms.done(self.terms.serviced()), self.limits.tasks().len());
         let contradiction = self.clock.contradiction(end, last, (done, tasks));
         let contradiction = contradiction.or_else(|| self.terms.contradiction(end.outcome));
         match contradiction.or_else(|| self.needless_end(end, done)) {

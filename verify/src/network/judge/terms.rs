@@ -84,8 +84,8 @@ impl Terms {
     /// announced and is taken back, after a secondary team has come to its end, or one that has lasted as long as
     /// it should. `busy` is the last step at which there was one.
     pub(super) fn overdue(&self, step: usize, busy: usize, patience: usize) -> Option<String> {
-        let open = self.announced.iter().filter(|task| !self.closed.contains(task));
-        open.filter_map(|&task| {
+        let mut open = self.announced.iter().filter(|task| !self.closed.contains(task));
+        open.find_map(|&task| {
             let is_past = |due: usize| due + patience < step;
             let taken_back =
                 self.tasks[task].withdrawn.filter(|&it| is_past(busy.max(it as usize)));
@@ -96,7 +96,11 @@ impl Terms {
                 .map(|due| since(due, "taken back"))
                 .or_else(|| end.map(|due| since(due, "to end")))
         })
-        .next()
+    }
+
+    /// The tasks that have been serviced.
+    pub(super) fn serviced(&self) -> impl Iterator<Item = usize> {
+        self.serviced.keys().copied()
     }
 
     /// How many tasks are done: closed, or serviced and neither to end nor closed.
