@@ -169,14 +169,17 @@ impl Robot {
 
     /// Whether it does not know where a robot is on which it relies.
     pub(super) fn is_unsure(&self) -> bool {
-        let relied_on = self.routes().map(|link| link.to).chain(self.tree_parent());
-        relied_on.filter(|&node| node < self.site.robots).any(|node| !self.knows_place_of(node))
+        let mut relied_on = self.routes().map(|link| link.to).chain(self.tree_parent());
+        relied_on.any(|node| !self.knows_place_of(node))
     }
 
-    /// Whether a robot on which this one relies is where it was heard last: it has been heard in this
-    /// control period, or it could not move since, because this robot sends to it and has not
+    /// Whether a node on which this one relies is where it was heard last: it is an access point, it has been
+    /// heard in this control period, or it could not move since, because this robot sends to it and has not
     /// consented.
-    fn knows_place_of(&self, node: NodeId) -> bool {
+    pub(super) fn knows_place_of(&self, node: NodeId) -> bool {
+        if node >= self.site.robots {
+            return true;
+        }
         let Some(known) = self.neighbour(node) else { return false };
         let has_consented =
             |&(mover, period): &(NodeId, u32)| mover == node && period >= known.heard_in;

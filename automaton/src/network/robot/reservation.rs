@@ -164,15 +164,17 @@ impl Robot {
     pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
         let (period, robots) = (self.period, self.site.robots);
         let patience = PATIENCE_WITH_ACCESS_POINTS * self.lease();
+        let knows_load = self.knows_load();
         self.reservations.retain(|kept| holds(kept.until, period));
         for at in 0..self.links.len() {
-            let heard_in = self.neighbour(self.links[at].to).map_or(0, |known| known.heard_in);
+            let to = self.links[at].to;
+            let heard_in = self.neighbour(to).map_or(0, |known| known.heard_in);
+            let can_raise = knows_load && self.knows_place_of(to);
             let link = &mut self.links[at];
             // Where flows are not reported, the plan can be none.
             let planned = link.flow().clamp(0.0, link.reliability);
             let held = &mut link.held;
-            held.wanted = if link.is_retiring { 0.0 } else { planned };
-            if link.to >= robots {
+            if to >= robots {
                 // An access point takes everything, as long as it is there.
                 let until = heard_in.saturating_add(patience);
                 (held.granted, held.until) = (f64::INFINITY, until);
@@ -180,9 +182,19 @@ impl Robot {
             if !holds(held.until, period) {
                 (held.flow, held.granted) = (0.0, 0.0);
             }
-            held.is_due = link.to < robots && (held.is_in_use() || held.is_open);
+            let most = if can_raise { planned } else { planned.min(held.flow) };
+            held.wanted = if link.is_retiring { 0.0 } else { most };
+            held.is_due = to < robots && (held.is_in_use() || held.is_open);
         }
         self.settle_flows(outputs);
+    }
+
+    /// Whether the loads of its links are known, as it knows where all are to which packets flow. Where it
+    /// does not, a receiver may have made a move to which it has consented: the load is certified for what
+    /// flows, and for no more.
+    fn knows_load(&self) -> bool {
+        let mut receivers = self.links.iter().filter(|link| link.held.flow > 0.0);
+        receivers.all(|link| self.knows_place_of(link.to))
     }
 
     /// Takes in the requests and grants of the round; asks again, every few rounds, where there is no

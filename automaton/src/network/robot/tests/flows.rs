@@ -100,6 +100,39 @@ fn a_flow_is_raised_to_what_is_planned_and_granted() {
     close(flow(0.5, 0.3, 0.2), (0.3, 0.2));
 }
 
+/// While a receiver may have made the move to which the robot has consented, what flows to it is certified, and
+/// no more. What flows to others takes time that it may need.
+#[test]
+fn no_flow_is_raised_while_a_receiver_may_have_moved() {
+    let flows = |consents: bool, passed: u32| {
+        let mut robot = router();
+        let mut outputs = Outputs::of(0);
+        let planned = |robot: &mut Robot, share: f64| {
+            robot.links.iter_mut().for_each(|link| link.share = share);
+        };
+        planned(&mut robot, 0.2);
+        robot.ask_for_flows(&mut outputs);
+        let number = requests(&mut outputs)[0].1.number;
+        let flow = robot.links[0].reliability;
+        robot.hear_grant(5, FlowGrant { number, flow, until: NOW + LEASE });
+        robot.take_in_requests(&mut outputs);
+        sent(&mut outputs);
+        if consents {
+            robot.consented.push((5, NOW));
+        }
+        robot.period += passed;
+        planned(&mut robot, 0.4);
+        robot.ask_for_flows(&mut outputs);
+        let wanted = requests(&mut outputs)[0].1.wanted;
+        [wanted / robot.links[0].reliability, robot.links[1].load()]
+            .map(|load| (load * 1e9).round())
+    };
+    let [kept, raised] = [0.2, 0.4].map(|load: f64| [(load * 1e9).round(); 2]);
+    assert_eq!(flows(false, 1), raised, "robot 5 has not moved without a consent");
+    assert_eq!(flows(true, 1), kept);
+    assert_eq!(flows(true, 0), raised, "it has heard it in this period");
+}
+
 /// Robot 5 asks for a flow of 0.2; this robot sends 0.1 + `spare` to the access point, 0.1 of it its own.
 fn granted(spare: f64) -> (Robot, Vec<(Destination, FlowGrant)>) {
     let mut robot = router();
