@@ -3,7 +3,7 @@
 
 use crate::missions::{Mission, Period, run, shipped, valid};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
-use pleach::automaton::network::scenario::{Scenario, Task};
+use pleach::automaton::network::scenario::{Scenario, Strategy, Task};
 use pleach::automaton::node::Weather;
 use pleach::discrete::network::Role;
 use pleach::discrete::network::activity::may_follow;
@@ -149,6 +149,28 @@ fn a_task_may_end_at_any_time() {
         let mission = run(scenario);
         assert_eq!(mission.end.outcome, Outcome::Serviced, "{lasts}: {}", mission.end.reason);
         assert_eq!(mission.last().serviced.len(), 1, "{lasts}");
+    }
+}
+
+/// Two tasks at one place: the leader to the second stands there when it is released from the first, so that it
+/// announces the advance of the team and the service in one control period. No other task follows.
+#[test]
+fn a_leader_may_be_at_its_task_when_it_is_released() {
+    for strategy in [Strategy::Paper, Strategy::Eager] {
+        let mut scenario = shipped("errands");
+        let place = [0.7, 1.0];
+        scenario.control.strategy = Some(strategy);
+        scenario.task = vec![Task::at(place), Task { lasts: Some(30), ..Task::at(place) }];
+        let mission = run(scenario);
+        assert_eq!(mission.end.outcome, Outcome::Serviced, "{}", mission.end.reason);
+        let (released, robot) = mission
+            .events()
+            .find_map(|(step, event)| match *event {
+                Event::Released { robot } => Some((step, robot)),
+                _ => None,
+            })
+            .unwrap();
+        assert_eq!(service_of(&mission, 1), (released, robot), "{strategy:?}");
     }
 }
 
