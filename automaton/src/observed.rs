@@ -82,6 +82,7 @@ macro_rules! observed {
 
                 fn proposition(&self, number: usize) -> bool {
                     let $this = self;
+                    let _ = ($this, number); // where there are none
                     $(if number == Proposition::$name as usize {
                         return $holds;
                     })*

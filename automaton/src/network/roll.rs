@@ -98,12 +98,20 @@ impl Absent {
     }
 
     /// Brings up to date where each robot that does not take part was heard last, by number: of what is
-    /// known and of what has been seen.
-    pub fn locate(&self, known: &mut Arc<Vec<Wreck>>, seen: impl IntoIterator<Item = Wreck>) {
+    /// known and of what has been seen. One that nobody has heard of is where it starts.
+    pub fn locate(
+        &self,
+        known: &mut Arc<Vec<Wreck>>,
+        seen: impl IntoIterator<Item = Wreck>,
+        start_of: impl Fn(NodeId) -> Option<Point>,
+    ) {
         if self.is_empty() && known.is_empty() {
             return;
         }
-        let mut wrecks: Vec<Wreck> = known.iter().copied().chain(seen).collect();
+        let unheard = |robot| Some(Wreck::heard(robot, start_of(robot)?, 0));
+        let absent = self.suspended.iter().chain(self.gone.iter());
+        let mut wrecks: Vec<Wreck> = absent.filter_map(unheard).collect();
+        wrecks.extend(known.iter().copied().chain(seen));
         wrecks.retain(|wreck| self.contains(wreck.robot));
         wrecks.sort_by(|one, other| one.robot.cmp(&other.robot).then(other.by_news(one)));
         wrecks.dedup_by_key(|wreck| wreck.robot);

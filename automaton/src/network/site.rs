@@ -5,6 +5,7 @@ use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Repair, Workspace, WorkspaceError};
 use pleach_continuous::network::reliability::ReliabilityError;
 use pleach_continuous::network::{LinkReliability, WithMargin};
+use pleach_discrete::network::NodeId;
 
 use super::Link;
 use super::automata::Automata;
@@ -44,6 +45,9 @@ pub struct Site {
     pub settings: Settings,
     /// Number of robots.
     pub robots: usize,
+    /// Where they start, by number, and their numbers by where that is, from west to east.
+    starts: Vec<Point>,
+    west_to_east: Vec<NodeId>,
     /// How long links of the tree may be as long as there are robots left; where robots start too far apart
     /// for these, as long as [`stretched`](Self::stretched).
     pub usual: LinkLengths,
@@ -98,12 +102,17 @@ impl Site {
         let free_space = Self::free_space(&workspace, &settings)?;
         let radio = scenario.link.link()?;
         let link = Self::as_measured(&radio, &settings)?;
+        let starts: Vec<Point> = scenario.robot.iter().map(|robot| robot.position.into()).collect();
+        let mut west_to_east: Vec<NodeId> = (0..starts.len()).collect();
+        west_to_east.sort_by(|&one, &other| starts[one].x.total_cmp(&starts[other].x));
         Ok(Site {
             workspace,
             repairs,
             free_space,
             access_points: scenario.access_point.iter().map(|ap| ap.position.into()).collect(),
-            robots: scenario.robot.len(),
+            robots: starts.len(),
+            starts,
+            west_to_east,
             usual: settings.usual_links(),
             stretched: settings.stretched_links(),
             begins_stretched: false,
@@ -226,6 +235,21 @@ impl Site {
             return false;
         }
         distance <= Self::well_in_range(&self.settings, &self.link)
+    }
+
+    /// Where a robot starts, if there is one of this number.
+    pub fn start_of(&self, robot: NodeId) -> Option<Point> {
+        self.starts.get(robot).copied()
+    }
+
+    /// The robots that start [well in range](Self::is_well_in_range) of this place, and where.
+    pub fn starts_well_in_range(&self, place: Point) -> impl Iterator<Item = (NodeId, Point)> {
+        let range = Self::well_in_range(&self.settings, &self.link);
+        let is_west = |&robot: &NodeId| self.starts[robot].x < place.x - range;
+        let first = self.west_to_east.partition_point(is_west);
+        let starts = self.west_to_east[first..].iter().map(|&robot| (robot, self.starts[robot]));
+        let eastward = starts.take_while(move |(_, start)| start.x <= place.x + range);
+        eastward.filter(move |(_, start)| self.is_well_in_range((start - place).norm()))
     }
 
     /// Control periods for which a roll is valid: as long as it may take to reach every robot, some

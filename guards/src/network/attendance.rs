@@ -1,12 +1,12 @@
 //! The guards of a robot's attendance, as an access point knows it.
 
-use crate::{Guard, Predicate, proposition, variable};
+use crate::{Guard, Predicate, variable};
 
 fn is_missed() -> Predicate {
-    proposition("known") & variable("silence").more_than(variable("patience"))
+    variable("silence").more_than(variable("patience"))
 }
 
-/// It was heard of once, and has not been for too long.
+/// It has not been heard of for too long.
 pub fn missed() -> Guard {
     Guard::new("missed", is_missed())
 }

@@ -53,8 +53,10 @@ without_data!(Present, Suspended, Gone, Returning);
 #[derive(Clone, Debug)]
 pub struct Attendee {
     standing: Current<Standing>,
-    /// Control periods since it was heard of; none if it never was.
-    silence: Option<u32>,
+    /// Whether it has ever been attached here.
+    known: bool,
+    /// Control periods since it was heard of, or since the access point began.
+    silence: u32,
     /// Control periods since its standing changed.
     age: u32,
     /// Control periods for which a roll is valid.
@@ -88,8 +90,8 @@ crate::observed! {
     /// What the guards of attendance read.
     pub const ATTENDANCE_GLOSSARY;
     quantities {
-        /// Control periods since the robot was heard of.
-        silence: f64::from(attendee.silence.unwrap_or_default()),
+        /// Control periods since the robot was heard of, or since the access point began.
+        silence: f64::from(attendee.silence),
         /// Control periods after which it is missed.
         patience: f64::from(PATIENCE),
         /// Control periods since its standing changed.
@@ -97,10 +99,7 @@ crate::observed! {
         /// Control periods for which a roll is valid.
         validity: f64::from(attendee.validity),
     }
-    propositions {
-        /// The robot has been heard of.
-        known: attendee.is_known(),
-    }
+    propositions {}
 }
 
 impl Holds<Standing> for Attendee {
@@ -124,7 +123,8 @@ impl Attendee {
     pub(super) fn new(validity: u32) -> Self {
         Attendee {
             standing: Current::new(Standing::Present(Present)),
-            silence: None,
+            known: false,
+            silence: 0,
             age: 0,
             validity,
         }
@@ -134,24 +134,30 @@ impl Attendee {
     fn absent(standing: Standing, validity: u32) -> Self {
         Attendee {
             standing: Current::new(standing),
-            silence: Some(PATIENCE),
+            known: true,
+            silence: PATIENCE,
             ..Attendee::new(validity)
         }
     }
 
-    /// The robot is heard of.
+    /// The robot is attached to an access point.
     pub(super) fn attend(&mut self) {
-        self.silence = Some(0);
+        (self.known, self.silence) = (true, 0);
     }
 
-    /// Whether it has ever been heard of.
+    /// The robot is heard, and knows no way to an access point.
+    pub(super) fn stray(&mut self) {
+        self.silence = 0;
+    }
+
+    /// Whether it has ever been attached to an access point, as far as this one knows.
     pub(super) fn is_known(&self) -> bool {
-        self.silence.is_some()
+        self.known
     }
 
-    /// Whether it may not have begun yet: it has never been heard of, for a short time.
+    /// Whether it may not have begun yet: it has never been attached, for a short time.
     pub(super) fn may_begin(&self) -> bool {
-        !self.is_known() && self.age < PATIENCE
+        !self.known && self.age < PATIENCE && self.standing.location() == Attendance::Present
     }
 
     /// It is not waited for any more.
@@ -162,17 +168,18 @@ impl Attendee {
 
     /// Whether it has been heard of in this control period.
     pub(super) fn is_heard_of(&self) -> bool {
-        self.silence == Some(0)
+        self.known && self.silence == 0
     }
 
     /// Whether it has been heard of lately, and takes part.
     pub(super) fn takes_part(&self) -> bool {
-        self.is_known() && self.standing.location() == Attendance::Present
+        self.known && self.standing.location() == Attendance::Present
     }
 
-    /// Whether it does not take part, and may in a while.
+    /// Whether it does not take part any more, and may in a while.
     pub(super) fn may_return(&self) -> bool {
-        matches!(self.standing.location(), Attendance::Suspended | Attendance::Returning)
+        let is_away = matches!(*self.standing, Standing::Suspended(_) | Standing::Returning(_));
+        self.known && is_away
     }
 
     /// Whether it is gone.
@@ -182,15 +189,15 @@ impl Attendee {
 
     /// What decides on its standing from now on; how long a wait has been over does not matter.
     #[cfg(any(test, feature = "abstraction"))]
-    pub(super) fn account(&self) -> (Attendance, Option<u32>, u32) {
-        let silence = self.silence.map(|silence| silence.min(PATIENCE + 1));
-        (self.standing.location(), silence, self.age.min(self.validity + 1))
+    pub(super) fn account(&self) -> (Attendance, bool, u32, u32) {
+        let (silence, age) = (self.silence.min(PATIENCE + 1), self.age.min(self.validity + 1));
+        (self.standing.location(), self.known, silence, age)
     }
 
     /// Another control period begins.
     fn review(&mut self, automaton: &AttendanceAutomaton) -> Result<(), TransitionError> {
         self.age = self.age.saturating_add(1);
-        self.silence = self.silence.map(|silence| silence.saturating_add(1));
+        self.silence = self.silence.saturating_add(1);
         automaton.step_in_place::<Standing>(self)?;
         Ok(())
     }
@@ -236,14 +243,15 @@ impl AccessPoint {
     }
 
     /// It has begun, or begun again, while others went by this roll: who does not take part by it does
-    /// not from now on.
+    /// not from now on. Nor does anyone that it has not heard of, until it does: it cannot tell for how long
+    /// that one has been silent.
     pub(super) fn recall(&mut self, roll: &Roll) {
         let Absent { suspended, gone } = &*roll.absent;
         let validity = self.site.roll_validity();
         for (robot, attendee) in self.attendees.iter_mut().enumerate() {
             if gone.contains(robot) {
                 *attendee = Attendee::absent(Standing::Gone(Gone), validity);
-            } else if suspended.contains(robot) {
+            } else if suspended.contains(robot) || !attendee.known {
                 *attendee = Attendee::absent(Standing::Suspended(Suspended), validity);
             }
         }
@@ -279,10 +287,11 @@ impl AccessPoint {
         absent
     }
 
-    /// The robots that are gone.
+    /// The robots that it has heard of and that are gone.
     pub(super) fn gone(&self) -> Vec<NodeId> {
         let attendees = self.attendees.iter().enumerate();
-        attendees.filter(|(_, attendee)| attendee.is_gone()).map(|(robot, _)| robot).collect()
+        let is_gone = |it: &Attendee| it.known && it.is_gone();
+        attendees.filter(|(_, attendee)| is_gone(attendee)).map(|(robot, _)| robot).collect()
     }
 
     /// The robots that it has heard of and that do not take part.
@@ -384,7 +393,7 @@ mod tests {
 
     /// Of any robot, heard of or not in any periods: its standing, what decides on it from now on, and for how
     /// many periods it has not been called present, and gone; more than any roll is valid are the same.
-    type Record = ((Attendance, Option<u32>, u32), u32, u32);
+    type Record = ((Attendance, bool, u32, u32), u32, u32);
 
     fn record_of(attendee: &Attendee, present: u32, gone: u32) -> Record {
         (attendee.account(), present.min(VALIDITY + 1), gone.min(VALIDITY + 1))
@@ -428,9 +437,14 @@ mod tests {
         assert!(known.len() > 50 && returned > 10, "{} {returned}", known.len());
     }
 
+    /// Its body may stand in the way of others.
     #[test]
-    fn a_robot_that_was_never_heard_of_is_not_missed() {
-        assert!(standings(90, |_| false).iter().all(|&known| known == Attendance::Present));
+    fn a_robot_that_was_never_heard_of_is_missed() {
+        let standings = standings(90, |_| false);
+        let gone = (PATIENCE + VALIDITY) as usize + 2;
+        assert_eq!(standings[PATIENCE as usize - 1], Attendance::Present);
+        assert_eq!(standings[PATIENCE as usize], Attendance::Suspended);
+        assert!(standings[gone..].iter().all(|&known| known == Attendance::Gone));
         assert!(!Attendee::new(VALIDITY).takes_part());
     }
 }

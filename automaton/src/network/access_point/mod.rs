@@ -235,7 +235,10 @@ impl AccessPoint {
     /// Takes in a beacon. One that arrives after a newer one of its sender is ignored, and so is one
     /// that has been late since an earlier control period.
     fn hear(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
-        if self.roll.merge(roll) && self.is_new {
+        let is_later = roll.called > self.roll.called;
+        self.roll.merge(roll);
+        // Nobody but the first access point calls rolls: it has begun again since.
+        if is_later && (self.is_new || self.is_first()) {
             self.recall(roll);
         }
         if period < self.period {
@@ -261,7 +264,8 @@ impl AccessPoint {
     /// Where robots that do not take part were heard last, here or by the nodes that are heard.
     fn locate_wrecks(&mut self) {
         let told = self.heard.iter().flat_map(|beacon| beacon.wrecks.iter().copied());
-        self.roll.absent.locate(&mut self.wrecks, self.sightings.iter().chain(told));
+        let seen = self.sightings.iter().chain(told);
+        self.roll.absent.locate(&mut self.wrecks, seen, |robot| self.site.start_of(robot));
     }
 
     /// A control period begins, in which all nodes send again.
@@ -450,8 +454,8 @@ impl AccessPoint {
             }
         }
         for robot in reports.strays.iter() {
-            if let Some(attendee) = self.attendees.get_mut(robot).filter(|it| it.is_known()) {
-                attendee.attend();
+            if let Some(attendee) = self.attendees.get_mut(robot) {
+                attendee.stray();
             }
         }
         for task in reports.serves.iter() {

@@ -40,6 +40,9 @@ fn access_point() -> AccessPoint {
     AccessPoint::new(0, Arc::new(Site::new(&hall).expect("its numbers make sense")))
 }
 
+/// Where robot 0 starts.
+const HERE: Point = Point::new(4.0, 5.0);
+
 /// What a redundant robot says at `position`.
 fn beacon(robot: NodeId, position: Point) -> Beacon {
     let station = Station { post: Post::redundant(PostId(robot as u32)), reference: position };
@@ -102,6 +105,42 @@ fn it_tells_where_robots_that_do_not_take_part_were_heard_last() {
     let heard = Beacon { wrecks, ..beacon(0, west) };
     assert_eq!(told(3, &without_one, vec![heard]), [wreck(1, farther, 2)]);
     assert_eq!(told(4, &roll(4, &[]), vec![beacon(0, west)]), [], "it takes part again");
+}
+
+/// The access point begins again, or has been heard by nobody since: it cannot tell for how long the others have
+/// been silent.
+#[test]
+fn robots_are_suspended_until_they_are_heard_by_an_access_point_that_begins_again() {
+    let absent = |is_new: bool| {
+        let mut point = access_point();
+        (point.period, point.is_new) = (7, is_new);
+        point.hear(40, &roll(40, &[]), &Arc::new(beacon(0, HERE)));
+        let mut absent = Vec::new();
+        for period in 41..44 {
+            point.period = period;
+            point.call_roll().expect("guards have values");
+            absent.push(point.roll.absent.suspended.iter().collect::<Vec<_>>());
+            point.hear(period, &Roll::default(), &Arc::new(beacon(0, HERE)));
+            point.survey_robots();
+        }
+        absent
+    };
+    for is_new in [true, false] {
+        assert_eq!(absent(is_new), [vec![0, 1], vec![1], vec![1]], "{is_new}");
+    }
+}
+
+/// It is heard, and cannot be attached yet.
+#[test]
+fn a_robot_that_knows_no_way_is_not_missed_while_it_is_heard() {
+    let mut point = access_point();
+    for period in 1..30 {
+        point.period = period;
+        point.call_roll().expect("guards have values");
+        point.hear(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
+        point.survey_robots();
+    }
+    assert!(!point.roll.absent.contains(1) && !point.attending().contains(1));
 }
 
 // ---- Tasks with times ------------------------------------------------------------------------

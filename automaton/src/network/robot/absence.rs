@@ -50,6 +50,30 @@ impl Robot {
         }
     }
 
+    /// It has begun, and heard who is in range. One that starts well in range, and that it has not heard, may be
+    /// on its way.
+    pub(super) fn look_around(&mut self) {
+        if self.is_late_comer() {
+            return;
+        }
+        for (robot, start) in self.site.starts_well_in_range(self.position) {
+            if robot != self.id && self.neighbour(robot).is_none() {
+                self.missing.note(Wreck::heard(robot, start, 0));
+            }
+        }
+    }
+
+    /// Whether it has begun later than others, and so does not know where robots are that it does not hear.
+    fn is_late_comer(&self) -> bool {
+        self.joined_in > 0
+    }
+
+    /// Whether it has been told of all that do not take part: one that has begun later than others is,
+    /// by a roll that is called long enough afterwards.
+    pub(super) fn knows_who_is_absent(&self) -> bool {
+        !self.is_late_comer() || self.joined_in.saturating_add(TOLD_AFTER) <= self.roll.called
+    }
+
     /// Whether it takes part by a roll that is valid.
     pub(super) fn is_called(&self) -> bool {
         self.roll.lets_move(self.id, self.period, self.site.roll_validity())
@@ -88,7 +112,7 @@ impl Robot {
         let silent = self.neighbours.iter().filter(|known| known.is_silent());
         let told = self.neighbours.iter().flat_map(|known| known.beacon.wrecks.iter().copied());
         let seen = self.out_of_sight.iter().chain(told).chain(silent.map(Neighbour::wreck));
-        self.roll.absent.locate(&mut self.wrecks, seen);
+        self.roll.absent.locate(&mut self.wrecks, seen, |robot| self.site.start_of(robot));
     }
 
     /// Where the robots attached to it are. Those that nobody else hears are so known two links away, in case

@@ -288,6 +288,7 @@ impl Robot {
             roll: _,
             out_of_sight: _,
             missing: _,
+            joined_in: _,
             wrecks: _,
             branches: _,
             trail: _,

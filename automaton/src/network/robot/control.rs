@@ -150,7 +150,9 @@ impl Robot {
             }
             Act::TellBeacon => self.tell_beacon(outputs),
             Act::SurveyLinks => {
-                self.is_new = false;
+                if std::mem::take(&mut self.is_new) {
+                    self.look_around();
+                }
                 self.survey_links();
             }
             Act::TellFlows => self.tell_flows(outputs),

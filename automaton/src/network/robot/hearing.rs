@@ -246,8 +246,8 @@ impl Robot {
         at + 1
     }
 
-    /// Whether the robot may leave its place in this control period: it takes part, is where others allow
-    /// for it if they do not hear it any more, and has heard in this period where each robot is that was near
+    /// Whether the robot may leave its place in this control period: it takes part, knows who does not, is where
+    /// others allow for it if they do not hear it any more, and has heard in this period where each robot is that was near
     /// when it was heard last, or could have come near since, but those that are gone.
     ///
     /// If one of two robots that could meet moves, it so knows where the other is. If both move, each
@@ -261,6 +261,7 @@ impl Robot {
                 || self.is_gone(known.id())
         };
         self.is_called()
+            && self.knows_who_is_absent()
             && self.is_near_trail()
             && self.neighbours.iter().all(is_sure)
             && !self.missing.iter().any(|lost| self.may_meet(&lost))

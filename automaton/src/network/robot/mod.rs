@@ -139,6 +139,8 @@ pub struct Robot {
     /// Robots that it does not hear any more although they were well in range, until a roll tells whether
     /// they take part.
     missing: Sightings,
+    /// The control period in which it has joined a mission under way; 0 if it has begun with the others.
+    joined_in: u32,
     wrecks: Arc<Vec<Wreck>>,
     branches: Arc<Vec<Branch>>,
     /// Where it has set off since its roll was called, each with the control period.
@@ -307,6 +309,7 @@ impl Robot {
             roll: Roll::default(),
             out_of_sight: Sightings::default(),
             missing: Sightings::default(),
+            joined_in: 0,
             wrecks: Arc::default(),
             branches: Arc::default(),
             trail: Vec::new(),
@@ -394,7 +397,7 @@ impl Robot {
     fn join_in(&mut self, period: u32) {
         self.period = period;
         if period > 1 {
-            (self.is_late, self.is_quiet) = (true, false);
+            (self.is_late, self.is_quiet, self.joined_in) = (true, false, period);
             self.note_change();
         }
     }

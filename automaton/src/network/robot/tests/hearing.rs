@@ -254,6 +254,49 @@ fn a_robot_that_has_fallen_silent_may_have_come_near() {
     assert!(may_leave_after(&mut robot, 11, 10), "it is heard");
 }
 
+/// At the beginning a robot knows where others start. One nearby that it does not hear may be cut off.
+#[test]
+fn a_robot_stays_where_another_starts_nearby_that_it_has_not_heard() {
+    let settings = robot().site.settings;
+    let met = settings.meeting_distance() + settings.longest_step();
+    let may_leave = |gap: f64, hears_it: bool, called: u32| {
+        let mut hall = hall();
+        hall.robot[0].position = HERE.into();
+        hall.robot[1].position = east(gap).into();
+        let mut robot = robot_of(&hall);
+        (robot.period, robot.is_new) = (1, true);
+        if hears_it {
+            robot.hears(beacon(1, east(gap), redundant(1, 12), &[]));
+        }
+        robot.look_around();
+        robot.hear_roll(&Roll { called, ..Roll::default() });
+        robot.may_leave_place()
+    };
+    assert!(may_leave(met + 0.01, false, 1), "it is too far away");
+    assert!(!may_leave(met - 0.01, false, 1));
+    assert!(may_leave(met - 0.01, true, 1), "it is heard");
+    assert!(may_leave(met - 0.01, false, 16), "it would be named if it did not take part");
+}
+
+/// One that begins again has forgotten who is nearby, and some of these may be cut off.
+#[test]
+fn a_robot_that_joins_late_stays_until_it_is_told_who_is_absent() {
+    let may_leave = |period: u32, called: u32| {
+        let mut robot = robot();
+        robot.is_new = true;
+        robot.hear_of_later_period(period);
+        robot.look_around();
+        robot.hear_roll(&Roll { called, ..Roll::default() });
+        robot.may_leave_place()
+    };
+    assert!(may_leave(1, 1), "it has begun with the others");
+    assert!(!may_leave(NOW, NOW) && !may_leave(NOW, NOW + 15));
+    assert!(may_leave(NOW, NOW + 16));
+    let mut robot = robot();
+    robot.hear_of_later_period(NOW + 2);
+    assert!(!robot.knows_who_is_absent(), "it has heard nobody when it began again");
+}
+
 #[test]
 fn the_holder_of_a_post_is_the_robot_that_has_not_promised_it() {
     let mut robot = robot();
