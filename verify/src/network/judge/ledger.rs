@@ -121,6 +121,7 @@ impl Ledger {
     pub fn enter(&mut self, event: &MissionEvent) -> Result<(), Dispute> {
         let entered = self.enter_now(event);
         if let (Err(_), Some(mut outdated)) = (&entered, self.outdated.clone())
+            && !is_told_by_access_point(event)
             && outdated.enter(event).is_ok()
         {
             self.take_over_holders(&outdated);
@@ -538,6 +539,17 @@ impl Ledger {
         };
         dispute(&[], sentence)
     }
+}
+
+/// Whether an event is told by the access point that takes tasks back: it knows of that first.
+const fn is_told_by_access_point(event: &MissionEvent) -> bool {
+    matches!(
+        event,
+        MissionEvent::TaskAnnounced { .. }
+            | MissionEvent::TaskReannounced { .. }
+            | MissionEvent::TaskEnded { .. }
+            | MissionEvent::TaskWithdrawn { .. }
+    )
 }
 
 fn dispute<T>(robots: &[usize], sentence: String) -> Result<T, Dispute> {
