@@ -222,14 +222,26 @@ fn tasks_are_closed_only_as_the_user_wants_it() {
         assert_eq!(property, Property::Events, "{sentence}");
         assert!(sentence.contains(expected), "{sentence}");
     };
-    closed(serviced + 9, Event::TaskEnded { task: 1 }, "task 1 ends, and it is never to end");
+    closed(serviced + 9, Event::TaskEnded { task: 1 }, "task 1 ends, and the scenario states no `lasts` for it");
     closed(160, Event::TaskEnded { task: 0 }, "task 0 ends, and it is to end at k = 185");
-    closed(300, Event::TaskWithdrawn { task: 0 }, "and it is never taken back");
+    closed(300, Event::TaskWithdrawn { task: 0 }, "and the scenario states no `withdrawn` for it");
     closed(350, Event::TaskWithdrawn { task: 2 }, "and it is taken back at k = 360");
     closed(479, Event::TaskAnnounced { task: 3 }, "and it is asked for at k = 480");
     let (property, sentence) =
         complaint(|mission| tell(mission, 200, Event::TaskEnded { task: 0 }));
     assert!(property == Property::Events && sentence.contains("task 0 ends"), "{sentence}");
+}
+
+/// Also while robots may not have heard yet that the task is taken back that they pursue.
+#[test]
+fn a_task_is_taken_back_once() {
+    let (withdrawn, task) = (360, 2);
+    for step in [withdrawn, withdrawn + 1, withdrawn + 100] {
+        let copy = Event::TaskWithdrawn { task };
+        let (property, sentence) = complaint(|mission| tell(mission, step, copy.clone()));
+        assert_eq!(property, Property::Events, "{sentence}");
+        assert!(sentence.contains("task 2 is told to be taken back, and it is over already"), "{sentence}");
+    }
 }
 
 /// Robots that go on with a task that is over are told.

@@ -555,3 +555,23 @@ const fn is_told_by_access_point(event: &MissionEvent) -> bool {
 fn dispute<T>(robots: &[usize], sentence: String) -> Result<T, Dispute> {
     Err(Dispute::of(Property::Events, robots, sentence))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Robots go on as if the task were not taken back until they hear so; the access point knows.
+    #[test]
+    fn what_the_access_point_tells_is_not_held_against_what_robots_have_yet_to_hear() {
+        let mut ledger = Ledger::new(3);
+        let withdrawn = MissionEvent::TaskWithdrawn { task: 0 };
+        let elected = MissionEvent::LeaderElected { task: 0, robot: 1, conflict: false };
+        let serviced = MissionEvent::TaskServiced { task: 0, robot: 1 };
+        for event in [MissionEvent::TaskAnnounced { task: 0 }, elected, withdrawn.clone()] {
+            assert_eq!(ledger.enter(&event), Ok(()));
+        }
+        assert_eq!(ledger.clone().enter(&serviced), Ok(()));
+        let found = ledger.enter(&withdrawn).expect_err("it is over");
+        assert_eq!(found.sentence, "task 0 is taken back, and it is over");
+    }
+}
