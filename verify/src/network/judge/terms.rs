@@ -66,17 +66,16 @@ impl Terms {
                 self.is_announced(task, || format!("robot {robot} services task {task}"))
             }
             MissionEvent::TaskWithdrawn { task } => {
-                self.close(task, "taken back")?;
                 let Some(due) = self.tasks[task].withdrawn else {
                     return dispute(format!(
                         "task {task} is taken back, and the scenario states no `withdrawn` for it: the user \
                          never takes it back"
                     ));
                 };
-                not_before(step, due, || format!("task {task} is given up"), "taken back")
+                not_before(step, due, || format!("task {task} is given up"), "taken back")?;
+                self.close(task, "is taken back")
             }
             MissionEvent::TaskEnded { task } => {
-                self.close(task, "ended")?;
                 let Some(lasts) = self.tasks[task].lasts else {
                     return dispute(format!(
                         "task {task} ends, and the scenario states no `lasts` for it: it is serviced for ever, \
@@ -90,7 +89,8 @@ impl Terms {
                     ));
                 };
                 let due = end_of(since, lasts).saturating_sub(u32::from(self.has_forgotten));
-                not_before(step, due, || format!("task {task} ends"), "to end")
+                not_before(step, due, || format!("task {task} ends"), "to end")?;
+                self.close(task, "ends")
             }
             _ => Ok(()),
         }
@@ -99,7 +99,7 @@ impl Terms {
     fn close(&mut self, task: usize, what: &str) -> Result<(), Dispute> {
         match self.closed.insert(task) || self.has_forgotten {
             true => Ok(()),
-            false => dispute(format!("task {task} is told to be {what}, and it is over already")),
+            false => dispute(format!("task {task} {what}, and it is over already")),
         }
     }
 
@@ -135,7 +135,8 @@ impl Terms {
             let is_past = |due: usize| due + patience < step;
             let Task { withdrawn, lasts, .. } = self.tasks[task];
             let taken_back = withdrawn.filter(|&it| is_past(busy.max(it as usize)));
-            let end = self.serviced.get(&task).zip(lasts).map(|(&since, lasts)| end_of(since, lasts));
+            let end =
+                self.serviced.get(&task).zip(lasts).map(|(&since, lasts)| end_of(since, lasts));
             let end = end.filter(|&due| is_past(due as usize));
             let since =
                 |due, what| format!("task {task} is {what} at k = {due}, and its robots go on");
@@ -234,7 +235,9 @@ mod tests {
         assert_eq!((terms.pursued(), terms.done()), (Some(0), 0));
         let found = complaint(&mut terms.clone(), ends.clone(), 15);
         assert!(found.contains("task 0 ends, and no robot services it"), "{found}");
-        terms.enter(&MissionEvent::TaskServiced { task: 0, robot: 1 }, 12).expect("it is announced");
+        terms
+            .enter(&MissionEvent::TaskServiced { task: 0, robot: 1 }, 12)
+            .expect("it is announced");
         assert_eq!((terms.pursued(), terms.done()), (None, 1));
         let found = complaint(&mut terms.clone(), ends.clone(), 21);
         assert!(found.contains("task 0 ends, and it is to end at k = 22"), "{found}");
@@ -261,9 +264,11 @@ mod tests {
         let found = complaint(&mut terms, services, 3);
         assert_eq!(found, "robot 4 services task 1, and it has not been announced");
         let mut terms = serviced_again();
-        terms.enter(&MissionEvent::TaskServiced { task: 0, robot: 1 }, 12).expect("it is announced");
+        terms
+            .enter(&MissionEvent::TaskServiced { task: 0, robot: 1 }, 12)
+            .expect("it is announced");
         terms.enter(&MissionEvent::TaskEnded { task: 0 }, 22).expect("it is in time");
         let found = complaint(&mut terms, MissionEvent::TaskEnded { task: 0 }, 23);
-        assert_eq!(found, "task 0 is told to be ended, and it is over already");
+        assert_eq!(found, "task 0 ends, and it is over already");
     }
 }
