@@ -3,7 +3,7 @@
 
 use crate::missions::{Mission, Period, run, shipped, valid};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
-use pleach::automaton::network::scenario::{Scenario, Task};
+use pleach::automaton::network::scenario::{Scenario, Strategy, Task};
 use pleach::automaton::node::Weather;
 use pleach::discrete::network::Role;
 use pleach::discrete::network::activity::may_follow;
@@ -185,6 +185,28 @@ fn a_team_that_is_dissolved_is_told_as_such() {
     let dissolved = "joins the primary team, and the team is dissolved in the same control period";
     assert!(told.iter().any(|it| it.contains(dissolved)), "{told:?}");
     assert!(told.iter().all(|it| !it.contains("[]")), "{told:?}");
+}
+
+/// Two tasks at one place: the leader to the second stands there when it is released from the first, so that it
+/// announces the advance of the team and the service in one control period. No other task follows.
+#[test]
+fn a_leader_may_be_at_its_task_when_it_is_released() {
+    for strategy in [Strategy::Paper, Strategy::Eager] {
+        let mut scenario = shipped("errands");
+        let place = [0.7, 1.0];
+        scenario.control.strategy = Some(strategy);
+        scenario.task = vec![Task::at(place), Task { lasts: Some(30), ..Task::at(place) }];
+        let mission = run(scenario);
+        assert_eq!(mission.end.outcome, Outcome::Serviced, "{}", mission.end.reason);
+        let (released, robot) = mission
+            .events()
+            .find_map(|(step, event)| match *event {
+                Event::Released { robot } => Some((step, robot)),
+                _ => None,
+            })
+            .unwrap();
+        assert_eq!(service_of(&mission, 1), (released, robot), "{strategy:?}");
+    }
 }
 
 /// A task of which nothing is asked but its place is written as it always was.

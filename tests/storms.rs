@@ -3,9 +3,10 @@
 //! `cargo run --release --example storm -- table 4` shows all kinds of storms, and what breaks in them.
 
 use crate::floor_plans::in_storms::{DURATION, mission_of_turn, shipped};
+use crate::floor_plans::strategies;
 use crate::stressed::stressed_scenarios;
 use pleach::automaton::network::record::Outcome;
-use pleach::automaton::network::scenario::ValidScenario;
+use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::automaton::network::{Crash, Trouble};
 use pleach::verify::network::Property;
 use pleach::verify::network::storm::{Kind, Storm, Verdict, allowing_for, draw, ride};
@@ -125,6 +126,16 @@ fn storms_in_which_one_rule_decides_break_no_promise() {
         broken.extend(verdict.violations.first().map(|first| format!("{seed}: {first}")));
     }
     assert!(broken.is_empty(), "{broken:#?}");
+}
+
+/// Σ has left the tree for a link that may be built: the robots on both sides are break points, and one whose task
+/// is announced again on its way does not go back to a post that is out of reach of its parent.
+#[test]
+fn storms_in_which_recruits_are_called_ahead_break_no_promise() {
+    let (scenario, storm) = mission_of_turn(20_963, Kind::Radio, 503_124);
+    let scenario = strategies::following(Some(Strategy::Eager), scenario);
+    let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
+    assert_eq!(verdict.violations, []);
 }
 
 /// Control periods begin with the first clock that is due: missions take as long as with clocks that agree.

@@ -59,9 +59,9 @@ pub const fn last_break_point(places: usize, releases_leader: bool) -> usize {
 /// Whether the robot at `place` is a break point of a path whose last break point is `last`.
 ///
 /// The paper names junctions and leaves. A robot is one in effect if it services a task, if
-/// it has a tree neighbour off Σ, if Σ crosses an access point just before or behind it, or
-/// if it is the last that Σ relieves; and b₁ = s₁. A crossing is thus walked by one robot
-/// alone, which is attached to the access point: two in a chain would hold each other back.
+/// it has a tree neighbour off Σ, if Σ leaves the tree just before or behind it, to cross an access
+/// point or from one branch to another, or if it is the last that Σ relieves; and b₁ = s₁. A crossing is thus
+/// walked by one robot alone, which is attached off Σ: two in a chain would hold each other back.
 pub const fn is_break_point(place: usize, last: usize, ties: Ties, at_crossing: bool) -> bool {
     place == 0
         || place == last
@@ -86,10 +86,19 @@ impl<P> Path<P> {
 
     /// Whether the robot at `place` is a break point of Σ, see [`is_break_point`].
     pub fn is_break_point(&self, place: usize, ties: Ties) -> bool {
-        let crosses =
-            |place: usize| self.hops.get(place).is_some_and(|hop| !hop.crossing.is_empty());
-        let at_crossing = crosses(place) || place.checked_sub(1).is_some_and(crosses);
+        let leaves = |place: usize| self.leaves_tree(place);
+        let at_crossing = leaves(place) || place.checked_sub(1).is_some_and(leaves);
         is_break_point(place, self.last_break_point(), ties, at_crossing)
+    }
+
+    /// Whether no link of the tree leads from `place` to the next: the path crosses an access point, or
+    /// from one branch to another.
+    fn leaves_tree(&self, place: usize) -> bool {
+        let (Some(hop), Some(next)) = (self.hops.get(place), self.hops.get(place + 1)) else {
+            return false;
+        };
+        let is_link = hop.post.is_child_of(next.post.id) || next.post.is_child_of(hop.post.id);
+        !is_link || !hop.crossing.is_empty()
     }
 
     /// The place that `post` has on the path.
@@ -131,13 +140,20 @@ mod tests {
     use super::super::PostId;
     use super::*;
 
-    /// A path of this many places that crosses an access point behind `before`.
+    /// A path of this many places up a tree and, behind `before`, across an access point and down another.
     fn path(places: usize, before: usize) -> Path<()> {
-        let hop = |place| Hop {
-            robot: place,
-            post: Post::redundant(PostId(place as u32)),
-            place: (),
-            crossing: if place == before { vec![0] } else { vec![] },
+        let hop = |place| {
+            let parent = match place {
+                _ if place < before => Anchor::Post(PostId(place as u32 + 1)),
+                _ if place > before + 1 => Anchor::Post(PostId(place as u32 - 1)),
+                _ => Anchor::Access(0),
+            };
+            Hop {
+                robot: place,
+                post: Post { parent: Some(parent), ..Post::redundant(PostId(place as u32)) },
+                place: (),
+                crossing: if place == before { vec![0] } else { vec![] },
+            }
         };
         Path { hops: (0..places).map(hop).collect(), releases_leader: true }
     }
@@ -150,6 +166,15 @@ mod tests {
         assert_eq!(points, [0, 2, 3, 5]);
         let crossing = subgroups(&points).find(|subgroup| subgroup.first == 2);
         assert_eq!(crossing, Some(Subgroup { first: 2, end: 3 }), "one robot crosses alone");
+    }
+
+    /// A robot knew no way over the tree yet, and took a link that may be built.
+    #[test]
+    fn robots_on_both_sides_of_a_link_off_the_tree_are_break_points() {
+        let mut path = path(6, 9);
+        path.hops[2].post.parent = Some(Anchor::Access(0));
+        let is_break_point = |place: &usize| path.is_break_point(*place, Ties::default());
+        assert!((0..path.len()).filter(is_break_point).eq([0, 2, 3, 5]));
     }
 
     #[test]
@@ -168,11 +193,7 @@ mod tests {
     /// Up from the recruit and down again: 0 and 4 are attached to 1 and 3, these on 2 and access point 0.
     #[test]
     fn a_path_knows_its_places_and_where_it_descends() {
-        let mut path = path(5, 2);
-        let parents = [(0, 1), (1, 2), (4, 3)].map(|(post, on)| (post, Anchor::Post(PostId(on))));
-        for (place, parent) in parents.into_iter().chain([(3, Anchor::Access(0))]) {
-            path.hops[place].post.parent = Some(parent);
-        }
+        let path = path(5, 2);
         let descents = (0..6).filter(|&place| path.descends(place));
         assert!(descents.eq([3]));
         for place in 0..7 {

@@ -219,6 +219,7 @@ impl Robot {
         self.next_hop().is_some()
             && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
                 || self.takes_step(MissionStep::Resumed)
+                || self.takes_step(MissionStep::Serviced)
                 || self.takes_step(MissionStep::Called)
                 || self.is_superseded())
     }

@@ -190,6 +190,10 @@ fn keep_up<A>(_: &A, _: &Robot, effects: &mut Effects) -> Idle {
     Idle
 }
 
+fn serviced<A: DataOf<Mission>>() -> Row {
+    Transfer::new(MissionStep::Serviced, guards::serviced(), "wait", team::wait::<A>)
+}
+
 fn informed<A: DataOf<Mission> + Clone>() -> Row {
     let name = "go by the announcement";
     Transfer::where_known(MissionStep::Informed, guards::informed(), name, leader::learn::<A>)
@@ -247,6 +251,11 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         .carried_out(overtaken::<RecruitElection>())
         .carried_out(overtaken::<PathAgreement>())
         .carried_out(overtaken::<Shift>())
+        .carried_out(serviced::<LeaderElection>())
+        .carried_out(serviced::<Advance>())
+        .carried_out(serviced::<RecruitElection>())
+        .carried_out(serviced::<PathAgreement>())
+        .carried_out(serviced::<Shift>())
         .carried_out(informed::<Idle>())
         .carried_out(informed::<LeaderElection>())
         .carried_out(informed::<Advance>())
@@ -340,6 +349,5 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
             "announce the service",
             team::announce_service,
         ))
-        .carried_out(Transfer::new(Step::Serviced, guards::serviced(), "wait", team::wait))
         .build()
 }

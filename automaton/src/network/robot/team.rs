@@ -42,7 +42,7 @@ pub(super) fn announce_service(_: &Advance, robot: &Robot, effects: &mut Effects
 }
 
 /// The task is serviced: the robot waits for the next one.
-pub(super) fn wait(_: &Advance, _: &Robot, _: &mut Effects) -> Idle {
+pub(super) fn wait<A>(_: &A, _: &Robot, _: &mut Effects) -> Idle {
     Idle
 }
 

@@ -3,6 +3,9 @@
 use super::*;
 use crate::{Event, Location};
 
+/// Loops over the rows are unwound as often.
+const _: () = assert!(DUTIES.rows().len() < 128);
+
 /// One of `values`: any of them.
 fn any_of<T: Copy>(values: &[T]) -> T {
     values[usize::from(kani::any_where(|at: &u8| usize::from(*at) < values.len()))]
@@ -10,7 +13,7 @@ fn any_of<T: Copy>(values: &[T]) -> T {
 
 /// For every activity and event there is at most one row, and [`TransitionTable::next`] follows it.
 #[kani::proof]
-#[kani::unwind(80)]
+#[kani::unwind(128)]
 fn an_activity_answers_every_event_in_one_way() {
     let (activity, event) = (any_of(Activity::ALL), any_of(DutyEvent::ALL));
     kani::cover!(DUTIES.next(activity, event).is_ok());
@@ -27,7 +30,7 @@ fn an_activity_answers_every_event_in_one_way() {
 
 /// A robot that holds a fixed post of the tree goes away from it only when it is replaced.
 #[kani::proof]
-#[kani::unwind(80)]
+#[kani::unwind(128)]
 fn a_robot_leaves_a_fixed_post_when_it_is_replaced() {
     let (activity, event) = (any_of(Activity::ALL), any_of(DutyEvent::ALL));
     if let Ok(target) = DUTIES.next(activity, event) {

@@ -172,10 +172,10 @@ fn a_newcomer_looks_for_p1_where_that_is_attached() {
     assert_eq!(goal(Strategy::Eager), Some(Point::new(1.0, 2.0)));
 }
 
-/// The next call may be the first that a robot hears after its subgroup has arrived.
+/// The next call, or the service of the task, may be the first that a robot hears after its subgroup has arrived.
 #[test]
-fn a_robot_on_its_way_takes_the_post_ahead_when_the_next_recruit_is_called_for() {
-    let called = |strategy| {
+fn a_robot_on_its_way_takes_the_post_ahead_whatever_follows_the_advance() {
+    let told = |strategy, notice: Notice| {
         let mut robot = following(strategy);
         let hop = |robot, post| {
             let place = PathPlace { reference: HERE, position: HERE };
@@ -188,10 +188,15 @@ fn a_robot_on_its_way_takes_the_post_ahead_when_the_next_recruit_is_called_for()
         let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
         robot.mission = Current::new(Mission::Shift(shift));
         robot.duty = Current::new(Duty::Shifting(Shifting { place: 0, left: None }));
-        robot.is_told(Notice::Call { caller: 5, releases_leader: false });
+        robot.is_told(notice);
         let phase = next_phase(&mut robot);
         (phase, robot.duty.post().map(|post| post.id))
     };
-    assert_eq!(called(Strategy::Eager), (Phase::RecruitElection, Some(PostId(11))));
-    assert_eq!(called(Strategy::Paper), (Phase::Shift, None));
+    let call = || Notice::Call { caller: 5, releases_leader: false };
+    assert_eq!(told(Strategy::Eager, call()), (Phase::RecruitElection, Some(PostId(11))));
+    assert_eq!(told(Strategy::Paper, call()), (Phase::Shift, None));
+    for strategy in [Strategy::Eager, Strategy::Paper] {
+        let serviced = told(strategy, Notice::Serviced { task: 0 });
+        assert_eq!(serviced, (Phase::Idle, Some(PostId(11))), "{strategy:?}");
+    }
 }
