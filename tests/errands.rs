@@ -117,8 +117,9 @@ fn no_storm_closes_a_task_before_its_time() {
     let mut scenario = shipped("errands");
     scenario.control.max_steps = Some(900);
     let scenario = valid(scenario);
-    for kind in [Kind::Partition, Kind::Crash, Kind::Restart, Kind::Late, Kind::Copies] {
-        for seed in 0..2 {
+    let nodes = [Kind::Partition, Kind::Crash, Kind::Restart, Kind::Late, Kind::AccessPoint];
+    for kind in nodes.into_iter().chain([Kind::Copies]) {
+        for seed in 0..3 {
             let storm = draw(kind, seed, &scenario, 600.0);
             let end = run_in_storm(&scenario, &storm, &mut []).unwrap().end;
             assert_ne!(end.outcome, Outcome::InvariantViolated, "{}: {}", kind.name(), end.reason);

@@ -17,11 +17,11 @@ use crate::network::{instant, link};
 ///
 /// What it holds a record against is what no fault breaks: distances between robots and to walls, the
 /// length of steps, shares, loads, the length of links of the tree, and, as long as all nodes run,
-/// that no robot is sent more than it forwards. Of events it checks that robots are at the tasks that
-/// they service, that tasks are announced one after another, taken back and ended as the user wants it; of the
-/// outcome, that all tasks have been serviced, or are over, where it says so, and, as long as all nodes run, that
-/// not all of them are where a mission is given up. What nodes know of each other may differ, and is not
-/// compared.
+/// that no robot is sent more than it forwards. Of events it checks that robots are at the tasks that they
+/// service, which have been announced, and that tasks are announced one after another, taken back and ended as
+/// the user wants it; of the outcome, that all tasks have been serviced, or are over, where it says so, and, as
+/// long as all nodes run, that not all of them are where a mission is given up. What nodes know of each other may
+/// differ, and is not compared.
 ///
 /// Nodes that do not run or are not heard ([`Snapshot::absent`]) are bodies, and nothing else.
 #[derive(Clone, Debug)]
