@@ -49,6 +49,10 @@ impl Moment {
     }
 }
 
+/// What is told of a team whose task is taken back in the control period of the event: events name teams as they are
+/// at its end.
+const DISSOLVED: &str = "and the team is dissolved in the same control period";
+
 /// Tells an event as a sentence without its end; robots and tasks are numbered from 0.
 #[must_use]
 pub fn tell(event: &MissionEvent) -> String {
@@ -106,7 +110,13 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             ),
         ),
         MissionEvent::Stationary { robot, team } => (
-            format!("the primary team {} is at a stationary point, robot {robot} last", list(team)),
+            match team.as_slice() {
+                [] => format!("the team of robot {robot} is at a stationary point, {DISSOLVED}"),
+                team => format!(
+                    "the primary team {} is at a stationary point, robot {robot} last",
+                    list(team)
+                ),
+            },
             moment(
                 Moment::Stationary,
                 robot,
@@ -138,7 +148,10 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             (format!("subgroup {subgroup}, {}, has arrived", list(robots)), None)
         }
         MissionEvent::JoinedPrimary { robot, team } => (
-            format!("robot {robot} joins the primary team, now {}", list(team)),
+            match team.as_slice() {
+                [] => format!("robot {robot} joins the primary team, {DISSOLVED}"),
+                team => format!("robot {robot} joins the primary team, now {}", list(team)),
+            },
             moment(
                 Moment::Joined,
                 robot,

@@ -17,8 +17,9 @@
 //! what an observer needs to draw the picture: `phase`, `active_team`, `primary_team`, `path`,
 //! `serviced` `[[task, robot], …]` and `post`; then of every robot its `location` in the duty
 //! automaton and its place in the automaton of the `exchange` of duties, its `known_phase` of the
-//! mission, its `target` (or null), and how many messages it has `sent` and `heard` in the period. While
-//! robots or access points do not run or are not heard, `absent` lists them.
+//! mission, its `target` (or null), and how many messages it has `sent` and `heard` in the period. From when
+//! a task is over on, `closed` lists it; while robots or access points do not run or are not heard, `absent` lists
+//! them.
 
 mod line;
 

@@ -49,7 +49,7 @@ const REASONS: &[([&str; 4], &str)] = &[
         "no robot holds the post of its parent any more: a robot stops on the way along Σ",
     ),
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
-    (["service", "serviced", "no robot", ""], "the robots are all gone after a task"),
+    (["service", "done", "no robot", ""], "the robots are all gone after a task"),
     (
         ["service", "", "closes", ""],
         "a task is over in the very rounds in which robots gather or elect",

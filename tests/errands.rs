@@ -2,7 +2,7 @@
 //! messages are lost, and what the judge says of records in which tasks are dropped or closed for no reason.
 
 use crate::missions::{Mission, Period, run, shipped, valid};
-use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
+use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Strategy, Task};
 use pleach::automaton::node::Weather;
 use pleach::discrete::network::Role;
@@ -117,8 +117,9 @@ fn no_storm_closes_a_task_before_its_time() {
     let mut scenario = shipped("errands");
     scenario.control.max_steps = Some(900);
     let scenario = valid(scenario);
-    for kind in [Kind::Partition, Kind::Crash, Kind::Restart, Kind::Late, Kind::Copies] {
-        for seed in 0..2 {
+    let nodes = [Kind::Partition, Kind::Crash, Kind::Restart, Kind::Late, Kind::AccessPoint];
+    for kind in nodes.into_iter().chain([Kind::Copies]) {
+        for seed in 0..3 {
             let storm = draw(kind, seed, &scenario, 600.0);
             let end = run_in_storm(&scenario, &storm, &mut []).unwrap().end;
             assert_ne!(end.outcome, Outcome::InvariantViolated, "{}: {}", kind.name(), end.reason);
@@ -150,6 +151,41 @@ fn a_task_may_end_at_any_time() {
         assert_eq!(mission.end.outcome, Outcome::Serviced, "{lasts}: {}", mission.end.reason);
         assert_eq!(mission.last().serviced.len(), 1, "{lasts}");
     }
+}
+
+/// A snapshot shows which tasks are over from when robots hear so; where there are none, nothing is written.
+#[test]
+fn what_is_over_is_shown() {
+    let mission = errands();
+    let shown = |step: usize, task: usize| mission.periods[step].snapshot.closed.contains(&task);
+    for (step, event) in mission.events() {
+        if let Event::TaskEnded { task } | Event::TaskWithdrawn { task } = *event {
+            let after = (step + 1).min(mission.periods.len() - 1);
+            assert!(!shown(step - 1, task) && shown(after, task), "task {task} at k = {step}");
+        }
+    }
+    let written = |closed: Vec<usize>| {
+        let last = Snapshot { closed, ..mission.last().clone() };
+        let mut writer = TraceWriter::new(Vec::new(), &mission.scenario).unwrap();
+        writer.observe(&last, &[]).unwrap();
+        String::from_utf8(writer.finish().unwrap()).unwrap()
+    };
+    assert!(written(vec![0, 2]).contains(r#","closed":[0,2]"#));
+    assert!(!written(Vec::new()).contains("closed"));
+}
+
+/// A robot may join the primary team in the very control period in which the task is taken back.
+#[test]
+fn a_team_that_is_dissolved_is_told_as_such() {
+    let is_join = |(_, event): &(usize, &Event)| matches!(event, Event::JoinedPrimary { .. });
+    let (step, _) = errands().events().find(is_join).unwrap();
+    let mut scenario = shipped("errands");
+    scenario.task[0].withdrawn = Some(step as u32);
+    let mission = run(scenario);
+    let told: Vec<String> = mission.events().map(|(_, event)| story::tell(event)).collect();
+    let dissolved = "joins the primary team, and the team is dissolved in the same control period";
+    assert!(told.iter().any(|it| it.contains(dissolved)), "{told:?}");
+    assert!(told.iter().all(|it| !it.contains("[]")), "{told:?}");
 }
 
 /// Two tasks at one place: the leader to the second stands there when it is released from the first, so that it
@@ -244,14 +280,39 @@ fn tasks_are_closed_only_as_the_user_wants_it() {
         assert_eq!(property, Property::Events, "{sentence}");
         assert!(sentence.contains(expected), "{sentence}");
     };
-    closed(serviced + 9, Event::TaskEnded { task: 1 }, "task 1 ends, and it is never to end");
+    closed(
+        serviced + 9,
+        Event::TaskEnded { task: 1 },
+        "task 1 ends, and the scenario states no `lasts` for it",
+    );
     closed(160, Event::TaskEnded { task: 0 }, "task 0 ends, and it is to end at k = 185");
-    closed(300, Event::TaskWithdrawn { task: 0 }, "and it is never taken back");
+    closed(300, Event::TaskWithdrawn { task: 0 }, "and the scenario states no `withdrawn` for it");
     closed(350, Event::TaskWithdrawn { task: 2 }, "and it is taken back at k = 360");
     closed(479, Event::TaskAnnounced { task: 3 }, "and it is asked for at k = 480");
     let (property, sentence) =
         complaint(|mission| tell(mission, 200, Event::TaskEnded { task: 0 }));
     assert!(property == Property::Events && sentence.contains("task 0 ends"), "{sentence}");
+}
+
+#[test]
+fn no_task_is_shown_as_over_that_is_not() {
+    let (property, sentence) = complaint(|mission| mission.periods[150].snapshot.closed = vec![1]);
+    assert_eq!(property, Property::Duties);
+    assert!(sentence.contains("task 1 is shown as over, and it has neither ended"), "{sentence}");
+    let (property, sentence) = complaint(|mission| mission.periods[150].snapshot.closed = vec![9]);
+    assert_eq!(property, Property::Record, "{sentence}");
+}
+
+/// Also while robots may not have heard yet that the task is taken back that they pursue.
+#[test]
+fn a_task_is_taken_back_once() {
+    let (withdrawn, task) = (360, 2);
+    for step in [withdrawn, withdrawn + 1, withdrawn + 100] {
+        let copy = Event::TaskWithdrawn { task };
+        let (property, sentence) = complaint(|mission| tell(mission, step, copy.clone()));
+        assert_eq!(property, Property::Events, "{sentence}");
+        assert!(sentence.contains("task 2 is taken back, and it is over already"), "{sentence}");
+    }
 }
 
 /// Robots that go on with a task that is over are told.

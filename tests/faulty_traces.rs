@@ -197,6 +197,77 @@ fn a_task_is_announced_when_those_before_it_have_been_serviced() {
     assert!(violation.to_string().contains("task 1 has not been serviced"), "{violation}");
 }
 
+/// Errands, where the robot that services task 0 stops: the task is announced again, and another robot services it
+/// for as long as it should be.
+fn serviced_again() -> Vec<Value> {
+    static TRACE: OnceLock<Vec<Value>> = OnceLock::new();
+    let crash = Crash { time: 120.0, inputs: 0, back: None };
+    let trouble = Trouble { crash: Some(crash), ..Trouble::default() };
+    let storm = Storm { seed: 1, weather: Weather::default(), troubles: vec![(5, trouble)] };
+    TRACE.get_or_init(|| trace_of("errands", &storm)).clone()
+}
+
+/// Where the line of an event of a task stands, and the k that it states; the last one, if there are several.
+fn event_of(lines: &[Value], event: &str, task: usize) -> (usize, u64) {
+    let is_it = |line: &Value| line["event"] == event && line["task"] == task;
+    let at = lines.iter().rposition(is_it).unwrap();
+    (at, lines[at]["k"].as_u64().unwrap())
+}
+
+/// The end of task 0 is told in another control period.
+fn with_end_at(step: u64) -> Vec<Value> {
+    let mut lines = serviced_again();
+    let (at, _) = event_of(&lines, "task_ended", 0);
+    let mut ended = lines.remove(at);
+    ended["k"] = json!(step);
+    let before = lines.iter().position(|line| line["type"] == "step" && line["k"] == step).unwrap();
+    lines.insert(before, ended);
+    lines
+}
+
+#[test]
+fn the_time_of_a_task_that_is_serviced_again_begins_anew() {
+    let lines = serviced_again();
+    let (first, ended) = (105, event_of(&lines, "task_ended", 0).1);
+    let again = event_of(&lines, "task_serviced", 0).1;
+    assert_eq!(ended, again + 80, "from the second service on");
+    let is_first = |line: &&Value| line["event"] == "task_serviced" && line["task"] == 0;
+    assert_eq!(lines.iter().find(is_first).unwrap()["k"], first);
+    assert!(matches!(verdict(&with_end_at(ended)), Verdict::Sound { .. }));
+    for step in [ended - 1, again + 9] {
+        let Verdict::Violated(violation) = verdict(&with_end_at(step)) else { panic!("{step}") };
+        let expected = format!("task 0 ends, and it is to end at k = {ended}");
+        assert!(violation.to_string().contains(&expected), "{violation}");
+    }
+    let between = with_end_at(first + 80 + 200);
+    let Verdict::Violated(violation) = verdict(&between) else { panic!("it is judged sound") };
+    assert!(violation.to_string().contains("task 0 ends, and no robot services it"), "{violation}");
+}
+
+#[test]
+fn a_task_that_is_serviced_has_been_announced() {
+    let mut lines = serviced_again();
+    let (at, _) = event_of(&lines, "task_announced", 3);
+    lines.remove(at);
+    let Verdict::Violated(violation) = verdict(&lines) else { panic!("it is judged sound") };
+    assert_eq!(violation.property, Property::Events);
+    let expected = "services task 3, and it has not been announced";
+    assert!(violation.to_string().contains(expected), "{violation}");
+}
+
+#[test]
+fn a_task_is_closed_once() {
+    for (event, task) in [("task_ended", 0), ("task_withdrawn", 1)] {
+        let mut lines = serviced_again();
+        let (at, _) = event_of(&lines, event, task);
+        let copy = lines[at].clone();
+        lines.insert(at, copy);
+        let Verdict::Violated(violation) = verdict(&lines) else { panic!("{event}") };
+        assert_eq!(violation.property, Property::Events);
+        assert!(violation.to_string().contains("it is over already"), "{violation}");
+    }
+}
+
 #[test]
 fn without_faults_nothing_in_a_trace_is_new() {
     let scenario = ValidScenario::new(shipped("redundant-node")).unwrap();

@@ -2,6 +2,7 @@
 //! right. Each file in `tests/scenarios/faulty` holds one, but for the one that holds several.
 
 use pleach::automaton::network::record::Outcome;
+use pleach::automaton::network::scenario::Remark;
 use pleach::scenario_file::{ScenarioError, Setting, parse, parse_with, read};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -83,6 +84,53 @@ fn few_rounds_are_remarked() {
         let keys: Vec<String> = scenario.remarks().iter().map(|it| it.key().to_string()).collect();
         let is_told = keys.contains(&"control.rounds_per_period".to_owned());
         assert_eq!(is_told, is_remarked, "{rounds}: {keys:?}");
+    }
+}
+
+/// What comes when the mission has ended does not keep it from starting.
+#[test]
+fn what_a_user_does_too_late_is_remarked() {
+    let text = std::fs::read_to_string("scenarios/errands.toml").unwrap();
+    let remarks = |max_steps: usize| -> Vec<String> {
+        let settings: [Setting; 1] = [format!("control.max_steps={max_steps}").parse().unwrap()];
+        let scenario = parse_with(&text, Path::new("errands.toml"), &settings).unwrap();
+        let late = scenario.remarks().into_iter().filter(|it| matches!(it, Remark::TooLate { .. }));
+        late.map(|remark| format!("{}: {remark}", remark.key())).collect()
+    };
+    assert_eq!(remarks(481), Vec::<String>::new());
+    let never = |what: &str, period: u32| {
+        format!(
+            "the user never {what}: the mission ends before control period {period}, since max_steps is 450"
+        )
+    };
+    let expected = [
+        format!("task[1].withdrawn: {}", never("takes it back", 450)),
+        format!("task[3].announced: {}", never("asks for it", 480)),
+    ];
+    assert_eq!(remarks(450), expected);
+}
+
+/// A count is told with its range wherever it is too large, also where it fits no number of the machine.
+#[test]
+fn a_count_that_is_too_large_is_told_with_its_range() {
+    let text = std::fs::read_to_string("scenarios/errands.toml").unwrap();
+    let mut cases = Vec::new();
+    for value in ["1000000001", "5000000000", "18446744073709551615"] {
+        let times = [("announced", 0), ("withdrawn", 1), ("lasts", 1)];
+        cases.extend(
+            times.map(|(key, least)| (format!("task[3].{key}"), value, least, 1_000_000_000)),
+        );
+        cases.push(("control.max_steps".to_owned(), value, 1, 1_000_000_000));
+        cases.push(("control.routing_iterations".to_owned(), value, 1, 10_000));
+    }
+    for (key, value, least, most) in cases {
+        let setting: Setting = format!("{key}={value}").parse().unwrap();
+        let error =
+            parse_with(&text, Path::new("errands.toml"), &[setting]).unwrap_err().to_string();
+        let expected = format!(
+            "{key}: the whole number {value} stands where a whole number from {least} to {most} belongs"
+        );
+        assert!(error.contains(&expected), "{error}");
     }
 }
 

@@ -201,6 +201,12 @@ pub const USES: &[Use] = &[
     ("judge", VERDICT, "guards/src/predicate.rs", ".judge("),
     ("are_conserved", DUTY, PERIOD, "duty::are_conserved(&before, &kept)"),
     ("is_reachable", DUTY, PERIOD, "duty::is_reachable(relation, from, to)"),
+    (
+        "enter",
+        "verify/src/network/judge/ledger.rs",
+        "verify/src/network/judge/mod.rs",
+        "ledger.enter(event)?",
+    ),
     ("first_gap", "verify/src/network/motion.rs", PERIOD, "first_gap(&mut intervals)"),
     ("leads_to_access_point", TREE, INSTANT, "tree::leads_to_access_point(&parents, robot)"),
     (

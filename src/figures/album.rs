@@ -18,7 +18,6 @@ use super::palette;
 use super::plan::Plan;
 use super::scene::Scene;
 use super::series::Series;
-use super::spacing::Walls;
 
 /// The file of the animation.
 pub const ANIMATION: &str = "animation.svg";
@@ -30,7 +29,6 @@ const TRAIL_STEP: f64 = 0.25;
 #[derive(Debug)]
 pub struct Album {
     plan: Plan,
-    walls: Walls,
     page: MissionPage,
     pictures: Vec<Picture>,
     film: Film,
@@ -67,7 +65,6 @@ impl Album {
         let robots = scenario.robot.len();
         Album {
             plan: Plan::new(scenario, outline),
-            walls: Walls::new(&scenario.workspace),
             page: MissionPage::with_faults(scenario, faults),
             pictures: Vec::new(),
             film: Film::default(),
@@ -90,7 +87,6 @@ impl Album {
     /// The start, each election, stationary point, release, arrival of a recruit and serviced
     /// task becomes a picture.
     fn extend_pictures(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) {
-        self.extend_curves(snapshot);
         self.extend_trails(snapshot);
         self.film.push(snapshot);
         let started = self.last.is_none();
@@ -150,9 +146,8 @@ impl Album {
         Ok(written)
     }
 
-    fn extend_curves(&mut self, snapshot: &Snapshot) {
-        let points: Vec<[f64; 2]> = snapshot.positions.iter().map(|p| [p.x, p.y]).collect();
-        self.distances.push(snapshot.step, self.walls.distances(&points).into_iter());
+    fn extend_curves(&mut self, snapshot: &Snapshot, distances: [f64; 2]) {
+        self.distances.push(snapshot.step, distances.into_iter());
         self.residuals.push(snapshot.step, snapshot.residuals.iter().copied());
         self.multipliers.push(snapshot.step, snapshot.multipliers.iter().copied());
     }
@@ -327,8 +322,10 @@ fn robot_curves(series: &Series) -> Vec<Curve> {
 
 impl Watcher for Album {
     fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
+        let distances = self.page.take_in(snapshot, events)?;
+        self.extend_curves(snapshot, distances);
         self.extend_pictures(snapshot, events);
-        self.page.observe(snapshot, events)
+        Ok(())
     }
 
     fn end(&mut self, end: &End) -> io::Result<()> {

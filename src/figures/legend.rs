@@ -41,7 +41,7 @@ pub(super) fn draw(plan: &Plan, view: &View, left: f64) -> (Group, f64) {
         });
     }
     column.gap();
-    for state in TaskState::ALL {
+    for state in TaskState::of_mission(&plan.scenario) {
         column.row(state.name(), |spot| state.draw(spot, 5.6, state.name()));
     }
     column.gap();

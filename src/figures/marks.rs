@@ -1,6 +1,7 @@
 //! The marks of nodes and tasks: one shape and one colour for every role.
 
 use pleach_automaton::network::record::Snapshot;
+use pleach_automaton::network::scenario::{Scenario, Task};
 use pleach_discrete::network::Role;
 use pleach_drawing::svg::node::element::{Circle, Group, Polygon, Title};
 use pleach_drawing::{corners, disc, layer, number, polyline};
@@ -153,22 +154,35 @@ pub(crate) enum Shape {
     Disc { radius: f64, heart: f64 },
 }
 
+/// Radius of the ring that is left of a task that is over, in arms of its cross.
+const OVER_RING: f64 = 1.2;
+
 /// How far a task has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TaskState {
     Unannounced,
     Pursued,
     Serviced,
+    Over,
 }
 
 impl TaskState {
-    pub(crate) const ALL: [TaskState; 3] =
-        [TaskState::Pursued, TaskState::Serviced, TaskState::Unannounced];
+    pub(crate) const ALL: [TaskState; 4] =
+        [TaskState::Pursued, TaskState::Serviced, TaskState::Unannounced, TaskState::Over];
+
+    /// The states that tasks of a mission may come to, in the order of the legend.
+    pub(crate) fn of_mission(scenario: &Scenario) -> impl Iterator<Item = TaskState> {
+        let may_end = |task: &Task| task.lasts.is_some() || task.withdrawn.is_some();
+        let any_may_end = scenario.task.iter().any(may_end);
+        TaskState::ALL.into_iter().filter(move |&state| any_may_end || state != TaskState::Over)
+    }
 
     /// How far `task` has come at an instant.
     pub(crate) fn of(snapshot: &Snapshot, task: usize) -> TaskState {
-        match snapshot.serviced.iter().any(|(done, _)| *done == task) {
-            true => TaskState::Serviced,
+        let is_serviced = || snapshot.serviced.iter().any(|(done, _)| *done == task);
+        match snapshot.closed.contains(&task) {
+            true => TaskState::Over,
+            false if is_serviced() => TaskState::Serviced,
             false if snapshot.task == Some(task) => TaskState::Pursued,
             false => TaskState::Unannounced,
         }
@@ -180,10 +194,12 @@ impl TaskState {
             TaskState::Unannounced => "task to come",
             TaskState::Pursued => "task pursued",
             TaskState::Serviced => "task serviced",
+            TaskState::Over => "task over",
         }
     }
 
-    /// Draws a cross; a serviced task stands in a full ring, one to come is faint.
+    /// Draws a cross; a serviced task stands in a full ring, one to come is faint, and of one that is over an empty
+    /// ring is left.
     pub(super) fn draw(self, [x, y]: Spot, arm: f64, tooltip: &str) -> Group {
         let width = arm * 0.27;
         let mut group = layer("task").add(Title::new(tooltip));
@@ -191,6 +207,13 @@ impl TaskState {
         match self {
             TaskState::Unannounced => group = group.set("opacity", "0.35"),
             TaskState::Pursued => group = group.add(tint.set("fill-opacity", "0.12")),
+            TaskState::Over => {
+                let ring = disc([x, y], arm * OVER_RING).set("fill", "none");
+                let ring = ring.set("stroke", palette::TASK);
+                return group.add(
+                    ring.set("stroke-opacity", "0.5").set("stroke-width", number(arm * 0.16)),
+                );
+            }
             TaskState::Serviced => {
                 group = group.add(
                     tint.set("fill-opacity", "0.16")

@@ -239,7 +239,7 @@ impl Picture<'_> {
             let place = places.place(&words, size, spot, self.radius * 1.9);
             let label = halo_text(words, place, size, palette::TASK);
             group = group.add(match state {
-                TaskState::Unannounced => label.set("opacity", "0.6"),
+                TaskState::Unannounced | TaskState::Over => label.set("opacity", "0.6"),
                 _ => label,
             });
         }

@@ -105,6 +105,7 @@ fn moment(step: usize, share: f64) -> Snapshot {
         tree,
         task: Some(1),
         serviced: vec![(0, 10)],
+        closed: Vec::new(),
         posts: vec![PostView {
             reference: [0.95, 0.40].into(),
             holder: 7,

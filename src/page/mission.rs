@@ -128,18 +128,7 @@ impl MissionPage {
 
 impl Watcher for MissionPage {
     fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> io::Result<()> {
-        self.summary.observe(snapshot, events)?;
-        for event in events {
-            self.events.push(event_data(snapshot.step, event)?);
-        }
-        let more = self.derived(snapshot);
-        let mut line = trace::step_line(snapshot)?;
-        line.entry("absent").or_insert_with(|| json!([]));
-        self.steps.push(line, more);
-        if self.violation.is_none() {
-            self.violation = self.judge.observe(snapshot, events).err();
-        }
-        Ok(())
+        self.take_in(snapshot, events).map(|_| ())
     }
 
     fn end(&mut self, end: &End) -> io::Result<()> {
@@ -150,17 +139,40 @@ impl Watcher for MissionPage {
 
 /// What a step shows beside its line in the trace.
 impl MissionPage {
-    fn derived(&self, snapshot: &Snapshot) -> Map<String, Value> {
+    /// Observes a control period; also says how near robots are to each other and to walls.
+    pub(crate) fn take_in(
+        &mut self,
+        snapshot: &Snapshot,
+        events: &[MissionEvent],
+    ) -> io::Result<[f64; 2]> {
+        self.summary.observe(snapshot, events)?;
+        for event in events {
+            self.events.push(event_data(snapshot.step, event)?);
+        }
+        let points: Vec<[f64; 2]> = snapshot.positions.iter().map(|&point| point.into()).collect();
+        let distances = self.walls.distances(&points);
+        let more = self.derived(snapshot, distances);
+        let mut line = trace::step_line(snapshot)?;
+        line.entry("absent").or_insert_with(|| json!([]));
+        // What is over is among the states of tasks.
+        line.remove("closed");
+        self.steps.push(line, more);
+        if self.violation.is_none() {
+            self.violation = self.judge.observe(snapshot, events).err();
+        }
+        Ok(distances)
+    }
+
+    fn derived(&self, snapshot: &Snapshot, distances: [f64; 2]) -> Map<String, Value> {
         let marks: Vec<&str> =
             (0..snapshot.positions.len()).map(|robot| Mark::of(snapshot, robot).key()).collect();
         let tasks: Vec<&str> = (0..self.scenario.task.len())
             .map(|task| TaskState::of(snapshot, task).name())
             .collect();
-        let points: Vec<[f64; 2]> = snapshot.positions.iter().map(|&point| point.into()).collect();
         [
             ("mark", json!(marks)),
             ("task_state", json!(tasks)),
-            ("distance", json!(self.walls.distances(&points))),
+            ("distance", json!(distances)),
             ("geodesic", json!(self.geodesic(snapshot))),
         ]
         .map(|(name, value)| (name.to_owned(), value))

@@ -3,7 +3,7 @@
 //! The shape is checked before the file becomes a scenario, so that every mistake is found in one
 //! reading, and each is told with what would be right.
 
-use crate::automaton::network::scenario::{CONTROL, KeyPath, LinkModel, Values};
+use crate::automaton::network::scenario::{CONTROL, KeyPath, LinkModel, MOST_PERIODS, Values};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
@@ -12,7 +12,8 @@ use toml::de::{DeArray, DeTable, DeValue};
 pub(super) enum Shape {
     Text,
     Number,
-    Count,
+    /// A whole number from the first to the second.
+    Count(u64, u64),
     OneOf(&'static [&'static str]),
     Point,
     ListOf(&'static Shape),
@@ -68,9 +69,9 @@ pub(super) const SCENARIO: &[Entry] = &[
         "task",
         Shape::ListOf(&Shape::Table(&[
             required("position", Shape::Point),
-            optional("announced", Shape::Count),
-            optional("withdrawn", Shape::Count),
-            optional("lasts", Shape::Count),
+            optional("announced", Shape::Count(0, MOST_PERIODS as u64)),
+            optional("withdrawn", Shape::Count(1, MOST_PERIODS as u64)),
+            optional("lasts", Shape::Count(1, MOST_PERIODS as u64)),
         ])),
     ),
 ];
@@ -81,7 +82,7 @@ const CONTROL_ENTRIES: [Entry; CONTROL.len()] = {
     let mut row = 0;
     while row < CONTROL.len() {
         let shape = match CONTROL[row].values {
-            Values::Count(..) => Shape::Count,
+            Values::Count(most, _) => Shape::Count(1, most as u64),
             Values::OneOf(words) => Shape::OneOf(words),
             _ => Shape::Number,
         };
@@ -122,8 +123,9 @@ impl Comparison {
         match (value.get_ref(), shape) {
             (DeValue::String(_), Shape::Text)
             | (DeValue::Float(_) | DeValue::Integer(_), Shape::Number) => {}
-            (DeValue::Integer(digits), Shape::Count)
-                if digits.to_string().parse::<u64>().is_ok() => {}
+            // What is too small is told with what else the values are held against.
+            (DeValue::Integer(digits), Shape::Count(_, most))
+                if digits.to_string().parse::<u64>().is_ok_and(|count| count <= *most) => {}
             (DeValue::String(text), Shape::OneOf(choices)) if choices.contains(&text.as_ref()) => {}
             (DeValue::Array(numbers), Shape::Point) => self.point(key, value.span(), numbers),
             (DeValue::Array(elements), Shape::ListOf(shape)) => {
@@ -190,7 +192,7 @@ impl Shape {
         match self {
             Shape::Text => "a text in quotation marks".into(),
             Shape::Number => "a number".into(),
-            Shape::Count => "a whole number of at least 0".into(),
+            Shape::Count(least, most) => format!("a whole number from {least} to {most}"),
             Shape::OneOf(choices) => {
                 let quoted: Vec<_> = choices.iter().map(|choice| format!("{choice:?}")).collect();
                 quoted.join(" or ")

@@ -73,6 +73,8 @@ pub(super) struct StepLine {
     #[serde(flatten)]
     robots: RobotsLine,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    closed: Vec<usize>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     absent: Vec<usize>,
 }
 
@@ -131,6 +133,7 @@ impl From<&Snapshot> for StepLine {
             serviced: snapshot.serviced.clone(),
             post: snapshot.posts.iter().map(PostLine::from).collect(),
             robots: RobotsLine::from(&*snapshot.robots),
+            closed: snapshot.closed.clone(),
             absent: snapshot.absent.clone(),
         }
     }
@@ -172,6 +175,7 @@ impl TryFrom<StepLine> for Snapshot {
             serviced: line.serviced,
             posts: line.post.into_iter().map(PostView::from).collect(),
             robots: line.robots.views(robots)?,
+            closed: line.closed,
             absent: line.absent,
         })
     }

@@ -71,6 +71,7 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
         tree: vec![(0, 2), (1, 0)],
         task: Some(0),
         serviced: if step == 2 { vec![(0, 1)] } else { vec![] },
+        closed: Vec::new(),
         posts: vec![PostView {
             reference: [0.4, 0.5].into(),
             holder: 0,

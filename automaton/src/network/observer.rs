@@ -2,8 +2,11 @@
 //!
 //! No robot reads any of this.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use pleach_continuous::Point;
-use pleach_discrete::network::{ExchangeStage, NodeId, NoticeId, Phase, PostKind, Subgroup};
+use pleach_discrete::network::{ExchangeStage, IdSet, NodeId, NoticeId, Phase, PostKind, Subgroup};
 use serde::{Deserialize, Serialize};
 
 use super::beacon::Notice;
@@ -33,6 +36,9 @@ pub struct RobotReport {
     pub notice: NoticeId,
     /// The task of which that notice speaks.
     pub task: Option<usize>,
+    /// The tasks that are over, as far as it knows.
+    #[serde(with = "wire")]
+    pub closed: Arc<IdSet>,
     /// How many subgroups of the path Σ have arrived, as far as it knows.
     pub subgroups_done: usize,
     /// The subgroup that is the active team, while one is: its first place on Σ, and its end.
@@ -76,6 +82,7 @@ impl RobotReport {
             phase: robot.phase(),
             notice: robot.notice_id(),
             task,
+            closed: Arc::clone(robot.closed()),
             subgroups_done: robot.subgroups_done(),
             active_subgroup: active.map(|Subgroup { first, end }| (first, end)),
             is_active: robot.is_active(),
@@ -111,6 +118,7 @@ impl Snapshot {
             tree: overview.tree(),
             task: overview.newest().and_then(|robot| robot.task),
             serviced: overview.serviced(),
+            closed: overview.closed(),
             posts: overview.posts(),
             robots: reports.iter().map(RobotSnapshot::from).collect(),
             absent: Vec::new(),
@@ -273,6 +281,11 @@ impl Overview<'_> {
         serviced.sort_unstable();
         serviced.dedup_by_key(|(task, _)| *task);
         serviced
+    }
+
+    fn closed(&self) -> Vec<usize> {
+        let known = self.robots.iter().flat_map(|robot| robot.closed.iter());
+        known.collect::<BTreeSet<usize>>().into_iter().collect()
     }
 
     fn posts(&self) -> Vec<PostView> {

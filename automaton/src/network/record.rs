@@ -42,6 +42,9 @@ pub struct Snapshot {
     pub task: Option<usize>,
     /// The tasks serviced so far, each with the robot that is answerable for it now.
     pub serviced: Vec<(usize, usize)>,
+    /// The tasks that are over, ascending, as far as robots know: they have ended, or been taken back. Empty in what
+    /// is read from traces that lack them.
+    pub closed: Vec<usize>,
     /// Fixed posts: reference position, the robot that holds it, and whether it is a junction.
     pub posts: Vec<PostView>,
     /// What else each robot shows of itself; empty in what is read from traces that lack it.
@@ -144,7 +147,8 @@ pub enum MissionEvent {
     TaskAnnounced { task: usize },
     /// A leader is elected (Algorithm 1); with a conflict, it must first be released (L_b = 1).
     LeaderElected { task: usize, robot: usize, conflict: bool },
-    /// The primary team is at a local stationary point; `robot` is p₁.
+    /// The primary team is at a local stationary point; `robot` is p₁. The team is that at the end of the control
+    /// period: empty if it has been dissolved by then.
     Stationary { robot: usize, team: Vec<usize> },
     /// The way to the task is longer than the primary team: p₁ `robot` calls for a recruit before the team
     /// stands still.
@@ -160,7 +164,8 @@ pub enum MissionEvent {
     SubgroupStarted { subgroup: usize, robots: Vec<usize> },
     /// Every member of S_β has arrived, eq. (26).
     SubgroupArrived { subgroup: usize, robots: Vec<usize> },
-    /// A robot joins the primary team.
+    /// A robot joins the primary team, which is this at the end of the control period: empty if it has been
+    /// dissolved by then.
     JoinedPrimary { robot: usize, team: Vec<usize> },
     /// The leader is released from its past duties.
     Released { robot: usize },

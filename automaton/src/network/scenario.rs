@@ -16,11 +16,13 @@ mod settings;
 mod valid;
 mod validation;
 
-pub use control::{CONTROL, Control, ControlKey, MotionSolver, RoutingMethod, Strategy, Values};
+pub use control::{
+    CONTROL, Control, ControlKey, MOST_PERIODS, MotionSolver, RoutingMethod, Strategy, Values,
+};
 pub use fault::{Fault, InvalidScenario, Problem};
 pub use key_path::{KeyPath, KeyStep};
 pub use radio::{LinkModel, LinkRanges, STEEPEST, STEEPNESS};
-pub use remark::{Remark, TaskRemark};
+pub use remark::{Late, Remark, TaskRemark};
 pub use settings::{LinkLengths, Settings};
 pub use valid::ValidScenario;
 

@@ -14,8 +14,8 @@ crate::places_of! {
         Electing(Electing),
         /// The leader pursues its task, or a recruit is on its way to it.
         UnderWay(UnderWay),
-        /// The task announced last is serviced, or has been taken back.
-        Serviced(Serviced),
+        /// The task announced last is done: serviced, or taken back.
+        Done(Done),
         /// The mission has ended.
         Over(Over),
     }
@@ -50,9 +50,9 @@ pub struct UnderWay {
     pub announced: Option<Announced>,
 }
 
-/// The data of [`Service::Serviced`].
+/// The data of [`Service::Done`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Serviced {
+pub struct Done {
     /// The task.
     pub task: usize,
 }

@@ -12,8 +12,8 @@ vocabulary! {
         Electing = "electing",
         /// The leader pursues its task, or a recruit is on its way to it.
         UnderWay = "under way",
-        /// The task announced last is serviced, or has been taken back: none is pursued.
-        Serviced = "serviced",
+        /// The task announced last is done, serviced or taken back: none is pursued.
+        Done = "done",
         /// The mission has ended.
         Over = "over",
     }
@@ -95,7 +95,7 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
     TransitionTable::new(&[
         row(0, Gathering, On::ElectionHeard, Electing),
         row(0, Gathering, On::ProgressHeard, UnderWay),
-        row(0, Gathering, On::ServiceHeard, Serviced),
+        row(0, Gathering, On::ServiceHeard, Done),
         row(0, Gathering, On::EndHeard, Over),
         row(2, Gathering, On::Closes, Gathering),
         row(3, Gathering, On::Announces, Electing),
@@ -103,9 +103,9 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(3, Gathering, On::AllServiced, Over),
         row(0, Electing, On::ElectionHeard, Electing),
         row(0, Electing, On::ProgressHeard, UnderWay),
-        row(0, Electing, On::ServiceHeard, Serviced),
+        row(0, Electing, On::ServiceHeard, Done),
         row(0, Electing, On::EndHeard, Over),
-        row(1, Electing, On::Withdraws, Serviced),
+        row(1, Electing, On::Withdraws, Done),
         row(2, Electing, On::Closes, Electing),
         row(3, Electing, On::AnnouncesAgain, Electing),
         row(3, Electing, On::NoRobot, Over),
@@ -113,20 +113,20 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(3, Electing, On::NoAnswer, Over),
         row(0, UnderWay, On::ElectionHeard, Electing),
         row(0, UnderWay, On::ProgressHeard, UnderWay),
-        row(0, UnderWay, On::ServiceHeard, Serviced),
+        row(0, UnderWay, On::ServiceHeard, Done),
         row(0, UnderWay, On::EndHeard, Over),
-        row(1, UnderWay, On::Withdraws, Serviced),
+        row(1, UnderWay, On::Withdraws, Done),
         row(2, UnderWay, On::Closes, UnderWay),
         row(3, UnderWay, On::AnnouncesAgain, Electing),
         row(3, UnderWay, On::NoRobot, Over),
-        row(0, Serviced, On::ElectionHeard, Electing),
-        row(0, Serviced, On::ProgressHeard, UnderWay),
-        row(0, Serviced, On::ServiceHeard, Serviced),
-        row(0, Serviced, On::EndHeard, Over),
-        row(2, Serviced, On::Closes, Serviced),
-        row(3, Serviced, On::Announces, Electing),
-        row(3, Serviced, On::NoRobot, Over),
-        row(3, Serviced, On::AllServiced, Over),
+        row(0, Done, On::ElectionHeard, Electing),
+        row(0, Done, On::ProgressHeard, UnderWay),
+        row(0, Done, On::ServiceHeard, Done),
+        row(0, Done, On::EndHeard, Over),
+        row(2, Done, On::Closes, Done),
+        row(3, Done, On::Announces, Electing),
+        row(3, Done, On::NoRobot, Over),
+        row(3, Done, On::AllServiced, Over),
     ])
 };
 

@@ -256,14 +256,22 @@ class Plan {
   }
 
   drawTasks({ context, view, step, radius }) {
-    const [pursued, serviced, unannounced] = this.mission.tasks;
+    const [pursued, serviced, unannounced, over] = this.mission.tasks;
     this.mission.scenario.task.forEach((task, number) => {
       const [x, y] = view.spot(task.position), arm = 1.35 * radius;
       const state = this.mission.value("task_state", step)[number];
       context.save();
       context.strokeStyle = context.fillStyle = colours.get("task");
       context.lineWidth = 0.27 * arm;
-      context.globalAlpha = state === unannounced ? 0.4 : 1;
+      context.globalAlpha = state === unannounced ? 0.4 : state === over ? 0.5 : 1;
+      if (state === over) {
+        context.beginPath();
+        context.arc(x, y, 1.2 * arm, 0, 2 * Math.PI);
+        context.lineWidth = 0.16 * arm;
+        context.stroke();
+        context.restore();
+        return;
+      }
       strokeThrough(context, [[x - arm, y - arm], [x + arm, y + arm]]);
       strokeThrough(context, [[x - arm, y + arm], [x + arm, y - arm]]);
       context.beginPath();

@@ -95,6 +95,9 @@ fn identity_fault(snapshot: &Snapshot, limits: &Limits) -> Option<String> {
     if let Some(node) = snapshot.absent.iter().find(|&&node| node >= nodes) {
         return Some(format!("node {node} is absent, of {nodes}"));
     }
+    if let Some(task) = snapshot.closed.iter().find(|&&task| task >= tasks) {
+        return Some(format!("task {task} is over, of {tasks}"));
+    }
     let serviced = snapshot.serviced.iter().map(|&(task, robot)| (Some(task), robot));
     let posts = snapshot.posts.iter().map(|post| (post.task, post.holder));
     for (task, robot) in serviced.chain(posts) {
@@ -111,6 +114,11 @@ fn team_fault(snapshot: &Snapshot) -> Option<String> {
     }
     if !snapshot.absent.is_sorted_by(|one, next| one < next) {
         return Some("the absent nodes are not listed in ascending order, each once".to_owned());
+    }
+    if !snapshot.closed.is_sorted_by(|one, next| one < next) {
+        return Some(
+            "the tasks that are over are not listed in ascending order, each once".to_owned(),
+        );
     }
     let teams = [
         ("the active team", &snapshot.active_team),

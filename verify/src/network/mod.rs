@@ -60,6 +60,7 @@
 //!     tree: vec![(0, 1)],
 //!     task: None,
 //!     serviced: Vec::new(),
+//!     closed: Vec::new(),
 //!     posts: Vec::new(),
 //!     robots: Vec::new(),
 //!     absent: Vec::new(),

@@ -77,6 +77,7 @@ pub(super) fn snapshot(step: usize) -> Snapshot {
         tree: vec![(0, 4), (1, 0), (2, 4), (3, 4)],
         task: Some(1),
         serviced: vec![(0, 0)],
+        closed: Vec::new(),
         posts: vec![
             PostView { reference: point![0.3, 0.01], holder: 0, task: Some(0), junction: true },
             PostView { reference: point![0.2, 0.2], holder: 3, task: None, junction: false },

@@ -78,7 +78,7 @@ impl AccessPoint {
         let attendees: Vec<_> = self.attendees.iter().map(Attendee::account).collect();
         let patience = self.patience_with_tasks() + 1;
         let tasks: Vec<u32> =
-            self.tasks_serviced.iter().map(|task| task.silence.min(patience)).collect();
+            self.known_tasks.iter().map(|task| task.silence.min(patience)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
         let told = (self.period, &self.roll, reports, (self.is_new, self.is_behind));
         format!("{}{:?}", self.account(), (told, attendees, tasks))
@@ -126,7 +126,7 @@ impl AccessPoint {
             forgetful: _,
             strays: _,
             serves: _,
-            tasks_serviced: _,
+            known_tasks: _,
             attendees: _,
             roll: _,
             clock: _,

@@ -214,7 +214,7 @@ impl AccessPoint {
         for attendee in &mut self.attendees {
             attendee.review(&site.automata.attendance)?;
         }
-        self.tasks_serviced.iter_mut().for_each(TaskRecord::pass_period);
+        self.known_tasks.iter_mut().for_each(TaskRecord::pass_period);
         if self.is_first() {
             let absent = self.absent();
             let is_same = *self.roll.absent == absent;
@@ -264,7 +264,7 @@ impl AccessPoint {
         let is_abandoned = |&(task, known): &(usize, &TaskRecord)| {
             known.silence > patience && !self.closed.contains(task)
         };
-        self.tasks_serviced.iter().enumerate().find(is_abandoned).map(|(task, _)| task)
+        self.known_tasks.iter().enumerate().find(is_abandoned).map(|(task, _)| task)
     }
 
     pub(super) fn patience_with_tasks(&self) -> u32 {

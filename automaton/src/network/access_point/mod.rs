@@ -91,7 +91,7 @@ pub struct AccessPoint {
     roll: Roll,
     settled_rounds: usize,
     /// What it knows of each task that has been serviced; of one that was passed over, that it is closed.
-    tasks_serviced: Vec<TaskRecord>,
+    known_tasks: Vec<TaskRecord>,
     /// The tasks that are serviced by robots attached here.
     serves: Arc<IdSet>,
     /// The tasks that are over.
@@ -142,7 +142,7 @@ impl AccessPoint {
             strays: Arc::default(),
             roster: Arc::default(),
             settled_rounds: 0,
-            tasks_serviced: Vec::new(),
+            known_tasks: Vec::new(),
             serves: Arc::default(),
             closed: Arc::default(),
             requested: None,
@@ -354,7 +354,7 @@ impl AccessPoint {
             Notice::Path(_) => self.agreement = Some(Agreement::new(id)),
             Notice::Serviced { task } => {
                 self.expect_serviced(task + 1);
-                self.tasks_serviced[task] = TaskRecord::default();
+                self.known_tasks[task] = TaskRecord::default();
             }
             Notice::Withdrawn { task } => {
                 self.expect_serviced(task);
@@ -367,8 +367,8 @@ impl AccessPoint {
 
     /// The tasks before this one have been serviced, or are closed.
     fn expect_serviced(&mut self, end: usize) {
-        let known = self.tasks_serviced.len().max(end);
-        self.tasks_serviced.resize(known, TaskRecord::default());
+        let known = self.known_tasks.len().max(end);
+        self.known_tasks.resize(known, TaskRecord::default());
     }
 
     /// A task is over: from now on its robots hear so.
@@ -459,7 +459,7 @@ impl AccessPoint {
             }
         }
         for task in reports.serves.iter() {
-            if let Some(known) = self.tasks_serviced.get_mut(task) {
+            if let Some(known) = self.known_tasks.get_mut(task) {
                 known.silence = 0;
             }
         }

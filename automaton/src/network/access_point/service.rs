@@ -11,7 +11,7 @@ use crate::{Automaton, BuildError, Transfer};
 use super::super::beacon::{Announcement, Bulletin, Notice};
 use super::super::order::Errand;
 use super::super::record::{MissionEvent, Outcome};
-use super::super::service::{Announced, Electing, Gathering, Over, Serviced, Serving, UnderWay};
+use super::super::service::{Announced, Done, Electing, Gathering, Over, Serving, UnderWay};
 use super::super::shared::Shared;
 use super::attendance::Attendee;
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
@@ -189,7 +189,7 @@ impl AccessPoint {
     /// all that have been; none that is over.
     pub(super) fn next_task(&self) -> Option<usize> {
         let asked_for = self.errands().count();
-        let new = || (self.tasks_serviced.len()..asked_for).find(|&task| self.is_open(task));
+        let new = || (self.known_tasks.len()..asked_for).find(|&task| self.is_open(task));
         self.abandoned_task().filter(|&task| task < asked_for).or_else(new)
     }
 
@@ -214,7 +214,7 @@ impl AccessPoint {
         let mut open =
             self.errands().filter(|&(task, _)| self.is_open(task) && pursued != Some(task));
         open.find_map(|(task, errand)| {
-            let serviced = self.tasks_serviced.get(task);
+            let serviced = self.known_tasks.get(task);
             let has_ended = |periods| serviced.is_some_and(|known| known.has_lasted(periods));
             match errand.lasts {
                 _ if errand.withdrawn => Some((task, MissionEvent::TaskWithdrawn { task })),
@@ -239,7 +239,7 @@ impl AccessPoint {
         Some(Notice::Task(Shared::new(Announcement {
             task,
             position: requested.tasks.get(task)?.position,
-            before: requested.positions(self.tasks_serviced.len().max(task)),
+            before: requested.positions(self.known_tasks.len().max(task)),
             roster: Arc::clone(&self.roster),
             eligible: Arc::new((0..self.site.access_points.len()).collect()),
         })))
@@ -300,7 +300,7 @@ knows! {
     Gathering: |_| None,
     Electing: |place: &Electing| place.announced.clone(),
     UnderWay: |place: &UnderWay| place.announced.clone(),
-    Serviced: |_| None,
+    Done: |_| None,
 }
 
 /// It takes up the notice that it has heard.
@@ -332,9 +332,9 @@ fn hear_progress<A: Knows>(
     Some(UnderWay { announced: place.announced().or_else(|| point.current_electors()) })
 }
 
-fn hear_service<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Serviced> {
+fn hear_service<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
     match take_up(point, effects)? {
-        Notice::Serviced { task } | Notice::Withdrawn { task } => Some(Serviced { task }),
+        Notice::Serviced { task } | Notice::Withdrawn { task } => Some(Done { task }),
         _ => None,
     }
 }
@@ -355,13 +355,13 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
 }
 
 /// The user has taken back the task that is pursued: those who pursue it stop, and its team is dissolved.
-fn withdraw<A: Knows>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Serviced> {
+fn withdraw<A: Knows>(place: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Done> {
     let task = place.announced()?.task;
     if point.is_open(task) {
         effects.push(ServiceEffect::Report(MissionEvent::TaskWithdrawn { task }));
     }
     effects.push(ServiceEffect::Supersede(Notice::Withdrawn { task }));
-    Some(Serviced { task })
+    Some(Done { task })
 }
 
 /// A task is over that is not pursued.
@@ -512,35 +512,35 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(election_heard::<Gathering>())
         .carried_out(election_heard::<Electing>())
         .carried_out(election_heard::<UnderWay>())
-        .carried_out(election_heard::<Serviced>())
+        .carried_out(election_heard::<Done>())
         .carried_out(progress_heard::<Gathering>())
         .carried_out(progress_heard::<Electing>())
         .carried_out(progress_heard::<UnderWay>())
-        .carried_out(progress_heard::<Serviced>())
+        .carried_out(progress_heard::<Done>())
         .carried_out(service_heard::<Gathering>())
         .carried_out(service_heard::<Electing>())
         .carried_out(service_heard::<UnderWay>())
-        .carried_out(service_heard::<Serviced>())
+        .carried_out(service_heard::<Done>())
         .carried_out(end_heard::<Gathering>())
         .carried_out(end_heard::<Electing>())
         .carried_out(end_heard::<UnderWay>())
-        .carried_out(end_heard::<Serviced>())
+        .carried_out(end_heard::<Done>())
         .carried_out(withdraws::<Electing>())
         .carried_out(withdraws::<UnderWay>())
         .carried_out(closes::<Gathering>())
         .carried_out(closes::<Electing>())
         .carried_out(closes::<UnderWay>())
-        .carried_out(closes::<Serviced>())
+        .carried_out(closes::<Done>())
         .carried_out(announces::<Gathering>(guards::announces_first()))
-        .carried_out(announces::<Serviced>(guards::announces_next()))
+        .carried_out(announces::<Done>(guards::announces_next()))
         .carried_out(announces_again::<Electing>(guards::elects_again()))
         .carried_out(announces_again::<UnderWay>(guards::announces_again()))
         .carried_out(no_robot::<Gathering>(guards::no_robot_first()))
         .carried_out(no_robot::<Electing>(guards::no_robot_left()))
         .carried_out(no_robot::<UnderWay>(guards::no_robot_left()))
-        .carried_out(no_robot::<Serviced>(guards::no_robot_next()))
+        .carried_out(no_robot::<Done>(guards::no_robot_next()))
         .carried_out(all_serviced::<Gathering>(guards::nothing_to_service()))
-        .carried_out(all_serviced::<Serviced>(guards::all_serviced()))
+        .carried_out(all_serviced::<Done>(guards::all_serviced()))
         .carried_out(Transfer::where_known(
             ServiceEvent::NoBid,
             guards::no_bid(),

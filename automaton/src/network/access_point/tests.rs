@@ -14,7 +14,7 @@ use super::super::order::Order;
 use super::super::record::MissionEvent;
 use super::super::roll::{Absent, Roll, Wreck};
 use super::super::scenario::{Scenario, Task};
-use super::super::service::{Announced, Serviced, Serving, UnderWay};
+use super::super::service::{Announced, Done, Serving, UnderWay};
 use super::super::shared::Shared;
 use super::super::site::Site;
 use super::AccessPoint;
@@ -155,9 +155,9 @@ impl AccessPoint {
 
     /// It heard `age` control periods ago that a task is serviced, and `silence` ago of its robot.
     fn has_heard_of(&mut self, task: usize, age: u32, silence: u32) {
-        self.service = Current::new(Serving::Serviced(Serviced { task }));
+        self.service = Current::new(Serving::Done(Done { task }));
         self.expect_serviced(task + 1);
-        self.tasks_serviced[task] = TaskRecord { silence, age };
+        self.known_tasks[task] = TaskRecord { silence, age };
     }
 
     /// It pursues a task, and has taken up this notice.
@@ -204,9 +204,9 @@ fn a_task_ends_when_it_has_lasted_and_is_heard_of() {
         (events, point.service.location())
     };
     use pleach_discrete::network::Service;
-    assert_eq!(closing(79, 0), (vec![], Service::Serviced), "the mission waits for its end");
-    assert_eq!(closing(80, 1), (vec![], Service::Serviced), "its robot may have stopped");
-    assert_eq!(closing(80, 0), (vec![MissionEvent::TaskEnded { task: 0 }], Service::Serviced));
+    assert_eq!(closing(79, 0), (vec![], Service::Done), "the mission waits for its end");
+    assert_eq!(closing(80, 1), (vec![], Service::Done), "its robot may have stopped");
+    assert_eq!(closing(80, 0), (vec![MissionEvent::TaskEnded { task: 0 }], Service::Done));
     let mut point = access_point();
     point.is_asked(&[Task::at(THERE)], 1);
     point.has_heard_of(0, 9_999, 0);

@@ -59,7 +59,7 @@ pub(super) fn announce_advance(shift: &Shift, robot: &Robot, effects: &mut Effec
 /// The primary team is the active team again.
 pub(super) fn resume<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Advance {
     effects.push(MissionEffect::Restart);
-    Advance { path: robot.mission.path().cloned(), in_vain: robot.has_called_in_vain() }
+    Advance { path: robot.mission.path().cloned(), in_vain: robot.learns_that_call_is_vain() }
 }
 
 impl Robot {

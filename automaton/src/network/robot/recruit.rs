@@ -135,7 +135,7 @@ impl Robot {
 
     /// Whether this robot has called for a recruit ahead of a standstill, and learns now that the team goes on
     /// as it is.
-    pub(super) fn has_called_in_vain(&self) -> bool {
+    pub(super) fn learns_that_call_is_vain(&self) -> bool {
         let went_on_alone = matches!(*self.notice(), Notice::Advance { joined: None });
         let called = self.mission.recruit_election().is_some_and(|call| call.ahead);
         called && went_on_alone

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use pleach_continuous::Point;
-use pleach_discrete::network::{ExchangeStage, NodeId, NoticeId, Phase, Role, Stage, Subgroup};
+use pleach_discrete::network::{
+    ExchangeStage, IdSet, NodeId, NoticeId, Phase, Role, Stage, Subgroup,
+};
 
 use super::super::beacon::{Beacon, Notice};
 use super::super::duty::Duty;
@@ -95,6 +97,11 @@ impl<'a> RobotView<'a> {
     /// The task announced last, as far as it knows.
     pub fn current_task(self) -> Option<usize> {
         self.0.current_task()
+    }
+
+    /// The tasks that are over, as far as it knows.
+    pub const fn closed(self) -> &'a Arc<IdSet> {
+        &self.0.closed
     }
 
     /// Whether it is the elected leader, released or not.

@@ -126,6 +126,9 @@ pub const SHORTEST: f64 = 1e-6;
 /// The largest magnitude of a coordinate, in ranges of the links.
 pub const FARTHEST: f64 = 1e6;
 
+/// The most control periods that a scenario may state, of a mission and of the times of its tasks.
+pub const MOST_PERIODS: u32 = 1_000_000_000;
+
 /// The keys of `[control]`, in the order of the documentation.
 pub const CONTROL: &[ControlKey] = &[
     key("clearance", Values::Length(|control| control.clearance)),
@@ -134,7 +137,7 @@ pub const CONTROL: &[ControlKey] = &[
     key("position_error", Values::Error(|control| control.position_error)),
     key("motion_error", Values::Error(|control| control.motion_error)),
     key("residual_tolerance", Values::UpTo(1.0, |control| control.residual_tolerance)),
-    key("max_steps", Values::Count(1_000_000_000, |control| control.max_steps)),
+    key("max_steps", Values::Count(MOST_PERIODS as usize, |control| control.max_steps)),
     key("period", Values::Time(1e-6, 1e6, |control| control.period)),
     key("rounds_per_period", Values::Count(10_000, |control| control.rounds_per_period)),
     key("routing_method", Values::OneOf(&["dual", "accelerated_dual", "adal"])),

@@ -39,6 +39,18 @@ pub enum Remark {
         /// All pairs of nodes with R > 0 at the start, but for pairs of access points.
         links: usize,
     },
+    /// The user would ask for a task, or take it back, when the mission has ended: it has at most `max_steps`
+    /// control periods.
+    TooLate {
+        /// Which task, counted from 0.
+        task: usize,
+        /// What comes too late.
+        what: Late,
+        /// The control period in which it would come.
+        period: u32,
+        /// The number of control periods; the last has the number before it.
+        max_steps: usize,
+    },
     /// A control period has so few rounds that beacons are not repeated as often as they are otherwise.
     FewRounds {
         /// How many rounds it has.
@@ -64,6 +76,16 @@ pub enum TaskRemark {
     Elsewhere,
 }
 
+/// What a user would do too late.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Late {
+    /// It would ask for a task: the mission ends before all are serviced.
+    Announced,
+    /// It would take a task back.
+    Withdrawn,
+}
+
 impl Remark {
     /// The key of the scenario that it concerns.
     pub fn key(&self) -> KeyPath {
@@ -71,6 +93,12 @@ impl Remark {
             Remark::Task { task, .. } => KeyPath::root().key("task").index(*task).key("position"),
             Remark::Outline(repair) => key_of_repair(repair),
             Remark::LongLinks { .. } | Remark::ThroughWalls { .. } => KeyPath::root().key("link"),
+            Remark::TooLate { task, what, .. } => {
+                KeyPath::root().key("task").index(*task).key(match what {
+                    Late::Announced => "announced",
+                    Late::Withdrawn => "withdrawn",
+                })
+            }
             Remark::FewRounds { .. } => KeyPath::root().key("control").key("rounds_per_period"),
         }
     }
@@ -109,6 +137,17 @@ impl fmt::Display for Remark {
                 "{crossing} of the {links} links at the start cross walls, which the model of \
                  the radio does not see; ranges should be those that hold through walls"
             ),
+            Remark::TooLate { what, period, max_steps, .. } => {
+                let what = match what {
+                    Late::Announced => "asks for it",
+                    Late::Withdrawn => "takes it back",
+                };
+                write!(
+                    formatter,
+                    "the user never {what}: the mission ends before control period {period}, since max_steps is \
+                     {max_steps}"
+                )
+            }
             Remark::FewRounds { rounds } => write!(
                 formatter,
                 "{rounds} where {ROUNDS_TO_BE_HEARD} repeat each beacon as often as is useful: with fewer, \
@@ -119,7 +158,7 @@ impl fmt::Display for Remark {
 }
 
 impl ValidScenario {
-    /// Everything worth a remark, tasks first, then the outline.
+    /// Everything worth a remark, places and times of tasks first, then the outline.
     pub fn remarks(&self) -> Vec<Remark> {
         let tasks = self.task.iter().enumerate().filter_map(|(task, place)| {
             let remark = self.task_remark(place.position.into())?;
@@ -135,7 +174,26 @@ impl ValidScenario {
         let walls = (crossing > 0).then_some(Remark::ThroughWalls { crossing, links });
         let rounds = site.settings.rounds_per_period;
         let few = (rounds < ROUNDS_TO_BE_HEARD).then_some(Remark::FewRounds { rounds });
-        tasks.chain(outline).chain(long).chain(walls).chain(few).collect()
+        tasks
+            .chain(self.late_remarks())
+            .chain(outline)
+            .chain(long)
+            .chain(walls)
+            .chain(few)
+            .collect()
+    }
+
+    /// What the user would ask for, or take back, when the mission has ended.
+    fn late_remarks(&self) -> impl Iterator<Item = Remark> {
+        let max_steps = self.settings().max_steps;
+        self.task.iter().enumerate().flat_map(move |(task, stated)| {
+            let announced = stated.announced.map(|period| (Late::Announced, period));
+            let withdrawn = stated.withdrawn.map(|period| (Late::Withdrawn, period));
+            let times = announced.into_iter().chain(withdrawn);
+            times
+                .filter(move |&(_, period)| period as usize >= max_steps)
+                .map(move |(what, period)| Remark::TooLate { task, what, period, max_steps })
+        })
     }
 
     /// Why no robot can service a task at this place, if none can; robots decide alike.

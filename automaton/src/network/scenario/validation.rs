@@ -1,6 +1,6 @@
 //! Whether the values of a scenario are in their ranges and fit each other.
 
-use super::control::{CONTROL, FARTHEST, SHORTEST, Values};
+use super::control::{CONTROL, FARTHEST, MOST_PERIODS, SHORTEST, Values};
 use super::radio::STEEPEST;
 use super::{Fault, KeyPath, LinkLengths, LinkModel, LinkRanges, Problem, Scenario, Settings};
 
@@ -139,9 +139,18 @@ fn errand_faults(scenario: &Scenario) -> Vec<Fault> {
         (withdrawn <= announced).then(|| problem.at(key(row, "withdrawn")))
     });
     let without_time = tasks().filter(|(_, task)| task.lasts == Some(0));
+    let too_late = tasks().flat_map(|(row, task)| {
+        let times =
+            [("announced", task.announced), ("withdrawn", task.withdrawn), ("lasts", task.lasts)];
+        times.into_iter().filter_map(move |(name, periods)| {
+            let (count, most) = (periods? as usize, MOST_PERIODS as usize);
+            (count > most).then(|| Problem::TooMany { count, most }.at(key(row, name)))
+        })
+    });
     out_of_order
         .chain(taken_back)
         .chain(without_time.map(|(row, _)| Problem::Zero.at(key(row, "lasts"))))
+        .chain(too_late)
         .collect()
 }
 

@@ -121,6 +121,7 @@ impl Ledger {
     pub fn enter(&mut self, event: &MissionEvent) -> Result<(), Dispute> {
         let entered = self.enter_now(event);
         if let (Err(_), Some(mut outdated)) = (&entered, self.outdated.clone())
+            && !is_told_by_access_point(event)
             && outdated.enter(event).is_ok()
         {
             self.take_over_holders(&outdated);
@@ -540,6 +541,37 @@ impl Ledger {
     }
 }
 
+/// Whether an event is told by the access point that takes tasks back: it knows of that first.
+const fn is_told_by_access_point(event: &MissionEvent) -> bool {
+    matches!(
+        event,
+        MissionEvent::TaskAnnounced { .. }
+            | MissionEvent::TaskReannounced { .. }
+            | MissionEvent::TaskEnded { .. }
+            | MissionEvent::TaskWithdrawn { .. }
+    )
+}
+
 fn dispute<T>(robots: &[usize], sentence: String) -> Result<T, Dispute> {
     Err(Dispute::of(Property::Events, robots, sentence))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Robots go on as if the task were not taken back until they hear so; the access point knows.
+    #[test]
+    fn what_the_access_point_tells_is_not_held_against_what_robots_have_yet_to_hear() {
+        let mut ledger = Ledger::new(3);
+        let withdrawn = MissionEvent::TaskWithdrawn { task: 0 };
+        let elected = MissionEvent::LeaderElected { task: 0, robot: 1, conflict: false };
+        let serviced = MissionEvent::TaskServiced { task: 0, robot: 1 };
+        for event in [MissionEvent::TaskAnnounced { task: 0 }, elected, withdrawn.clone()] {
+            assert_eq!(ledger.enter(&event), Ok(()));
+        }
+        assert_eq!(ledger.clone().enter(&serviced), Ok(()));
+        let found = ledger.enter(&withdrawn).expect_err("it is over");
+        assert_eq!(found.sentence, "task 0 is taken back, and it is over");
+    }
 }

@@ -342,7 +342,7 @@ impl<'a> Judge<'a> {
     /// [`Property::Outcome`] if the record does not show what the outcome says.
     pub fn conclude(&self, end: &End) -> Result<(), Violation> {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
-        let done = self.terms.done(self.ledger.serviced.keys().copied());
+        let done = self.terms.done();
         let tasks = self.monitor.limits().tasks().len();
         let last = self.previous.as_ref().map(|snapshot| snapshot.step);
         let complaint = self.clock.contradiction(end, last, (done, tasks));

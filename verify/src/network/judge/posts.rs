@@ -118,6 +118,19 @@ pub fn serve_what_is_open(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Di
     }
 }
 
+/// Part of [`Property::Duties`]: no task is shown as over that has not ended or been taken back.
+pub fn closings_are_told(ledger: &Ledger, snapshot: &Snapshot) -> Result<(), Dispute> {
+    match snapshot.closed.iter().find(|task| !ledger.closed.contains(task)) {
+        None => Ok(()),
+        Some(task) => {
+            let sentence = format!(
+                "task {task} is shown as over, and it has neither ended nor been taken back: no event says so"
+            );
+            Err(Dispute::of(Property::Duties, &[], sentence))
+        }
+    }
+}
+
 /// Part of [`Property::Posts`]: the task of a post is the one that its holder answers for, a leaf
 /// has one, and a post is a junction if more than one branch parts there. The primary team is one branch,
 /// also while a member of it has yet to attach to the newcomer.

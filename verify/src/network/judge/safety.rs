@@ -17,11 +17,11 @@ use crate::network::{instant, link};
 ///
 /// What it holds a record against is what no fault breaks: distances between robots and to walls, the
 /// length of steps, shares, loads, the length of links of the tree, and, as long as all nodes run,
-/// that no robot is sent more than it forwards. Of events it checks that robots are at the tasks that
-/// they service, that tasks are announced one after another, taken back and ended as the user wants it; of the
-/// outcome, that all tasks have been serviced, or are over, where it says so, and, as long as all nodes run, that
-/// not all of them are where a mission is given up. What nodes know of each other may differ, and is not
-/// compared.
+/// that no robot is sent more than it forwards. Of events it checks that robots are at the tasks that they
+/// service, which have been announced, and that tasks are announced one after another, taken back and ended as
+/// the user wants it; of the outcome, that all tasks have been serviced, or are over, where it says so, and, as
+/// long as all nodes run, that not all of them are where a mission is given up. What nodes know of each other may
+/// differ, and is not compared.
 ///
 /// Nodes that do not run or are not heard ([`Snapshot::absent`]) are bodies, and nothing else.
 #[derive(Clone, Debug)]
@@ -32,8 +32,6 @@ pub struct Safety {
     previous: Option<Snapshot>,
     /// Whether a node has been absent: what flowed there is lost.
     has_lost_nodes: bool,
-    /// The task that has been announced last, until it is serviced or over.
-    pursued: Option<usize>,
     terms: Terms,
     extremes: Extremes,
 }
@@ -47,8 +45,7 @@ impl Safety {
             clock: Clock::of(scenario),
             previous: None,
             has_lost_nodes: false,
-            pursued: None,
-            terms: Terms::under_faults(scenario),
+            terms: Terms::of(scenario),
             extremes: Extremes::default(),
         }
     }
@@ -69,8 +66,13 @@ impl Safety {
         self.clock.check(snapshot, self.previous.is_none()).map_err(told)?;
         self.observe_period(snapshot)?;
         self.observe_instant(snapshot)?;
+        if snapshot.absent.contains(&self.limits.robots()) {
+            self.terms.miss_access_point();
+        }
         for event in events {
             claims::names_exist(event, &self.limits).map_err(told)?;
+        }
+        for event in in_order(events) {
             self.enter(event, snapshot).map_err(told)?;
         }
         self.announcements_follow(events).map_err(told)?;
@@ -81,22 +83,14 @@ impl Safety {
     fn enter(&mut self, event: &MissionEvent, snapshot: &Snapshot) -> Result<(), Dispute> {
         self.terms.enter(event, snapshot.step)?;
         match *event {
-            MissionEvent::TaskAnnounced { task } | MissionEvent::TaskReannounced { task, .. } => {
-                self.pursued = Some(task);
-            }
-            MissionEvent::TaskWithdrawn { task } | MissionEvent::TaskEnded { task } => {
-                self.pursued = self.pursued.filter(|&pursued| pursued != task);
-            }
             MissionEvent::TaskServiced { task, robot } => {
-                claims::is_at_task(task, robot, snapshot, &self.limits)?;
-                self.pursued = self.pursued.filter(|&pursued| pursued != task);
+                claims::is_at_task(task, robot, snapshot, &self.limits)
             }
-            _ => {}
+            _ => Ok(()),
         }
-        Ok(())
     }
 
-    /// Tasks are announced one after another. Nodes tell the events of a control period in no order.
+    /// Tasks are announced one after another, in one control period where they are serviced at once.
     fn announcements_follow(&self, events: &[MissionEvent]) -> Result<(), Dispute> {
         let announced = events.iter().filter_map(|event| match *event {
             MissionEvent::TaskAnnounced { task } => Some(task),
@@ -142,7 +136,7 @@ impl Safety {
     pub fn conclude(&self, end: &End) -> Result<(), Violation> {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
         let last = self.previous.as_ref().map(|snapshot| snapshot.step);
-        let (done, tasks) = (self.terms.done(self.terms.serviced()), self.limits.tasks().len());
+        let (done, tasks) = (self.terms.done(), self.limits.tasks().len());
         let contradiction = self.clock.contradiction(end, last, (done, tasks));
         let contradiction = contradiction.or_else(|| self.terms.contradiction(end.outcome));
         match contradiction.or_else(|| self.needless_end(end, done)) {
@@ -155,7 +149,7 @@ impl Safety {
     /// that it has been serviced.
     fn needless_end(&self, end: &End, done: usize) -> Option<String> {
         let all_run = !self.faults.nodes && !self.has_lost_nodes;
-        let is_done = done == self.limits.tasks().len() && self.pursued.is_none();
+        let is_done = done == self.limits.tasks().len() && self.terms.pursued().is_none();
         let is_needless = end.outcome.is_given_up() && all_run && is_done;
         is_needless
             .then(|| format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
@@ -165,6 +159,19 @@ impl Safety {
     pub const fn extremes(&self) -> &Extremes {
         &self.extremes
     }
+}
+
+/// The events of a control period as they can follow each other: nodes tell them in no order. What is announced
+/// comes first, then what is serviced, and then what is over.
+fn in_order(events: &[MissionEvent]) -> Vec<&MissionEvent> {
+    let rank = |event: &&MissionEvent| match event {
+        MissionEvent::TaskAnnounced { .. } | MissionEvent::TaskReannounced { .. } => 0,
+        MissionEvent::TaskServiced { .. } => 1,
+        _ => 2,
+    };
+    let mut events: Vec<&MissionEvent> = events.iter().collect();
+    events.sort_by_key(rank);
+    events
 }
 
 /// [`Property::Residual`]: a robot to which others send passes on all of it, and what is its own.

@@ -13,11 +13,15 @@ use crate::network::property::Property;
 pub(super) struct Terms {
     tasks: Vec<Task>,
     announced: BTreeSet<usize>,
-    /// The tasks that have been serviced, each with the step at which it was first.
+    /// The task that has been announced last, or again.
+    last: Option<usize>,
+    /// The tasks that are serviced, each with the step from which on it has been since it was announced last.
     serviced: BTreeMap<usize, usize>,
     closed: BTreeSet<usize>,
-    /// How many control periods fewer than those of the record may have passed by the clock of an access point.
-    slack: u32,
+    /// Whether the access point that announces tasks has been absent. One that begins again has forgotten what it
+    /// announced and closed, and may not have told all of it; what it announces again may be void, since robots
+    /// know later notices; and it may be one control period behind the others, so that it counts one too many.
+    has_forgotten: bool,
 }
 
 impl Terms {
@@ -25,15 +29,16 @@ impl Terms {
         Terms {
             tasks: scenario.task.clone(),
             announced: BTreeSet::new(),
+            last: None,
             serviced: BTreeMap::new(),
             closed: BTreeSet::new(),
-            slack: 0,
+            has_forgotten: false,
         }
     }
 
-    /// The same where clocks may be shifted against each other by any part of a period.
-    pub(super) fn under_faults(scenario: &Scenario) -> Self {
-        Terms { slack: 1, ..Terms::of(scenario) }
+    /// The access point that announces tasks is absent.
+    pub(super) fn miss_access_point(&mut self) {
+        self.has_forgotten = true;
     }
 
     /// An event that is told of the period that ends with `step`.
@@ -45,39 +50,80 @@ impl Terms {
         match *event {
             MissionEvent::TaskAnnounced { task } => {
                 self.announced.insert(task);
-                let asked = Some(self.tasks[task].asked_for());
-                not_before(step, asked, || format!("task {task} is announced"), "asked for")
+                self.last = Some(task);
+                let due = self.tasks[task].asked_for();
+                not_before(step, due, || format!("task {task} is announced"), "asked for")
             }
-            MissionEvent::TaskServiced { task, .. } => {
+            MissionEvent::TaskReannounced { task, .. } => {
+                self.last = Some(task);
+                if !self.has_forgotten {
+                    self.serviced.remove(&task);
+                }
+                self.is_announced(task, || format!("task {task} is announced again"))
+            }
+            MissionEvent::TaskServiced { task, robot } => {
                 self.serviced.entry(task).or_insert(step);
-                Ok(())
+                self.is_announced(task, || format!("robot {robot} services task {task}"))
             }
             MissionEvent::TaskWithdrawn { task } => {
-                self.closed.insert(task);
-                let taken_back = self.tasks[task].withdrawn;
-                not_before(step, taken_back, || format!("task {task} is given up"), "taken back")
+                let Some(due) = self.tasks[task].withdrawn else {
+                    return dispute(format!(
+                        "task {task} is taken back, and the scenario states no `withdrawn` for it: the user \
+                         never takes it back"
+                    ));
+                };
+                not_before(step, due, || format!("task {task} is given up"), "taken back")?;
+                self.close(task, "is taken back")
             }
             MissionEvent::TaskEnded { task } => {
-                self.closed.insert(task);
-                let end = self.end_of(task).map(|end| end.saturating_sub(self.slack));
-                not_before(step, end, || format!("task {task} ends"), "to end")
+                let Some(lasts) = self.tasks[task].lasts else {
+                    return dispute(format!(
+                        "task {task} ends, and the scenario states no `lasts` for it: it is serviced for ever, \
+                         or until it is taken back"
+                    ));
+                };
+                let Some(&since) = self.serviced.get(&task) else {
+                    return dispute(format!(
+                        "task {task} ends, and no robot services it: it ends {lasts} control periods after its \
+                         service"
+                    ));
+                };
+                let due = end_of(since, lasts).saturating_sub(u32::from(self.has_forgotten));
+                not_before(step, due, || format!("task {task} ends"), "to end")?;
+                self.close(task, "ends")
             }
             _ => Ok(()),
         }
     }
 
+    fn close(&mut self, task: usize, what: &str) -> Result<(), Dispute> {
+        match self.closed.insert(task) || self.has_forgotten {
+            true => Ok(()),
+            false => dispute(format!("task {task} {what}, and it is over already")),
+        }
+    }
+
+    fn is_announced(&self, task: usize, clause: impl Fn() -> String) -> Result<(), Dispute> {
+        match self.announced.contains(&task) || self.has_forgotten {
+            true => Ok(()),
+            false => dispute(format!("{}, and it has not been announced", clause())),
+        }
+    }
+
+    /// Whether a task is neither serviced nor over.
+    fn is_open(&self, task: usize) -> bool {
+        !self.serviced.contains_key(&task) && !self.closed.contains(&task)
+    }
+
+    /// The task that has been announced last, until it is serviced or over.
+    pub(super) fn pursued(&self) -> Option<usize> {
+        self.last.filter(|&task| self.is_open(task))
+    }
+
     /// A task that was announced before this one, and is neither serviced nor over. Tasks are announced in
     /// their order.
     pub(super) fn unfinished_before(&self, task: usize) -> Option<usize> {
-        let is_open =
-            |other: &&usize| !self.serviced.contains_key(other) && !self.closed.contains(other);
-        self.announced.range(..task).find(is_open).copied()
-    }
-
-    /// The step at which a task is to end, if it is serviced until then.
-    fn end_of(&self, task: usize) -> Option<u32> {
-        let serviced = u32::try_from(*self.serviced.get(&task)?).ok()?;
-        serviced.checked_add(self.tasks[task].lasts?)
+        self.announced.range(..task).copied().find(|&other| self.is_open(other))
     }
 
     /// A task that should have been closed more than `patience` steps ago, in a sentence: one that was
@@ -87,9 +133,11 @@ impl Terms {
         let mut open = self.announced.iter().filter(|task| !self.closed.contains(task));
         open.find_map(|&task| {
             let is_past = |due: usize| due + patience < step;
-            let taken_back =
-                self.tasks[task].withdrawn.filter(|&it| is_past(busy.max(it as usize)));
-            let end = self.end_of(task).filter(|&due| is_past(due as usize));
+            let Task { withdrawn, lasts, .. } = self.tasks[task];
+            let taken_back = withdrawn.filter(|&it| is_past(busy.max(it as usize)));
+            let end =
+                self.serviced.get(&task).zip(lasts).map(|(&since, lasts)| end_of(since, lasts));
+            let end = end.filter(|&due| is_past(due as usize));
             let since =
                 |due, what| format!("task {task} is {what} at k = {due}, and its robots go on");
             taken_back
@@ -98,15 +146,9 @@ impl Terms {
         })
     }
 
-    /// The tasks that have been serviced.
-    pub(super) fn serviced(&self) -> impl Iterator<Item = usize> {
-        self.serviced.keys().copied()
-    }
-
-    /// How many tasks are done: closed, or serviced and neither to end nor closed.
-    pub(super) fn done(&self, serviced: impl Iterator<Item = usize>) -> usize {
-        let lasting = serviced.filter(|task| !self.closed.contains(task));
-        self.closed.len() + lasting.count()
+    /// How many tasks are done: closed, or serviced.
+    pub(super) fn done(&self) -> usize {
+        (0..self.tasks.len()).filter(|&task| !self.is_open(task)).count()
     }
 
     /// What is missing where a mission ends with this outcome, in a clause.
@@ -117,6 +159,11 @@ impl Terms {
     }
 }
 
+/// The step at which a task is to end that lasts so long, and is serviced from `since` on.
+fn end_of(since: usize, lasts: u32) -> u32 {
+    u32::try_from(since).unwrap_or(u32::MAX).saturating_add(lasts)
+}
+
 /// Whether the first `count` tasks stay once they are serviced: then all of them are serviced at the same time.
 pub fn all_stay(scenario: &Scenario, count: usize) -> bool {
     let stays = |task: &Task| task.lasts.is_none() && task.withdrawn.is_none();
@@ -125,15 +172,17 @@ pub fn all_stay(scenario: &Scenario, count: usize) -> bool {
 
 fn not_before(
     step: usize,
-    due: Option<u32>,
+    due: u32,
     clause: impl Fn() -> String,
     what: &str,
 ) -> Result<(), Dispute> {
-    let sentence = match due {
-        Some(due) if due as usize <= step => return Ok(()),
-        Some(due) => format!("{}, and it is {what} at k = {due}", clause()),
-        None => format!("{}, and it is never {what}", clause()),
-    };
+    match due as usize <= step {
+        true => Ok(()),
+        false => dispute(format!("{}, and it is {what} at k = {due}", clause())),
+    }
+}
+
+fn dispute(sentence: String) -> Result<(), Dispute> {
     Err(Dispute::of(Property::Events, &[], sentence))
 }
 
@@ -141,22 +190,85 @@ fn not_before(
 mod tests {
     use super::*;
 
+    fn terms(tasks: &[Task]) -> Terms {
+        Terms {
+            tasks: tasks.to_vec(),
+            announced: BTreeSet::new(),
+            last: None,
+            serviced: BTreeMap::new(),
+            closed: BTreeSet::new(),
+            has_forgotten: false,
+        }
+    }
+
+    fn complaint(terms: &mut Terms, event: MissionEvent, step: usize) -> String {
+        terms.enter(&event, step).expect_err("it cannot be so").sentence
+    }
+
     /// Where a robot stands at a task already, several are announced in one control period.
     #[test]
     fn a_task_that_is_announced_later_need_not_be_serviced_before() {
-        let task = Task::at([3.0, 3.0]);
-        let mut terms = Terms {
-            tasks: vec![task; 3],
-            announced: BTreeSet::new(),
-            serviced: BTreeMap::new(),
-            closed: BTreeSet::new(),
-            slack: 0,
-        };
+        let mut terms = terms(&[Task::at([3.0, 3.0]); 3]);
         let mut enter = |event| terms.enter(&event, 7).expect("it is in time");
         enter(MissionEvent::TaskAnnounced { task: 0 });
         enter(MissionEvent::TaskServiced { task: 0, robot: 0 });
         enter(MissionEvent::TaskAnnounced { task: 1 });
         enter(MissionEvent::TaskAnnounced { task: 2 });
         assert_eq!([0, 1, 2].map(|task| terms.unfinished_before(task)), [None, None, Some(1)]);
+        assert_eq!((terms.pursued(), terms.done()), (Some(2), 1));
+    }
+
+    /// A robot stops, and another one services its task from then on.
+    fn serviced_again() -> Terms {
+        let mut terms = terms(&[Task { lasts: Some(10), ..Task::at([3.0, 3.0]) }]);
+        let mut enter = |step, event| terms.enter(&event, step).expect("it is in time");
+        enter(2, MissionEvent::TaskAnnounced { task: 0 });
+        enter(5, MissionEvent::TaskServiced { task: 0, robot: 0 });
+        enter(9, MissionEvent::TaskReannounced { task: 0, gone: vec![0] });
+        terms
+    }
+
+    #[test]
+    fn the_time_of_a_task_counts_from_its_newest_service() {
+        let ends = MissionEvent::TaskEnded { task: 0 };
+        let mut terms = serviced_again();
+        assert_eq!((terms.pursued(), terms.done()), (Some(0), 0));
+        let found = complaint(&mut terms.clone(), ends.clone(), 15);
+        assert!(found.contains("task 0 ends, and no robot services it"), "{found}");
+        terms
+            .enter(&MissionEvent::TaskServiced { task: 0, robot: 1 }, 12)
+            .expect("it is announced");
+        assert_eq!((terms.pursued(), terms.done()), (None, 1));
+        let found = complaint(&mut terms.clone(), ends.clone(), 21);
+        assert!(found.contains("task 0 ends, and it is to end at k = 22"), "{found}");
+        assert_eq!(terms.enter(&ends, 22), Ok(()));
+    }
+
+    /// What an access point announces that has forgotten everything, robots may know to be void.
+    #[test]
+    fn an_access_point_that_has_begun_again_may_count_from_before_and_one_period_too_many() {
+        let ends = MissionEvent::TaskEnded { task: 0 };
+        let mut terms = terms(&[Task { lasts: Some(10), ..Task::at([3.0, 3.0]) }]);
+        terms.miss_access_point();
+        let mut enter = |step, event| terms.enter(&event, step).expect("it may be so");
+        enter(5, MissionEvent::TaskServiced { task: 0, robot: 0 });
+        enter(9, MissionEvent::TaskReannounced { task: 0, gone: vec![0] });
+        enter(14, ends.clone());
+        enter(15, ends);
+    }
+
+    #[test]
+    fn a_task_is_announced_before_it_is_serviced_and_closed_once() {
+        let mut terms = terms(&[Task { lasts: Some(10), ..Task::at([3.0, 3.0]) }; 2]);
+        let services = MissionEvent::TaskServiced { task: 1, robot: 4 };
+        let found = complaint(&mut terms, services, 3);
+        assert_eq!(found, "robot 4 services task 1, and it has not been announced");
+        let mut terms = serviced_again();
+        terms
+            .enter(&MissionEvent::TaskServiced { task: 0, robot: 1 }, 12)
+            .expect("it is announced");
+        terms.enter(&MissionEvent::TaskEnded { task: 0 }, 22).expect("it is in time");
+        let found = complaint(&mut terms, MissionEvent::TaskEnded { task: 0 }, 23);
+        assert_eq!(found, "task 0 ends, and it is over already");
     }
 }
