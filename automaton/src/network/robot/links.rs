@@ -20,12 +20,21 @@ pub struct TreeLink {
 }
 
 impl Robot {
-    /// Its parent in the tree: the node that its duty names or, while that is not
-    /// heard, the one before.
+    /// Its parent in the tree: the node that its duty names or, while that is not heard, the one before, unless
+    /// that tells that it holds another post.
     pub(super) fn tree_parent(&self) -> Option<NodeId> {
         self.named_parent()
             .filter(|&parent| parent != self.id)
-            .or_else(|| self.parent.filter(|&parent| self.neighbour(parent).is_some()))
+            .or_else(|| self.parent.filter(|&parent| self.may_be_parent(parent)))
+    }
+
+    /// Whether this node, which was its parent, may still be, as far as it is heard.
+    fn may_be_parent(&self, node: NodeId) -> bool {
+        let Some(known) = self.neighbour(node) else { return false };
+        let anchor = self.anchor();
+        known
+            .post()
+            .is_none_or(|post| self.duty.post().is_none() || anchor == Some(Anchor::Post(post.id)))
     }
 
     /// Stores its parent.
