@@ -46,6 +46,8 @@ vocabulary! {
         Reached = "reached",
         /// The task is serviced.
         Serviced = "serviced",
+        /// Others go on with the task that this robot has reached: it says again that the task is serviced.
+        Repeated = "repeated",
         /// It learns that its task has been announced again, and goes on without it.
         Overtaken = "overtaken",
         /// It learns of the announcement by which the others go.
@@ -70,6 +72,7 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(0, Phase::Idle, MissionStep::Ended, Phase::Ended),
     step(0, Phase::Idle, MissionStep::Announced, Phase::LeaderElection),
     step(0, Phase::Idle, MissionStep::Informed, Phase::Idle),
+    step(0, Phase::Idle, MissionStep::Repeated, Phase::Idle),
     step(0, Phase::Idle, MissionStep::Called, Phase::RecruitElection),
     step(0, Phase::Idle, MissionStep::PathHeard, Phase::PathAgreement),
     step(0, Phase::Idle, MissionStep::Resumed, Phase::Advance),

@@ -145,4 +145,9 @@ pub mod mission {
     pub fn serviced() -> Guard {
         disengaged("serviced", proposition("service_announced"))
     }
+
+    /// The newest notice has superseded that of the service, which was issued at the same time.
+    pub fn repeated() -> Guard {
+        disengaged("repeated", proposition("service_unheard"))
+    }
 }

@@ -237,6 +237,7 @@ impl Robot {
             bulletin,
             epoch,
             announced,
+            accomplished,
             election,
             bid,
             waited_rounds,
@@ -327,6 +328,8 @@ impl Robot {
             arrival: _,
             resting_places: _,
         } = self;
+        let pursued = announced.as_ref().map(|&(id, _)| id);
+        let has_reached = pursued.is_some() && *accomplished == pursued;
         let waited = match self.counts_rounds() {
             true => (*waited_rounds).min(2 * self.longest_wait() + 1),
             false => 0,
@@ -337,7 +340,7 @@ impl Robot {
             (
                 (id, position, still_periods, &**duty, posts_made, &**mission, unused_periods),
                 (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
-                ((bulletin, epoch, announced), election, bid, waited, route),
+                ((bulletin, epoch, announced, has_reached), election, bid, waited, route),
                 (agreement, team, stretched, self.longest_wait(), followed_post, closed, silences),
             )
         )

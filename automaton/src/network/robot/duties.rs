@@ -224,27 +224,26 @@ impl Robot {
                 || self.is_superseded())
     }
 
-    /// The post that a robot on its way along Σ takes next, and where that is: the one ahead or, where its
-    /// task is announced again before all of its subgroup have arrived, the one that it left.
+    /// The post that a robot on its way along Σ takes next, and where that is: the one ahead or, where Σ is given
+    /// up before all of its subgroup have arrived, the one that it left.
     ///
     /// The robot behind takes the post that this one left only if this one has reported that it has
     /// arrived. Until then it goes back to it, as links are made for robots at their posts; from then on it
     /// may not.
     pub(super) fn coming_station(&self) -> Option<Station> {
         let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
-        if !self.is_superseded() {
+        if !self.is_superseded() && !self.takes_step(MissionStep::Serviced) {
             return self.next_hop().map(|hop| self.station_at(hop));
         }
         let hops = &self.mission.path()?.hops;
         let active = self.active_subgroup();
         let is_taken = left.is_some() && active.is_none_or(|active| active.first == place);
-        let leads_on = active.is_some_and(|active| active.places().contains(&(place + 1)));
         match self.has_reported(place) {
             false if !is_taken => hops.get(place).map(|hop| match hop.post.is_redundant() {
                 true => self.station_here(self.detached_if_far(hop.post)),
                 false => Station { post: hop.post, reference: hop.place.reference },
             }),
-            true if leads_on && self.has_reported(place + 1) => {
+            true if self.has_reported(place + 1) || self.has_given_up(place + 1) => {
                 hops.get(place + 1).map(|hop| self.station_at(hop))
             }
             _ => Some(self.station_here(self.new_post())),

@@ -93,6 +93,8 @@ facts! {
         resumed,
         /// The newest notice says that the task is serviced.
         service_announced,
+        /// The newest notice is of those who go on with the task that this robot has reached.
+        service_unheard,
         /// The newest notice says that the mission has ended.
         end_announced,
         /// The newest notice follows from an announcement that it has not received, of another epoch.
@@ -331,6 +333,11 @@ impl Robot {
             Notice::Ended { .. } => facts.end_announced = true,
             Notice::Task(_) if election != Some(id) => facts.announced = true,
             _ if is_overtaken => facts.overtaken = true,
+            Notice::Call { .. } | Notice::Path(_) | Notice::Advance { .. }
+                if self.has_reached_pursued_task() =>
+            {
+                facts.service_unheard = true;
+            }
             _ if self.newer_announcement().is_some() => facts.announcement_heard = true,
             Notice::Call { .. } if election != Some(id) => facts.called = true,
             Notice::Path(_) if path != Some(id) => facts.path_announced = true,
@@ -338,6 +345,12 @@ impl Robot {
             Notice::Serviced { .. } => facts.service_announced = true,
             _ => {}
         }
+    }
+
+    /// Whether it has reached its task by the announcement that it goes by, and has said so.
+    fn has_reached_pursued_task(&self) -> bool {
+        let pursued = self.announced.as_ref().map(|&(id, _)| id);
+        self.phase() == Phase::Idle && pursued.is_some() && self.accomplished == pursued
     }
 
     /// Whether the token of every robot of the roster is known. A robot that has joined since the task

@@ -40,6 +40,8 @@ pub enum MissionEffect {
     Issue(Notice),
     /// It goes by this announcement.
     Learn(Announced),
+    /// It has reached the task of the announcement that it goes by.
+    Accomplish,
     /// It has forgotten what became of the election by the announcement that it goes by.
     Forgotten,
     /// It takes part in this election, with its own bid, from the way to the caller that it knows.
@@ -82,6 +84,9 @@ impl Holds<Mission> for Robot {
                     self.target = Some(self.site.place_to_service(task, self.position));
                     self.announced = Some(announced);
                     self.forgetful = Arc::default();
+                }
+                MissionEffect::Accomplish => {
+                    self.accomplished = self.announced.as_ref().map(|&(id, _)| id);
                 }
                 MissionEffect::Forgotten => self.forgetful = Arc::new(IdSet::singleton(self.id)),
                 MissionEffect::Elect(election, bid, route) => {
@@ -225,6 +230,7 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         "path_announced",
         "resumed",
         "service_announced",
+        "service_unheard",
         "end_announced",
         "overtaken",
         "announcement_heard",
@@ -256,6 +262,12 @@ pub fn mission_automaton() -> Result<MissionAutomaton, BuildError> {
         .carried_out(serviced::<RecruitElection>())
         .carried_out(serviced::<PathAgreement>())
         .carried_out(serviced::<Shift>())
+        .carried_out(Transfer::where_known(
+            Step::Repeated,
+            guards::repeated(),
+            "announce the service again",
+            team::announce_service_again,
+        ))
         .carried_out(informed::<Idle>())
         .carried_out(informed::<LeaderElection>())
         .carried_out(informed::<Advance>())

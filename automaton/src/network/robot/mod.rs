@@ -209,6 +209,8 @@ pub struct Robot {
     /// The epoch of the notices that it goes by.
     epoch: u32,
     announced: Option<Announced>,
+    /// The announcement by which it has reached its task.
+    accomplished: Option<NoticeId>,
     /// The robots that have elected by this announcement and restarted since.
     forgetful: Arc<IdSet>,
     /// The point of 𝒲_f nearest to the task announced, where the leader goes.
@@ -333,6 +335,7 @@ impl Robot {
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             epoch: 0,
             announced: None,
+            accomplished: None,
             forgetful: Arc::default(),
             target: None,
             election: None,

@@ -37,8 +37,24 @@ const SPENT: f64 = 0.1;
 pub(super) fn announce_service(_: &Advance, robot: &Robot, effects: &mut Effects) -> Option<Idle> {
     let task = robot.current_task()?;
     let event = MissionEvent::TaskServiced { task, robot: robot.id };
-    effects.extend([MissionEffect::Report(event), MissionEffect::Issue(Notice::Serviced { task })]);
+    let notice = Notice::Serviced { task };
+    effects.extend([
+        MissionEffect::Report(event),
+        MissionEffect::Issue(notice),
+        MissionEffect::Accomplish,
+    ]);
     Some(Idle)
+}
+
+/// Another notice was issued at the same time as that of the service, and has superseded it.
+pub(super) fn announce_service_again(
+    idle: &Idle,
+    robot: &Robot,
+    effects: &mut Effects,
+) -> Option<Idle> {
+    let task = robot.current_task()?;
+    effects.push(MissionEffect::Issue(Notice::Serviced { task }));
+    Some(*idle)
 }
 
 /// The task is serviced: the robot waits for the next one.

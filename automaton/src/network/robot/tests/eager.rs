@@ -1,6 +1,6 @@
 //! Recruits that are called for ahead of a standstill, and what the primary team does meanwhile.
 
-use pleach_discrete::network::{Election, Phase};
+use pleach_discrete::network::{Agreement, Election, Phase};
 
 use super::super::super::duty::{Hop, PathPlace};
 use super::super::super::mission::RecruitElection;
@@ -188,6 +188,10 @@ fn a_robot_on_its_way_takes_the_post_ahead_whatever_follows_the_advance() {
         let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
         robot.mission = Current::new(Mission::Shift(shift));
         robot.duty = Current::new(Duty::Shifting(Shifting { place: 0, left: None }));
+        let mut agreement = Agreement::new(robot.notice_id());
+        agreement.arrive(0);
+        agreement.give_up(1);
+        robot.agreement = Some(agreement);
         robot.is_told(notice);
         let phase = next_phase(&mut robot);
         (phase, robot.duty.post().map(|post| post.id))

@@ -192,7 +192,8 @@ fn a_path_that_is_given_up_leaves_each_robot_a_post_of_its_own() {
     assert_eq!(coming(1, Some(1), &[], 1), None, "its subgroup has arrived");
     assert_eq!(coming(0, None, &[0, 1], 0), Some(1));
     assert_eq!(coming(0, None, &[0], 0), None, "the robot ahead may come back");
-    assert_eq!(coming(2, Some(2), &[2, 3], 0), None, "the post ahead is of another subgroup");
+    assert_eq!(coming(2, Some(2), &[2], 0), None, "the robot at the end has not given its post up");
+    assert_eq!(coming(2, Some(2), &[2, 3], 0), Some(3), "it has left it");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The primary team: its order, its targets, and what it knows when it gets no farther (Sec. V-A).
 
-use pleach_discrete::network::Activity;
+use pleach_discrete::network::{Activity, Phase};
 
 use super::super::super::beacon::TeamReport;
 use super::super::super::roll::{Absent, Wreck};
@@ -213,10 +213,13 @@ fn a_parent_that_is_not_heard_is_the_one_before() {
     robot.hears(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
     robot.remember_parent();
     assert_eq!(robot.tree_parent(), Some(1));
-    robot.holds(redundant(0, 12));
-    assert_eq!(robot.tree_parent(), Some(1), "nobody holds post 12");
+    let leaves = Duty::Shifting(Shifting { place: 1, left: Some(PostId(11)) });
+    robot.hears(Beacon { duty: Some(leaves), ..beacon(1, east(0.5), fixed(11, 13), &[]) });
+    assert_eq!(robot.tree_parent(), Some(1), "nobody holds post 11, and it is under way");
+    robot.hears(beacon(1, east(0.5), redundant(31, 13), &[]));
+    assert_eq!(robot.tree_parent(), None, "it has begun again, and holds another post");
     robot.neighbours.clear();
-    assert_eq!(robot.tree_parent(), None, "the former parent is not heard either");
+    assert_eq!(robot.tree_parent(), None, "it is not heard");
     robot.holds(Post { parent: Some(Anchor::Access(0)), ..redundant(0, 0) });
     assert_eq!(robot.tree_parent(), Some(ROBOTS));
 }
@@ -255,4 +258,23 @@ fn only_the_newcomer_is_on_its_way_to_the_robot_that_it_joined() {
     assert!(is_pending(30, Some(primary(29, None, 13))), "that one is not attached to it");
     assert!(!is_pending(30, Some(primary(29, None, 30))));
     assert!(!is_pending(40, None), "another robot is on its way");
+}
+
+/// p₁ called for a recruit when the leader reached its task, and its notice is the newer one.
+#[test]
+fn a_service_that_has_been_superseded_is_announced_again() {
+    let told = |has_reached: bool, notice: Notice| {
+        let mut robot = robot();
+        robot.knows_task(east(3.0));
+        robot.accomplished = has_reached.then_some(robot.notice_id());
+        robot.is_told(notice);
+        robot.measures();
+        let jumps = robot.jump_mission().expect("its guards have values");
+        (jumps, robot.phase(), matches!(*robot.notice(), Notice::Serviced { task: 0 }))
+    };
+    let call = || Notice::Call { caller: 1, releases_leader: false };
+    assert_eq!(told(true, call()), (true, Phase::Idle, true));
+    assert_eq!(told(true, Notice::Advance { joined: None }), (true, Phase::Idle, true));
+    assert_eq!(told(false, call()), (true, Phase::RecruitElection, false));
+    assert_eq!(told(true, Notice::Serviced { task: 0 }), (false, Phase::Idle, true));
 }
