@@ -4,11 +4,15 @@
 //! robots then stands for them: going up the tree each is attached to the next, going down each is
 //! attached to the one before, and the break points at both ends hold the chain.
 
-use pleach_discrete::network::{Anchor, NodeId, PostId};
+use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
 use super::super::duty::{Duty, Shifting};
 use super::Robot;
 use super::hearing::Neighbour;
+
+/// Control periods within which both robots of an exchange are heard with their new posts, while some messages
+/// get through.
+const PATIENCE_WITH_EXCHANGES: u32 = 3;
 
 /// A link of the tree, as one of its ends sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,21 +24,22 @@ pub struct TreeLink {
 }
 
 impl Robot {
-    /// Its parent in the tree: the node that its duty names or, while that is not heard, the one before, unless
-    /// that tells that it holds another post.
+    /// Its parent in the tree: the node that its duty names or, while that is not heard, the one before.
     pub(super) fn tree_parent(&self) -> Option<NodeId> {
         self.named_parent()
             .filter(|&parent| parent != self.id)
             .or_else(|| self.parent.filter(|&parent| self.may_be_parent(parent)))
     }
 
-    /// Whether this node, which was its parent, may still be, as far as it is heard.
+    /// Whether this node, which was its parent, may still be. One that has given its post in an exchange tells so
+    /// before the other one is heard with it; one that has begun again holds another post for good.
     fn may_be_parent(&self, node: NodeId) -> bool {
         let Some(known) = self.neighbour(node) else { return false };
-        let anchor = self.anchor();
-        known
-            .post()
-            .is_none_or(|post| self.duty.post().is_none() || anchor == Some(Anchor::Post(post.id)))
+        let is_under_way = self.duty.post().is_none();
+        let holds_anchor = |post: &Post| self.anchor() == Some(Anchor::Post(post.id));
+        is_under_way
+            || known.post().is_none_or(holds_anchor)
+            || self.orphaned_periods <= PATIENCE_WITH_EXCHANGES
     }
 
     /// Stores its parent.
