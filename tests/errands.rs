@@ -4,6 +4,7 @@
 use crate::missions::{Mission, Period, run, shipped, valid};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Strategy, Task};
+use pleach::automaton::network::{Crash, Trouble};
 use pleach::automaton::node::Weather;
 use pleach::discrete::network::Role;
 use pleach::discrete::network::activity::may_follow;
@@ -109,6 +110,21 @@ fn so_it_goes_where_messages_are_lost() {
         assert!(summary.tasks().iter().all(|task| task.closed.is_some()), "{loss}, seed {seed}");
         assert!(summary.serviced() >= 2, "{loss}, seed {seed}");
     }
+}
+
+/// p₁ calls for a recruit in the very round in which the leader reaches the task, and its notice is the newer one.
+#[test]
+fn a_task_that_is_serviced_is_pursued_no_longer() {
+    let scenario = valid(shipped("errands"));
+    let stops = |time: f64, back: Option<f64>| {
+        let crash = Crash { time, inputs: 0, back };
+        Trouble { crash: Some(crash), ..Trouble::default() }
+    };
+    let weather = Weather { loss: 0.3, ..Weather::default() };
+    let troubles = vec![(5, stops(150.0, Some(170.0))), (7, stops(300.0, None))];
+    let storm = Storm { seed: 0, weather, troubles };
+    let end = run_in_storm(&scenario, &storm, &mut []).unwrap().end;
+    assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
 }
 
 /// Whatever else fails, nothing is broken that no fault may break.

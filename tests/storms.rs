@@ -128,14 +128,48 @@ fn storms_in_which_one_rule_decides_break_no_promise() {
     assert!(broken.is_empty(), "{broken:#?}");
 }
 
-/// Σ has left the tree for a link that may be built: the robots on both sides are break points, and one whose task
-/// is announced again on its way does not go back to a post that is out of reach of its parent.
+/// The same where recruits are called for ahead of a standstill.
 #[test]
 fn storms_in_which_recruits_are_called_ahead_break_no_promise() {
-    let (scenario, storm) = mission_of_turn(20_963, Kind::Radio, 503_124);
-    let scenario = strategies::following(Some(Strategy::Eager), scenario);
-    let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
-    assert_eq!(verdict.violations, []);
+    let kept = [
+        // Σ has left the tree for a link that may be built: the robots on both sides are break points, and one whose
+        // task is announced again on its way does not go back to a post that is out of reach of its parent.
+        (Kind::Radio, 20_963, 503_124),
+        // Robots that are cut off when others begin are known to start nearby.
+        (Kind::Everything, 25_222, 605_351),
+        (Kind::Everything, 25_998, 623_975),
+        // An access point that begins again suspends those that it has not heard.
+        (Kind::AccessPoint, 25_906, 621_766),
+    ];
+    for (kind, turn, seed) in kept {
+        let (scenario, storm) = mission_of_turn(turn, kind, seed);
+        let scenario = strategies::following(Some(Strategy::Eager), scenario);
+        let verdict = ride(&scenario, &storm, PERIODS).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{seed}");
+    }
+}
+
+/// It begins again with a post of its own before others miss it. Those that were attached to its former post do
+/// not hold it back.
+#[test]
+fn a_robot_that_begins_again_soon_holds_nobody_up() {
+    let stops = [
+        ("study-2", 9, 150.0),
+        ("corridor", 8, 60.0),
+        ("corridor", 8, 200.0),
+        ("discs", 4, 60.0),
+        ("office", 10, 200.0),
+        ("study-1", 11, 330.0),
+    ];
+    for (name, robot, time) in stops {
+        let crash = Crash { time, inputs: 0, back: Some(time + 2.0) };
+        let troubles = vec![(robot, Trouble { crash: Some(crash), ..Trouble::default() })];
+        let storm = Storm { troubles, ..Storm::default() };
+        let verdict = ride(&shipped(name), &storm, 2_000).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{name}");
+        let end = verdict.end.expect("it ends in time");
+        assert_eq!(end.outcome, Outcome::Serviced, "{name}: {}", end.reason);
+    }
 }
 
 /// Control periods begin with the first clock that is due: missions take as long as with clocks that agree.
