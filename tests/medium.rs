@@ -112,7 +112,16 @@ fn without_the_last_robot(period: &Period) -> Period {
             renumber(parent);
         }
     }
-    Period { snapshot, events }
+    uncounted(&Period { snapshot, events })
+}
+
+/// Without the numbers of messages: that a robot is missed, and where it starts, is told once more.
+fn uncounted(period: &Period) -> Period {
+    let mut period = period.clone();
+    for robot in &mut period.snapshot.robots {
+        (robot.sent, robot.heard) = (0, 0);
+    }
+    period
 }
 
 #[test]
@@ -135,7 +144,7 @@ fn assert_unchanged_by_hermit(rate: f64) {
     for (period, alone) in periods.iter().zip(&alone.periods) {
         let (hermit, others) = period.snapshot.positions.split_last().unwrap();
         assert!(others.iter().all(|other| (other - hermit).norm() > range));
-        assert_eq!(&without_the_last_robot(period), alone);
+        assert_eq!(without_the_last_robot(period), uncounted(alone));
     }
     assert_eq!(periods.len(), alone.periods.len());
     assert_eq!(end, Some(alone.end));

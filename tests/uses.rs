@@ -48,7 +48,7 @@ pub const FOR_USERS: &str = "";
 /// By file. Of an item that is used in several ways, harnesses are about the first.
 pub const USES: &[Use] = &[
     ("by", "automaton/src/network/order.rs", USER, "Order::by(self.passed, &self.tasks)"),
-    ("locate", ROLL, ROBOT_ABSENCE, "absent.locate(&mut self.wrecks, seen)"),
+    ("locate", ROLL, ROBOT_ABSENCE, "absent.locate(&mut self.wrecks, seen,"),
     (
         "lets_move",
         ROLL,

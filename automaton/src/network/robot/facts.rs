@@ -4,7 +4,7 @@
 //! mission automata know events only.
 
 use pleach_continuous::network::motion::FEASIBILITY_TOLERANCE;
-use pleach_discrete::network::{Activity, MissionStep, Phase, Post};
+use pleach_discrete::network::{Activity, MissionStep, NoticeId, Phase, Post};
 
 use super::super::beacon::Notice;
 use super::super::duty::{AwaitingRelease, Duty, Waiting};
@@ -347,10 +347,13 @@ impl Robot {
         }
     }
 
-    /// Whether it has reached its task by the announcement that it goes by, and has said so.
+    /// Whether it has reached its task by the announcement that it goes by, as others do, and has said so.
     fn has_reached_pursued_task(&self) -> bool {
         let pursued = self.announced.as_ref().map(|&(id, _)| id);
-        self.phase() == Phase::Idle && pursued.is_some() && self.accomplished == pursued
+        let is_latest = |id: NoticeId| id.epoch() == self.notice_id().epoch();
+        self.phase() == Phase::Idle
+            && self.accomplished == pursued
+            && pursued.is_some_and(is_latest)
     }
 
     /// Whether the token of every robot of the roster is known. A robot that has joined since the task

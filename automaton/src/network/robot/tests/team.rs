@@ -279,4 +279,10 @@ fn a_service_that_has_been_superseded_is_announced_again() {
     assert_eq!(told(true, Notice::Advance { joined: None }), (true, Phase::Idle, true));
     assert_eq!(told(false, call()), (true, Phase::RecruitElection, false));
     assert_eq!(told(true, Notice::Serviced { task: 0 }), (false, Phase::Idle, true));
+    let mut robot = robot();
+    robot.knows_task(east(3.0));
+    robot.accomplished = Some(robot.notice_id());
+    robot.bulletin = robot.bulletin.superseding(ROBOTS, Shared::new(Notice::Quiet));
+    robot.is_told(call());
+    assert!(!robot.facts_now().service_unheard, "the task has been announced again since");
 }
