@@ -60,8 +60,8 @@ pub const fn last_break_point(places: usize, releases_leader: bool) -> usize {
 ///
 /// The paper names junctions and leaves. A robot is one in effect if it services a task, if
 /// it has a tree neighbour off Σ, if Σ leaves the tree just before or behind it, to cross an access
-/// point or from one branch to another, or if it is the last that Σ relieves; and b₁ = s₁. A crossing is thus
-/// walked by one robot alone, which is attached off Σ: two in a chain would hold each other back.
+/// point or from one branch to another, or if it is the last that Σ relieves; and b₁ = s₁. What is no link of the
+/// tree is thus walked by one robot alone: two in a chain would hold each other back.
 pub const fn is_break_point(place: usize, last: usize, ties: Ties, at_crossing: bool) -> bool {
     place == 0
         || place == last

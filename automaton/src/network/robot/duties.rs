@@ -232,7 +232,8 @@ impl Robot {
     /// may not.
     pub(super) fn coming_station(&self) -> Option<Station> {
         let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
-        if !self.is_superseded() && !self.takes_step(MissionStep::Serviced) {
+        let is_given_up = self.is_superseded() || self.takes_step(MissionStep::Serviced);
+        if !is_given_up {
             return self.next_hop().map(|hop| self.station_at(hop));
         }
         let hops = &self.mission.path()?.hops;

@@ -3,7 +3,7 @@
 use super::*;
 use crate::{Event, Location};
 
-/// Loops over the rows are unwound as often.
+/// The bounds of `unwind` below: more than there are rows.
 const _: () = assert!(DUTIES.rows().len() < 128);
 
 /// One of `values`: any of them.
