@@ -2,7 +2,6 @@
 //!
 //! No robot reads any of this.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
@@ -284,8 +283,11 @@ impl Overview<'_> {
     }
 
     fn closed(&self) -> Vec<usize> {
-        let known = self.robots.iter().flat_map(|robot| robot.closed.iter());
-        known.collect::<BTreeSet<usize>>().into_iter().collect()
+        let mut closed = IdSet::new();
+        for robot in self.robots {
+            closed.merge(&robot.closed);
+        }
+        closed.iter().collect()
     }
 
     fn posts(&self) -> Vec<PostView> {

@@ -97,7 +97,7 @@ impl<P> Path<P> {
         let (Some(hop), Some(next)) = (self.hops.get(place), self.hops.get(place + 1)) else {
             return false;
         };
-        let is_link = hop.post.is_child_of(next.post.id) || next.post.is_child_of(hop.post.id);
+        let is_link = self.descends(place) || hop.post.is_child_of(next.post.id);
         !is_link || !hop.crossing.is_empty()
     }
 

@@ -53,7 +53,7 @@ without_data!(Present, Suspended, Gone, Returning);
 #[derive(Clone, Debug)]
 pub struct Attendee {
     standing: Current<Standing>,
-    /// Whether it has ever been attached here.
+    /// Whether it has ever been attached to an access point, as far as this one knows.
     known: bool,
     /// Control periods since it was heard of, or since the access point began.
     silence: u32,
@@ -150,11 +150,6 @@ impl Attendee {
         self.silence = 0;
     }
 
-    /// Whether it has ever been attached to an access point, as far as this one knows.
-    pub(super) fn is_known(&self) -> bool {
-        self.known
-    }
-
     /// Whether it may not have begun yet: it has never been attached, for a short time.
     pub(super) fn may_begin(&self) -> bool {
         !self.known && self.age < PATIENCE && self.standing.location() == Attendance::Present
@@ -178,8 +173,8 @@ impl Attendee {
 
     /// Whether it does not take part any more, and may in a while.
     pub(super) fn may_return(&self) -> bool {
-        let is_away = matches!(*self.standing, Standing::Suspended(_) | Standing::Returning(_));
-        self.known && is_away
+        let standing = self.standing.location();
+        self.known && matches!(standing, Attendance::Suspended | Attendance::Returning)
     }
 
     /// Whether it is gone.
@@ -297,7 +292,7 @@ impl AccessPoint {
     /// The robots that it has heard of and that do not take part.
     pub(super) fn absent_robots(&self) -> impl Iterator<Item = NodeId> {
         let attendees = self.attendees.iter().enumerate();
-        let is_absent = |it: &Attendee| it.is_known() && !it.takes_part();
+        let is_absent = |it: &Attendee| it.known && !it.takes_part();
         attendees.filter(move |(_, attendee)| is_absent(attendee)).map(|(robot, _)| robot)
     }
 

@@ -237,7 +237,7 @@ impl Robot {
             bulletin,
             epoch,
             announced,
-            accomplished,
+            accomplished: _, // told, as far as it decides anything
             election,
             bid,
             waited_rounds,
@@ -328,8 +328,7 @@ impl Robot {
             arrival: _,
             resting_places: _,
         } = self;
-        let pursued = announced.as_ref().map(|&(id, _)| id);
-        let has_reached = pursued.is_some() && *accomplished == pursued;
+        let has_reached = self.has_reached_task();
         let waited = match self.counts_rounds() {
             true => (*waited_rounds).min(2 * self.longest_wait() + 1),
             false => 0,

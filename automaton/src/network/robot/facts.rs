@@ -347,13 +347,18 @@ impl Robot {
         }
     }
 
-    /// Whether it has reached its task by the announcement that it goes by, as others do, and has said so.
-    fn has_reached_pursued_task(&self) -> bool {
+    /// Whether it has reached its task by the announcement that it goes by.
+    pub(super) fn has_reached_task(&self) -> bool {
         let pursued = self.announced.as_ref().map(|&(id, _)| id);
+        pursued.is_some() && self.accomplished == pursued
+    }
+
+    /// Whether it has reached the task that others pursue, and has said so.
+    fn has_reached_pursued_task(&self) -> bool {
         let is_latest = |id: NoticeId| id.epoch() == self.notice_id().epoch();
         self.phase() == Phase::Idle
-            && self.accomplished == pursued
-            && pursued.is_some_and(is_latest)
+            && self.has_reached_task()
+            && self.accomplished.is_some_and(is_latest)
     }
 
     /// Whether the token of every robot of the roster is known. A robot that has joined since the task

@@ -247,8 +247,8 @@ impl Robot {
     }
 
     /// Whether the robot may leave its place in this control period: it takes part, knows who does not, is where
-    /// others allow for it if they do not hear it any more, and has heard in this period where each robot is that was near
-    /// when it was heard last, or could have come near since, but those that are gone.
+    /// others allow for it if they do not hear it any more, and has heard in this period where each robot is
+    /// that was near when it was heard last, or could have come near since, but those that are gone.
     ///
     /// If one of two robots that could meet moves, it so knows where the other is. If both move, each
     /// keeps to its own side of the line between them (17); if one stays, its place lies on its own
