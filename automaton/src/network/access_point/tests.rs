@@ -130,6 +130,27 @@ fn robots_are_suspended_until_they_are_heard_by_an_access_point_that_begins_agai
     }
 }
 
+/// No roll that is valid may let a robot move that others take for gone: it stays gone for as long when it is heard.
+#[test]
+fn who_is_gone_stays_gone_when_an_access_point_begins_again() {
+    let mut point = access_point();
+    let gone = Absent { gone: [1].into_iter().collect(), ..Absent::default() };
+    let called = Roll { called: 40, absent: Arc::new(gone) };
+    point.hear(40, &called, &Arc::new(beacon(0, HERE)));
+    let mut standing = Vec::new();
+    for period in 41..44 {
+        point.period = period;
+        point.call_roll().expect("guards have values");
+        let absent = &point.roll.absent;
+        standing.push((absent.gone.contains(1), absent.suspended.contains(1)));
+        if period == 42 {
+            point.hear(period, &Roll::default(), &Arc::new(beacon(1, HERE)));
+            point.survey_robots();
+        }
+    }
+    assert_eq!(standing, [(true, false), (true, false), (false, true)], "then it may return");
+}
+
 /// It is heard, and cannot be attached yet.
 #[test]
 fn a_robot_that_knows_no_way_is_not_missed_while_it_is_heard() {
