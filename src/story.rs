@@ -196,10 +196,17 @@ fn telling(event: &MissionEvent) -> (String, Option<Caption>) {
             ),
             None,
         ),
-        MissionEvent::TaskReannounced { task, gone } => (
-            format!("robots {gone:?} do not answer any more: task {task} is announced again"),
-            None,
-        ),
+        MissionEvent::TaskReannounced { task, gone, joined } => {
+            let gone = match gone[..] {
+                [] => String::new(),
+                _ => format!("robots {gone:?} do not answer any more: "),
+            };
+            let joined = match joined[..] {
+                [] => String::new(),
+                _ => format!(", and robots {joined:?} take part from now on"),
+            };
+            (format!("{gone}task {task} is announced again{joined}"), None)
+        }
         MissionEvent::TaskEnded { task } => {
             (format!("task {task} has ended: it was serviced for as long as it was to be"), None)
         }

@@ -120,7 +120,8 @@ pub fn every_event() -> Vec<MissionEvent> {
         MissionEvent::DutiesExchanged { mover: 1, parked: 2 },
         MissionEvent::Reattached { robot: 3, parent: 7 },
         MissionEvent::ElectionRepeated { task: 0 },
-        MissionEvent::TaskReannounced { task: 0, gone: vec![2, 3] },
+        MissionEvent::TaskReannounced { task: 0, gone: vec![2, 3], joined: vec![] },
+        MissionEvent::TaskReannounced { task: 0, gone: vec![], joined: vec![1] },
         MissionEvent::TaskEnded { task: 0 },
         MissionEvent::TaskWithdrawn { task: 1 },
     ];

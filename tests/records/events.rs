@@ -292,7 +292,7 @@ pub const FALSE: &[Change] = changes! {
     };
     "false: a task is announced again to those that are left" => |record, site| {
         if let Some(task) = record.at(site).task {
-            tell(record, site, Event::TaskReannounced { task, gone: vec![0] });
+            tell(record, site, Event::TaskReannounced { task, gone: vec![0], joined: vec![] });
         }
     };
 };

@@ -181,9 +181,14 @@ pub enum MissionEvent {
     Reattached { robot: usize, parent: usize },
     /// The leader's tree has no recruit left; the election is repeated among the others.
     ElectionRepeated { task: usize },
-    /// Robots are gone that take part in the elections for the task, or serviced it: it is announced again
-    /// to those that are left.
-    TaskReannounced { task: usize, gone: Vec<usize> },
+    /// Robots are gone that take part in the elections for the task, or serviced it, or others have joined
+    /// since and those before have given up: it is announced again to those that take part now.
+    TaskReannounced {
+        task: usize,
+        gone: Vec<usize>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        joined: Vec<usize>,
+    },
     /// A task has been serviced for as long as it was to be: its robot is free.
     TaskEnded { task: usize },
     /// The user has taken a task back: the robots that service or pursue it are free.

@@ -30,7 +30,8 @@ vocabulary! {
         EndHeard = "end heard",
         /// It announces the next task.
         Announces = "announces",
-        /// A robot that takes part in its elections is gone: it announces the task again.
+        /// A robot that takes part in its elections is gone, or one has joined since and the others have given
+        /// up: it announces the task again.
         AnnouncesAgain = "announces again",
         /// The user has taken back the task that is pursued.
         Withdraws = "withdraws",
@@ -127,6 +128,9 @@ pub const SERVICE: TransitionTable<Service, ServiceEvent> = {
         row(3, Done, On::Announces, Electing),
         row(3, Done, On::NoRobot, Over),
         row(3, Done, On::AllServiced, Over),
+        row(0, Over, On::ElectionHeard, Electing),
+        row(0, Over, On::ProgressHeard, UnderWay),
+        row(0, Over, On::ServiceHeard, Done),
     ])
 };
 
@@ -180,8 +184,11 @@ mod tests {
     }
 
     #[test]
-    fn the_end_is_final() {
-        assert!(SERVICE.rows().iter().all(|row| row.source != Service::Over));
+    fn an_access_point_takes_up_what_follows_an_end_and_a_user_goes_by_the_first() {
+        let follows = SERVICE.enabled(Service::Over).all(|row| {
+            SERVICE.next(Service::Gathering, row.event) == Ok(row.target) && row.priority == 0
+        });
+        assert!(follows && SERVICE.next(Service::Over, ServiceEvent::EndHeard).is_err());
         for end in [Request::Informed, Request::Deserted] {
             let mut rows = REQUESTS.rows().iter().filter(|row| row.source == end);
             assert!(rows.all(|row| row.target == end));

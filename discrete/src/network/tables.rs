@@ -125,6 +125,8 @@ pub const MISSION: TransitionTable<Phase, MissionStep> = TransitionTable::new(&[
     step(1, Phase::Shift, MissionStep::SubgroupArrived, Phase::Shift),
     step(1, Phase::Shift, MissionStep::Relieved, Phase::Advance),
     step(3, Phase::Shift, MissionStep::Blocked, Phase::Ended),
+    step(0, Phase::Ended, MissionStep::Announced, Phase::LeaderElection),
+    step(0, Phase::Ended, MissionStep::Overtaken, Phase::Idle),
 ]);
 
 #[cfg(test)]
@@ -155,7 +157,8 @@ mod tests {
     }
 
     #[test]
-    fn the_end_is_final() {
-        assert_eq!(MISSION.enabled(Phase::Ended).count(), 0);
+    fn only_another_announcement_takes_up_a_mission_that_has_ended() {
+        let steps: Vec<MissionStep> = MISSION.enabled(Phase::Ended).map(|row| row.event).collect();
+        assert_eq!(steps, [MissionStep::Announced, MissionStep::Overtaken]);
     }
 }

@@ -21,9 +21,19 @@ pub fn service_heard() -> Guard {
     named("service heard", proposition("hears_service"))
 }
 
-/// It hears that the mission has ended.
+/// It hears that the mission has ended, and has nobody else to ask.
 pub fn end_heard() -> Guard {
-    named("end heard", proposition("hears_end"))
+    named("end heard", proposition("hears_end") & !(asks_in_vain() & may_ask_others()))
+}
+
+/// It hears that those who pursue its task have given it up.
+fn asks_in_vain() -> Predicate {
+    pursues() & proposition("hears_failure")
+}
+
+/// Other robots than those that take part in the elections for its task do so now, or may in a while.
+fn may_ask_others() -> Predicate {
+    proposition("misses_elector") | proposition("has_newcomers") | proposition("may_return")
 }
 
 /// Robots have gathered: their roster has not changed for a while.
@@ -73,9 +83,10 @@ pub fn nothing_to_service() -> Guard {
     first("all serviced", nothing_left())
 }
 
-/// There is no other task.
+/// There is no other task, and those that are serviced have been heard of: no robot that services one has
+/// stopped meanwhile.
 pub fn all_serviced() -> Guard {
-    next("all serviced", nothing_left())
+    next("all serviced", nothing_left() & !proposition("awaits_services"))
 }
 
 /// No task is to be announced, none will be asked for, and none is serviced that is to end.
@@ -95,10 +106,14 @@ pub fn closes() -> Guard {
     next("closes", proposition("task_over"))
 }
 
-/// The leader election is over, and no robot has bid.
+/// The leader election is over, no robot has bid, and there is nobody else to ask.
 pub fn no_bid() -> Guard {
-    let over = proposition("asked") & proposition("election_over") & !proposition("misses_elector");
-    named("no bid", over & proposition("leader_wanted") & !proposition("has_bid"))
+    named("no bid", lacks_bid() & !may_ask_others())
+}
+
+fn lacks_bid() -> Predicate {
+    let over = pursues() & proposition("election_over");
+    over & proposition("leader_wanted") & !proposition("has_bid")
 }
 
 /// The election lasts longer than news can take, all who take part have been heard of, and so it has
@@ -108,16 +123,19 @@ pub fn no_answer() -> Guard {
     named("no answer", pursues() & goes_unanswered() & each_time)
 }
 
-/// A robot that takes part in the elections for the task is gone, and others are left.
+/// A robot that takes part in the elections for the task is gone, and others are left; or they have given the
+/// task up, and others take part now.
 pub fn announces_again() -> Guard {
-    named("announces again", pursues() & proposition("misses_elector") & has_robots())
+    let again = proposition("misses_elector") | asks_in_vain() & proposition("has_newcomers");
+    named("announces again", pursues() & again & has_robots())
 }
 
-/// So it is while the election is under way, or that goes unanswered.
+/// So it is while the election is under way, or nobody bids in it that could go, or it goes unanswered.
 pub fn elects_again() -> Guard {
     let another_time = variable("unanswered").less_than(variable("attempts"));
     let unanswered = goes_unanswered() & another_time;
-    let again = proposition("misses_elector") | unanswered;
+    let others = (asks_in_vain() | lacks_bid()) & proposition("has_newcomers");
+    let again = proposition("misses_elector") | others | unanswered;
     named("announces again", pursues() & again & has_robots())
 }
 

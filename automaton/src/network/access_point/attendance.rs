@@ -256,10 +256,19 @@ impl AccessPoint {
     /// to give a robot up.
     pub(super) fn abandoned_task(&self) -> Option<usize> {
         let patience = self.patience_with_tasks();
-        let is_abandoned = |&(task, known): &(usize, &TaskRecord)| {
-            known.silence > patience && !self.closed.contains(task)
-        };
-        self.known_tasks.iter().enumerate().find(is_abandoned).map(|(task, _)| task)
+        let mut services = self.services();
+        services.find(|(_, known)| known.silence > patience).map(|(task, _)| task)
+    }
+
+    /// Whether a task that has been serviced, and is not over, has not been heard of in this control period.
+    pub(super) fn awaits_services(&self) -> bool {
+        self.services().any(|(_, known)| known.silence > 0)
+    }
+
+    /// The tasks that have been serviced and are not over.
+    fn services(&self) -> impl Iterator<Item = (usize, TaskRecord)> {
+        let known = self.known_tasks.iter().copied().enumerate();
+        known.filter(|&(task, _)| !self.closed.contains(task))
     }
 
     pub(super) fn patience_with_tasks(&self) -> u32 {

@@ -61,6 +61,8 @@ crate::observed! {
         expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
         /// A robot of which it has never heard may not have begun yet.
         awaits_robots: point.awaits_robots(),
+        /// A robot takes part that does not in the elections for its task: it has joined, or come back, since.
+        has_newcomers: point.newcomers().next().is_some(),
         /// A robot that does not take part is not gone yet, or is coming back.
         may_return: point.attendees.iter().any(Attendee::may_return),
         /// The newest notice received announces a task, or calls for a recruit.
@@ -74,12 +76,19 @@ crate::observed! {
         ),
         /// The newest notice received says that the mission has ended.
         hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
+        /// So it says, and that a task is given up.
+        hears_failure: matches!(
+            point.heard_notice(),
+            Some(Notice::Ended { outcome, .. }) if *outcome != Outcome::Serviced
+        ),
         /// The user has asked it for tasks.
         asked: point.requested.is_some(),
         /// There is a task after the one announced last.
         task_left: point.next_task().is_some(),
         /// A task is still to come, or to end: the user will ask for it, or it is serviced for a time.
         task_to_come: point.expects_task(),
+        /// A task that is serviced has not been heard of in this control period.
+        awaits_services: point.awaits_services(),
         /// A task that is not pursued is over, and not closed yet.
         task_over: point.next_closing().is_some(),
         /// The task that is pursued has been taken back.
@@ -166,6 +175,16 @@ impl AccessPoint {
 
     fn misses_elector(&self) -> bool {
         self.electors().any(Attendee::is_gone) || self.forgetful_electors().next().is_some()
+    }
+
+    /// The robots that take part, and not in the elections for its task.
+    fn newcomers(&self) -> impl Iterator<Item = NodeId> {
+        let pursued = self.announced();
+        let elects = move |robot| pursued.is_none_or(|it| it.roster.contains(robot));
+        let attendees = self.attendees.iter().enumerate();
+        attendees
+            .filter(move |&(robot, attendee)| attendee.takes_part() && !elects(robot))
+            .map(|(robot, _)| robot)
     }
 
     /// The robots that take part in the elections for its task, and have restarted since it was announced.
@@ -298,6 +317,7 @@ macro_rules! knows {
 
 knows! {
     Gathering: |_| None,
+    Over: |_| None,
     Electing: |place: &Electing| place.announced.clone(),
     UnderWay: |place: &UnderWay| place.announced.clone(),
     Done: |_| None,
@@ -347,7 +367,9 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
     let task = point.next_task()?;
     let notice = point.task_notice(task)?;
     effects.push(ServiceEffect::Report(match point.abandoned_task() {
-        Some(task) => MissionEvent::TaskReannounced { task, gone: point.gone() },
+        Some(task) => {
+            MissionEvent::TaskReannounced { task, gone: point.gone(), joined: Vec::new() }
+        }
         None => MissionEvent::TaskAnnounced { task },
     }));
     effects.push(point.issue(notice));
@@ -379,12 +401,13 @@ fn announce_again<A: Knows>(
 ) -> Option<Electing> {
     let Announced { task, roster, unanswered } = place.announced()?;
     let notice = point.task_notice(task)?;
-    let is_unanswered = !point.misses_elector();
+    let joined: Vec<NodeId> = point.newcomers().collect();
+    let is_unanswered = !point.misses_elector() && joined.is_empty();
     let gone = match is_unanswered {
         true => point.unanswering(&roster),
         false => point.gone().into_iter().chain(point.forgetful_electors()).collect(),
     };
-    effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone }));
+    effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone, joined }));
     effects.push(ServiceEffect::Supersede(notice));
     Some(point.electing(task, unanswered + u32::from(is_unanswered)))
 }
@@ -513,14 +536,17 @@ pub fn service_automaton() -> Result<ServiceAutomaton, BuildError> {
         .carried_out(election_heard::<Electing>())
         .carried_out(election_heard::<UnderWay>())
         .carried_out(election_heard::<Done>())
+        .carried_out(election_heard::<Over>())
         .carried_out(progress_heard::<Gathering>())
         .carried_out(progress_heard::<Electing>())
         .carried_out(progress_heard::<UnderWay>())
         .carried_out(progress_heard::<Done>())
+        .carried_out(progress_heard::<Over>())
         .carried_out(service_heard::<Gathering>())
         .carried_out(service_heard::<Electing>())
         .carried_out(service_heard::<UnderWay>())
         .carried_out(service_heard::<Done>())
+        .carried_out(service_heard::<Over>())
         .carried_out(end_heard::<Gathering>())
         .carried_out(end_heard::<Electing>())
         .carried_out(end_heard::<UnderWay>())

@@ -108,11 +108,7 @@ pub(super) fn end_unaided(
             ]);
         } else {
             let (outcome, reason) = robot.why_unaided(task, phase.standstill);
-            effects.push(MissionEffect::Issue(Notice::Ended {
-                outcome,
-                reason: reason.into(),
-                task: Some(task),
-            }));
+            effects.push(MissionEffect::Issue(robot.gives_up(Some(task), outcome, reason)));
         }
     }
     phase.clone()

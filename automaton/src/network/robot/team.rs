@@ -64,7 +64,7 @@ pub(super) fn wait<A>(_: &A, _: &Robot, _: &mut Effects) -> Idle {
 
 /// The active team cannot go on, and a recruit would not help.
 pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
-    let mut reason = match (robot.duty.place(), robot.team.and_then(|team| team.slack)) {
+    let reason = match (robot.duty.place(), robot.team.and_then(|team| team.slack)) {
         (Some(_), _) => format!(
             "robot {} cannot get to the place of Σ that it should take: something stands in its way",
             robot.id
@@ -78,17 +78,26 @@ pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
             robot.id
         ),
     };
-    let stopped: Vec<NodeId> = robot.wrecks.iter().map(|wreck| wreck.robot).collect();
-    if !stopped.is_empty() {
-        reason.push_str(&format!("; robots {stopped:?} have stopped, or nobody hears them"));
-    }
-    let (outcome, task) = (Outcome::Blocked, robot.current_task());
-    let end = Notice::Ended { outcome, reason: reason.into(), task };
+    let end = robot.gives_up(robot.current_task(), Outcome::Blocked, reason);
     effects.extend([MissionEffect::Stay, MissionEffect::Issue(end)]);
     Ended
 }
 
 impl Robot {
+    /// The notice by which this robot gives up the mission, with the robots that are missed beside the reason.
+    pub(super) fn gives_up(
+        &self,
+        task: Option<usize>,
+        outcome: Outcome,
+        mut reason: String,
+    ) -> Notice {
+        let stopped: Vec<NodeId> = self.wrecks.iter().map(|wreck| wreck.robot).collect();
+        if !stopped.is_empty() {
+            reason.push_str(&format!("; robots {stopped:?} have stopped, or nobody hears them"));
+        }
+        Notice::Ended { outcome, reason: reason.into(), task }
+    }
+
     /// Whether this robot is the elected leader, released or not.
     pub(super) fn leads(&self) -> bool {
         self.duty.leads()

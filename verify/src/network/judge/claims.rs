@@ -33,9 +33,9 @@ pub fn names_exist(event: &MissionEvent, limits: &Limits) -> Result<(), Dispute>
         | MissionEvent::ElectionRepeated { task: it } => {
             task = Some(*it);
         }
-        MissionEvent::TaskReannounced { task: it, gone } => {
+        MissionEvent::TaskReannounced { task: it, gone, joined } => {
             task = Some(*it);
-            robots.extend(gone);
+            robots.extend(gone.iter().chain(joined));
         }
         MissionEvent::LeaderElected { task: it, robot, .. }
         | MissionEvent::TaskServiced { task: it, robot } => {

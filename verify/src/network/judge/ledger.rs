@@ -153,7 +153,7 @@ impl Ledger {
                 self.elect(*task, *robot, *conflict)
             }
             MissionEvent::ElectionRepeated { task } => self.repeat_election(*task),
-            MissionEvent::TaskReannounced { task, gone } => self.reannounce(*task, gone),
+            MissionEvent::TaskReannounced { task, gone, .. } => self.reannounce(*task, gone),
             MissionEvent::Stationary { robot, .. } => self.call(*robot, "is stationary"),
             MissionEvent::RecruitCalled { robot } => {
                 self.call(*robot, "is too short")?;

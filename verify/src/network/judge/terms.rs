@@ -224,7 +224,7 @@ mod tests {
         let mut enter = |step, event| terms.enter(&event, step).expect("it is in time");
         enter(2, MissionEvent::TaskAnnounced { task: 0 });
         enter(5, MissionEvent::TaskServiced { task: 0, robot: 0 });
-        enter(9, MissionEvent::TaskReannounced { task: 0, gone: vec![0] });
+        enter(9, MissionEvent::TaskReannounced { task: 0, gone: vec![0], joined: vec![] });
         terms
     }
 
@@ -252,7 +252,7 @@ mod tests {
         terms.miss_access_point();
         let mut enter = |step, event| terms.enter(&event, step).expect("it may be so");
         enter(5, MissionEvent::TaskServiced { task: 0, robot: 0 });
-        enter(9, MissionEvent::TaskReannounced { task: 0, gone: vec![0] });
+        enter(9, MissionEvent::TaskReannounced { task: 0, gone: vec![0], joined: vec![] });
         enter(14, ends.clone());
         enter(15, ends);
     }
