@@ -75,7 +75,7 @@ const PROOFS: &[Proof] = &[
     ("a_lease_ends_at_the_sender_first", "renewed", RESERVATION),
     ("a_phase_answers_every_step_in_one_way", "MISSION", TABLES),
     ("every_phase_is_reached", "MISSION", TABLES),
-    ("the_end_is_heard_and_final", "MISSION", TABLES),
+    ("the_end_is_heard_and_only_an_announcement_follows", "MISSION", TABLES),
     ("crossings_alternate", "between_margins", CROSSING),
     ("a_switch_keeps_its_state_within_the_band_only", "update", CROSSING),
     ("logic_keeps_margins_and_verdicts_together", "and", VERDICT),

@@ -5,7 +5,7 @@
 use crate::floor_plans::in_storms::{DURATION, mission_of_turn, shipped};
 use crate::floor_plans::strategies;
 use crate::stressed::stressed_scenarios;
-use pleach::automaton::network::record::Outcome;
+use pleach::automaton::network::record::{MissionEvent, Outcome};
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::automaton::network::{Crash, Trouble};
 use pleach::verify::network::Property;
@@ -169,6 +169,21 @@ fn a_robot_that_begins_again_soon_holds_nobody_up() {
         assert_eq!(verdict.violations, [], "{name}");
         let end = verdict.end.expect("it ends in time");
         assert_eq!(end.outcome, Outcome::Serviced, "{name}: {}", end.reason);
+    }
+}
+
+/// They were cut off when the task was announced; those that it was announced to cannot service it alone.
+#[test]
+fn robots_that_come_back_are_asked_before_a_task_is_given_up() {
+    for seed in [1, 2] {
+        let scenario = shipped("office");
+        let storm = draw(Kind::Partition, seed, &scenario, 815.0);
+        let verdict = ride(&scenario, &storm, 2_000).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{seed}");
+        let end = verdict.end.unwrap_or_else(|| panic!("{seed}: it does not end"));
+        assert_eq!(end.outcome, Outcome::Serviced, "{seed}: {}", end.reason);
+        let helps = |event: &MissionEvent| matches!(event, MissionEvent::TaskReannounced { joined, .. } if !joined.is_empty());
+        assert!(verdict.events.iter().any(|(_, event)| helps(event)), "{seed}");
     }
 }
 

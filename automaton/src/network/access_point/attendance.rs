@@ -131,7 +131,7 @@ impl Attendee {
     }
 
     /// A robot that does not take part by the roll that an access point hears when it begins.
-    fn absent(standing: Standing, validity: u32) -> Self {
+    pub(super) fn absent(standing: Standing, validity: u32) -> Self {
         Attendee {
             standing: Current::new(standing),
             known: true,

@@ -7,18 +7,18 @@ use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{NodeId, Post, PostId};
 use serde_json::json;
 
-use super::super::beacon::{Beacon, Notice};
+use super::super::beacon::{Beacon, Bulletin, Notice};
 use super::super::duty::{Duty, Held, Path, Standby, Station};
 use super::super::message::Message;
 use super::super::order::Order;
-use super::super::record::MissionEvent;
+use super::super::record::{MissionEvent, Outcome};
 use super::super::roll::{Absent, Roll, Wreck};
 use super::super::scenario::{Scenario, Task};
 use super::super::service::{Announced, Done, Serving, UnderWay};
 use super::super::shared::Shared;
 use super::super::site::Site;
 use super::AccessPoint;
-use super::attendance::TaskRecord;
+use super::attendance::{Attendee, Gone, Present, Returning, Standing, Suspended, TaskRecord};
 use crate::located::{Current, Place as _};
 use crate::node::{Input, Node as _, Outputs};
 
@@ -274,4 +274,92 @@ fn a_task_that_is_pursued_is_given_up_when_no_secondary_team_is_on_its_way() {
     assert_eq!(taken_back(advance(), 2), []);
     assert_eq!(taken_back(advance(), 3), [MissionEvent::TaskWithdrawn { task: 0 }]);
     assert_eq!(taken_back(path, 3), []);
+}
+
+// ---- Who is asked before a mission ends ------------------------------------------------------
+
+impl AccessPoint {
+    /// It hears that the primary team has given task 0 up.
+    fn hears_failure(&mut self) -> Vec<MissionEvent> {
+        let (outcome, reason) = (Outcome::InsufficientRobots, "too few".into());
+        let end = Notice::Ended { outcome, reason, task: Some(0) };
+        let bulletin = self.bulletin.next(1, Shared::new(end));
+        self.heard = vec![Arc::new(Beacon { bulletin, ..beacon(1, HERE) })];
+        self.hear_notices().expect("guards have values");
+        std::mem::take(&mut self.log)
+    }
+
+    /// Robots 0 and 1 pursue task 0, and this robot stands like this.
+    fn pursues_without(&mut self, robot: NodeId, standing: Standing) {
+        self.is_asked(&[Task::at(THERE)], 1);
+        self.pursues(0, Notice::Advance { joined: None });
+        let validity = self.site.roll_validity();
+        self.begin_attendance();
+        self.attendees.iter_mut().for_each(Attendee::attend);
+        self.attendees[robot] = Attendee::absent(standing, validity);
+        self.survey_robots();
+    }
+
+    /// The only robot of the elections for its task is robot 0.
+    fn knows_one_elector(&mut self) {
+        let roster = Arc::new([0].into_iter().collect());
+        let announced = Some(Announced { task: 0, roster, unanswered: 0 });
+        self.service = Current::new(Serving::UnderWay(UnderWay { announced }));
+    }
+}
+
+#[test]
+fn robots_that_have_joined_are_asked_before_a_task_is_given_up() {
+    let mut point = access_point();
+    point.pursues_without(1, Standing::Present(Present));
+    point.knows_one_elector();
+    assert_eq!(point.serves_user(), [], "the others need no help");
+    let again = MissionEvent::TaskReannounced { task: 0, gone: vec![], joined: vec![1] };
+    assert_eq!(point.hears_failure(), [again]);
+    let Notice::Task(announcement) = point.notice() else { panic!("{:?}", point.notice()) };
+    assert_eq!(announcement.roster.iter().collect::<Vec<_>>(), [0, 1]);
+    let end = Notice::Ended { outcome: Outcome::Blocked, reason: "".into(), task: Some(0) };
+    let late = Bulletin::first(Shared::new(Notice::Quiet)).next(1, Shared::new(end));
+    assert!(point.bulletin.id().is_newer_than(late.id()), "the end is superseded");
+}
+
+#[test]
+fn a_mission_does_not_end_while_a_robot_may_come_back() {
+    let becomes_of = |standing: Standing| {
+        let mut point = access_point();
+        point.pursues_without(1, standing);
+        point.knows_one_elector();
+        point.hears_failure();
+        point.service.location()
+    };
+    use pleach_discrete::network::Service;
+    assert_eq!(becomes_of(Standing::Returning(Returning)), Service::UnderWay);
+    assert_eq!(becomes_of(Standing::Suspended(Suspended)), Service::UnderWay);
+    assert_eq!(becomes_of(Standing::Gone(Gone)), Service::Over);
+}
+
+#[test]
+fn what_follows_an_end_is_taken_up() {
+    let mut point = access_point();
+    point.pursues_without(1, Standing::Gone(Gone));
+    point.knows_one_elector();
+    point.hears_failure();
+    assert!(matches!(point.notice(), Notice::Ended { .. }));
+    let bulletin = point.bulletin.superseding(5, Shared::new(Notice::Advance { joined: None }));
+    point.heard = vec![Arc::new(Beacon { bulletin, ..beacon(1, HERE) })];
+    point.hear_notices().expect("guards have values");
+    assert_eq!(*point.notice(), Notice::Advance { joined: None });
+}
+
+/// Its robot may have stopped meanwhile.
+#[test]
+fn a_mission_is_over_when_every_task_that_is_serviced_has_been_heard_of() {
+    let ends = |silence: u32| {
+        let mut point = access_point();
+        point.is_asked(&[Task::at(THERE)], 1);
+        point.has_heard_of(0, 30, silence);
+        point.serve().expect("guards have values");
+        matches!(point.notice(), Notice::Ended { .. })
+    };
+    assert!(ends(0) && !ends(1));
 }

@@ -219,9 +219,16 @@ impl Robot {
         self.next_hop().is_some()
             && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
                 || self.takes_step(MissionStep::Resumed)
-                || self.takes_step(MissionStep::Serviced)
                 || self.takes_step(MissionStep::Called)
-                || self.is_superseded())
+                || self.gives_path_up())
+    }
+
+    /// Whether Σ is given up before all of its subgroups have arrived: the task is announced again or serviced,
+    /// or the mission ends.
+    fn gives_path_up(&self) -> bool {
+        use MissionStep::{Blocked, Ended, Serviced};
+        self.is_superseded()
+            || [Blocked, Ended, Serviced].into_iter().any(|step| self.takes_step(step))
     }
 
     /// The post that a robot on its way along Σ takes next, and where that is: the one ahead or, where Σ is given
@@ -232,8 +239,7 @@ impl Robot {
     /// may not.
     pub(super) fn coming_station(&self) -> Option<Station> {
         let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
-        let is_given_up = self.is_superseded() || self.takes_step(MissionStep::Serviced);
-        if !is_given_up {
+        if !self.gives_path_up() {
             return self.next_hop().map(|hop| self.station_at(hop));
         }
         let hops = &self.mission.path()?.hops;

@@ -3,6 +3,7 @@
 use pleach_discrete::network::{Activity, IdSet, Phase};
 
 use super::super::super::duty::{Bound, Leaf};
+use super::super::super::record::Outcome;
 use super::super::duties::Label;
 use super::*;
 use crate::located::Place as _;
@@ -55,4 +56,37 @@ fn a_team_whose_task_is_taken_back_is_dissolved() {
     assert!(robot.jump_mission().expect("guards have values"));
     assert_eq!((robot.phase(), robot.duty.location()), (Phase::Idle, Activity::Relay));
     assert!(!robot.jump_mission().expect("guards have values"), "it has nothing else to give up");
+}
+
+// ---- After an end ----------------------------------------------------------------------------
+
+/// Robot 0 has given the mission up, and receives this notice.
+fn after_the_end(notice: Notice) -> Phase {
+    let mut robot = robot();
+    robot.holds(redundant(0, 0));
+    let end = Notice::Ended { outcome: Outcome::Blocked, reason: "".into(), task: Some(0) };
+    robot.bulletin = robot.bulletin.next(1, Shared::new(end));
+    robot.measures();
+    assert!(robot.jump_mission().expect("guards have values"));
+    assert_eq!(robot.phase(), Phase::Ended);
+    robot.bulletin = robot.bulletin.superseding(ROBOTS, Shared::new(notice));
+    robot.measures();
+    robot.jump_mission().expect("guards have values");
+    robot.phase()
+}
+
+/// Others have joined, and the task is announced again. Who has missed that takes part like any other.
+#[test]
+fn a_robot_takes_up_a_mission_that_goes_on() {
+    let announcement = Announcement {
+        task: 0,
+        position: HERE,
+        before: Arc::from([]),
+        roster: Arc::new([0, 1].into_iter().collect()),
+        eligible: Arc::new([0].into_iter().collect()),
+    };
+    let announced = after_the_end(Notice::Task(Shared::new(announcement)));
+    assert_eq!(announced, Phase::LeaderElection);
+    let called = after_the_end(Notice::Call { caller: 1, releases_leader: false });
+    assert_eq!(called, Phase::Idle);
 }

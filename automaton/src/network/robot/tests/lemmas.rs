@@ -167,6 +167,7 @@ fn robots_take_posts_as_the_lemma_says() {
         let known = newest.clone();
         [known, next(task), next(advance), next(serviced), next(ended), overtaking]
     };
+    const ENDED: usize = 4;
     let mut taken: BTreeMap<&str, usize> = BTreeMap::new();
     for case in Case::all() {
         let Case { place, shifts, .. } = case;
@@ -186,6 +187,7 @@ fn robots_take_posts_as_the_lemma_says() {
             robot.jump_once().expect("its guards have values");
             let now = robot.duty.post().map(|post| post.id);
             let is_off = robot.duty.place().is_none();
+            assert!(kind != ENDED || is_off, "the end leaves nobody on Σ: {case:?}");
             let step = match now {
                 None => {
                     assert!(matches!(*robot.duty, Duty::Shifting(_)), "{case:?}");
