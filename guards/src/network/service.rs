@@ -120,7 +120,8 @@ fn lacks_bid() -> Predicate {
 /// been each time.
 pub fn no_answer() -> Guard {
     let each_time = variable("unanswered").at_least(variable("attempts"));
-    named("no answer", pursues() & goes_unanswered() & each_time)
+    let in_vain = goes_unanswered() & each_time & !proposition("hears_failure");
+    named("no answer", pursues() & in_vain)
 }
 
 /// A robot that takes part in the elections for the task is gone, and others are left; or they have given the
