@@ -51,6 +51,10 @@ const REASONS: &[([&str; 4], &str)] = &[
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
     (["service", "done", "no robot", ""], "the robots are all gone after a task"),
     (
+        ["service", "electing", "no answer", ""],
+        "a robot is heard, and answers none of the elections; a unit test of the access point takes it",
+    ),
+    (
         ["service", "", "closes", ""],
         "a task is over in the very rounds in which robots gather or elect",
     ),

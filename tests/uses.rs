@@ -34,6 +34,8 @@ const LINEAGE: &str = "discrete/src/network/lineage.rs";
 const OFFERS: &str = "discrete/src/network/offers.rs";
 const PATH: &str = "discrete/src/network/path.rs";
 const RESERVATION: &str = "discrete/src/network/reservation.rs";
+const SERVICE: &str = "automaton/src/network/access_point/service.rs";
+const SERVICE_GUARDS: &str = "guards/src/network/service.rs";
 const CROSSING: &str = "guards/src/crossing.rs";
 const VERDICT: &str = "guards/src/predicate/verdict.rs";
 const DUTY: &str = "verify/src/network/duty.rs";
@@ -192,12 +194,9 @@ pub const USES: &[Use] = &[
     ("discharged", "guards/src/network/duty.rs", ROBOT_DUTIES, "guards::discharged()"),
     ("foreseen", "guards/src/network/mod.rs", ROBOT_MISSION, "guards::foreseen()"),
     ("called_again", "guards/src/network/mod.rs", ROBOT_MISSION, "guards::called_again()"),
-    (
-        "withdraws",
-        "guards/src/network/service.rs",
-        "automaton/src/network/access_point/service.rs",
-        "guards::withdraws()",
-    ),
+    ("end_heard", SERVICE_GUARDS, SERVICE, "guards::end_heard()"),
+    ("all_serviced", SERVICE_GUARDS, SERVICE, "guards::all_serviced()"),
+    ("withdraws", SERVICE_GUARDS, SERVICE, "guards::withdraws()"),
     ("judge", VERDICT, "guards/src/predicate.rs", ".judge("),
     ("are_conserved", DUTY, PERIOD, "duty::are_conserved(&before, &kept)"),
     ("is_reachable", DUTY, PERIOD, "duty::is_reachable(relation, from, to)"),

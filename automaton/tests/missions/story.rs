@@ -34,11 +34,12 @@ fn tell(event: &MissionEvent) -> Option<String> {
         On::DutiesExchanged { mover, parked } => format!("{mover} and {parked} exchange"),
         On::Reattached { robot, parent } => format!("{robot} attaches to {parent}"),
         On::ElectionRepeated { task } => format!("others may lead to task {task}"),
-        On::TaskReannounced { task, gone, joined } if joined.is_empty() => {
-            format!("task {task} anew without {}", list(gone))
-        }
         On::TaskReannounced { task, gone, joined } => {
-            format!("task {task} anew without {} and with {}", list(gone), list(joined))
+            let change = |word: &str, robots: &[usize]| match robots {
+                [] => String::new(),
+                robots => format!(" {word} {}", list(robots)),
+            };
+            format!("task {task} anew{}{}", change("without", gone), change("with", joined))
         }
         On::RouteInfeasible { robot } => format!("{robot} is overloaded"),
         On::RoleChanged { robot, from, to } => format!("{robot}: {} to {}", from.name(), to.name()),

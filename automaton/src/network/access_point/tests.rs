@@ -14,7 +14,7 @@ use super::super::order::Order;
 use super::super::record::{MissionEvent, Outcome};
 use super::super::roll::{Absent, Roll, Wreck};
 use super::super::scenario::{Scenario, Task};
-use super::super::service::{Announced, Done, Serving, UnderWay};
+use super::super::service::{Announced, Done, Electing, Serving, UnderWay};
 use super::super::shared::Shared;
 use super::super::site::Site;
 use super::AccessPoint;
@@ -362,4 +362,28 @@ fn a_mission_is_over_when_every_task_that_is_serviced_has_been_heard_of() {
         matches!(point.notice(), Notice::Ended { .. })
     };
     assert!(ends(0) && !ends(1));
+}
+
+/// It is heard, and answers none of the elections.
+#[test]
+fn a_mission_ends_when_a_robot_does_not_answer() {
+    let becomes_of = |unanswered: u32| {
+        let mut point = access_point();
+        point.pursues_without(1, Standing::Present(Present));
+        let roster = Arc::new([0, 1].into_iter().collect());
+        let announced = Some(Announced { task: 0, roster, unanswered });
+        point.service = Current::new(Serving::Electing(Electing { announced }));
+        point.election_rounds = 1_000;
+        point.attendees.iter_mut().for_each(Attendee::attend);
+        let events = point.serves_user();
+        let reason = match point.notice() {
+            Notice::Ended { outcome: Outcome::Blocked, reason, .. } => Some(reason.to_string()),
+            _ => None,
+        };
+        (events, reason)
+    };
+    let again = MissionEvent::TaskReannounced { task: 0, gone: vec![0, 1], joined: vec![] };
+    assert_eq!(becomes_of(2), (vec![again], None));
+    let reason = "the election for task 0 cannot end: robots [0, 1] do not answer any more";
+    assert_eq!(becomes_of(3), (vec![], Some(reason.to_owned())));
 }
