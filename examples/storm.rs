@@ -11,8 +11,8 @@
 #[path = "../tests/floor_plans/mod.rs"]
 mod floor_plans;
 
-use clap::builder::PossibleValuesParser;
-use clap::{Parser, Subcommand};
+use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
+use clap::{Parser, Subcommand, value_parser};
 use floor_plans::in_storms::{SHIPPED, mission_in_storm, shipped};
 use floor_plans::strategies;
 use pleach::automaton::network::record::Outcome;
@@ -23,19 +23,35 @@ use pleach::verify::network::storm::{
 };
 use rayon::prelude::*;
 use std::error::Error;
+use std::fmt::Arguments;
+use std::io::{self, Write as _};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+
+/// Prints a line. A reader who has seen enough may close the pipe.
+macro_rules! say {
+    ($($text:tt)*) => {
+        say(format_args!($($text)*))
+    };
+}
+
+fn say(line: Arguments<'_>) {
+    if writeln!(io::stdout(), "{line}").is_err() {
+        std::process::exit(0);
+    }
+}
 
 /// Control periods after which a mission is given up.
 const MOST_PERIODS: usize = 3_000;
 
 #[derive(Parser)]
 #[command(about = "Runs missions in storms", args_conflicts_with_subcommands = true)]
-struct Arguments {
+struct CommandLine {
     #[command(subcommand)]
     command: Option<Command>,
     /// How many missions, of all kinds and on all plans in turn
-    #[arg(required = true)]
+    #[arg(required = true, value_parser = at_least_one())]
     missions: Option<u64>,
     /// The seed of the first
     #[arg(default_value_t = 0)]
@@ -65,10 +81,15 @@ enum Command {
     /// Prints what becomes of shipped scenarios under each kind of storm
     Table {
         /// Storms of each kind for each scenario
+        #[arg(value_parser = at_least_one())]
         seeds: u64,
         /// Only kinds with this in their name
         kind: Option<String>,
     },
+}
+
+fn at_least_one() -> RangedU64ValueParser {
+    value_parser!(u64).range(1..)
 }
 
 fn kind(name: &str) -> Result<Kind, String> {
@@ -80,7 +101,7 @@ fn kind(name: &str) -> Result<Kind, String> {
 }
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
-    let Arguments { command, missions, first, strategy } = Arguments::parse();
+    let CommandLine { command, missions, first, strategy } = CommandLine::parse();
     match command {
         Some(Command::One { scenario, kind, seed }) => one(&scenario, kind, seed)?,
         Some(Command::Seed { seed, strategy }) => {
@@ -109,11 +130,11 @@ fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
     for name in SHIPPED {
         let scenario = shipped(name);
         let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
-        println!("{name}: {} periods without faults", calm.periods);
+        say!("{name}: {} periods without faults", calm.periods);
         missions.push((scenario, calm.periods));
     }
-    println!("| storm | serviced | periods | separation | clearance | others |");
-    println!("| --- | --- | --- | --- | --- | --- |");
+    say!("| storm | serviced | periods | separation | clearance | others |");
+    say!("| --- | --- | --- | --- | --- | --- |");
     for &kind in Kind::ALL.iter().filter(|kind| only.is_none_or(|only| kind.name().contains(only)))
     {
         let (mut runs, mut serviced, mut longer) = (0, 0, 0.0_f64);
@@ -122,7 +143,7 @@ fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
             let scenario = match allowing_for(kind, scenario) {
                 Ok(scenario) => scenario,
                 Err(no_room) => {
-                    println!("{}: {no_room}", scenario.name);
+                    say!("{}: {no_room}", scenario.name);
                     continue;
                 }
             };
@@ -158,7 +179,7 @@ fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
             .filter(|(name, _)| !["separation", "clearance"].contains(&name.as_str()))
             .map(|(name, times)| format!("{name} {times}"))
             .collect();
-        println!(
+        say!(
             "| {} | {serviced} of {runs} | at most ×{longer:.2} | {} | {} | {} |",
             kind.name(),
             of("separation"),
@@ -174,13 +195,15 @@ fn report(scenario: &ValidScenario, seed: u64, verdict: &Verdict) {
     if !is_serviced(verdict) {
         let end = verdict.end.as_ref().map_or("time is up", |end| end.reason.as_str());
         let last = verdict.events.last().map(|(step, event)| (step, story::tell(event)));
-        println!(
+        say!(
             "  {} {seed}: k = {}, last motion {}, {end}; {last:?}",
-            scenario.name, verdict.periods, verdict.last_motion
+            scenario.name,
+            verdict.periods,
+            verdict.last_motion
         );
     }
     for violation in &verdict.violations {
-        println!("  {} {seed}: {violation}", scenario.name);
+        say!("  {} {seed}: {violation}", scenario.name);
     }
 }
 
@@ -200,10 +223,10 @@ fn tell_in_full(
     storm: &Storm,
     periods: usize,
 ) -> Result<(), Box<dyn Error>> {
-    println!("{} in {storm:#?}", scenario.name);
+    say!("{} in {storm:#?}", scenario.name);
     let verdict = ride(scenario, storm, periods)?;
     for (step, event) in &verdict.events {
-        println!("k = {step:<6} {}", story::tell(event));
+        say!("k = {step:<6} {}", story::tell(event));
     }
     report(scenario, seed, &verdict);
     if let Some(violation) = verdict.violations.first() {
@@ -212,9 +235,9 @@ fn tell_in_full(
             if snapshot.step + 6 < violation.step {
                 return;
             }
-            println!("k = {}", snapshot.step);
+            say!("k = {}", snapshot.step);
             for &robot in violation.robots.iter().filter(|&&r| r < snapshot.positions.len()) {
-                println!(
+                say!(
                     "  {robot} at {:?}, c = {:.6}, active {}",
                     snapshot.positions[robot],
                     snapshot.residuals[robot],
@@ -224,9 +247,11 @@ fn tell_in_full(
             for route in &snapshot.routes {
                 if concerned(route.from) || concerned(route.to) {
                     let flow = route.share * route.reliability;
-                    println!(
+                    say!(
                         "  {} -> {}: F {flow:.6} R {:.6}",
-                        route.from, route.to, route.reliability
+                        route.from,
+                        route.to,
+                        route.reliability
                     );
                 }
             }
@@ -245,15 +270,22 @@ fn count(broken: &mut Vec<(String, usize)>, name: &str) {
 /// Runs missions on all cores, and tells the first that breaks a promise.
 fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCode, Box<dyn Error>> {
     let start = Instant::now();
+    let last =
+        first.checked_add(missions).ok_or("the last mission would have no seed: begin earlier")?;
     let (mut serviced, mut broken) = (0, Vec::new());
-    let seeds: Vec<u64> = (first..first + missions).collect();
-    for batch in seeds.chunks(BATCH) {
-        let run = |&seed: &u64| -> Result<(u64, Verdict), String> {
-            let (scenario, storm) = mission(seed, strategy);
-            let verdict = ride(&scenario, &storm, MOST_PERIODS);
-            verdict.map(|verdict| (seed, verdict)).map_err(|error| format!("seed {seed}: {error}"))
-        };
-        for told in batch.par_iter().map(run).collect::<Vec<_>>() {
+    let done = AtomicU64::new(0);
+    let run = |seed: u64| -> Result<(u64, Verdict), String> {
+        let (scenario, storm) = mission(seed, strategy);
+        let verdict = ride(&scenario, &storm, MOST_PERIODS);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(STRIDE) || done == missions {
+            eprint!("\r{done} of {missions} missions");
+        }
+        verdict.map(|verdict| (seed, verdict)).map_err(|error| format!("seed {seed}: {error}"))
+    };
+    for begin in (first..last).step_by(BATCH) {
+        let batch = begin..last.min(begin.saturating_add(BATCH as u64));
+        for told in batch.into_par_iter().map(run).collect::<Vec<_>>() {
             let (seed, verdict) = told?;
             serviced += u64::from(is_serviced(&verdict));
             if !verdict.violations.is_empty() {
@@ -264,11 +296,9 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
                 broken.push((seed, verdict.violations[0].property.name()));
             }
         }
-        let done = batch.last().map_or(0, |last| last + 1 - first);
-        eprint!("\r{done} of {missions} missions, {} broke a promise", broken.len());
     }
     eprintln!();
-    println!(
+    say!(
         "{missions} missions in {:.0} s: {serviced} serviced, {} broke a promise {broken:?}",
         start.elapsed().as_secs_f64(),
         broken.len(),
@@ -276,8 +306,10 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
     Ok(if broken.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Missions that run side by side before progress is told.
-const BATCH: usize = 64;
+/// Missions after which it is told how many broke a promise so far.
+const BATCH: usize = 1024;
+/// Missions after which progress is told.
+const STRIDE: u64 = 64;
 
 /// Tells the smallest storm that breaks the same promise.
 fn tell(scenario: &ValidScenario, storm: &Storm, verdict: &Verdict) -> Result<(), Box<dyn Error>> {
@@ -291,12 +323,12 @@ fn tell(scenario: &ValidScenario, storm: &Storm, verdict: &Verdict) -> Result<()
     };
     let smallest = shrink(storm, fails);
     let verdict = ride(scenario, &smallest, periods)?;
-    println!("{} in {smallest:#?}", scenario.name);
+    say!("{} in {smallest:#?}", scenario.name);
     for (step, event) in &verdict.events {
-        println!("k = {step:<6} {}", story::tell(event));
+        say!("k = {step:<6} {}", story::tell(event));
     }
     for violation in &verdict.violations {
-        println!("{violation}");
+        say!("{violation}");
     }
     Ok(())
 }

@@ -88,6 +88,12 @@ fn a_robot_that_stops_is_a_body_and_nothing_else() {
         }
     }
     assert!(matches!(verdict(&lines), Verdict::Sound { .. }));
+    let mut creeps = lines;
+    for line in creeps.iter_mut().filter(|line| line["type"] == "step" && line["k"] == 45) {
+        line["position"][3][0] = json!(line["position"][3][0].as_f64().unwrap() + 1e-4);
+    }
+    let Verdict::Violated(violation) = verdict(&creeps) else { panic!("it is judged sound") };
+    assert_eq!(violation.property, Property::Standstill, "{violation}");
 }
 
 /// Whether a route or an edge of the tree begins or ends at robot 3.
@@ -103,7 +109,7 @@ fn last_step(lines: &mut [Value]) -> &mut Value {
     lines.iter_mut().rev().find(is_step).unwrap()
 }
 
-const SPOILS: [Spoil; 10] = [
+const SPOILS: [Spoil; 11] = [
     (
         "a robot leaps",
         |lines| {
@@ -147,6 +153,14 @@ const SPOILS: [Spoil; 10] = [
         |lines| {
             let event = lines.iter_mut().find(|line| line["event"] == "task_serviced").unwrap();
             event["robot"] = json!((event["robot"].as_u64().unwrap() + 1) % 6);
+        },
+        Property::Events,
+    ),
+    (
+        "a task is announced twice",
+        |lines| {
+            let at = lines.iter().position(|line| line["event"] == "task_announced").unwrap();
+            lines.insert(at, lines[at].clone());
         },
         Property::Events,
     ),

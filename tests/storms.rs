@@ -140,6 +140,8 @@ fn storms_in_which_recruits_are_called_ahead_break_no_promise() {
         (Kind::Everything, 25_998, 623_975),
         // An access point that begins again suspends those that it has not heard.
         (Kind::AccessPoint, 25_906, 621_766),
+        // Σ crosses an access point, and later passes a post that is attached to it: its robot is a break point.
+        (Kind::Everything, 50_476, 1_211_447),
     ];
     for (kind, turn, seed) in kept {
         let (scenario, storm) = mission_of_turn(turn, kind, seed);

@@ -15,7 +15,7 @@ pub struct FaultArguments {
     #[arg(long, value_name = "SHARE", default_value = "0")]
     pub loss: Share,
     /// The seed that decides which messages are lost
-    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "loss")]
     pub loss_seed: u64,
     /// Stop a robot in control period FROM: ROBOT@FROM for good, or ROBOT@FROM..TO until period TO, when
     /// it restarts and has forgotten everything; repeat the option for other robots, each of which stops once
@@ -98,15 +98,22 @@ impl FromStr for Stop {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("{text:?} names no stop: write ROBOT@FROM..TO, such as 3@40..60");
-        let number = |text: &str| text.parse().map_err(|_| wrong());
+        let wrong = || {
+            format!(
+                "{text:?} names no stop: write ROBOT@FROM, such as 3@40, or ROBOT@FROM..TO, such as 3@40..60"
+            )
+        };
+        let number = |text: &str| text.parse::<usize>().map_err(|_| wrong());
         let (robot, periods) = text.split_once('@').ok_or_else(wrong)?;
         let (from, to) = match periods.split_once("..") {
             Some((from, to)) => (number(from)?, Some(number(to)?)),
             None => (number(periods)?, None),
         };
         if to.is_some_and(|to| to <= from) {
-            return Err(format!("{text:?}: a robot restarts after it has stopped"));
+            return Err(format!(
+                "{text:?}: a robot restarts after it has stopped, so TO is at least {}",
+                from.saturating_add(1)
+            ));
         }
         Ok(Stop { robot: number(robot)?, from, to })
     }

@@ -46,7 +46,7 @@ pub struct Subgroup {
 pub struct Ties {
     /// It services a task.
     pub services_task: bool,
-    /// A neighbour in the tree, parent or child, is not on Σ.
+    /// A link to a neighbour in the tree, parent or child, is none of Σ.
     pub bears_others: bool,
 }
 
@@ -59,7 +59,7 @@ pub const fn last_break_point(places: usize, releases_leader: bool) -> usize {
 /// Whether the robot at `place` is a break point of a path whose last break point is `last`.
 ///
 /// The paper names junctions and leaves. A robot is one in effect if it services a task, if
-/// it has a tree neighbour off Σ, if Σ leaves the tree just before or behind it, to cross an access
+/// it has a link in the tree that is none of Σ, if Σ leaves the tree just before or behind it, to cross an access
 /// point or from one branch to another, or if it is the last that Σ relieves; and b₁ = s₁. What is no link of the
 /// tree is thus walked by one robot alone: two in a chain would hold each other back.
 pub const fn is_break_point(place: usize, last: usize, ties: Ties, at_crossing: bool) -> bool {
@@ -114,11 +114,17 @@ impl<P> Path<P> {
         }
     }
 
-    /// Whether `anchor` is on the path.
-    pub fn passes(&self, anchor: Anchor) -> bool {
-        match anchor {
-            Anchor::Post(post) => self.place_of(post).is_some(),
-            Anchor::Access(access) => self.hops.iter().any(|hop| hop.crossing.contains(&access)),
+    /// Whether the link between the post at `place` and `other` is one of the path: that is the post before or
+    /// behind, or an access point that the path crosses just there. One that it passes elsewhere is off it for
+    /// this post.
+    pub fn takes_link(&self, place: usize, other: Anchor) -> bool {
+        let before = place.checked_sub(1).and_then(|before| self.hops.get(before));
+        let [own, next] = [place, place + 1].map(|place| self.hops.get(place));
+        match other {
+            Anchor::Post(post) => before.into_iter().chain(next).any(|hop| hop.post.id == post),
+            Anchor::Access(access) => {
+                before.into_iter().chain(own).any(|hop| hop.crossing.contains(&access))
+            }
         }
     }
 }
@@ -199,8 +205,22 @@ mod tests {
         for place in 0..7 {
             let post = PostId(place as u32);
             assert_eq!(path.place_of(post), (place < 5).then_some(place));
-            assert_eq!(path.passes(Anchor::Post(post)), place < 5);
-            assert_eq!(path.passes(Anchor::Access(place)), place == 0);
+        }
+    }
+
+    /// The path crosses access point 0 between places 2 and 3. What is attached to that elsewhere, or to a post that
+    /// is not next to its own on the path, stays so by a link that is none of the path.
+    #[test]
+    fn a_path_takes_the_links_between_places_that_follow_each_other() {
+        let path = path(5, 2);
+        for place in 0..5 {
+            let takes = |other: Anchor| path.takes_link(place, other);
+            let posts = (0..7).filter(|&post| takes(Anchor::Post(PostId(post as u32))));
+            let next: Vec<usize> = (0..5usize).filter(|post| post.abs_diff(place) == 1).collect();
+            assert_eq!(posts.collect::<Vec<_>>(), next);
+            let access_points: Vec<usize> =
+                (0..2).filter(|&it| takes(Anchor::Access(it))).collect();
+            assert_eq!(access_points, if [2, 3].contains(&place) { vec![0] } else { vec![] });
         }
     }
 }

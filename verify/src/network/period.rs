@@ -179,6 +179,29 @@ pub fn standstill(period: &Period) -> Result<(), Violation> {
     Ok(())
 }
 
+/// Part of [`Property::Standstill`]: robots that do not run, or are not heard, are where they were.
+///
+/// # Errors
+///
+/// The first that is not.
+pub fn absent_stay(period: &Period) -> Result<(), Violation> {
+    let [before, after] = [period.before, period.after].map(|it| &it.absent);
+    let mut stay = before.iter().filter(|node| after.contains(node));
+    let moves = |node: &&usize| period.motions.get(**node).is_some_and(|it| it.from != it.to);
+    match stay.find(moves) {
+        None => Ok(()),
+        Some(&robot) => {
+            let length = period.motions[robot].length();
+            Err(period.start().violation(
+                Property::Standstill,
+                &[robot],
+                (length, 0.0),
+                format!("robot {robot} moves by {length:e} and is absent"),
+            ))
+        }
+    }
+}
+
 /// [`Property::Load`]; the largest load, for the summary.
 ///
 /// The flows are those of the routes when the period begins. The load at both ends bounds the

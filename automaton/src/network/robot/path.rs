@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use pleach_discrete::network::path::{Ties, subgroups};
-use pleach_discrete::network::{Agreement, NodeId, NoticeId, Post, PostId, PostKind, Subgroup};
+use pleach_discrete::network::{
+    Agreement, Anchor, NodeId, NoticeId, Post, PostId, PostKind, Subgroup,
+};
 
 use super::super::beacon::Notice;
 use super::super::duty::{Duty, Hop, Path, Shifting, Waiting};
@@ -71,21 +73,18 @@ impl Robot {
         {
             let ties = Ties {
                 services_task: station.post.task.is_some(),
-                bears_others: self.has_ties_off(path),
+                bears_others: self.has_ties_off(path, place),
             };
             agreement.vote(place, path.is_break_point(place, ties));
         }
         agreement
     }
 
-    /// Whether this robot has a neighbour in the tree that is not on the path.
-    fn has_ties_off(&self, path: &Path) -> bool {
-        let parent_off = self.anchor().is_some_and(|anchor| !path.passes(anchor));
-        let child_off = self
-            .children()
-            .filter_map(Neighbour::post)
-            .any(|post| path.place_of(post.id).is_none());
-        parent_off || child_off
+    /// Whether this robot, at `place` of the path, has a link in the tree that is none of the path.
+    fn has_ties_off(&self, path: &Path, place: usize) -> bool {
+        let children = self.children().filter_map(Neighbour::post);
+        let children = children.map(|post| Anchor::Post(post.id));
+        self.anchor().into_iter().chain(children).any(|other| !path.takes_link(place, other))
     }
 
     pub(super) fn break_points(&self) -> Option<Vec<usize>> {

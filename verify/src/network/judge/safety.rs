@@ -23,7 +23,8 @@ use crate::network::{instant, link};
 /// long as all nodes run, that not all of them are where a mission is given up. What nodes know of each other may
 /// differ, and is not compared.
 ///
-/// Nodes that do not run or are not heard ([`Snapshot::absent`]) are bodies, and nothing else.
+/// Nodes that do not run or are not heard ([`Snapshot::absent`]) are bodies that stay where they are, and
+/// nothing else.
 #[derive(Clone, Debug)]
 pub struct Safety {
     limits: Limits,
@@ -115,6 +116,7 @@ impl Safety {
         keep_smaller(&mut extremes.pair_distance, period::separation(&period, limits)?);
         keep_smaller(&mut extremes.clearance, period::clearance(&period, limits)?);
         period::step_length(&period, limits)?;
+        period::absent_stay(&period)?;
         keep_larger(&mut extremes.load, period::load(&period, limits)?);
         period::tree_range(&period, limits)
     }

@@ -49,7 +49,9 @@ impl Terms {
     pub(super) fn enter(&mut self, event: &MissionEvent, step: usize) -> Result<(), Dispute> {
         match *event {
             MissionEvent::TaskAnnounced { task } => {
-                self.announced.insert(task);
+                if !self.announced.insert(task) && !self.has_forgotten {
+                    return dispute(format!("task {task} is announced, and it has been before"));
+                }
                 self.last = Some(task);
                 let due = self.tasks[task].asked_for();
                 not_before(step, due, || format!("task {task} is announced"), "asked for")
@@ -258,8 +260,14 @@ mod tests {
     }
 
     #[test]
-    fn a_task_is_announced_before_it_is_serviced_and_closed_once() {
+    fn a_task_is_announced_once_and_before_it_is_serviced_and_closed_once() {
         let mut terms = terms(&[Task { lasts: Some(10), ..Task::at([3.0, 3.0]) }; 2]);
+        let announced = MissionEvent::TaskAnnounced { task: 0 };
+        let twice = complaint(&mut serviced_again(), announced.clone(), 10);
+        assert_eq!(twice, "task 0 is announced, and it has been before");
+        let mut forgetful = serviced_again();
+        forgetful.miss_access_point();
+        assert_eq!(forgetful.enter(&announced, 10), Ok(()), "it has begun again");
         let services = MissionEvent::TaskServiced { task: 1, robot: 4 };
         let found = complaint(&mut terms, services, 3);
         assert_eq!(found, "robot 4 services task 1, and it has not been announced");
