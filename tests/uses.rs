@@ -194,6 +194,7 @@ pub const USES: &[Use] = &[
     ("discharged", "guards/src/network/duty.rs", ROBOT_DUTIES, "guards::discharged()"),
     ("foreseen", "guards/src/network/mod.rs", ROBOT_MISSION, "guards::foreseen()"),
     ("called_again", "guards/src/network/mod.rs", ROBOT_MISSION, "guards::called_again()"),
+    ("takes_link", PATH, ROBOT_PATH, "path.takes_link(place, other)"),
     ("end_heard", SERVICE_GUARDS, SERVICE, "guards::end_heard()"),
     ("all_serviced", SERVICE_GUARDS, SERVICE, "guards::all_serviced()"),
     ("withdraws", SERVICE_GUARDS, SERVICE, "guards::withdraws()"),
