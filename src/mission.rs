@@ -240,8 +240,8 @@ impl<'a, 'w> Gallery<'a, 'w> {
         End { reason: reason.unwrap_or(end.reason), certificate, ..end }
     }
 
-    /// A mission that gets stuck while robots send all the time is stuck because of their links:
-    /// the reason names them.
+    /// A mission that gets stuck while robots send all the time may be stuck because of their links: the reason
+    /// names them, too.
     fn overload(&self, end: &End) -> Option<String> {
         let loads =
             self.saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
@@ -249,14 +249,12 @@ impl<'a, 'w> Gallery<'a, 'w> {
         if loads.is_empty() {
             return None;
         }
-        let loads = loads.join(", ");
-        let remedy = "lower the rates, place robots closer together or add some";
-        Some(match end.outcome {
-            Outcome::Blocked => format!(
-                "robots cannot go on because their links carry no more: the load is {loads}; {remedy}"
-            ),
-            _ => format!("{}; the load is {loads}, and links carry no more: {remedy}", end.reason),
-        })
+        Some(format!(
+            "{}; the load is {}, and links carry no more: lower the rates, place robots closer together or \
+             add some",
+            end.reason,
+            loads.join(", ")
+        ))
     }
 
     /// Where robots are too few wherever they stand, the reason says so.

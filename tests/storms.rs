@@ -189,6 +189,26 @@ fn robots_that_come_back_are_asked_before_a_task_is_given_up() {
     }
 }
 
+/// The robot in its way stops in the very period in which it is to exchange duties with the mover, or in the one
+/// before: the mover begins again, and the task is announced to all that are left.
+#[test]
+fn a_robot_whose_partner_stops_in_an_exchange_answers_again() {
+    for (name, robot, time) in [("corridor", 10, 52.0), ("corridor", 12, 111.0)] {
+        let crash = Crash { time, inputs: 0, back: None };
+        let troubles = vec![(robot, Trouble { crash: Some(crash), ..Trouble::default() })];
+        let storm = Storm { troubles, ..Storm::default() };
+        let verdict = ride(&shipped(name), &storm, 1_000).expect("nodes go on");
+        assert_eq!(verdict.violations, [], "{name}");
+        let end = verdict.end.expect("it ends in time");
+        // The one that has stopped stands in the only way.
+        assert!(
+            end.reason.contains("cannot reach the robot that it follows"),
+            "{name}: {}",
+            end.reason
+        );
+    }
+}
+
 /// Control periods begin with the first clock that is due: missions take as long as with clocks that agree.
 #[test]
 fn missions_are_serviced_although_clocks_are_not_aligned() {

@@ -40,6 +40,8 @@ vocabulary! {
         DutyGiven = "duty given",
         /// It has begun while others were under way, and may have forgotten offers that it has made.
         OffersForgotten = "offers forgotten",
+        /// The other robot is gone, and what it has made of the exchange is not known: it begins again.
+        PartnerLost = "partner lost",
     }
 }
 
@@ -55,7 +57,7 @@ const fn row(
 /// The table of the exchange of duties.
 ///
 /// Priority 0: what becomes of own offers. Priority 1: what becomes of a reply. Priority 2:
-/// offers of others. Priority 3: an offer of its own.
+/// offers of others. Priority 3: an offer of its own. Priority 4: nothing can become of either.
 pub const EXCHANGE: TransitionTable<ExchangeStage, ExchangeEvent> = {
     use ExchangeEvent as On;
     use ExchangeStage::{Free, Giving, Offering, OfferingAndRefusing, Refusing};
@@ -72,6 +74,9 @@ pub const EXCHANGE: TransitionTable<ExchangeStage, ExchangeEvent> = {
         row(1, OfferingAndRefusing, On::RefusalHeard, Offering),
         row(1, Refusing, On::RefusalHeard, Free),
         row(1, Giving, On::DutyGiven, Free),
+        row(4, Offering, On::PartnerLost, Free),
+        row(4, OfferingAndRefusing, On::PartnerLost, Free),
+        row(4, Giving, On::PartnerLost, Free),
     ])
 };
 

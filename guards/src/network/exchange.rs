@@ -7,6 +7,11 @@ pub fn offers_forgotten() -> Guard {
     Guard::new("offers forgotten", proposition("has_forgotten_offers"))
 }
 
+/// The robot with which it exchanges duties is gone.
+pub fn partner_lost() -> Guard {
+    Guard::new("partner lost", proposition("partner_gone"))
+}
+
 /// A robot in its way could go on with its duty, and it with that robot's.
 pub fn offers() -> Guard {
     Guard::new("offers", proposition("finds_partner"))

@@ -23,17 +23,18 @@ pub fn service_heard() -> Guard {
 
 /// It hears that the mission has ended, and has nobody else to ask.
 pub fn end_heard() -> Guard {
-    named("end heard", proposition("hears_end") & !(asks_in_vain() & may_ask_others()))
+    let may_go_on = pursues() & proposition("hears_failure") & may_ask_others();
+    named("end heard", proposition("hears_end") & !may_go_on)
 }
 
-/// It hears that those who pursue its task have given it up.
-fn asks_in_vain() -> Predicate {
-    pursues() & proposition("hears_failure")
-}
-
-/// Other robots than those that take part in the elections for its task do so now, or may in a while.
+/// The robots that take part now are not those of the elections for its task, or may not be in a while.
 fn may_ask_others() -> Predicate {
-    proposition("misses_elector") | proposition("has_newcomers") | proposition("may_return")
+    proposition("misses_elector") | proposition("has_newcomers") | may_come()
+}
+
+/// Robots may take part in a while that do not now.
+fn may_come() -> Predicate {
+    proposition("awaits_robots") | proposition("may_return")
 }
 
 /// Robots have gathered: their roster has not changed for a while.
@@ -54,8 +55,7 @@ fn can_announce() -> Predicate {
 }
 
 fn lacks_robots() -> Predicate {
-    let may_come = proposition("awaits_robots") | proposition("may_return");
-    proposition("task_left") & !has_robots() & !may_come
+    proposition("task_left") & !has_robots() & !may_come()
 }
 
 /// Robots have gathered, and there is a task.
@@ -108,12 +108,11 @@ pub fn closes() -> Guard {
 
 /// The leader election is over, no robot has bid, and there is nobody else to ask.
 pub fn no_bid() -> Guard {
-    named("no bid", lacks_bid() & !may_ask_others())
+    named("no bid", pursues() & lacks_bid() & !may_ask_others())
 }
 
 fn lacks_bid() -> Predicate {
-    let over = pursues() & proposition("election_over");
-    over & proposition("leader_wanted") & !proposition("has_bid")
+    proposition("election_over") & proposition("leader_wanted") & !proposition("has_bid")
 }
 
 /// The election lasts longer than news can take, all who take part have been heard of, and so it has
@@ -127,7 +126,8 @@ pub fn no_answer() -> Guard {
 /// A robot that takes part in the elections for the task is gone, and others are left; or they have given the
 /// task up, and others take part now.
 pub fn announces_again() -> Guard {
-    let again = proposition("misses_elector") | asks_in_vain() & proposition("has_newcomers");
+    let others = proposition("hears_failure") & proposition("has_newcomers");
+    let again = proposition("misses_elector") | others;
     named("announces again", pursues() & again & has_robots())
 }
 
@@ -135,7 +135,8 @@ pub fn announces_again() -> Guard {
 pub fn elects_again() -> Guard {
     let another_time = variable("unanswered").less_than(variable("attempts"));
     let unanswered = goes_unanswered() & another_time;
-    let others = (asks_in_vain() | lacks_bid()) & proposition("has_newcomers");
+    let in_vain = proposition("hears_failure") | lacks_bid();
+    let others = in_vain & proposition("has_newcomers");
     let again = proposition("misses_elector") | others | unanswered;
     named("announces again", pursues() & again & has_robots())
 }

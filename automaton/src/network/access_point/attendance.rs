@@ -171,10 +171,9 @@ impl Attendee {
         self.known && self.standing.location() == Attendance::Present
     }
 
-    /// Whether it does not take part any more, and may in a while.
+    /// Whether it does not take part, and may in a while.
     pub(super) fn may_return(&self) -> bool {
-        let standing = self.standing.location();
-        self.known && matches!(standing, Attendance::Suspended | Attendance::Returning)
+        matches!(self.standing.location(), Attendance::Suspended | Attendance::Returning)
     }
 
     /// Whether it is gone.
@@ -298,14 +297,14 @@ impl AccessPoint {
         attendees.filter(|(_, attendee)| is_gone(attendee)).map(|(robot, _)| robot).collect()
     }
 
-    /// The robots that it has heard of and that do not take part.
+    /// The robots that do not take part.
     pub(super) fn absent_robots(&self) -> impl Iterator<Item = NodeId> {
         let attendees = self.attendees.iter().enumerate();
-        let is_absent = |it: &Attendee| it.known && !it.takes_part();
+        let is_absent = |it: &Attendee| it.standing.location() != Attendance::Present;
         attendees.filter(move |(_, attendee)| is_absent(attendee)).map(|(robot, _)| robot)
     }
 
-    /// Whether robots that it has heard of do not take part.
+    /// Whether robots do not take part.
     pub(super) fn misses_robots(&self) -> bool {
         self.absent_robots().next().is_some()
     }

@@ -77,10 +77,7 @@ crate::observed! {
         /// The newest notice received says that the mission has ended.
         hears_end: matches!(point.heard_notice(), Some(Notice::Ended { .. })),
         /// So it says, and that a task is given up.
-        hears_failure: matches!(
-            point.heard_notice(),
-            Some(Notice::Ended { outcome, .. }) if *outcome != Outcome::Serviced
-        ),
+        hears_failure: point.hears_failure(),
         /// The user has asked it for tasks.
         asked: point.requested.is_some(),
         /// There is a task after the one announced last.
@@ -167,6 +164,12 @@ impl AccessPoint {
         self.newest.as_ref().map(|bulletin| &**bulletin.notice())
     }
 
+    /// Whether it hears that the mission has ended with a task that is given up.
+    fn hears_failure(&self) -> bool {
+        let ends_in_vain = |notice: &Notice| matches!(notice, Notice::Ended { outcome, .. } if *outcome != Outcome::Serviced);
+        self.heard_notice().is_some_and(ends_in_vain)
+    }
+
     /// The robots that take part in the elections for its task.
     fn electors(&self) -> impl Iterator<Item = &Attendee> {
         let roster = self.announced().into_iter().flat_map(|announced| announced.roster.iter());
@@ -180,10 +183,10 @@ impl AccessPoint {
     /// The robots that take part, and not in the elections for its task.
     fn newcomers(&self) -> impl Iterator<Item = NodeId> {
         let pursued = self.announced();
-        let elects = move |robot| pursued.is_none_or(|it| it.roster.contains(robot));
+        let is_new = move |robot| pursued.is_some_and(|it| !it.roster.contains(robot));
         let attendees = self.attendees.iter().enumerate();
         attendees
-            .filter(move |&(robot, attendee)| attendee.takes_part() && !elects(robot))
+            .filter(move |&(robot, it)| it.takes_part() && is_new(robot))
             .map(|(robot, _)| robot)
     }
 
@@ -253,19 +256,27 @@ impl AccessPoint {
     }
 
     /// The notice by which a task is announced to the robots that take part now.
-    fn task_notice(&self, task: usize) -> Option<Notice> {
+    pub(super) fn task_notice(&self, task: usize) -> Option<Notice> {
         let requested = self.requested.as_ref()?;
         Some(Notice::Task(Shared::new(Announcement {
             task,
             position: requested.tasks.get(task)?.position,
             before: requested.positions(self.known_tasks.len().max(task)),
-            roster: Arc::clone(&self.roster),
+            roster: self.present_roster(),
             eligible: Arc::new((0..self.site.access_points.len()).collect()),
         })))
     }
 
+    /// The robots that take part now. The roll may have been called since its roster was made up.
+    fn present_roster(&self) -> Arc<IdSet> {
+        match self.keeps_attendance() {
+            true => Arc::new(self.attending()),
+            false => Arc::clone(&self.roster),
+        }
+    }
+
     fn electing(&self, task: usize, unanswered: u32) -> Electing {
-        let roster = Arc::clone(&self.roster);
+        let roster = self.present_roster();
         Electing { announced: Some(Announced { task, roster, unanswered }) }
     }
 
@@ -401,12 +412,16 @@ fn announce_again<A: Knows>(
 ) -> Option<Electing> {
     let Announced { task, roster, unanswered } = place.announced()?;
     let notice = point.task_notice(task)?;
-    let joined: Vec<NodeId> = point.newcomers().collect();
-    let is_unanswered = !point.misses_elector() && joined.is_empty();
+    let is_given_up = point.is_election_over() || point.hears_failure();
+    let is_unanswered = !point.misses_elector() && !is_given_up;
     let gone = match is_unanswered {
         true => point.unanswering(&roster),
-        false => point.gone().into_iter().chain(point.forgetful_electors()).collect(),
+        false => {
+            let gone = point.gone().into_iter().filter(|&robot| roster.contains(robot));
+            gone.chain(point.forgetful_electors()).collect()
+        }
     };
+    let joined = point.newcomers().collect();
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone, joined }));
     effects.push(ServiceEffect::Supersede(notice));
     Some(point.electing(task, unanswered + u32::from(is_unanswered)))

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pleach_continuous::network::acceptance::Segment;
 use pleach_continuous::{Point, Vector};
-use pleach_discrete::network::{NodeId, Post, PostId};
+use pleach_discrete::network::{Election, IdSet, NodeId, Post, PostId};
 use serde_json::json;
 
 use super::super::beacon::{Beacon, Bulletin, Notice};
@@ -280,7 +280,7 @@ fn a_task_that_is_pursued_is_given_up_when_no_secondary_team_is_on_its_way() {
 
 impl AccessPoint {
     /// It hears that the primary team has given task 0 up.
-    fn hears_failure(&mut self) -> Vec<MissionEvent> {
+    fn hears_of_failure(&mut self) -> Vec<MissionEvent> {
         let (outcome, reason) = (Outcome::InsufficientRobots, "too few".into());
         let end = Notice::Ended { outcome, reason, task: Some(0) };
         let bulletin = self.bulletin.next(1, Shared::new(end));
@@ -296,8 +296,8 @@ impl AccessPoint {
         let validity = self.site.roll_validity();
         self.begin_attendance();
         self.attendees.iter_mut().for_each(Attendee::attend);
-        self.attendees[robot] = Attendee::absent(standing, validity);
         self.survey_robots();
+        self.attendees[robot] = Attendee::absent(standing, validity);
     }
 
     /// The only robot of the elections for its task is robot 0.
@@ -315,7 +315,7 @@ fn robots_that_have_joined_are_asked_before_a_task_is_given_up() {
     point.knows_one_elector();
     assert_eq!(point.serves_user(), [], "the others need no help");
     let again = MissionEvent::TaskReannounced { task: 0, gone: vec![], joined: vec![1] };
-    assert_eq!(point.hears_failure(), [again]);
+    assert_eq!(point.hears_of_failure(), [again]);
     let Notice::Task(announcement) = point.notice() else { panic!("{:?}", point.notice()) };
     assert_eq!(announcement.roster.iter().collect::<Vec<_>>(), [0, 1]);
     let end = Notice::Ended { outcome: Outcome::Blocked, reason: "".into(), task: Some(0) };
@@ -329,7 +329,7 @@ fn a_mission_does_not_end_while_a_robot_may_come_back() {
         let mut point = access_point();
         point.pursues_without(1, standing);
         point.knows_one_elector();
-        point.hears_failure();
+        point.hears_of_failure();
         point.service.location()
     };
     use pleach_discrete::network::Service;
@@ -343,7 +343,7 @@ fn what_follows_an_end_is_taken_up() {
     let mut point = access_point();
     point.pursues_without(1, Standing::Gone(Gone));
     point.knows_one_elector();
-    point.hears_failure();
+    point.hears_of_failure();
     assert!(matches!(point.notice(), Notice::Ended { .. }));
     let bulletin = point.bulletin.superseding(5, Shared::new(Notice::Advance { joined: None }));
     point.heard = vec![Arc::new(Beacon { bulletin, ..beacon(1, HERE) })];
@@ -386,4 +386,32 @@ fn a_mission_ends_when_a_robot_does_not_answer() {
     assert_eq!(becomes_of(2), (vec![again], None));
     let reason = "the election for task 0 cannot end: robots [0, 1] do not answer any more";
     assert_eq!(becomes_of(3), (vec![], Some(reason.to_owned())));
+}
+
+/// One that has not begun, too: nobody else can say whether it could go.
+#[test]
+fn no_task_is_out_of_reach_while_a_robot_may_come() {
+    let becomes_of = |standing: Option<Standing>| {
+        let mut point = access_point();
+        point.pursues_without(1, Standing::Present(Present));
+        point.attendees[1] = match standing {
+            Some(standing) => Attendee::absent(standing, point.site.roll_validity()),
+            None => Attendee::new(point.site.roll_validity()),
+        };
+        point.survey_robots();
+        let roster: Arc<IdSet> = Arc::new([0].into_iter().collect());
+        let announced = Some(Announced { task: 0, roster, unanswered: 0 });
+        let announcement = point.task_notice(0).expect("it is asked for it");
+        point.bulletin = point.bulletin.next(3, Shared::new(announcement));
+        point.service = Current::new(Serving::Electing(Electing { announced }));
+        let mut election = Election::new(point.bulletin.id());
+        election.place(0, None);
+        point.election = Some(Arc::new(election));
+        (point.serves_user(), matches!(point.notice(), Notice::Ended { .. }))
+    };
+    let joined = MissionEvent::TaskReannounced { task: 0, gone: vec![], joined: vec![1] };
+    assert_eq!(becomes_of(None), (vec![], false), "it may begin");
+    assert_eq!(becomes_of(Some(Standing::Suspended(Suspended))), (vec![], false));
+    assert_eq!(becomes_of(Some(Standing::Present(Present))), (vec![joined], false));
+    assert_eq!(becomes_of(Some(Standing::Gone(Gone))), (vec![], true));
 }

@@ -191,10 +191,8 @@ impl Robot {
 
     /// Whether Σ is no longer of use.
     pub(super) fn is_called_off(&self) -> bool {
-        use MissionStep::{Announced, Called, Ended, Overtaken, Resumed, Serviced};
-        [Announced, Called, Ended, Overtaken, Resumed, Serviced]
-            .into_iter()
-            .any(|step| self.takes_step(step))
+        use MissionStep::{Called, Resumed};
+        self.is_dissolved() || self.takes_step(Called) || self.takes_step(Resumed)
     }
 
     /// Whether another task is announced, or its own again.
@@ -202,10 +200,12 @@ impl Robot {
         self.takes_step(MissionStep::Announced) || self.takes_step(MissionStep::Overtaken)
     }
 
-    /// Whether the primary team is dissolved.
+    /// Whether the primary team is dissolved, and Σ given up before all of its subgroups have arrived: the task is
+    /// announced again or serviced, or the mission ends.
     pub(super) fn is_dissolved(&self) -> bool {
-        use MissionStep::{Announced, Ended, Overtaken, Serviced};
-        [Announced, Ended, Overtaken, Serviced].into_iter().any(|step| self.takes_step(step))
+        use MissionStep::{Blocked, Ended, Serviced};
+        self.is_superseded()
+            || [Blocked, Ended, Serviced].into_iter().any(|step| self.takes_step(step))
     }
 
     /// Whether it takes the post ahead now: its subgroup has arrived, or the mission goes on.
@@ -220,15 +220,7 @@ impl Robot {
             && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
                 || self.takes_step(MissionStep::Resumed)
                 || self.takes_step(MissionStep::Called)
-                || self.gives_path_up())
-    }
-
-    /// Whether Σ is given up before all of its subgroups have arrived: the task is announced again or serviced,
-    /// or the mission ends.
-    fn gives_path_up(&self) -> bool {
-        use MissionStep::{Blocked, Ended, Serviced};
-        self.is_superseded()
-            || [Blocked, Ended, Serviced].into_iter().any(|step| self.takes_step(step))
+                || self.is_dissolved())
     }
 
     /// The post that a robot on its way along Σ takes next, and where that is: the one ahead or, where Σ is given
@@ -239,7 +231,7 @@ impl Robot {
     /// may not.
     pub(super) fn coming_station(&self) -> Option<Station> {
         let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
-        if !self.gives_path_up() {
+        if !self.is_dissolved() {
             return self.next_hop().map(|hop| self.station_at(hop));
         }
         let hops = &self.mission.path()?.hops;

@@ -79,6 +79,8 @@ pub enum ExchangeEffect {
     PartnerAsked,
     /// It takes this duty over from this robot.
     Takes(Duty, NodeId),
+    /// It forgets everything but its number, and begins again.
+    BeginsAgain,
 }
 
 type Effects = Vec<ExchangeEffect>;
@@ -102,6 +104,7 @@ impl Holds<Exchange> for Robot {
                 }
                 ExchangeEffect::PartnerAsked => self.partner = None,
                 ExchangeEffect::Takes(duty, partner) => self.taking_over = Some((duty, partner)),
+                ExchangeEffect::BeginsAgain => self.begins_again = true,
             }
         }
     }
@@ -120,6 +123,9 @@ impl Robot {
         while let Some(jump) = site.automata.exchange.step_in_place::<Exchange>(self)? {
             self.note_change();
             self.is_quiet = false;
+            if self.begins_again {
+                self.begin_again()?;
+            }
             if let Some((duty, partner)) = self.taking_over.take() {
                 self.exchange_duty(duty, partner)?;
                 if jump.event == ExchangeEvent::DutyTaken {
@@ -203,6 +209,11 @@ fn conclude<A: HasOffers, B: From<Offers<Duty>>>(
     Some(B::from(offers))
 }
 
+fn lose_partner<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Free {
+    effects.push(ExchangeEffect::BeginsAgain);
+    Free(Offers::numbered_after(robot.offers().offers_made()))
+}
+
 type Row = Transfer<ExchangeStage, ExchangeEvent, Robot>;
 
 fn taken<A, B>() -> Row
@@ -241,6 +252,11 @@ where
     Transfer::where_known(ExchangeEvent::RefusalHeard, guard, name, conclude::<A, B>)
 }
 
+fn partner_lost<A: DataOf<Exchange>>() -> Row {
+    let (guard, name) = (guards::partner_lost(), "begin again");
+    Transfer::new(ExchangeEvent::PartnerLost, guard, name, lose_partner::<A>)
+}
+
 /// The automaton of the exchange of duties.
 ///
 /// # Errors
@@ -271,6 +287,9 @@ pub fn exchange_automaton() -> Result<ExchangeAutomaton, BuildError> {
             "take the duty offered",
             conclude::<Giving, Free>,
         ))
+        .carried_out(partner_lost::<Offering>())
+        .carried_out(partner_lost::<OfferingAndRefusing>())
+        .carried_out(partner_lost::<Giving>())
         .build()
 }
 
@@ -286,7 +305,7 @@ mod tests {
     use super::super::super::beacon::{Announcement, Beacon, Notice};
     use super::super::super::duty::{Held, Standby, Station};
     use super::super::super::message::Message;
-    use super::super::super::roll::Roll;
+    use super::super::super::roll::{Absent, Roll};
     use super::super::super::scenario::Scenario;
     use super::super::super::shared::Shared;
     use super::super::super::site::Site;
@@ -377,5 +396,52 @@ mod tests {
         hear(&mut robot, &mover);
         assert_eq!(robot.exchange.location(), ExchangeStage::Free);
         assert_eq!(robot.phase(), Phase::LeaderElection);
+    }
+
+    /// The robot is in its seventh period, and robot 1 is gone if that is said.
+    fn begins_a_period(robot: &mut Robot, is_gone: bool) {
+        robot.period = 7;
+        if is_gone {
+            let gone = [1].into_iter().collect();
+            robot.roll = Roll { called: 7, absent: Arc::new(Absent { gone, ..Absent::default() }) };
+        }
+        robot.round_count.restart();
+        robot.begin_period().expect("guards have values");
+    }
+
+    /// It cannot tell whether the other one has its duty, or still the other one's own.
+    #[test]
+    fn a_robot_whose_partner_is_gone_begins_again() {
+        for is_gone in [false, true] {
+            let mut robot = robot();
+            let mut offers = Offers::new();
+            offers.make_offer(1, *robot.duty);
+            robot.exchange = Current::new(Exchange::Offering(Offering(offers)));
+            let before = robot.duty.post().expect("it stands by").id;
+            begins_a_period(&mut robot, is_gone);
+            assert_eq!(robot.is_engaged(), !is_gone);
+            assert_eq!(robot.duty.post().map(|post| post.id) != Some(before), is_gone);
+            if is_gone {
+                assert!(!robot.knows_who_is_absent(), "it waits like one that joins late");
+                robot.advance_exchange().expect("guards have values");
+                assert_eq!(robot.offers().offers_made(), 1, "its next offer is a new one");
+            }
+        }
+    }
+
+    /// The mover may come back with its offer, and is to hear the refusal.
+    #[test]
+    fn a_refusal_that_nobody_can_hear_holds_nobody_up() {
+        for is_gone in [false, true] {
+            let mut robot = robot();
+            let mut mover = Offers::new();
+            mover.make_offer(0, *robot.duty);
+            let mut offers = Offers::new();
+            offers.answer(1, mover.offer().expect("it has just been made"), None);
+            robot.exchange = Current::new(Exchange::Refusing(Refusing(offers)));
+            begins_a_period(&mut robot, is_gone);
+            assert_eq!(robot.is_engaged(), !is_gone);
+            assert!(robot.offers().reply().is_some());
+        }
     }
 }

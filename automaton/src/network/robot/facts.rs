@@ -204,6 +204,8 @@ facts! {
             may_give: robot.may_be_relieved(),
             /// The mover has heard its reply.
             reply_heard: robot.is_reply_heard(),
+            /// A control period begins, and the robot with which it exchanges duties is gone.
+            partner_gone: robot.has_lost_partner(),
             /// The mission has ended, as far as it knows.
             mission_over: robot.phase() == Phase::Ended,
             /// A robot is still attached to the post that it has left, and to the robot itself.

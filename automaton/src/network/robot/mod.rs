@@ -175,6 +175,8 @@ pub struct Robot {
     partner: Option<NodeId>,
     /// The duty that it takes over in this jump, and from which robot.
     taking_over: Option<(Duty, NodeId)>,
+    /// Whether it begins again in this jump.
+    begins_again: bool,
     last_partner: Option<NodeId>,
     /// The number of the offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, u32>,
@@ -304,6 +306,7 @@ impl Robot {
             forgotten_offers: 0,
             partner: None,
             taking_over: None,
+            begins_again: false,
             last_partner: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
@@ -395,6 +398,22 @@ impl Robot {
         if period > self.period + 1 {
             self.join_in(period - 1);
         }
+    }
+
+    /// It forgets everything but its number, where it is in its control period and who takes part, and joins
+    /// in like one that has stopped for a moment.
+    pub(super) fn begin_again(&mut self) -> Result<(), TransitionError> {
+        let role = self.role();
+        let fresh = Robot::new(self.id, self.position, self.rate, Arc::clone(&self.site));
+        let known = std::mem::replace(self, fresh);
+        self.forgotten_offers = known.offers().offers_made();
+        (self.control, self.acts, self.round_count) =
+            (known.control, known.acts, known.round_count);
+        (self.clock, self.is_new, self.posts_made) = (known.clock, false, known.posts_made);
+        (self.roll, self.log) = (known.roll, known.log);
+        self.join_in(known.period);
+        self.report_role_after(role);
+        self.jump_duty(Label::Alone).map(drop)
     }
 
     fn join_in(&mut self, period: u32) {
