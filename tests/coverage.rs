@@ -49,10 +49,14 @@ const REASONS: &[([&str; 4], &str)] = &[
         "no robot holds the post of its parent any more: a robot stops on the way along Σ",
     ),
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
+    (
+        ["exchange", "giving", "partner lost", ""],
+        "the mover stops in the very rounds in which the robot in its way has accepted its offer",
+    ),
     (["service", "done", "no robot", ""], "the robots are all gone after a task"),
     (
         ["service", "electing", "no answer", ""],
-        "a robot is heard, and answers none of the elections; a unit test of the access point takes it",
+        "a robot is heard, and answers none of the elections: a unit test of the access point takes it",
     ),
     (
         ["service", "", "closes", ""],

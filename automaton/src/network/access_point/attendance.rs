@@ -152,13 +152,13 @@ impl Attendee {
 
     /// Whether it may not have begun yet: it has never been attached, for a short time.
     pub(super) fn may_begin(&self) -> bool {
-        !self.known && self.age < PATIENCE && self.standing.location() == Attendance::Present
+        !self.known && self.age <= PATIENCE && self.standing.location() == Attendance::Present
     }
 
     /// It is not waited for any more.
     #[cfg(feature = "abstraction")]
     pub(super) fn has_been_awaited(&mut self) {
-        self.age = self.age.max(PATIENCE);
+        self.age = self.age.max(PATIENCE + 1);
     }
 
     /// Whether it has been heard of in this control period.
