@@ -81,9 +81,21 @@ pub struct Shift {
     pub arrived: usize,
 }
 
-/// The data of [`Phase::Ended`]: none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Ended;
+/// The data of [`Phase::Ended`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ended {
+    /// What the robot was walking along when the mission ended, if it was: if the mission goes on, it gives that up.
+    pub walk: Option<Walk>,
+}
+
+/// A path Σ that robots walk along.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Walk {
+    /// The path.
+    pub path: Arc<Path>,
+    /// The subgroup that is the active team, while one is.
+    pub active: Option<Subgroup>,
+}
 
 impl Shift {
     /// The subgroup that is the active team; none when all have arrived.
@@ -107,6 +119,17 @@ impl Mission {
             Mission::Advance(Advance { path, .. })
             | Mission::RecruitElection(RecruitElection { before: path, .. }) => path.as_ref(),
             Mission::Idle(_) | Mission::LeaderElection(_) | Mission::Ended(_) => None,
+        }
+    }
+
+    /// The path Σ that matters in this phase, or did when the mission ended, to a robot on its way along it.
+    pub fn walk(&self) -> Option<Walk> {
+        match self {
+            Mission::Ended(Ended { walk }) => walk.clone(),
+            _ => self.path().map(|path| Walk {
+                path: Arc::clone(path),
+                active: self.shift().and_then(Shift::active),
+            }),
         }
     }
 

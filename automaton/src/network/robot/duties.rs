@@ -21,6 +21,7 @@ use super::super::duty::{
     AwaitingRelease, Bound, Duty, Following, Held, Holder, Hop, Junction, Leading, Leaf, Relay,
     Shifting, Standby, Station, Waiting,
 };
+use super::super::mission::Walk;
 use super::super::record::MissionEvent;
 use super::Robot;
 use super::hearing::Neighbour;
@@ -195,17 +196,20 @@ impl Robot {
         self.is_dissolved() || self.takes_step(Called) || self.takes_step(Resumed)
     }
 
+    /// Whether Σ is given up before all of its subgroups have arrived. At the end of the mission it is not: who is on
+    /// its way then stays there, and answers for the post that it left, unless the mission goes on.
+    fn gives_path_up(&self) -> bool {
+        self.is_superseded() || self.takes_step(MissionStep::Serviced)
+    }
+
     /// Whether another task is announced, or its own again.
     pub(super) fn is_superseded(&self) -> bool {
         self.takes_step(MissionStep::Announced) || self.takes_step(MissionStep::Overtaken)
     }
 
-    /// Whether the primary team is dissolved, and Σ given up before all of its subgroups have arrived: the task is
-    /// announced again or serviced, or the mission ends.
+    /// Whether the primary team is dissolved.
     pub(super) fn is_dissolved(&self) -> bool {
-        use MissionStep::{Blocked, Ended, Serviced};
-        self.is_superseded()
-            || [Blocked, Ended, Serviced].into_iter().any(|step| self.takes_step(step))
+        self.gives_path_up() || self.takes_step(MissionStep::Ended)
     }
 
     /// Whether it takes the post ahead now: its subgroup has arrived, or the mission goes on.
@@ -216,11 +220,12 @@ impl Robot {
                 .place()
                 .is_some_and(|place| active.is_some_and(|active| active.places().contains(&place)))
         };
-        self.next_hop().is_some()
+        self.mission.walk().is_some()
+            && matches!(*self.duty, Duty::Shifting(_))
             && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
                 || self.takes_step(MissionStep::Resumed)
                 || self.takes_step(MissionStep::Called)
-                || self.is_dissolved())
+                || self.gives_path_up())
     }
 
     /// The post that a robot on its way along Σ takes next, and where that is: the one ahead or, where Σ is given
@@ -231,11 +236,11 @@ impl Robot {
     /// may not.
     pub(super) fn coming_station(&self) -> Option<Station> {
         let Duty::Shifting(Shifting { place, left }) = *self.duty else { return None };
-        if !self.is_dissolved() {
+        if !self.gives_path_up() {
             return self.next_hop().map(|hop| self.station_at(hop));
         }
-        let hops = &self.mission.path()?.hops;
-        let active = self.active_subgroup();
+        let Walk { path, active } = self.mission.walk()?;
+        let hops = &path.hops;
         let is_taken = left.is_some() && active.is_none_or(|active| active.first == place);
         match self.has_reported(place) {
             false if !is_taken => hops.get(place).map(|hop| match hop.post.is_redundant() {

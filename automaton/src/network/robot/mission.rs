@@ -18,7 +18,7 @@ use crate::located::{Current, DataOf, Holds, Place as _};
 use crate::{Automaton, BuildError, Transfer, TransitionError};
 
 use super::super::beacon::{Announced, Notice};
-use super::super::duty::Hop;
+use super::super::duty::{Duty, Hop};
 use super::super::mission::{
     Advance, Ended, Idle, LeaderElection, Mission, PathAgreement, RecruitElection, Shift,
 };
@@ -168,8 +168,10 @@ impl Robot {
 
 type Row = Transfer<Phase, MissionStep, Robot>;
 
-fn end<A>(_: &A, _: &Robot, _: &mut Effects) -> Ended {
-    Ended
+/// The mission ends.
+pub(super) fn end<A>(_: &A, robot: &Robot, _: &mut Effects) -> Ended {
+    let is_on_its_way = matches!(*robot.duty, Duty::Shifting(_));
+    Ended { walk: robot.mission.walk().filter(|_| is_on_its_way) }
 }
 
 fn ended<A: DataOf<Mission>>() -> Row {

@@ -13,7 +13,7 @@ use super::super::record::{MissionEvent, Outcome};
 use super::super::scenario::Strategy;
 use super::Robot;
 use super::hearing::Neighbour;
-use super::mission::{Effects, MissionEffect};
+use super::mission::{Effects, MissionEffect, end};
 use super::way::KEEP_OUT;
 
 /// The leader stops at δ − 2.2ρ from its task, so that a robot 2ρ behind it is within δ as well.
@@ -63,7 +63,7 @@ pub(super) fn wait<A>(_: &A, _: &Robot, _: &mut Effects) -> Idle {
 }
 
 /// The active team cannot go on, and a recruit would not help.
-pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
+pub(super) fn give_up<A>(phase: &A, robot: &Robot, effects: &mut Effects) -> Ended {
     let reason = match (robot.duty.place(), robot.team.and_then(|team| team.slack)) {
         (Some(_), _) => format!(
             "robot {} cannot get to the place of Σ that it should take: something stands in its way",
@@ -78,13 +78,13 @@ pub(super) fn give_up<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Ended {
             robot.id
         ),
     };
-    let end = robot.gives_up(robot.current_task(), Outcome::Blocked, reason);
-    effects.extend([MissionEffect::Stay, MissionEffect::Issue(end)]);
-    Ended
+    let notice = robot.gives_up(robot.current_task(), Outcome::Blocked, reason);
+    effects.extend([MissionEffect::Stay, MissionEffect::Issue(notice)]);
+    end(phase, robot, effects)
 }
 
 impl Robot {
-    /// The notice by which this robot gives up the mission, with the robots that are missed beside the reason.
+    /// The notice by which this robot gives up the mission; the reason is followed by the robots that are missed.
     pub(super) fn gives_up(
         &self,
         task: Option<usize>,
