@@ -74,7 +74,7 @@ pub const QUICK: &[Campaign] = &[
         name: "three robots",
         steps: &[1, 2],
         contacts: 1,
-        ..robots(3, Counts { configurations: 88, states: 73_762, transitions: 97_197 })
+        ..robots(3, Counts { configurations: 88, states: 73_766, transitions: 97_201 })
     },
     Campaign {
         name: "four robots in a line, three tasks in a row",
@@ -82,24 +82,24 @@ pub const QUICK: &[Campaign] = &[
         tasks: 3,
         steps: &[1, 2],
         in_a_row: true,
-        ..robots(4, Counts { configurations: 40, states: 21_715, transitions: 27_417 })
+        ..robots(4, Counts { configurations: 40, states: 21_975, transitions: 27_677 })
     },
     Campaign {
         name: "three robots that call ahead",
         steps: &[2],
         strategy: Strategy::Eager,
-        ..robots(3, Counts { configurations: 44, states: 182_874, transitions: 282_516 })
+        ..robots(3, Counts { configurations: 44, states: 182_876, transitions: 282_518 })
     },
     Campaign {
         name: "three robots, a message lost",
         medium: ONE_LOST,
-        ..robots(3, Counts { configurations: 44, states: 81_325, transitions: 160_138 })
+        ..robots(3, Counts { configurations: 44, states: 81_329, transitions: 160_158 })
     },
     Campaign {
         name: "three robots, a message late",
         medium: ONE_LATE,
         contacts: 1,
-        ..robots(3, Counts { configurations: 44, states: 76_866, transitions: 137_653 })
+        ..robots(3, Counts { configurations: 44, states: 76_842, transitions: 137_611 })
     },
     Campaign {
         name: "two robots, a message copied",
@@ -123,7 +123,7 @@ pub const QUICK: &[Campaign] = &[
         name: "two robots, one begins again",
         graphs: Graphs::Line,
         medium: counted(ONE_RESTARTS),
-        ..robots(2, Counts { configurations: 3, states: 130_263, transitions: 147_325 })
+        ..robots(2, Counts { configurations: 3, states: 130_285, transitions: 147_325 })
     },
 ];
 
