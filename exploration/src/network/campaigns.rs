@@ -277,7 +277,7 @@ pub const THOROUGH: &[Campaign] = &[
         name: "two robots, two tasks, one stops",
         tasks: 2,
         medium: counted(ONE_STOPS),
-        ..robots(2, Counts { configurations: 27, states: 373_986, transitions: 411_360 })
+        ..robots(2, Counts { configurations: 27, states: 376_770, transitions: 414_328 })
     },
     Campaign {
         name: "two robots, one stops, a message lost",
@@ -287,28 +287,28 @@ pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "two robots, one begins again on every graph",
         medium: counted(ONE_RESTARTS),
-        ..robots(2, Counts { configurations: 9, states: 274_715, transitions: 310_627 })
+        ..robots(2, Counts { configurations: 9, states: 290_813, transitions: 327_700 })
     },
     Campaign {
         name: "two robots, one begins again, a message lost",
         medium: counted(Faults { losses: 1, ..ONE_RESTARTS }),
-        ..robots(2, Counts { configurations: 9, states: 2_052_341, transitions: 3_199_359 })
+        ..robots(2, Counts { configurations: 9, states: 2_212_648, transitions: 3_444_829 })
     },
     Campaign {
         name: "three robots, one stops",
         medium: counted(ONE_STOPS),
-        ..robots(3, Counts { configurations: 44, states: 2_310_972, transitions: 2_513_631 })
+        ..robots(3, Counts { configurations: 44, states: 2_323_159, transitions: 2_526_743 })
     },
     Campaign {
         name: "three robots in a line, one begins again",
         graphs: Graphs::Line,
         medium: counted(ONE_RESTARTS),
-        ..robots(3, Counts { configurations: 4, states: 1_497_608, transitions: 1_689_646 })
+        ..robots(3, Counts { configurations: 4, states: 1_628_610, transitions: 1_831_537 })
     },
     Campaign {
         name: "four robots in a line, one stops",
         graphs: Graphs::Line,
         medium: counted(ONE_STOPS),
-        ..robots(4, Counts { configurations: 5, states: 3_296_913, transitions: 3_658_726 })
+        ..robots(4, Counts { configurations: 5, states: 3_322_029, transitions: 3_686_450 })
     },
 ];
