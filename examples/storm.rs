@@ -273,13 +273,15 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
     let last =
         first.checked_add(missions).ok_or("the last mission would have no seed: begin earlier")?;
     let (mut serviced, mut broken) = (0, Vec::new());
-    let done = AtomicU64::new(0);
+    let (done, failed) = (AtomicU64::new(0), AtomicU64::new(0));
     let run = |seed: u64| -> Result<(u64, Verdict), String> {
         let (scenario, storm) = mission(seed, strategy);
         let verdict = ride(&scenario, &storm, MOST_PERIODS);
+        let breaks = verdict.as_ref().is_ok_and(|verdict| !verdict.violations.is_empty());
+        let failed = failed.fetch_add(u64::from(breaks), Ordering::Relaxed) + u64::from(breaks);
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         if done.is_multiple_of(STRIDE) || done == missions {
-            eprint!("\r{done} of {missions} missions");
+            eprint!("\r{done} of {missions} missions, {failed} broke a promise");
         }
         verdict.map(|verdict| (seed, verdict)).map_err(|error| format!("seed {seed}: {error}"))
     };
@@ -306,7 +308,7 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
     Ok(if broken.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Missions after which it is told how many broke a promise so far.
+/// Missions that run side by side before the first that breaks a promise is told.
 const BATCH: usize = 1024;
 /// Missions after which progress is told.
 const STRIDE: u64 = 64;

@@ -192,7 +192,12 @@ fn the_program_tells_outcomes_by_its_exit_status() {
         (Path::new("scenarios/unreachable.toml"), 3, "unreachable task: "),
         (&hasty, 3, "step limit: "),
         // Five robots of rate 0.27: one relay cannot carry the traffic of all.
-        (Path::new("tests/scenarios/saturated.toml"), 3, "and links carry no more"),
+        (
+            Path::new("tests/scenarios/saturated.toml"),
+            3,
+            "blocked: the rates cannot be carried to task 0: the primary team stands still because the links of \
+             robot 4 carry no more, and no robot is left that can come; the load is 1.000 at robot",
+        ),
     ];
     for (scenario, status, outcome) in expected {
         let output = pleach(scenario);

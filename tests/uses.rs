@@ -155,7 +155,7 @@ pub const USES: &[Use] = &[
     ("asks", OFFERS, ROBOT_PARTNER, "offer.asks(self.id, answered)"),
     ("is_heard", OFFERS, OFFERS, "reply.is_heard(offer)"),
     ("has_heard_reply", OFFERS, ROBOT_PARTNER, ".has_heard_reply(offer, made)"),
-    ("are_under_way", OFFERS, ROBOT_PARTNER, "offers.are_under_way() && !is_told_in_vain()"),
+    ("are_under_way", OFFERS, ROBOT_PARTNER, "self.offers().are_under_way()"),
     ("offer", OFFERS, ROBOT_PARTNER, "self.offers().offer()"),
     ("offers_made", OFFERS, ROBOT, ".offers_made()"),
     ("reply", OFFERS, ROBOT, "self.offers().reply()"),

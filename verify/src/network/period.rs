@@ -165,18 +165,8 @@ pub fn step_length(period: &Period, limits: &Limits) -> Result<(), Violation> {
 ///
 /// The first robot that moves without being active.
 pub fn standstill(period: &Period) -> Result<(), Violation> {
-    for (robot, motion) in period.motions.iter().enumerate() {
-        if motion.from != motion.to && period.before.active.binary_search(&robot).is_err() {
-            let length = motion.length();
-            return Err(period.start().violation(
-                Property::Standstill,
-                &[robot],
-                (length, 0.0),
-                format!("robot {robot} moves by {length:e} and is not active"),
-            ));
-        }
-    }
-    Ok(())
+    let active = &period.before.active;
+    stay(period, |robot| active.binary_search(&robot).is_err(), "not active")
 }
 
 /// Part of [`Property::Standstill`]: robots that do not run, or are not heard, are where they were.
@@ -185,18 +175,23 @@ pub fn standstill(period: &Period) -> Result<(), Violation> {
 ///
 /// The first that is not.
 pub fn absent_stay(period: &Period) -> Result<(), Violation> {
-    let [before, after] = [period.before, period.after].map(|it| &it.absent);
-    let mut stay = before.iter().filter(|node| after.contains(node));
-    let moves = |node: &&usize| period.motions.get(**node).is_some_and(|it| it.from != it.to);
-    match stay.find(moves) {
+    let absent = [period.before, period.after].map(|it| &it.absent);
+    stay(period, |robot| absent.iter().all(|nodes| nodes.contains(&robot)), "absent")
+}
+
+/// No robot moves that is to stay, being so.
+fn stay(period: &Period, is_to_stay: impl Fn(usize) -> bool, being: &str) -> Result<(), Violation> {
+    let moves =
+        |(robot, motion): &(usize, &Segment)| motion.from != motion.to && is_to_stay(*robot);
+    match period.motions.iter().enumerate().find(moves) {
         None => Ok(()),
-        Some(&robot) => {
-            let length = period.motions[robot].length();
+        Some((robot, motion)) => {
+            let length = motion.length();
             Err(period.start().violation(
                 Property::Standstill,
                 &[robot],
                 (length, 0.0),
-                format!("robot {robot} moves by {length:e} and is absent"),
+                format!("robot {robot} moves by {length:e} and is {being}"),
             ))
         }
     }

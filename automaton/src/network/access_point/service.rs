@@ -166,8 +166,8 @@ impl AccessPoint {
 
     /// Whether it hears that the mission has ended with a task that is given up.
     fn hears_failure(&self) -> bool {
-        let ends_in_vain = |notice: &Notice| matches!(notice, Notice::Ended { outcome, .. } if *outcome != Outcome::Serviced);
-        self.heard_notice().is_some_and(ends_in_vain)
+        let heard = self.heard_notice();
+        matches!(heard, Some(Notice::Ended { outcome, .. }) if outcome.is_given_up())
     }
 
     /// The robots that take part in the elections for its task.
@@ -255,16 +255,16 @@ impl AccessPoint {
         roster.iter().filter(|&robot| !has_token(robot)).collect()
     }
 
-    /// The notice by which a task is announced to the robots that take part now.
-    pub(super) fn task_notice(&self, task: usize) -> Option<Notice> {
+    /// The announcement of a task to the robots that take part now.
+    pub(super) fn announcement_of(&self, task: usize) -> Option<Announcement> {
         let requested = self.requested.as_ref()?;
-        Some(Notice::Task(Shared::new(Announcement {
+        Some(Announcement {
             task,
             position: requested.tasks.get(task)?.position,
             before: requested.positions(self.known_tasks.len().max(task)),
             roster: self.present_roster(),
             eligible: Arc::new((0..self.site.access_points.len()).collect()),
-        })))
+        })
     }
 
     /// The robots that take part now. The roll may have been called since its roster was made up.
@@ -273,11 +273,6 @@ impl AccessPoint {
             true => Arc::new(self.attending()),
             false => Arc::clone(&self.roster),
         }
-    }
-
-    fn electing(&self, task: usize, unanswered: u32) -> Electing {
-        let roster = self.present_roster();
-        Electing { announced: Some(Announced { task, roster, unanswered }) }
     }
 
     /// How it issues a notice. Robots that it misses may know later ones, or go by an earlier announcement
@@ -376,15 +371,16 @@ fn hear_end<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Over
 
 fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Electing> {
     let task = point.next_task()?;
-    let notice = point.task_notice(task)?;
+    let announcement = point.announcement_of(task)?;
+    let announced = Some(electors_of(&announcement));
     effects.push(ServiceEffect::Report(match point.abandoned_task() {
         Some(task) => {
             MissionEvent::TaskReannounced { task, gone: point.gone(), joined: Vec::new() }
         }
         None => MissionEvent::TaskAnnounced { task },
     }));
-    effects.push(point.issue(notice));
-    Some(point.electing(task, 0))
+    effects.push(point.issue(Notice::Task(Shared::new(announcement))));
+    Some(Electing { announced })
 }
 
 /// The user has taken back the task that is pursued: those who pursue it stop, and its team is dissolved.
@@ -411,7 +407,7 @@ fn announce_again<A: Knows>(
     effects: &mut Effects,
 ) -> Option<Electing> {
     let Announced { task, roster, unanswered } = place.announced()?;
-    let notice = point.task_notice(task)?;
+    let announcement = point.announcement_of(task)?;
     let is_given_up = point.is_election_over() || point.hears_failure();
     let is_unanswered = !point.misses_elector() && !is_given_up;
     let gone = match is_unanswered {
@@ -423,8 +419,10 @@ fn announce_again<A: Knows>(
     };
     let joined = point.newcomers().collect();
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone, joined }));
-    effects.push(ServiceEffect::Supersede(notice));
-    Some(point.electing(task, unanswered + u32::from(is_unanswered)))
+    let unanswered = unanswered + u32::from(is_unanswered);
+    let announced = Some(Announced { unanswered, ..electors_of(&announcement) });
+    effects.push(ServiceEffect::Supersede(Notice::Task(Shared::new(announcement))));
+    Some(Electing { announced })
 }
 
 /// The mission ends. Robots that are missed may know later notices than the access point.

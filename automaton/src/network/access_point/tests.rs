@@ -401,8 +401,9 @@ fn no_task_is_out_of_reach_while_a_robot_may_come() {
         point.survey_robots();
         let roster: Arc<IdSet> = Arc::new([0].into_iter().collect());
         let announced = Some(Announced { task: 0, roster, unanswered: 0 });
-        let announcement = point.task_notice(0).expect("it is asked for it");
-        point.bulletin = point.bulletin.next(3, Shared::new(announcement));
+        let announcement = point.announcement_of(0).expect("it is asked for it");
+        let notice = Notice::Task(Shared::new(announcement));
+        point.bulletin = point.bulletin.next(3, Shared::new(notice));
         point.service = Current::new(Serving::Electing(Electing { announced }));
         let mut election = Election::new(point.bulletin.id());
         election.place(0, None);

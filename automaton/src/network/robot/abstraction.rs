@@ -280,7 +280,6 @@ impl Robot {
             awaits_confirmation: _,
             partner: _,
             taking_over: _,
-            begins_again: _,
             log: _,
             // No robot is missed, and no task, where no time passes; and none restarts.
             forgetful: _,

@@ -196,8 +196,8 @@ impl Robot {
         self.is_dissolved() || self.takes_step(Called) || self.takes_step(Resumed)
     }
 
-    /// Whether Σ is given up before all of its subgroups have arrived. At the end of the mission it is not: who is on
-    /// its way then stays there, and answers for the post that it left, unless the mission goes on.
+    /// Whether Σ is given up before all of its subgroups have arrived. The end of the mission does not give it up: a
+    /// robot on its way stays on Σ, and answers for the post that it left, unless the mission goes on.
     fn gives_path_up(&self) -> bool {
         self.is_superseded() || self.takes_step(MissionStep::Serviced)
     }
@@ -220,8 +220,8 @@ impl Robot {
                 .place()
                 .is_some_and(|place| active.is_some_and(|active| active.places().contains(&place)))
         };
-        self.mission.walk().is_some()
-            && matches!(*self.duty, Duty::Shifting(_))
+        matches!(*self.duty, Duty::Shifting(_))
+            && self.mission.walk().is_some()
             && (self.takes_step(MissionStep::SubgroupArrived) && in_active_subgroup()
                 || self.takes_step(MissionStep::Resumed)
                 || self.takes_step(MissionStep::Called)

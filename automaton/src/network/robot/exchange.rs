@@ -79,8 +79,6 @@ pub enum ExchangeEffect {
     PartnerAsked,
     /// It takes this duty over from this robot.
     Takes(Duty, NodeId),
-    /// It forgets everything but its number, and begins again.
-    BeginsAgain,
 }
 
 type Effects = Vec<ExchangeEffect>;
@@ -104,7 +102,6 @@ impl Holds<Exchange> for Robot {
                 }
                 ExchangeEffect::PartnerAsked => self.partner = None,
                 ExchangeEffect::Takes(duty, partner) => self.taking_over = Some((duty, partner)),
-                ExchangeEffect::BeginsAgain => self.begins_again = true,
             }
         }
     }
@@ -123,7 +120,7 @@ impl Robot {
         while let Some(jump) = site.automata.exchange.step_in_place::<Exchange>(self)? {
             self.note_change();
             self.is_quiet = false;
-            if self.begins_again {
+            if jump.event == ExchangeEvent::PartnerLost {
                 self.begin_again()?;
             }
             if let Some((duty, partner)) = self.taking_over.take() {
@@ -209,8 +206,7 @@ fn conclude<A: HasOffers, B: From<Offers<Duty>>>(
     Some(B::from(offers))
 }
 
-fn lose_partner<A>(_: &A, robot: &Robot, effects: &mut Effects) -> Free {
-    effects.push(ExchangeEffect::BeginsAgain);
+fn lose_partner<A>(_: &A, robot: &Robot, _: &mut Effects) -> Free {
     Free(Offers::numbered_after(robot.offers().offers_made()))
 }
 

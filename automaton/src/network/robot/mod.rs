@@ -175,8 +175,6 @@ pub struct Robot {
     partner: Option<NodeId>,
     /// The duty that it takes over in this jump, and from which robot.
     taking_over: Option<(Duty, NodeId)>,
-    /// Whether it begins again in this jump.
-    begins_again: bool,
     last_partner: Option<NodeId>,
     /// The number of the offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, u32>,
@@ -306,7 +304,6 @@ impl Robot {
             forgotten_offers: 0,
             partner: None,
             taking_over: None,
-            begins_again: false,
             last_partner: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),

@@ -3,10 +3,10 @@
 //! A mover that touches a parked robot nearer to its goal offers it its duty. The parked robot
 //! answers with its own; the mover, which is within δ of the post, takes it; and when the parked
 //! robot sees that, it takes the mover's duty: the [`Offers`] of the two. From the offer to the end
-//! neither takes a step of the mission, so that what is taken over is what was offered. A post is
-//! never without a robot, and no duty is ever done by two. With every exchange the way that remains
+//! neither takes a step of the mission, so that what is taken over is what was offered. While both run, a
+//! post is never without a robot; no duty is ever done by two. With every exchange the way that remains
 //! gets shorter, so that exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
-//! begins again, as if it had stopped, and leaves both to nobody. A mover that cannot pass takes a partner somewhat
+//! begins again, as if it had stopped, and has neither. A mover that cannot pass takes a partner somewhat
 //! farther from its goal too, but no robot twice in a row.
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
@@ -161,25 +161,29 @@ impl Robot {
     }
 
     /// Whether an exchange is under way. The robot then stands still, and what it does stays what
-    /// it is: a duty that changed after it was offered would be taken over as it had been. One that repeats a
-    /// refusal to a robot that is gone has nothing to keep.
+    /// it is: a duty that changed after it was offered would be taken over as it had been. A robot that
+    /// only repeats a refusal to one that is gone goes on.
     pub(super) fn is_engaged(&self) -> bool {
+        self.offers().are_under_way() && !self.refuses_in_vain()
+    }
+
+    /// Whether all that is left of its exchanges is a refusal to a robot that is gone.
+    fn refuses_in_vain(&self) -> bool {
+        let reply = self.offers().reply();
+        self.partner_in_exchange().is_none() && reply.is_some_and(|it| self.is_gone(it.to))
+    }
+
+    /// The robot to which it has offered its duty, or has given it.
+    fn partner_in_exchange(&self) -> Option<NodeId> {
         let offers = self.offers();
-        let is_told_in_vain = || {
-            let mut mover = offers.reply().into_iter().map(|reply| reply.to);
-            offers.offer().is_none()
-                && offers.taking().is_none()
-                && mover.all(|it| self.is_gone(it))
-        };
-        offers.are_under_way() && !is_told_in_vain()
+        let given = offers.taking().and(offers.reply());
+        offers.offer().map(|offer| offer.to).or(given.map(|reply| reply.to))
     }
 
     /// Whether a control period begins, and the robot with which it exchanges duties is gone: which of the two
     /// duties that one has, if any, is not known.
     pub(super) fn has_lost_partner(&self) -> bool {
-        let offers = self.offers();
-        let taken = offers.taking().and(offers.reply()).map(|reply| reply.to);
-        let partner = offers.offer().map(|offer| offer.to).or(taken);
+        let partner = self.partner_in_exchange();
         self.round_count.count() == 0 && partner.is_some_and(|partner| self.is_gone(partner))
     }
 }

@@ -191,7 +191,7 @@ fn robots_take_posts_as_the_lemma_says() {
                 robot.bulletin = robot.bulletin.superseding(1, Shared::new(task));
                 robot.measures();
                 robot.jump_once().expect("its guards have values");
-                assert!(robot.duty.place().is_none(), "who is on Σ gives it up: {case:?}");
+                assert!(robot.duty.place().is_none(), "the robot leaves Σ: {case:?}");
             }
             let now = robot.duty.post().map(|post| post.id);
             let is_off = robot.duty.place().is_none();
