@@ -227,7 +227,7 @@ impl Robot {
             duty,
             mission,
             exchange,
-            last_partner,
+            past_partners: _, // told, as far as they decide anything
             answered,
             parent,
             place,
@@ -338,7 +338,15 @@ impl Robot {
             "{:?}",
             (
                 (id, position, still_periods, &**duty, posts_made, &**mission, unused_periods),
-                (&**exchange, answered, last_partner, parent, &**place, below, can_detach),
+                (
+                    &**exchange,
+                    answered,
+                    self.partners_since_notice(),
+                    parent,
+                    &**place,
+                    below,
+                    can_detach
+                ),
                 ((bulletin, epoch, announced, has_reached), election, bid, waited, route),
                 (agreement, team, stretched, self.longest_wait(), followed_post, closed, silences),
             )

@@ -75,7 +75,7 @@ impl Holds<Duty> for Robot {
                 DutyEffect::Report(event) => self.report(event),
                 DutyEffect::Restart => self.still_periods = 0,
                 DutyEffect::Exchanged(partner) => {
-                    self.last_partner = Some(partner);
+                    self.remember_partner(partner);
                     self.is_displaced = true;
                 }
             }

@@ -175,7 +175,8 @@ pub struct Robot {
     partner: Option<NodeId>,
     /// The duty that it takes over in this jump, and from which robot.
     taking_over: Option<(Duty, NodeId)>,
-    last_partner: Option<NodeId>,
+    /// The robots with which it has exchanged duties since this notice.
+    past_partners: Option<(NoticeId, IdSet)>,
     /// The number of the offer answered last, by the robot that made it.
     answered: BTreeMap<NodeId, u32>,
 
@@ -304,7 +305,7 @@ impl Robot {
             forgotten_offers: 0,
             partner: None,
             taking_over: None,
-            last_partner: None,
+            past_partners: None,
             answered: BTreeMap::new(),
             neighbours: Vec::new(),
             period: 0,

@@ -7,11 +7,12 @@
 //! post is never without a robot; no duty is ever done by two. With every exchange the way that remains
 //! gets shorter, so that exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
 //! begins again, as if it had stopped, and has neither. A mover that cannot pass takes a partner somewhat
-//! farther from its goal too, but no robot twice in a row.
+//! farther from its goal too, but no robot twice between two notices. Only robots that take part in the elections
+//! for the task exchange duties: the others are not missed if they stop.
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
 
-use pleach_discrete::network::{Agreement, NodeId, Offer, Phase, PostKind, Reply};
+use pleach_discrete::network::{Agreement, IdSet, NodeId, Offer, Phase, PostKind, Reply};
 
 use super::super::beacon::Announced;
 use super::super::duty::{Duty, Shifting};
@@ -45,13 +46,31 @@ impl Robot {
         for neighbour in &self.neighbours {
             if neighbour.distance <= CONTACT * self.clearance() && self.could_replace(neighbour) {
                 let way = self.site.distance(neighbour.position(), goal);
-                let is_return = way >= own_way && self.last_partner == Some(neighbour.id());
+                let is_return = way >= own_way && self.has_exchanged_with(neighbour.id());
                 if way < nearest && !is_return && self.could_be_replaced_by(neighbour) {
                     (nearest, partner) = (way, Some(neighbour.id()));
                 }
             }
         }
         self.partner = partner;
+    }
+
+    /// Whether it has exchanged duties with this robot since the newest notice.
+    fn has_exchanged_with(&self, robot: NodeId) -> bool {
+        self.partners_since_notice().is_some_and(|partners| partners.contains(robot))
+    }
+
+    /// The robots with which it has exchanged duties since the newest notice, if there are any.
+    pub(super) fn partners_since_notice(&self) -> Option<&IdSet> {
+        let (notice, partners) = self.past_partners.as_ref()?;
+        (*notice == self.notice_id()).then_some(partners)
+    }
+
+    /// It has exchanged duties with this robot.
+    pub(super) fn remember_partner(&mut self, partner: NodeId) {
+        let mut partners = self.partners_since_notice().cloned().unwrap_or_default();
+        partners.insert(partner);
+        self.past_partners = Some((self.notice_id(), partners));
     }
 
     /// Whether this robot is on a way that another could go on with.
@@ -82,7 +101,8 @@ impl Robot {
         let children_hold = self
             .children_of(station.post.id)
             .all(|child| self.walk_to(child) <= self.hard_length());
-        parked.beacon.parked
+        self.elects(parked.id())
+            && parked.beacon.parked
             && parked.beacon.offer.is_none()
             && parked.beacon.reply.is_none()
             && within_reach

@@ -148,6 +148,18 @@ fn a_redundant_robot_bids_its_residual_and_then_the_shorter_path() {
     assert_eq!(bid(-0.01), (2, -10, -2));
 }
 
+/// If it stopped on Σ, nobody would miss it.
+#[test]
+fn no_way_to_the_caller_leads_over_a_robot_that_does_not_take_part() {
+    let mut robot = called(fixed(10, 11), false);
+    let (id, task) = robot.announced.clone().expect("a task is announced");
+    let others = Arc::new(task.roster.iter().filter(|&robot| robot != 0).collect());
+    robot.announced = Some((id, Shared::new(Announcement { roster: others, ..(*task).clone() })));
+    robot.hears(knows_way(&robot, 1, east(0.5), fixed(11, 13)));
+    assert_eq!(recruit_bid(&mut robot), Some(None), "it answers all the same");
+    assert!(robot.route.is_none());
+}
+
 #[test]
 fn the_way_to_the_caller_leads_over_links_of_the_tree() {
     let finds = |own: Post, held: Post, at: Point, waited: usize| {

@@ -81,20 +81,44 @@ fn of_two_the_nearer_to_the_goal_is_the_partner() {
     }
 }
 
-/// It goes back to the robot with which it has just exchanged only where that is nearer.
+/// It goes back to a robot with which it has exchanged since the newest notice only where that is nearer:
+/// three robots, none of which can go on, do not hand a duty round without end.
 #[test]
 fn no_robot_exchanges_back_to_where_it_came_from() {
-    let back = |last: Option<NodeId>| {
+    let back = |partners: &[NodeId]| {
         let mut robot = stuck(10);
-        robot.last_partner = last;
+        partners.iter().for_each(|&partner| robot.remember_partner(partner));
         robot.hears(beacon(1, west(BESIDE), redundant(11, 13), &[11, 13, 14]));
         partner(&mut robot)
     };
-    assert_eq!((back(None), back(Some(2)), back(Some(1))), (Some(1), Some(1), None));
+    assert_eq!((back(&[]), back(&[2]), back(&[1])), (Some(1), Some(1), None));
+    assert_eq!(back(&[1, 2]), None, "another exchange between does not count");
     let mut robot = stuck(10);
-    robot.last_partner = Some(1);
+    robot.remember_partner(1);
     robot.hears(parked(BESIDE));
     assert_eq!(partner(&mut robot), Some(1), "it is nearer");
+}
+
+#[test]
+fn with_another_notice_it_may_exchange_with_the_same_robots_again() {
+    let mut robot = stuck(10);
+    robot.remember_partner(1);
+    robot.is_told(Notice::Advance { joined: None });
+    robot.hears(beacon(1, west(BESIDE), redundant(11, 13), &[11, 13, 14]));
+    assert_eq!(partner(&mut robot), Some(1));
+}
+
+/// If it stopped with the duty, nobody would miss it.
+#[test]
+fn a_partner_takes_part_in_the_elections() {
+    let mut robot = stuck(5);
+    robot.hears(parked(BESIDE));
+    let (id, mut announcement) = robot.announced.clone().expect("a task is announced");
+    let others = announcement.roster.iter().filter(|&robot| robot != 1).collect();
+    announcement =
+        Shared::new(Announcement { roster: Arc::new(others), ..(*announcement).clone() });
+    robot.announced = Some((id, announcement));
+    assert_eq!(partner(&mut robot), None);
 }
 
 #[test]
