@@ -126,10 +126,12 @@ impl Robot {
         }
     }
 
-    /// Once a period: for how long it has not heard its parent.
+    /// Once a period: for how long it has not heard its parent, or its post has been attached to none.
     pub(super) fn count_orphaned_periods(&mut self) {
         let longer = (self.orphaned_periods + 1).min(PATIENCE_WITH_ORPHANED_POSTS + 1);
-        self.orphaned_periods = if self.hears_no_parent() { longer } else { 0 };
+        let is_unattached = self.duty.post().is_some_and(|post| post.parent.is_none());
+        let has_no_parent = is_unattached || self.hears_no_parent();
+        self.orphaned_periods = if has_no_parent { longer } else { 0 };
     }
 
     /// Another parent, where no robot has held the post for long that its own is attached to, or it is

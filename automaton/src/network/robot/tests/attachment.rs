@@ -253,6 +253,20 @@ fn periods_without_a_parent_are_counted_from_the_last_one_with_it() {
     assert_eq!(robot.orphaned_periods, 0);
 }
 
+/// Nobody waits for it to be relieved by a robot that only remembers its parent.
+#[test]
+fn a_post_that_is_attached_to_none_has_no_parent_in_the_end() {
+    let mut robot = robot();
+    robot.holds(Post { parent: None, ..fixed(20, 0) });
+    robot.hears(beacon(1, east(0.5), fixed(11, 13), &[11, 13]));
+    robot.parent = Some(1);
+    let parents = (0..6).map(|_| {
+        robot.count_orphaned_periods();
+        robot.tree_parent()
+    });
+    assert_eq!(parents.collect::<Vec<_>>(), [Some(1), Some(1), Some(1), None, None, None]);
+}
+
 /// A way through its own post leads nowhere; a parent that is silent is waited for.
 #[test]
 fn a_robot_follows_the_way_of_its_parent() {
