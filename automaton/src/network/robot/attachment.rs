@@ -153,7 +153,7 @@ impl Robot {
         };
         let ways = self.neighbours.iter().filter_map(|neighbour| {
             let lineage = neighbour.beacon.lineage.as_ref()?;
-            let usable = Self::accepts_redundant(neighbour)
+            let usable = self.may_attach_to(neighbour)
                 && leads_elsewhere(lineage)
                 && self.walk_to(neighbour) <= limit;
             let order = (!self.is_confirmed(neighbour), lineage.hops());
@@ -167,7 +167,7 @@ impl Robot {
         let current = post.parent.and_then(|anchor| {
             let holder = self.neighbour_at(anchor)?;
             let lineage = holder.beacon.lineage.as_ref()?;
-            let usable = Self::accepts_redundant(holder)
+            let usable = self.may_attach_to(holder)
                 && !lineage.contains(post.id)
                 && self.walk_to(holder)
                     <= (self.hard_length() + 2.0 * self.stray()) * (1.0 + ROUNDING);
@@ -203,7 +203,7 @@ impl Robot {
             if better
                 && admits(neighbour)
                 && neighbour.distance <= self.build_length() * (1.0 + ROUNDING)
-                && Self::accepts_redundant(neighbour)
+                && self.may_attach_to(neighbour)
                 && !lineage.contains(own)
                 && avoided.is_none_or(|avoided| !lineage.contains(avoided))
                 && self.may_build(self.walk_to(neighbour))
@@ -237,6 +237,11 @@ impl Robot {
             Some(post) => Anchor::Post(post.id),
             None => Anchor::Access(neighbour.id() - self.site.robots),
         }
+    }
+
+    /// Whether its post may be attached to that of this neighbour, which is not attached to it.
+    fn may_attach_to(&self, neighbour: &Neighbour) -> bool {
+        Self::accepts_redundant(neighbour) && neighbour.beacon.parent != Some(self.id)
     }
 
     fn accepts_redundant(neighbour: &Neighbour) -> bool {
