@@ -8,6 +8,9 @@
 //! A property that fails is told as a story, and the program ends with status 1. At the end it says
 //! which rows of the tables no node has taken.
 
+#[macro_use]
+mod say;
+
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -33,8 +36,8 @@ fn main() -> Result<ExitCode, CampaignError> {
         all = all.and(findings);
     }
     let untaken: Vec<_> = all.rows.iter().filter(|(_, taken)| **taken == 0).collect();
-    println!("rows that no node takes in any of them: {} of {}", untaken.len(), all.rows.len());
-    untaken.iter().for_each(|(row, _)| println!("    {row}"));
+    say!("rows that no node takes in any of them: {} of {}", untaken.len(), all.rows.len());
+    untaken.iter().for_each(|(row, _)| say!("    {row}"));
     Ok(if all_met { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
@@ -42,7 +45,7 @@ fn main() -> Result<ExitCode, CampaignError> {
 fn report(campaign: &Campaign) -> Result<Findings, CampaignError> {
     let begin = Instant::now();
     let findings = campaign.run()?;
-    println!(
+    say!(
         "{}: {} configurations, {} states (at most {} in one), {} transitions, {:.1} s",
         campaign.name,
         findings.counts.configurations,
@@ -53,14 +56,14 @@ fn report(campaign: &Campaign) -> Result<Findings, CampaignError> {
     );
     if findings.counts != campaign.expected {
         let Counts { configurations, states, transitions } = campaign.expected;
-        println!(
+        say!(
             "    not as expected: {configurations} configurations, {states} states, {transitions} transitions"
         );
     }
-    println!("    configurations in which a mission may end so: {:?}", findings.outcomes);
-    println!("    properties that fail: {}", findings.failures.len());
+    say!("    configurations in which a mission may end so: {:?}", findings.outcomes);
+    say!("    properties that fail: {}", findings.failures.len());
     if let Some(failure) = findings.failures.iter().min_by_key(|failure| failure.story.len()) {
-        println!("{failure}");
+        say!("{failure}");
     }
     Ok(findings)
 }

@@ -10,6 +10,8 @@
 
 #[path = "../tests/floor_plans/mod.rs"]
 mod floor_plans;
+#[macro_use]
+mod say;
 
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
 use clap::{Parser, Subcommand, value_parser};
@@ -23,24 +25,9 @@ use pleach::verify::network::storm::{
 };
 use rayon::prelude::*;
 use std::error::Error;
-use std::fmt::Arguments;
-use std::io::{self, Write as _};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-
-/// Prints a line. A reader who has seen enough may close the pipe.
-macro_rules! say {
-    ($($text:tt)*) => {
-        say(format_args!($($text)*))
-    };
-}
-
-fn say(line: Arguments<'_>) {
-    if writeln!(io::stdout(), "{line}").is_err() {
-        std::process::exit(0);
-    }
-}
 
 /// Control periods after which a mission is given up.
 const MOST_PERIODS: usize = 3_000;

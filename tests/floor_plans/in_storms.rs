@@ -15,7 +15,7 @@ pub const DURATION: f64 = 300.0;
 
 /// A shipped scenario.
 pub fn shipped(name: &str) -> ValidScenario {
-    let path = format!("scenarios/{name}.toml");
+    let path = format!("{}/scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     scenario_file::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}"))
 }
 

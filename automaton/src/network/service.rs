@@ -32,7 +32,9 @@ pub struct Announced {
     pub task: usize,
     /// The robots that take part in elections for it.
     pub roster: Arc<IdSet>,
-    /// How many elections for it have not been answered by all of them.
+    /// Those of them that knew no way to an access point when it was announced: they cannot bid.
+    pub wayless: Arc<IdSet>,
+    /// How many elections for it have been in vain: not answered by all of them, or not by those without a way.
     pub unanswered: u32,
 }
 

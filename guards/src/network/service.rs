@@ -108,7 +108,21 @@ pub fn closes() -> Guard {
 
 /// The leader election is over, no robot has bid, and there is nobody else to ask.
 pub fn no_bid() -> Guard {
-    named("no bid", pursues() & lacks_bid() & !may_ask_others())
+    named("no bid", pursues() & lacks_bid() & !may_ask_others() & !may_find_ways())
+}
+
+/// Robots that could not bid for want of a way to an access point know one now, or may in a while.
+fn may_find_ways() -> Predicate {
+    variable("waited").less_than(variable("longest_search")) | has_found_way()
+}
+
+/// A robot that could not bid for want of a way to an access point knows one now, and is asked again.
+fn has_found_way() -> Predicate {
+    proposition("has_found_way") & another_time()
+}
+
+fn another_time() -> Predicate {
+    variable("unanswered").less_than(variable("attempts"))
 }
 
 fn lacks_bid() -> Predicate {
@@ -133,10 +147,9 @@ pub fn announces_again() -> Guard {
 
 /// So it is while the election is under way, or nobody bids in it that could go, or it goes unanswered.
 pub fn elects_again() -> Guard {
-    let another_time = variable("unanswered").less_than(variable("attempts"));
-    let unanswered = goes_unanswered() & another_time;
+    let unanswered = goes_unanswered() & another_time();
     let in_vain = proposition("hears_failure") | lacks_bid();
-    let others = in_vain & proposition("has_newcomers");
+    let others = in_vain & proposition("has_newcomers") | lacks_bid() & has_found_way();
     let again = proposition("misses_elector") | others | unanswered;
     named("announces again", pursues() & again & has_robots())
 }

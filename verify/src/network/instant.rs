@@ -207,12 +207,19 @@ pub fn accounting(snapshot: &Snapshot, limits: &Limits) -> Result<(), Violation>
     Ok(())
 }
 
-/// [`Property::Residual`], from the routes; the smallest residual, for the summary.
+/// [`Property::Residual`], from the routes; the smallest residual, for the summary. Until the first task is
+/// announced routes are being set up link by link, which takes several control periods where the way to an access
+/// point has more links than a period has rounds.
 ///
 /// # Errors
 ///
 /// The robot with the smallest residual, if that is below −c_min.
 pub fn residual(snapshot: &Snapshot, limits: &Limits) -> Result<Option<Extreme>, Violation> {
+    let has_begun =
+        snapshot.task.is_some() || !snapshot.serviced.is_empty() || !snapshot.closed.is_empty();
+    if !has_begun {
+        return Ok(None);
+    }
     let residuals = link::residuals(&snapshot.routes, limits.rates());
     let smallest = residuals.iter().enumerate().min_by(|one, other| one.1.total_cmp(other.1));
     let Some((robot, &value)) = smallest else { return Ok(None) };

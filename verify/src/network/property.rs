@@ -187,7 +187,9 @@ impl Property {
                 "The reported residual of a robot is what its routes, those towards it and its \
                  rate amount to, eq. (4)."
             }
-            Property::Residual => "Every residual is at least −c_min, eq. (5).",
+            Property::Residual => {
+                "From the first announcement of a task on every residual is at least −c_min, eq. (5)."
+            }
             Property::Load => {
                 "With the flows held during a period, every link in use stays within range, and \
                  every sender needs at most its whole time."

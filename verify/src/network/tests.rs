@@ -179,6 +179,10 @@ fn a_robot_that_sends_less_than_it_must() {
     assert_eq!(violation.robots, [2]);
     assert!((violation.measured + 1e-4).abs() < 1e-12);
     keeps(send(0.075));
+    let mut unasked = Snapshot { task: None, serviced: Vec::new(), ..snapshot(1) };
+    send(0.0749)(&mut snapshot(0), &mut unasked);
+    let limits = super::Limits::of(&scenario());
+    assert!(super::instant::residual(&unasked, &limits).is_ok_and(|smallest| smallest.is_none()));
 }
 
 /// Robot 1 sends straight to the access point with this share, at a distance from it.

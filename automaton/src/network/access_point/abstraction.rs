@@ -104,6 +104,7 @@ impl AccessPoint {
             attached,
             roster,
             settled_rounds,
+            connected: _, // by the beacons that it goes by
             service,
             closed,
             // Constant: the request comes before the first state, and does not change. No task of it ends.
@@ -136,7 +137,7 @@ impl AccessPoint {
             Notice::Quiet => (*settled_rounds).min(ROUNDS_UNTIL_ROSTER_SETTLES),
             _ => 0,
         };
-        let patience = PATIENCE_WITH_ELECTIONS * longest_wait + 1;
+        let patience = (PATIENCE_WITH_ELECTIONS * longest_wait + 1).max(self.longest_search());
         let rounds = if self.is_electing() { (*election_rounds).min(patience) } else { 0 };
         format!(
             "{:?}",

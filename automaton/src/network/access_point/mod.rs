@@ -85,6 +85,8 @@ pub struct AccessPoint {
     /// The robots that take part, attached here or to other access points: where no attendance is kept,
     /// those that are heard of.
     roster: Arc<IdSet>,
+    /// The robots that are attached to an access point.
+    connected: Arc<IdSet>,
     /// What it knows of each robot, if it [keeps attendance](Self::keeps_attendance).
     attendees: Vec<Attendee>,
     /// The newest roll.
@@ -141,6 +143,7 @@ impl AccessPoint {
             attached: Arc::default(),
             strays: Arc::default(),
             roster: Arc::default(),
+            connected: Arc::default(),
             settled_rounds: 0,
             known_tasks: Vec::new(),
             serves: Arc::default(),
@@ -441,8 +444,10 @@ impl AccessPoint {
         let is_complete = reports.below.includes(&roster);
         let settled = is_complete && *self.roster == roster;
         self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
-        if *self.roster != roster {
-            self.roster = Arc::new(roster);
+        for (known, now) in [(&mut self.roster, roster), (&mut self.connected, reports.below)] {
+            if **known != now {
+                *known = Arc::new(now);
+            }
         }
     }
 

@@ -17,8 +17,10 @@ use super::attendance::Attendee;
 use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
 
 /// A task is announced again at most this many times because robots that are heard of do not answer:
-/// one that restarts does not know of the election under way.
+/// one that restarts does not know of the election under way, or knows no way to an access point yet.
 const ATTEMPTS_TO_ELECT: f64 = 3.0;
+/// Control periods after which a robot that looks for another parent has found one, if there is one.
+const PATIENCE_WITH_SEARCHES: usize = 16;
 
 /// The automaton of the service.
 pub type ServiceAutomaton = Automaton<Service, ServiceEvent, AccessPoint>;
@@ -46,9 +48,12 @@ crate::observed! {
         waited: point.election_rounds as f64,
         /// Rounds after which an election should be over.
         longest_wait: (PATIENCE_WITH_ELECTIONS * point.longest_wait) as f64,
-        /// Elections for its task that were not answered by all.
+        /// Rounds after which a robot that takes part in the elections for its task, and has known no way to an
+        /// access point since that was announced, is cut off; 0 if there is none.
+        longest_search: point.longest_search() as f64,
+        /// Elections for its task that were in vain: not answered by all, or not by those without a way.
         unanswered: point.announced().map_or(0.0, |announced| f64::from(announced.unanswered)),
-        /// Elections that may go unanswered before the mission ends.
+        /// Elections that may be in vain before the mission ends.
         attempts: ATTEMPTS_TO_ELECT,
     }
     propositions {
@@ -63,6 +68,9 @@ crate::observed! {
         awaits_robots: point.awaits_robots(),
         /// A robot takes part that does not in the elections for its task: it has joined, or come back, since.
         has_newcomers: point.newcomers().next().is_some(),
+        /// A robot that takes part in the elections for its task knew no way to an access point when it was
+        /// announced, and knows one now.
+        has_found_way: point.finders().next().is_some(),
         /// A robot that does not take part is not gone yet, or is coming back.
         may_return: point.attendees.iter().any(Attendee::may_return),
         /// The newest notice received announces a task, or calls for a recruit.
@@ -190,6 +198,31 @@ impl AccessPoint {
             .map(|(robot, _)| robot)
     }
 
+    /// The robots that take part in the elections for its task and knew no way to an access point when it was
+    /// announced: those that know one now, or those that still know none.
+    fn wayless(&self, has_found_way: bool) -> impl Iterator<Item = NodeId> {
+        let wayless = self.announced().into_iter().flat_map(|announced| announced.wayless.iter());
+        wayless.filter(move |&robot| self.connected.contains(robot) == has_found_way)
+    }
+
+    /// For how many rounds it waits for a robot that knows no way to an access point, if there is one.
+    pub(super) fn longest_search(&self) -> usize {
+        let is_awaited = self.wayless(false).next().is_some();
+        usize::from(is_awaited) * PATIENCE_WITH_SEARCHES * self.site.settings.rounds_per_period
+    }
+
+    /// The robots that could not bid in the election for want of a way to an access point, and know one now.
+    fn finders(&self) -> impl Iterator<Item = NodeId> {
+        self.wayless(true)
+    }
+
+    /// A task that it announces now, with those who elect its leader.
+    pub(super) fn announced_now(&self, announcement: &Announcement) -> Announced {
+        let is_wayless = |&robot: &NodeId| !self.connected.contains(robot);
+        let wayless = Arc::new(announcement.roster.iter().filter(is_wayless).collect());
+        Announced { wayless, ..electors_of(announcement) }
+    }
+
     /// The robots that take part in the elections for its task, and have restarted since it was announced.
     fn forgetful_electors(&self) -> impl Iterator<Item = NodeId> {
         let pursued = self.announced();
@@ -301,7 +334,7 @@ impl AccessPoint {
 
 fn electors_of(announcement: &Announcement) -> Announced {
     let Announcement { task, ref roster, .. } = *announcement;
-    Announced { task, roster: Arc::clone(roster), unanswered: 0 }
+    Announced { task, roster: Arc::clone(roster), wayless: Arc::default(), unanswered: 0 }
 }
 
 // ---- The resets ------------------------------------------------------------------------------
@@ -372,7 +405,7 @@ fn hear_end<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Over
 fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Electing> {
     let task = point.next_task()?;
     let announcement = point.announcement_of(task)?;
-    let announced = Some(electors_of(&announcement));
+    let announced = Some(point.announced_now(&announcement));
     effects.push(ServiceEffect::Report(match point.abandoned_task() {
         Some(task) => {
             MissionEvent::TaskReannounced { task, gone: point.gone(), joined: Vec::new() }
@@ -406,10 +439,13 @@ fn announce_again<A: Knows>(
     point: &AccessPoint,
     effects: &mut Effects,
 ) -> Option<Electing> {
-    let Announced { task, roster, unanswered } = place.announced()?;
+    let Announced { task, roster, unanswered, .. } = place.announced()?;
     let announcement = point.announcement_of(task)?;
     let is_given_up = point.is_election_over() || point.hears_failure();
     let is_unanswered = !point.misses_elector() && !is_given_up;
+    let is_unbid = point.is_election_over() && !point.misses_elector() && !point.hears_failure();
+    let finders: Vec<NodeId> = point.finders().filter(|_| is_unbid).collect();
+    let is_in_vain = is_unanswered || !finders.is_empty();
     let gone = match is_unanswered {
         true => point.unanswering(&roster),
         false => {
@@ -417,10 +453,10 @@ fn announce_again<A: Knows>(
             gone.chain(point.forgetful_electors()).collect()
         }
     };
-    let joined = point.newcomers().collect();
+    let joined = point.newcomers().chain(finders).collect();
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone, joined }));
-    let unanswered = unanswered + u32::from(is_unanswered);
-    let announced = Some(Announced { unanswered, ..electors_of(&announcement) });
+    let unanswered = unanswered + u32::from(is_in_vain);
+    let announced = Some(Announced { unanswered, ..point.announced_now(&announcement) });
     effects.push(ServiceEffect::Supersede(Notice::Task(Shared::new(announcement))));
     Some(Electing { announced })
 }
@@ -460,12 +496,17 @@ fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
 
 fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     let task = place.announced.as_ref()?.task;
-    if point.misses_robots() {
-        let absent: Vec<NodeId> = point.absent_robots().collect();
-        let reason = format!(
-            "no robot is left that can go to task {task}: robots {absent:?} have stopped, or nobody \
-             hears them"
-        );
+    let (absent, cut_off): (Vec<NodeId>, Vec<NodeId>) =
+        (point.absent_robots().collect(), point.wayless(false).collect());
+    let why = match (absent.is_empty(), cut_off.is_empty()) {
+        (false, _) => Some(format!("robots {absent:?} have stopped, or nobody hears them")),
+        (true, false) => {
+            Some(format!("robots {cut_off:?} know no way to an access point any more"))
+        }
+        (true, true) => None,
+    };
+    if let Some(why) = why {
+        let reason = format!("no robot is left that can go to task {task}: {why}");
         return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
     }
     let reason = format!(

@@ -184,7 +184,7 @@ impl AccessPoint {
     /// It pursues a task, and has taken up this notice.
     fn pursues(&mut self, task: usize, notice: Notice) {
         let roster = Arc::new([0, 1].into_iter().collect());
-        let announced = Some(Announced { task, roster, unanswered: 0 });
+        let announced = Some(Announced { task, roster, wayless: Arc::default(), unanswered: 0 });
         self.service = Current::new(Serving::UnderWay(UnderWay { announced }));
         self.bulletin = self.bulletin.next(0, Shared::new(notice));
     }
@@ -303,7 +303,7 @@ impl AccessPoint {
     /// The only robot of the elections for its task is robot 0.
     fn knows_one_elector(&mut self) {
         let roster = Arc::new([0].into_iter().collect());
-        let announced = Some(Announced { task: 0, roster, unanswered: 0 });
+        let announced = Some(Announced { task: 0, roster, wayless: Arc::default(), unanswered: 0 });
         self.service = Current::new(Serving::UnderWay(UnderWay { announced }));
     }
 }
@@ -371,7 +371,7 @@ fn a_mission_ends_when_a_robot_does_not_answer() {
         let mut point = access_point();
         point.pursues_without(1, Standing::Present(Present));
         let roster = Arc::new([0, 1].into_iter().collect());
-        let announced = Some(Announced { task: 0, roster, unanswered });
+        let announced = Some(Announced { task: 0, roster, wayless: Arc::default(), unanswered });
         point.service = Current::new(Serving::Electing(Electing { announced }));
         point.election_rounds = 1_000;
         point.attendees.iter_mut().for_each(Attendee::attend);
@@ -388,6 +388,45 @@ fn a_mission_ends_when_a_robot_does_not_answer() {
     assert_eq!(becomes_of(3), (vec![], Some(reason.to_owned())));
 }
 
+/// One that has begun again may have to find its way to an access point first.
+#[test]
+fn no_task_is_out_of_reach_while_a_robot_looks_for_its_way() {
+    let becomes_of = |unanswered: u32, rounds: usize, has_found_way: bool| {
+        let mut point = access_point();
+        point.pursues_without(1, Standing::Present(Present));
+        let roster: Arc<IdSet> = Arc::new([0, 1].into_iter().collect());
+        let announcement = point.announcement_of(0).expect("it is asked for it");
+        assert_eq!(*announcement.roster, *roster);
+        point.connected = Arc::new(IdSet::singleton(0));
+        let announced = Announced { unanswered, ..point.announced_now(&announcement) };
+        assert_eq!(*announced.wayless, IdSet::singleton(1));
+        let notice = Notice::Task(Shared::new(announcement));
+        point.bulletin = point.bulletin.next(3, Shared::new(notice));
+        point.service = Current::new(Serving::Electing(Electing { announced: Some(announced) }));
+        let mut election = Election::new(point.bulletin.id());
+        (0..2).for_each(|robot| election.place(robot, None));
+        point.election = Some(Arc::new(election));
+        point.election_rounds = rounds;
+        if has_found_way {
+            point.connected = roster;
+        }
+        let reason = |notice: &Notice| match notice {
+            Notice::Ended { reason, .. } => Some(reason.to_string()),
+            _ => None,
+        };
+        (point.serves_user(), reason(point.notice()))
+    };
+    let again = MissionEvent::TaskReannounced { task: 0, gone: vec![], joined: vec![1] };
+    assert_eq!(becomes_of(0, 3, false), (vec![], None), "it may find one");
+    assert_eq!(becomes_of(0, 3, true), (vec![again.clone()], None));
+    assert_eq!(becomes_of(2, 3, true), (vec![again], None));
+    assert!(becomes_of(3, 3, true).1.is_some(), "it has been asked often enough");
+    let (events, reason) = becomes_of(0, 100_000, false);
+    let expected = "no robot is left that can go to task 0: robots [1] know no way to an access point \
+                    any more";
+    assert_eq!((events, reason.as_deref()), (vec![], Some(expected)));
+}
+
 /// One that has not begun, too: nobody else can say whether it could go.
 #[test]
 fn no_task_is_out_of_reach_while_a_robot_may_come() {
@@ -400,7 +439,7 @@ fn no_task_is_out_of_reach_while_a_robot_may_come() {
         };
         point.survey_robots();
         let roster: Arc<IdSet> = Arc::new([0].into_iter().collect());
-        let announced = Some(Announced { task: 0, roster, unanswered: 0 });
+        let announced = Some(Announced { task: 0, roster, wayless: Arc::default(), unanswered: 0 });
         let announcement = point.announcement_of(0).expect("it is asked for it");
         let notice = Notice::Task(Shared::new(announcement));
         point.bulletin = point.bulletin.next(3, Shared::new(notice));
