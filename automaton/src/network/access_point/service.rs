@@ -208,7 +208,10 @@ impl AccessPoint {
     /// For how many rounds it waits for a robot that knows no way to an access point, if there is one.
     pub(super) fn longest_search(&self) -> usize {
         let is_awaited = self.wayless(false).next().is_some();
-        usize::from(is_awaited) * PATIENCE_WITH_SEARCHES * self.site.settings.rounds_per_period
+        match is_awaited {
+            true => PATIENCE_WITH_SEARCHES.saturating_mul(self.site.settings.rounds_per_period),
+            false => 0,
+        }
     }
 
     /// The robots that could not bid in the election for want of a way to an access point, and know one now.
