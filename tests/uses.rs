@@ -195,6 +195,7 @@ pub const USES: &[Use] = &[
     ("foreseen", "guards/src/network/mod.rs", ROBOT_MISSION, "guards::foreseen()"),
     ("called_again", "guards/src/network/mod.rs", ROBOT_MISSION, "guards::called_again()"),
     ("takes_link", PATH, ROBOT_PATH, "path.takes_link(place, other)"),
+    ("no_bid", SERVICE_GUARDS, SERVICE, "guards::no_bid()"),
     ("end_heard", SERVICE_GUARDS, SERVICE, "guards::end_heard()"),
     ("all_serviced", SERVICE_GUARDS, SERVICE, "guards::all_serviced()"),
     ("withdraws", SERVICE_GUARDS, SERVICE, "guards::withdraws()"),

@@ -153,6 +153,11 @@ impl Roll {
     }
 }
 
+/// Why a mission goes on, or ends, without these robots.
+pub(super) fn why_absent(robots: &[NodeId]) -> String {
+    format!("robots {robots:?} have stopped, or no access point hears of them")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

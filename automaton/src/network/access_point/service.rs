@@ -11,6 +11,7 @@ use crate::{Automaton, BuildError, Transfer};
 use super::super::beacon::{Announcement, Bulletin, Notice};
 use super::super::order::Errand;
 use super::super::record::{MissionEvent, Outcome};
+use super::super::roll::why_absent;
 use super::super::service::{Announced, Done, Electing, Gathering, Over, Serving, UnderWay};
 use super::super::shared::Shared;
 use super::attendance::Attendee;
@@ -480,7 +481,7 @@ fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> O
     let mut reason = "no robot is connected to an access point".to_owned();
     let gone = point.gone();
     if !gone.is_empty() {
-        reason.push_str(&format!(" any more: robots {gone:?} have stopped, or nobody hears them"));
+        reason.push_str(&format!(" any more: {}", why_absent(&gone)));
     }
     end(point, effects, Outcome::InsufficientRobots, point.next_task(), reason)
 }
@@ -499,16 +500,13 @@ fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
 
 fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     let task = place.announced.as_ref()?.task;
-    let (absent, cut_off): (Vec<NodeId>, Vec<NodeId>) =
-        (point.absent_robots().collect(), point.wayless(false).collect());
-    let why = match (absent.is_empty(), cut_off.is_empty()) {
-        (false, _) => Some(format!("robots {absent:?} have stopped, or nobody hears them")),
-        (true, false) => {
-            Some(format!("robots {cut_off:?} know no way to an access point any more"))
-        }
-        (true, true) => None,
-    };
-    if let Some(why) = why {
+    let absent: Vec<NodeId> = point.absent_robots().collect();
+    let cut_off: Vec<NodeId> = point.wayless(false).collect();
+    if !absent.is_empty() || !cut_off.is_empty() {
+        let why = match absent.is_empty() {
+            true => format!("robots {cut_off:?} know no way to an access point any more"),
+            false => why_absent(&absent),
+        };
         let reason = format!("no robot is left that can go to task {task}: {why}");
         return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
     }

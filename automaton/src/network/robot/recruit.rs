@@ -156,7 +156,7 @@ impl Robot {
                 let wanted = (remaining / self.build_length()).ceil().max(1.0);
                 let reason = format!(
                     "task {task} needs another recruit, and no robot is left that can come; from where \
-                     the team stands about {wanted} more robots are needed"
+                     the team stands more robots are needed, about {wanted}"
                 );
                 (Outcome::InsufficientRobots, reason)
             }

@@ -10,6 +10,7 @@ use super::super::beacon::{Notice, TeamReport};
 use super::super::duty::Hop;
 use super::super::mission::{Advance, Ended, Idle};
 use super::super::record::{MissionEvent, Outcome};
+use super::super::roll::why_absent;
 use super::super::scenario::Strategy;
 use super::Robot;
 use super::hearing::Neighbour;
@@ -93,7 +94,7 @@ impl Robot {
     ) -> Notice {
         let stopped: Vec<NodeId> = self.wrecks.iter().map(|wreck| wreck.robot).collect();
         if !stopped.is_empty() {
-            reason.push_str(&format!("; robots {stopped:?} have stopped, or nobody hears them"));
+            reason.push_str(&format!("; {}", why_absent(&stopped)));
         }
         Notice::Ended { outcome, reason: reason.into(), task }
     }
