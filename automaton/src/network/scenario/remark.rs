@@ -151,7 +151,7 @@ impl fmt::Display for Remark {
             Remark::FewRounds { rounds } => write!(
                 formatter,
                 "{rounds} where {ROUNDS_TO_BE_HEARD} repeat each beacon as often as is useful: with fewer, \
-                 robots seldom move when messages are lost"
+                 robots seldom move when messages are lost, and may wait for their first task without end"
             ),
         }
     }
