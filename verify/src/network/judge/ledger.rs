@@ -153,7 +153,9 @@ impl Ledger {
                 self.elect(*task, *robot, *conflict)
             }
             MissionEvent::ElectionRepeated { task } => self.repeat_election(*task),
-            MissionEvent::TaskReannounced { task, gone, .. } => self.reannounce(*task, gone),
+            MissionEvent::TaskReannounced { task, gone, joined } => {
+                self.reannounce(*task, gone, joined)
+            }
             MissionEvent::Stationary { robot, .. } => self.call(*robot, "is stationary"),
             MissionEvent::RecruitCalled { robot } => {
                 self.call(*robot, "is too short")?;
@@ -248,14 +250,16 @@ impl Ledger {
         Ok(())
     }
 
-    /// Robots are gone: the task that is pursued begins anew, or one that was serviced is pursued again.
-    fn reannounce(&mut self, task: usize, gone: &[usize]) -> Result<(), Dispute> {
+    /// Robots are gone, or others can be asked: the task that is pursued begins anew, or one that was serviced is
+    /// pursued again.
+    fn reannounce(&mut self, task: usize, gone: &[usize], joined: &[usize]) -> Result<(), Dispute> {
         let is_pursued = self.task().is_none_or(|pursued| pursued == task);
         let is_over = task >= self.announced || self.closed.contains(&task);
-        if is_over || !is_pursued || gone.is_empty() {
+        let has_cause = !gone.is_empty() || !joined.is_empty();
+        if is_over || !is_pursued || !has_cause || gone.iter().any(|robot| joined.contains(robot)) {
             let sentence = format!(
-                "task {task} is announced again without robots {gone:?}, while task {:?} is pursued \
-                 and {} tasks have been announced",
+                "task {task} is announced again without robots {gone:?} and to robots {joined:?}, while task {:?} \
+                 is pursued and {} tasks have been announced",
                 self.task(),
                 self.announced
             );
