@@ -29,7 +29,7 @@ pub fn end_heard() -> Guard {
 
 /// The robots that take part now are not those of the elections for its task, or may not be in a while.
 fn may_ask_others() -> Predicate {
-    proposition("misses_elector") | proposition("has_newcomers") | may_come()
+    proposition("misses_robot") | proposition("has_newcomers") | may_come()
 }
 
 /// Robots may take part in a while that do not now.
@@ -141,7 +141,7 @@ pub fn no_answer() -> Guard {
 /// task up, and others take part now.
 pub fn announces_again() -> Guard {
     let others = proposition("hears_failure") & proposition("has_newcomers");
-    let again = proposition("misses_elector") | others;
+    let again = proposition("misses_robot") | others;
     named("announces again", pursues() & again & has_robots())
 }
 
@@ -150,14 +150,14 @@ pub fn elects_again() -> Guard {
     let unanswered = goes_unanswered() & another_time();
     let in_vain = proposition("hears_failure") | lacks_bid();
     let others = in_vain & proposition("has_newcomers") | lacks_bid() & has_found_way();
-    let again = proposition("misses_elector") | others | unanswered;
+    let again = proposition("misses_robot") | others | unanswered;
     named("announces again", pursues() & again & has_robots())
 }
 
 /// All robots that took part are gone.
 pub fn no_robot_left() -> Guard {
     let all_gone = !has_robots() & !proposition("may_return");
-    named("no robot left", pursues() & proposition("misses_elector") & all_gone)
+    named("no robot left", pursues() & proposition("misses_robot") & all_gone)
 }
 
 fn has_robots() -> Predicate {
@@ -167,7 +167,7 @@ fn has_robots() -> Predicate {
 /// The election lasts longer than news can take, although all who take part have been heard of.
 fn goes_unanswered() -> Predicate {
     let overdue = variable("waited").more_than(variable("longest_wait"));
-    let all_heard = !proposition("expects_elector") & !proposition("misses_elector");
+    let all_heard = !proposition("expects_elector") & !proposition("misses_robot");
     !proposition("election_over") & overdue & all_heard
 }
 

@@ -79,7 +79,7 @@ impl AccessPoint {
         let patience = self.patience_with_tasks() + 1;
         let tasks: Vec<u32> =
             self.known_tasks.iter().map(|task| task.silence.min(patience)).collect();
-        let reports = (&self.strays, &self.serves, &self.forgetful);
+        let reports = (&self.strays, &self.serves, &self.forgetful, &self.joiners);
         let told = (self.period, &self.roll, reports, (self.is_new, self.is_behind));
         format!("{}{:?}", self.account(), (told, attendees, tasks))
     }
@@ -125,6 +125,7 @@ impl AccessPoint {
             log: _,
             // The explorer stands for time; without it no robot is missed, and no task, and none restarts.
             forgetful: _,
+            joiners: _,
             strays: _,
             serves: _,
             known_tasks: _,

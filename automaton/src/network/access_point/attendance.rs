@@ -209,6 +209,7 @@ impl AccessPoint {
             attendee.review(&site.automata.attendance)?;
         }
         self.known_tasks.iter_mut().for_each(TaskRecord::pass_period);
+        self.note_joiners();
         if self.is_first() {
             let absent = self.absent();
             let is_same = *self.roll.absent == absent;
@@ -216,6 +217,15 @@ impl AccessPoint {
             self.roll = Roll { called: self.period, absent };
         }
         Ok(())
+    }
+
+    /// Robots that have joined take part in the team and on Σ like others, and are missed like these.
+    fn note_joiners(&mut self) {
+        let attending = self.attending();
+        if let Some((_, announcement)) = &self.announced {
+            let has_joined = |&robot: &NodeId| !announcement.roster.contains(robot);
+            self.joiners.extend(attending.iter().filter(has_joined));
+        }
     }
 
     /// Attendance is kept from now on, of those that are heard of at present.

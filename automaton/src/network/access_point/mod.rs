@@ -67,8 +67,10 @@ pub struct AccessPoint {
     newest: Option<Bulletin>,
     /// The newest announcement that it knows.
     announced: Option<Announced>,
-    /// The robots that have elected by it and restarted since.
+    /// The robots that have elected by it, or are on Σ, and have restarted since.
     forgetful: Arc<IdSet>,
+    /// The robots that take part and do not elect by it: they have joined, or come back, since.
+    joiners: IdSet,
     election: Option<Arc<Election>>,
     election_rounds: usize,
     agreement: Option<Agreement>,
@@ -133,6 +135,7 @@ impl AccessPoint {
             newest: None,
             announced: None,
             forgetful: Arc::default(),
+            joiners: IdSet::default(),
             election: None,
             election_rounds: 0,
             agreement: None,
@@ -331,7 +334,7 @@ impl AccessPoint {
     fn learn(&mut self, announced: Announced) {
         if self.announced.as_ref().is_none_or(|(known, _)| announced.0.is_newer_than(*known)) {
             self.announced = Some(announced);
-            self.forgetful = Arc::default();
+            (self.forgetful, self.joiners) = (Arc::default(), IdSet::default());
         }
     }
 

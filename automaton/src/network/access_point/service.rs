@@ -60,9 +60,8 @@ crate::observed! {
     propositions {
         /// Another node has begun the next control period.
         behind: point.is_behind,
-        /// A robot that takes part in the elections for its task is gone, or has forgotten what became of
-        /// them.
-        misses_elector: point.misses_elector(),
+        /// A robot that has taken part in the service of its task is gone, or has forgotten what became of it.
+        misses_robot: point.misses_robot(),
         /// A robot that takes part in the elections for its task has not been heard of.
         expects_elector: point.electors().any(|elector| !elector.is_heard_of()),
         /// A robot of which it has never heard may not have begun yet.
@@ -185,8 +184,17 @@ impl AccessPoint {
         roster.filter_map(|robot| self.attendees.get(robot))
     }
 
-    fn misses_elector(&self) -> bool {
-        self.electors().any(Attendee::is_gone) || self.forgetful_electors().next().is_some()
+    /// The robots that have taken part in the service of its task, and are gone.
+    fn missed(&self) -> impl Iterator<Item = NodeId> {
+        let pursued = self.announced();
+        let has_taken_part = move |robot: &NodeId| {
+            pursued.is_some_and(|it| it.roster.contains(*robot) || self.joiners.contains(*robot))
+        };
+        self.gone().into_iter().filter(has_taken_part)
+    }
+
+    fn misses_robot(&self) -> bool {
+        self.missed().next().is_some() || self.forgetful().next().is_some()
     }
 
     /// The robots that take part, and not in the elections for its task.
@@ -227,11 +235,11 @@ impl AccessPoint {
         Announced { wayless, ..electors_of(announcement) }
     }
 
-    /// The robots that take part in the elections for its task, and have restarted since it was announced.
-    fn forgetful_electors(&self) -> impl Iterator<Item = NodeId> {
-        let pursued = self.announced();
-        let elects = move |&robot: &NodeId| pursued.is_some_and(|it| it.roster.contains(robot));
-        self.forgetful.iter().filter(elects)
+    /// The robots that take part in the elections for its task, or are on Σ, and have restarted since it was
+    /// announced.
+    fn forgetful(&self) -> impl Iterator<Item = NodeId> {
+        let is_pursued = self.announced().is_some();
+        self.forgetful.iter().filter(move |_| is_pursued)
     }
 
     /// What the user has asked for, by number.
@@ -446,16 +454,13 @@ fn announce_again<A: Knows>(
     let Announced { task, roster, unanswered, .. } = place.announced()?;
     let announcement = point.announcement_of(task)?;
     let is_given_up = point.is_election_over() || point.hears_failure();
-    let is_unanswered = !point.misses_elector() && !is_given_up;
-    let is_unbid = point.is_election_over() && !point.misses_elector() && !point.hears_failure();
+    let is_unanswered = !point.misses_robot() && !is_given_up;
+    let is_unbid = point.is_election_over() && !point.misses_robot() && !point.hears_failure();
     let finders: Vec<NodeId> = point.finders().filter(|_| is_unbid).collect();
     let is_in_vain = is_unanswered || !finders.is_empty();
     let gone = match is_unanswered {
         true => point.unanswering(&roster),
-        false => {
-            let gone = point.gone().into_iter().filter(|&robot| roster.contains(robot));
-            gone.chain(point.forgetful_electors()).collect()
-        }
+        false => point.missed().chain(point.forgetful()).collect(),
     };
     let joined = point.newcomers().chain(finders).collect();
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone, joined }));

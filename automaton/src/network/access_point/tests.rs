@@ -7,7 +7,7 @@ use pleach_continuous::{Point, Vector};
 use pleach_discrete::network::{Election, IdSet, NodeId, Post, PostId};
 use serde_json::json;
 
-use super::super::beacon::{Beacon, Bulletin, Notice};
+use super::super::beacon::{Announcement, Beacon, Bulletin, Notice};
 use super::super::duty::{Duty, Held, Path, Standby, Station};
 use super::super::message::Message;
 use super::super::order::Order;
@@ -321,6 +321,28 @@ fn robots_that_have_joined_are_asked_before_a_task_is_given_up() {
     let end = Notice::Ended { outcome: Outcome::Blocked, reason: "".into(), task: Some(0) };
     let late = Bulletin::first(Shared::new(Notice::Quiet)).next(1, Shared::new(end));
     assert!(point.bulletin.id().is_newer_than(late.id()), "the end is superseded");
+}
+
+/// It may be of the team by now, or on Σ.
+#[test]
+fn a_robot_that_has_joined_is_missed_like_the_others() {
+    let again = |has_joined: bool| {
+        let mut point = access_point();
+        point.pursues_without(1, Standing::Present(Present));
+        point.knows_one_elector();
+        let announcement = point.announcement_of(0).expect("it is asked for it");
+        let announcement = Announcement { roster: Arc::new(IdSet::singleton(0)), ..announcement };
+        point.announced = Some((point.bulletin.id(), Shared::new(announcement)));
+        if has_joined {
+            point.attendees.iter_mut().for_each(Attendee::attend);
+            point.call_roll().expect("guards have values");
+            assert_eq!(point.joiners, IdSet::singleton(1));
+        }
+        point.attendees[1] = Attendee::absent(Standing::Gone(Gone), point.site.roll_validity());
+        point.serves_user()
+    };
+    let without = MissionEvent::TaskReannounced { task: 0, gone: vec![1], joined: vec![] };
+    assert_eq!((again(true), again(false)), (vec![without], vec![]));
 }
 
 #[test]

@@ -7,8 +7,7 @@
 //! post is never without a robot; no duty is ever done by two. With every exchange the way that remains
 //! gets shorter, so that exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
 //! begins again, as if it had stopped, and has neither. A mover that cannot pass takes a partner somewhat
-//! farther from its goal too, but no robot twice between two notices. Only robots that take part in the elections
-//! for the task exchange duties: the others are not missed if they stop.
+//! farther from its goal too, but no robot twice between two notices.
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
 
@@ -101,8 +100,7 @@ impl Robot {
         let children_hold = self
             .children_of(station.post.id)
             .all(|child| self.walk_to(child) <= self.hard_length());
-        self.elects(parked.id())
-            && parked.beacon.parked
+        parked.beacon.parked
             && parked.beacon.offer.is_none()
             && parked.beacon.reply.is_none()
             && within_reach

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Activity, Anchor, Bid, Election, IdSet, NodeId, NoticeId, Phase};
+use pleach_discrete::network::{Activity, Anchor, Bid, Election, IdSet, NoticeId, Phase};
 
 use crate::located::Place as _;
 
@@ -198,8 +198,7 @@ impl Robot {
     }
 
     /// Finds the way over the tree to the caller (footnote 10) and places a token: robots that may be
-    /// recruited with a bid, once they know the way. The way leads over robots that take part in the elections
-    /// for the task: only these are missed if they stop on Σ.
+    /// recruited with a bid, once they know the way.
     pub(super) fn answer_call(&mut self) {
         let id = self.notice_id();
         let Some(election) = &self.election else { return };
@@ -207,7 +206,7 @@ impl Robot {
         if election.id() != id || self.forgetful.contains(self.id) {
             return;
         }
-        if !self.knows_route() && self.elects(self.id) {
+        if !self.knows_route() {
             self.route = self.find_route(id).map(|route| (id, Shared::new(route)));
         }
         let bid = match (&self.route, self.recruit_class()) {
@@ -224,14 +223,13 @@ impl Robot {
         self.route.as_ref().is_some_and(|&(call, _)| call == self.notice_id())
     }
 
-    /// Whether a robot takes part in the elections for the task.
-    pub(super) fn elects(&self, robot: NodeId) -> bool {
-        self.announcement().is_some_and(|announcement| announcement.roster.contains(robot))
+    fn takes_part_in_elections(&self) -> bool {
+        self.announcement().is_some_and(|announcement| announcement.roster.contains(self.id))
     }
 
     /// In which class this robot may be recruited, if it may: where nothing depends on it but the caller.
     fn recruit_class(&self) -> Option<u8> {
-        if !self.elects(self.id) {
+        if !self.takes_part_in_elections() {
             return None;
         }
         match self.duty.is_redundant() {

@@ -148,18 +148,6 @@ fn a_redundant_robot_bids_its_residual_and_then_the_shorter_path() {
     assert_eq!(bid(-0.01), (2, -10, -2));
 }
 
-/// If it stopped on Σ, nobody would miss it.
-#[test]
-fn no_way_to_the_caller_leads_over_a_robot_that_does_not_take_part() {
-    let mut robot = called(fixed(10, 11), false);
-    let (id, task) = robot.announced.clone().expect("a task is announced");
-    let others = Arc::new(task.roster.iter().filter(|&robot| robot != 0).collect());
-    robot.announced = Some((id, Shared::new(Announcement { roster: others, ..(*task).clone() })));
-    robot.hears(knows_way(&robot, 1, east(0.5), fixed(11, 13)));
-    assert_eq!(recruit_bid(&mut robot), Some(None), "it answers all the same");
-    assert!(robot.route.is_none());
-}
-
 #[test]
 fn the_way_to_the_caller_leads_over_links_of_the_tree() {
     let finds = |own: Post, held: Post, at: Point, waited: usize| {
@@ -283,6 +271,33 @@ fn the_newest_announcement_by_which_others_go_is_learnt() {
     }
     let newest = known.0.next(4).next(4);
     assert_eq!(robot.newer_announcement().map(|(id, _)| *id), Some(newest));
+}
+
+/// It says so: it may have been the leader, or on Σ.
+#[test]
+fn who_has_taken_part_and_begins_again_has_forgotten_what_became_of_it() {
+    use super::super::super::duty::{Hop, Path, PathPlace};
+    use super::super::super::mission::Idle;
+    use super::super::mission::MissionEffect;
+    let says_so = |elects: bool, on_path: Option<NodeId>| {
+        let mut robot = asked(east(1.0));
+        let (id, task) = robot.announced.take().expect("it knows the task");
+        let electors = (0..ROBOTS).filter(|&robot| robot != 0 || elects).collect();
+        let task = Shared::new(Announcement { roster: Arc::new(electors), ..(*task).clone() });
+        if let Some(robot_on_path) = on_path {
+            let place = PathPlace { reference: east(0.5), position: east(0.5) };
+            let post = fixed(11, 13);
+            let hop = Hop { robot: robot_on_path, post, place, crossing: Vec::new() };
+            robot.is_told(Notice::Path(Arc::new(Path { hops: vec![hop], releases_leader: false })));
+        }
+        let heard = beacon(1, east(0.5), redundant(11, 13), &[]);
+        robot.hears(Beacon { announced: Some((id, task)), ..heard });
+        let mut effects = Vec::new();
+        super::super::leader::learn(&Idle, &robot, &mut effects).expect("it hears of it");
+        effects.iter().any(|effect| matches!(effect, MissionEffect::Forgotten))
+    };
+    assert!(says_so(true, None) && says_so(false, Some(0)));
+    assert!(!says_so(false, None) && !says_so(false, Some(3)));
 }
 
 /// A robot that has been cut off hears of the announcement that has superseded its task, and of the notices by

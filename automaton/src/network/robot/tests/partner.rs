@@ -108,19 +108,6 @@ fn with_another_notice_it_may_exchange_with_the_same_robots_again() {
     assert_eq!(partner(&mut robot), Some(1));
 }
 
-/// If it stopped with the duty, nobody would miss it.
-#[test]
-fn a_partner_takes_part_in_the_elections() {
-    let mut robot = stuck(5);
-    robot.hears(parked(BESIDE));
-    let (id, mut announcement) = robot.announced.clone().expect("a task is announced");
-    let others = announcement.roster.iter().filter(|&robot| robot != 1).collect();
-    announcement =
-        Shared::new(Announcement { roster: Arc::new(others), ..(*announcement).clone() });
-    robot.announced = Some((id, announcement));
-    assert_eq!(partner(&mut robot), None);
-}
-
 #[test]
 fn a_partner_is_parked_and_has_no_exchange_of_its_own() {
     let duty = holding(redundant(11, 13), east(BESIDE));
