@@ -20,7 +20,8 @@ use super::{AccessPoint, PATIENCE_WITH_ELECTIONS, ROUNDS_UNTIL_ROSTER_SETTLES};
 /// A task is announced again at most this many times because robots that are heard of do not answer:
 /// one that restarts does not know of the election under way, or knows no way to an access point yet.
 const ATTEMPTS_TO_ELECT: f64 = 3.0;
-/// Control periods after which a robot that looks for another parent has found one, if there is one.
+/// Control periods, or times that news may be under way if that is less, after which a robot that looks for another
+/// parent has found one, if there is one.
 const PATIENCE_WITH_SEARCHES: usize = 16;
 
 /// The automaton of the service.
@@ -217,10 +218,8 @@ impl AccessPoint {
     /// For how many rounds it waits for a robot that knows no way to an access point, if there is one.
     pub(super) fn longest_search(&self) -> usize {
         let is_awaited = self.wayless(false).next().is_some();
-        match is_awaited {
-            true => PATIENCE_WITH_SEARCHES.saturating_mul(self.site.settings.rounds_per_period),
-            false => 0,
-        }
+        let rounds = self.site.settings.rounds_per_period.min(self.longest_wait);
+        usize::from(is_awaited) * PATIENCE_WITH_SEARCHES * rounds
     }
 
     /// The robots that could not bid in the election for want of a way to an access point, and know one now.
