@@ -86,11 +86,16 @@ pub struct StateGraph<S, A> {
     pub(super) begins: Vec<usize>,
     pub(super) transitions: Vec<(A, StateId)>,
     violations: Vec<Violation>,
+    is_complete: bool,
 }
+
+/// How many states are visited after one in which a property fails.
+const BEYOND_A_VIOLATION: usize = 50_000;
 
 /// Visits every state of `model`, at most `limit` of them, and checks each with `properties`.
 ///
-/// A property that fails is reported once, in the first state where it does; the visit goes on.
+/// A property that fails is reported once, in the first state where it does; the visit goes on for some states:
+/// what follows from it may have no end.
 ///
 /// # Errors
 /// When there are more states than `limit`, or the model cannot say what happens.
@@ -108,6 +113,10 @@ pub fn explore<M: Model>(model: &mut M, properties: &[Property<M>], limit: usize
                 violations.push(Violation { property: property.name, state: id });
             }
         }
+        let found = violations.first().map(|first| first.state as usize);
+        if found.is_some_and(|found| begins.len() > found + BEYOND_A_VIOLATION) {
+            break;
+        }
         for (action, next) in model.successors(&state).map_err(ExplorationError::Model)? {
             let next = visit.meet(model.representative(next), Some((id, action)));
             transitions.push((action, next));
@@ -118,7 +127,9 @@ pub fn explore<M: Model>(model: &mut M, properties: &[Property<M>], limit: usize
         begins.push(transitions.len());
     }
     let Visit { states, origins, .. } = visit;
-    Ok(StateGraph { states, origins, begins, transitions, violations })
+    let is_complete = begins.len() > states.len();
+    begins.resize(states.len() + 1, transitions.len());
+    Ok(StateGraph { states, origins, begins, transitions, violations, is_complete })
 }
 
 struct Visit<S, A> {
@@ -149,6 +160,11 @@ impl<S, A: Copy> StateGraph<S, A> {
     /// How many transitions there are.
     pub fn transition_count(&self) -> usize {
         self.transitions.len()
+    }
+
+    /// Whether all states have been visited: they have if no property fails.
+    pub fn is_complete(&self) -> bool {
+        self.is_complete
     }
 
     /// The properties that fail, each with the first state in which it does.

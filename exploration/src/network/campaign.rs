@@ -221,7 +221,8 @@ impl Findings {
         };
         let ended = |state: &State| has_ended(protocol, state);
         let violations = exploration.violations().iter();
-        let trap = exploration.traps(ended, protocol.fairness()).first().copied();
+        let traps = || exploration.traps(ended, protocol.fairness());
+        let trap = exploration.is_complete().then(traps).and_then(|traps| traps.first().copied());
         let (states, transitions) = (exploration.states().len(), exploration.transition_count());
         Findings {
             counts: Counts { configurations: 1, states, transitions },
