@@ -50,10 +50,6 @@ const REASONS: &[([&str; 4], &str)] = &[
     ),
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
     (
-        ["exchange", "offering", "partner lost", ""],
-        "the robot in its way stops in the very rounds in which it is offered a duty: a unit test takes it",
-    ),
-    (
         ["exchange", "giving", "partner lost", ""],
         "the mover stops in the very rounds in which the robot in its way has accepted its offer",
     ),

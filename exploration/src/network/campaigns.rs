@@ -277,7 +277,7 @@ pub const THOROUGH: &[Campaign] = &[
         name: "two robots, two tasks, one stops",
         tasks: 2,
         medium: counted(ONE_STOPS),
-        ..robots(2, Counts { configurations: 27, states: 381_072, transitions: 418_630 })
+        ..robots(2, Counts { configurations: 27, states: 380_532, transitions: 418_090 })
     },
     Campaign {
         name: "two robots, one stops, a message lost",
@@ -287,28 +287,28 @@ pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "two robots, one begins again on every graph",
         medium: counted(ONE_RESTARTS),
-        ..robots(2, Counts { configurations: 9, states: 300_159, transitions: 337_187 })
+        ..robots(2, Counts { configurations: 9, states: 298_435, transitions: 335_403 })
     },
     Campaign {
         name: "two robots, one begins again, a message lost",
         medium: counted(Faults { losses: 1, ..ONE_RESTARTS }),
-        ..robots(2, Counts { configurations: 9, states: 2_365_697, transitions: 3_629_661 })
+        ..robots(2, Counts { configurations: 9, states: 2_355_108, transitions: 3_615_880 })
     },
     Campaign {
         name: "three robots, one stops",
         medium: counted(ONE_STOPS),
-        ..robots(3, Counts { configurations: 44, states: 2_346_963, transitions: 2_552_338 })
+        ..robots(3, Counts { configurations: 44, states: 2_345_996, transitions: 2_551_323 })
     },
     Campaign {
         name: "three robots in a line, one begins again",
         graphs: Graphs::Line,
         medium: counted(ONE_RESTARTS),
-        ..robots(3, Counts { configurations: 4, states: 1_732_298, transitions: 1_939_450 })
+        ..robots(3, Counts { configurations: 4, states: 1_745_846, transitions: 1_953_921 })
     },
     Campaign {
         name: "four robots in a line, one stops",
         graphs: Graphs::Line,
         medium: counted(ONE_STOPS),
-        ..robots(4, Counts { configurations: 5, states: 3_334_000, transitions: 3_698_830 })
+        ..robots(4, Counts { configurations: 5, states: 3_333_482, transitions: 3_698_280 })
     },
 ];
