@@ -227,7 +227,7 @@ impl Robot {
             duty,
             mission,
             exchange,
-            past_partners: _, // told, as far as they decide anything
+            past_partners: _, // by those since the newest notice
             answered,
             parent,
             place,

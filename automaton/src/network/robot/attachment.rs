@@ -239,7 +239,7 @@ impl Robot {
         }
     }
 
-    /// Whether its post may be attached to that of this neighbour, which is not attached to it.
+    /// Whether this robot may attach to this neighbour: not to one that is attached to it.
     fn may_attach_to(&self, neighbour: &Neighbour) -> bool {
         Self::accepts_redundant(neighbour) && neighbour.beacon.parent != Some(self.id)
     }

@@ -7,7 +7,7 @@
 //! post is never without a robot; no duty is ever done by two. With every exchange the way that remains
 //! gets shorter, so that exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
 //! begins again, as if it had stopped, and has neither. A mover that cannot pass takes a partner somewhat
-//! farther from its goal too, but no robot twice between two notices.
+//! farther from its goal too, but none with which it has exchanged duties since the newest notice.
 //!
 //! [`Offers`]: pleach_discrete::network::Offers
 
