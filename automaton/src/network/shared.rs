@@ -41,6 +41,13 @@ impl<T> Deref for Shared<T> {
     }
 }
 
+/// What is the same is not told anew.
+pub(super) fn renew(known: &mut Arc<IdSet>, now: IdSet) {
+    if **known != now {
+        *known = Arc::new(now);
+    }
+}
+
 /// Takes in the numbers that a neighbour tells. A set that holds them already stays shared.
 #[inline]
 pub(super) fn merge_set(own: &mut Arc<IdSet>, heard: &IdSet) {

@@ -179,7 +179,7 @@ pub fn absent_stay(period: &Period) -> Result<(), Violation> {
     stay(period, |robot| absent.iter().all(|nodes| nodes.contains(&robot)), "absent")
 }
 
-/// No robot moves that is to stay, being so.
+/// Robots that are to stay, since they are `being`, do not move.
 fn stay(period: &Period, is_to_stay: impl Fn(usize) -> bool, being: &str) -> Result<(), Violation> {
     let moves =
         |(robot, motion): &(usize, &Segment)| motion.from != motion.to && is_to_stay(*robot);

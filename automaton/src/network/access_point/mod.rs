@@ -28,7 +28,7 @@ use super::record::MissionEvent;
 use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
 use super::roll::{Roll, Sightings, Wreck};
 use super::service::{Gathering, Resting, Rounds, Serving};
-use super::shared::{Shared, merge_election};
+use super::shared::{Shared, merge_election, renew};
 use super::site::Site;
 use crate::automaton::TransitionError;
 use crate::located::{Current, Place as _};
@@ -447,11 +447,8 @@ impl AccessPoint {
         let is_complete = reports.below.includes(&roster);
         let settled = is_complete && *self.roster == roster;
         self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
-        for (known, now) in [(&mut self.roster, roster), (&mut self.connected, reports.below)] {
-            if **known != now {
-                *known = Arc::new(now);
-            }
-        }
+        renew(&mut self.roster, roster);
+        renew(&mut self.connected, reports.below);
     }
 
     /// Robots and tasks of which these reports tell are heard of.

@@ -452,18 +452,18 @@ fn announce_again<A: Knows>(
 ) -> Option<Electing> {
     let Announced { task, roster, unanswered, .. } = place.announced()?;
     let announcement = point.announcement_of(task)?;
-    let is_given_up = point.is_election_over() || point.hears_failure();
-    let is_unanswered = !point.misses_robot() && !is_given_up;
-    let is_unbid = point.is_election_over() && !point.misses_robot() && !point.hears_failure();
+    let is_in_vain = !point.misses_robot() && !point.hears_failure();
+    let is_unanswered = is_in_vain && !point.is_election_over();
+    let is_unbid = is_in_vain && point.is_election_over();
     let finders: Vec<NodeId> = point.finders().filter(|_| is_unbid).collect();
-    let is_in_vain = is_unanswered || !finders.is_empty();
+    let counts = is_unanswered || !finders.is_empty();
     let gone = match is_unanswered {
         true => point.unanswering(&roster),
         false => point.missed().chain(point.forgetful()).collect(),
     };
     let joined = point.newcomers().chain(finders).collect();
     effects.push(ServiceEffect::Report(MissionEvent::TaskReannounced { task, gone, joined }));
-    let unanswered = unanswered + u32::from(is_in_vain);
+    let unanswered = unanswered + u32::from(counts);
     let announced = Some(Announced { unanswered, ..point.announced_now(&announcement) });
     effects.push(ServiceEffect::Supersede(Notice::Task(Shared::new(announcement))));
     Some(Electing { announced })

@@ -6,7 +6,6 @@
 //! parents; only p₁ may change its own (Remark 5.6).
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, NodeId, Phase, Post, PostId};
 
@@ -14,6 +13,7 @@ use crate::automaton::TransitionError;
 use crate::located::Place as _;
 
 use super::super::beacon::Reports;
+use super::super::shared::renew;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::motion::ROUNDING;
@@ -314,12 +314,11 @@ impl Robot {
         let gain = REATTACHMENT_GAIN * self.build_length();
         let mut nearest = self.site.distance(parent.position(), goal) - gain;
         let mut better = None;
-        for neighbour in self.neighbours.iter().filter(|n| Self::accepts_redundant(n)) {
+        for neighbour in self.neighbours.iter().filter(|n| self.may_attach_to(n)) {
             let candidate = self.anchor_of(neighbour);
-            let is_child = neighbour.beacon.parent == Some(self.id)
-                || neighbour.beacon.lineage.as_ref().is_none_or(|lineage| {
-                    own.is_some_and(|own| lineage.contains(own)) || !self.confirms(lineage)
-                });
+            let is_child = neighbour.beacon.lineage.as_ref().is_none_or(|lineage| {
+                own.is_some_and(|own| lineage.contains(own)) || !self.confirms(lineage)
+            });
             if candidate == anchor
                 || is_child
                 || neighbour.distance > longest
@@ -334,12 +333,5 @@ impl Robot {
             }
         }
         better
-    }
-}
-
-/// What is the same is not told anew.
-fn renew(known: &mut Arc<IdSet>, now: IdSet) {
-    if **known != now {
-        *known = Arc::new(now);
     }
 }
