@@ -259,7 +259,8 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
     let start = Instant::now();
     let last =
         first.checked_add(missions).ok_or("the last mission would have no seed: begin earlier")?;
-    let (mut serviced, mut broken) = (0, Vec::new());
+    let (mut serviced, mut given_up) = (0, 0);
+    let (mut under_way, mut broken) = (Vec::new(), Vec::new());
     let (done, failed) = (AtomicU64::new(0), AtomicU64::new(0));
     let run = |seed: u64| -> Result<(u64, Verdict), String> {
         let (scenario, storm) = mission(seed, strategy);
@@ -276,7 +277,11 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
         let batch = begin..last.min(begin.saturating_add(BATCH as u64));
         for told in batch.into_par_iter().map(run).collect::<Vec<_>>() {
             let (seed, verdict) = told?;
-            serviced += u64::from(is_serviced(&verdict));
+            match &verdict.end {
+                Some(end) if end.outcome == Outcome::Serviced => serviced += 1,
+                Some(_) => given_up += 1,
+                None => under_way.push(seed),
+            }
             if !verdict.violations.is_empty() {
                 if broken.is_empty() {
                     let (scenario, storm) = mission(seed, strategy);
@@ -288,10 +293,13 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
     }
     eprintln!();
     say!(
-        "{missions} missions in {:.0} s: {serviced} serviced, {} broke a promise {broken:?}",
+        "{missions} missions in {:.0} s: {serviced} serviced, {given_up} given up, {} broke a promise {broken:?}",
         start.elapsed().as_secs_f64(),
         broken.len(),
     );
+    if !under_way.is_empty() {
+        say!("still under way after {MOST_PERIODS} control periods: seeds {under_way:?}");
+    }
     Ok(if broken.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
