@@ -194,7 +194,7 @@ pub struct Beacon {
 pub struct Branch {
     /// The robot.
     pub robot: NodeId,
-    /// Where the sender has heard it, in this control period or in the one before.
+    /// Where the sender has heard it, in this control period or in one of the two before.
     #[serde(with = "wire")]
     pub place: Point,
 }
@@ -234,10 +234,10 @@ impl Beacon {
         }
     }
 
-    /// Where the sender, heard in this control period, says that robots are which are attached to it: it has
-    /// heard them in this period or in the one before.
+    /// Where the sender, heard in this control period, says that robots are which are attached to it: it had
+    /// heard them in the period in which it last had news, or in the one before, and it has news in each period.
     pub(super) fn sightings(&self, period: u32) -> impl Iterator<Item = Wreck> {
-        let heard_in = period.saturating_sub(1);
+        let heard_in = period.saturating_sub(2);
         let sighting = move |it: &Branch| Wreck::heard(it.robot, it.place, heard_in);
         self.branches.iter().map(sighting)
     }

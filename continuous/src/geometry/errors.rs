@@ -47,14 +47,34 @@
 //!
 //! So robots that believe to be nearer to each other than allowed may stay, or go apart; they never
 //! come nearer by little and little. The conditions for all N within θ hold if they hold for the two
-//! outermost, since a direction between them is a sum of these with nonnegative factors that add up
-//! to 1 or more.
+//! outermost and θ is less than a right angle, since a direction between them is a sum of these with
+//! nonnegative factors that add up to 1 or more.
+//!
+//! # Robots that have stopped
+//!
+//! A robot stands, and truly is within a of q, where it was heard last. One that believes to be at p keeps
+//! 2ρ from it, if they are so far apart when it begins, with u = a + 2 (e + m) and
+//!
+//! ```text
+//! n · v ≤ D − (2ρ + u)            if D ≥ 2ρ + u,
+//! N · v ≤ −m  for all N within θ of n, cos θ = (D² + W² − u²) / 2DW,  otherwise
+//! ```
+//!
+//! or v = 0, where W² is the greater one of 4ρ² and D² − u². *Proof.* The true offset differs from D n by at
+//! most u. Along n, at least D − u − s (n · v + m) are left. Otherwise let N be the direction of the true
+//! offset and T its length, at least 2ρ. By the law of cosines the cosine of the angle between N and n is at
+//! least (D² + T² − u²) / 2DT, which is least for T² = D² − u² and, where T cannot be as small, for
+//! T = 2ρ. Along N, at least T − s (N · v + m) ≥ T are left. ∎ If θ is a right angle or more, the robot may be
+//! on any side, and this one stays.
 
 use nalgebra::Unit;
 
 use super::cell::own_side;
 use super::{HalfPlane, Workspace};
 use crate::{Point, Vector};
+
+/// sin 60°: three directions at 120° from each other leave no way.
+const SIN_60: f64 = 0.866_025_403_784_438_6;
 
 /// How far the places and moves of robots may be off; lengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -101,7 +121,8 @@ impl Errors {
             let (distance, uncertainty) = (towards.norm(), 2.0 * self.position);
             let own = own_side(bisector, position, self.planning_clearance(kept));
             if distance < 2.0 * clearance + uncertainty {
-                half_planes.extend(self.away(position, bisector.normal, uncertainty / distance));
+                let cosine = cosine_of(uncertainty / distance);
+                half_planes.extend(self.away(position, bisector.normal, cosine));
             } else {
                 let missing = self.planning_clearance(clearance) - distance / 2.0;
                 half_planes.push(HalfPlane { offset: own.offset - missing.max(0.0), ..own });
@@ -127,7 +148,8 @@ impl Errors {
             let Some(border) = HalfPlane::through(position, towards) else { return };
             let distance = towards.norm();
             if distance < clearance + self.position {
-                half_planes.extend(self.away(position, border.normal, self.position / distance));
+                let cosine = cosine_of(self.position / distance);
+                half_planes.extend(self.away(position, border.normal, cosine));
             } else {
                 half_planes.push(HalfPlane { offset: border.offset + distance - kept, ..border });
             }
@@ -135,22 +157,55 @@ impl Errors {
         half_planes
     }
 
+    /// Half-planes in which a robot keeps 2ρ from one that stands within `astray` of `place`; see the module.
+    /// Without errors its own place belongs to them. `kept` is `clearance`, or somewhat more so that rounding
+    /// has no effect.
+    pub fn half_planes_beside(
+        &self,
+        position: Point,
+        (place, astray): (Point, f64),
+        clearance: f64,
+        kept: f64,
+    ) -> Vec<HalfPlane> {
+        let Some(border) = HalfPlane::through(position, place - position) else {
+            return self.away(position, Vector::x_axis(), 0.0).collect();
+        };
+        let distance = (place - position).norm();
+        let uncertainty = astray + 2.0 * (self.position + self.motion);
+        if distance >= 2.0 * clearance + uncertainty {
+            let room = distance - 2.0 * self.planning_clearance(kept) - astray;
+            return vec![HalfPlane { offset: border.offset + room.max(0.0), ..border }];
+        }
+        let square = distance * distance - uncertainty * uncertainty;
+        let apart = (2.0 * clearance).max(square.max(0.0).sqrt());
+        let cosine = (square + apart * apart) / (2.0 * distance * apart);
+        self.away(position, border.normal, cosine).collect()
+    }
+
     /// The places at which the robot is away by m from what lies `towards` or, up to an angle of this
-    /// sine, beside.
+    /// cosine, beside.
     fn away(
         &self,
         position: Point,
         towards: Unit<Vector>,
-        sine: f64,
+        cosine: f64,
     ) -> impl Iterator<Item = HalfPlane> {
-        let sine = sine.min(1.0);
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let directions = match cosine {
+            ..=0.0 => vec![(1.0, 0.0), (-0.5, SIN_60), (-0.5, -SIN_60)],
+            _ if sine == 0.0 => vec![(1.0, 0.0)],
+            _ => vec![(cosine, sine), (cosine, -sine)],
+        };
         let (ahead, aside) = (towards.into_inner(), Vector::new(-towards.y, towards.x));
-        let cosine = (1.0 - sine * sine).sqrt();
-        let sides = if sine == 0.0 { &[1.0][..] } else { &[1.0, -1.0] };
-        sides.iter().map(move |side| {
-            let normal = Unit::new_unchecked(ahead * cosine + aside * (side * sine));
+        directions.into_iter().map(move |(along, across)| {
+            let normal = Unit::new_unchecked(ahead * along + aside * across);
             let border = HalfPlane { normal, offset: f64::NEG_INFINITY }.widened_to(position);
             HalfPlane { offset: border.offset - self.motion, ..border }
         })
     }
+}
+
+/// The cosine of an acute angle of this sine; of a right one if there is none.
+fn cosine_of(sine: f64) -> f64 {
+    (1.0 - sine * sine).max(0.0).sqrt()
 }

@@ -181,20 +181,13 @@ impl Robot {
         self.obstacles().map(move |(center, astray)| Disc { center, radius: clearance + astray })
     }
 
-    /// The sides of wrecks on which this robot stays, wherever they may be astray.
+    /// Where this robot keeps 2ρ from the wrecks that it could meet in a step, wherever they may be astray.
     pub(super) fn sides_of_wrecks(&self) -> impl Iterator<Item = HalfPlane> {
         let Settings { clearance, step_radius: step, errors, .. } = self.site.settings;
-        let kept = errors.planning_clearance(clearance * (1.0 + MARGIN));
-        self.obstacles().filter_map(move |(place, astray)| {
-            let radius = 2.0 * kept + astray;
-            let ahead = place - self.position;
-            let away = ahead.norm();
-            if away == 0.0 || away > radius + step {
-                return None;
-            }
-            let normal = ahead / away;
-            let room = (away - radius).max(0.0);
-            Some(HalfPlane::new(normal, normal.dot(&self.position.coords) + room))
-        })
+        let (kept, own) = (clearance * (1.0 + MARGIN), self.position);
+        let reach = 2.0 * errors.planning_clearance(kept) + step;
+        let near = move |&(place, astray): &(Point, f64)| (place - own).norm() <= reach + astray;
+        let sides = move |wreck| errors.half_planes_beside(own, wreck, clearance, kept);
+        self.obstacles().filter(near).flat_map(sides)
     }
 }

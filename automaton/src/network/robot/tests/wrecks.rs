@@ -31,9 +31,37 @@ fn a_robot_that_can_meet_a_wreck_in_a_step_keeps_to_its_side() {
     };
     close(room(radius + STEP - LITTLE), STEP - LITTLE);
     close(room(radius + 0.3 * STEP), 0.3 * STEP);
-    close(room(0.5 * radius), 0.0);
     assert_eq!(room(radius + STEP + LITTLE), None, "it is farther than a step");
-    assert_eq!(room(0.0), None, "there is no side");
+}
+
+/// Nearer than that, it comes no nearer to any place where the wreck may be.
+#[test]
+fn a_robot_beside_a_wreck_goes_away_from_wherever_that_may_be() {
+    let admits = |away: f64, place: Point| {
+        let sides: Vec<_> = beside_wreck(away).sides_of_wrecks().collect();
+        sides.iter().all(|side| side.margin(place) >= -1e-12)
+    };
+    let away = 2.0 * CLEARANCE + 0.5 * STEP;
+    for (turn, far) in (0..360).flat_map(|turn| [0.2, 0.6, 1.0].map(|share| (turn, share * STEP))) {
+        let angle = f64::from(turn).to_radians();
+        let place = HERE + far * Vector::new(angle.cos(), angle.sin());
+        if admits(away, place) {
+            let (from, to) = (east(away), place);
+            let may_stand = (0..360).map(|turn| {
+                let angle = f64::from(turn).to_radians();
+                from + STEP * Vector::new(angle.cos(), angle.sin())
+            });
+            for wreck in may_stand.filter(|wreck| (wreck - HERE).norm() >= 2.0 * CLEARANCE) {
+                assert!(
+                    (wreck - to).norm() >= (wreck - HERE).norm(),
+                    "{place} is nearer to {wreck}"
+                );
+            }
+        }
+    }
+    assert!(admits(away, HERE) && admits(away, west(STEP)));
+    assert!(!admits(away, north(STEP)), "it may be to the north-east");
+    assert!(admits(0.0, HERE) && !admits(0.0, west(LITTLE)), "it may be on any side");
 }
 
 /// It may be as far off as the move leads of which it told, and a step farther if that was forgotten; two
@@ -84,7 +112,7 @@ fn where_branches_are_is_known_two_links_away() {
     robot.neighbours.clear();
     robot.locate_wrecks();
     let start = robot.site.start_of(5).expect("there is such a robot");
-    let (branch, unheard) = (Wreck::heard(3, east(1.5), NOW - 1), Wreck::heard(5, start, 0));
+    let (branch, unheard) = (Wreck::heard(3, east(1.5), NOW - 2), Wreck::heard(5, start, 0));
     // Where branches are may be old news: perhaps from before their last move.
     assert_eq!(*robot.wrecks, [branch, unheard]);
 }
