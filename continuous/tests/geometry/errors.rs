@@ -88,6 +88,36 @@ proptest! {
         prop_assert!(is_staying || (other - here - step).norm() >= apart - ROUNDING);
     }
 
+    /// Wherever a robot that has stopped may be, and whatever errors do: another one keeps its distance, or
+    /// stays.
+    #[test]
+    fn robots_keep_their_distance_from_one_that_may_be_elsewhere(
+        errors in errors(),
+        gap in prop_oneof![Just(0.0), 0.0..1.0_f64],
+        astray in 0.0..3.0_f64,
+        elsewhere in stray(),
+        measured in [stray(), stray()],
+        waypoint in 0.0..std::f64::consts::TAU,
+        strayed in stray(),
+        radius in 0.1..2.0_f64,
+    ) {
+        let (here, wreck) = (Point::origin(), Point::new(2.0 + gap, 0.0));
+        let error = |(angle, share): (f64, f64)| polar(angle, errors.position * share);
+        let believed = here + error(measured[0]);
+        let heard = wreck + polar(elsewhere.0, astray * elsewhere.1) + error(measured[1]);
+        let sides = errors.half_planes_beside(believed, (heard, astray), 1.0, 1.0 + MORE);
+        let step = step(believed, believed + polar(waypoint, 4.0), sides, radius);
+        if step.norm() > ROUNDING {
+            let worst = Vector::new(errors.motion, 0.0);
+            for stray in [worst, polar(strayed.0, errors.motion * strayed.1)] {
+                for share in (0..=8).map(|share| f64::from(share) / 8.0) {
+                    let apart = (wreck - here - (step + stray) * share).norm();
+                    prop_assert!(apart >= 2.0 - ROUNDING, "{apart} at {share} of {step:?}");
+                }
+            }
+        }
+    }
+
     /// A robot that keeps its clearance, and measures itself where it would not, keeps it on its way
     /// back.
     #[test]
@@ -101,9 +131,9 @@ proptest! {
         radius in 0.01..0.3_f64,
     ) {
         let workspace = &environment.workspace;
-        prop_assume!(workspace.contains(at));
         // As near to a wall as may be.
         let clearance = workspace.clearance(at).min(0.2);
+        prop_assume!(workspace.contains(at) && clearance > 0.0);
         let errors = Errors { position: shares.0 * clearance, motion: shares.1 * clearance };
         let believed = at + polar(measured.0, measured.1 * errors.position);
         let half_planes = errors.wall_half_planes(workspace, believed, radius, clearance);
