@@ -39,7 +39,7 @@ pub struct LeaderElection;
 pub struct Advance {
     /// The path Σ along which the robot that joined last has come, if any has.
     pub path: Option<Arc<Path>>,
-    /// Whether this robot has called for a recruit ahead of a standstill since then, and none could come.
+    /// Whether a recruit has been called for ahead of a standstill since then, and none could come.
     pub in_vain: bool,
 }
 

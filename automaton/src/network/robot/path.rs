@@ -154,13 +154,27 @@ impl Robot {
     }
 
     /// Whether another robot holds `post` and knows its parent: it does not attach to this one any
-    /// more, unless that is the parent.
+    /// more, unless that is the parent, or stands for it as soon as it sets out.
     pub(super) fn is_relieved_of(&self, post: PostId) -> bool {
         let own = self.duty.post().map(|held| held.id);
         self.holder(post).is_some_and(|holder| {
             let is_child = |held: &Post| own.is_some_and(|own| held.is_child_of(own));
-            holder.beacon.parent != Some(self.id) || holder.post().is_some_and(is_child)
+            holder.beacon.parent != Some(self.id)
+                || holder
+                    .post()
+                    .is_some_and(|held| is_child(held) || self.is_to_follow(held.parent))
         })
+    }
+
+    /// Whether the robot ahead on Σ has left this post, and waits for this one to follow.
+    fn is_to_follow(&self, post: Option<Anchor>) -> bool {
+        let (Some(Anchor::Post(post)), Some(shift)) = (post, self.mission.shift()) else {
+            return false;
+        };
+        let ahead = self.waiting_place().map(|place| place + 1);
+        let has_left = |duty: &Duty| matches!(duty, Duty::Shifting(it) if Some(it.place) == ahead);
+        shift.path.place_of(post) == ahead
+            && self.neighbours.iter().filter_map(|it| it.beacon.duty.as_ref()).any(has_left)
     }
 
     /// The place that this robot goes to along Σ.

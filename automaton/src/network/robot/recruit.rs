@@ -129,12 +129,11 @@ impl Robot {
         self.own_hop(Vec::new()).map(|hop| (call, Shared::new(vec![hop])))
     }
 
-    /// Whether this robot has called for a recruit ahead of a standstill, and learns now that the team goes on
-    /// as it is.
+    /// Whether a recruit has been called for ahead of a standstill, and it learns now that the team goes on as it
+    /// is. Not only the caller learns that: another robot may take over its duty.
     pub(super) fn learns_that_call_is_vain(&self) -> bool {
         let went_on_alone = matches!(*self.notice(), Notice::Advance { joined: None });
-        let called = self.mission.recruit_election().is_some_and(|call| call.ahead);
-        called && went_on_alone
+        self.mission.recruit_election().is_some() && went_on_alone
     }
 
     fn standstill(&self) -> Option<Standstill> {

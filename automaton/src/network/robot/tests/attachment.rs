@@ -159,21 +159,48 @@ fn while_a_path_is_sought_only_robots_without_a_parent_look_for_one() {
     assert_eq!(attached.desired_parent, None);
 }
 
-/// The second subgroup of Σ has left the posts 11 and 12, of which the first has taken post 11.
-#[test]
-fn nobody_stands_for_a_post_that_the_subgroup_before_has_taken() {
+/// Robots that hold these posts are on Σ, which is split at its second place; its first subgroup has arrived.
+fn second_subgroup_of(posts: [Post; 4]) -> Mission {
     let hop = |robot: usize, post: Post| Hop {
         robot,
         post,
         place: PathPlace { reference: HERE, position: HERE },
         crossing: Vec::new(),
     };
-    let posts = [redundant(10, 11), fixed(11, 20), fixed(12, 11), fixed(13, 12)];
     let hops = posts.into_iter().zip(1..).map(|(post, robot)| hop(robot, post)).collect();
     let path = Arc::new(Path { hops, releases_leader: false });
     let subgroups = pleach_discrete::network::path::subgroups(&[0, 1, 3]).collect();
+    Mission::Shift(Shift { path, subgroups, arrived: 1 })
+}
+
+/// Σ leads up the tree. Robot 1 has taken the post of this robot, whose parent stood at the next place.
+#[test]
+fn a_robot_stands_for_the_post_that_the_one_ahead_has_left() {
+    let may_set_out = |ahead: Duty, parent: Option<NodeId>| {
+        let posts = [redundant(10, 11), redundant(11, 12), redundant(12, 13), fixed(13, 20)];
+        let mut robot = robot();
+        robot.mission = Current::new(second_subgroup_of(posts));
+        let held = Held { station: Station { post: posts[1], reference: HERE }, left: None };
+        let waiting = Waiting { held, place: 1, role: Role::Redundant };
+        robot.duty = Current::new(Duty::Waiting(waiting));
+        robot.hears(Beacon { duty: Some(ahead), ..Beacon::silent(3, east(0.5)) });
+        robot.hears(Beacon { parent, ..beacon(1, west(0.1), posts[1], &[]) });
+        robot.may_set_out()
+    };
+    let held = Held { station: Station { post: redundant(12, 13), reference: HERE }, left: None };
+    let waits = Duty::Waiting(Waiting { held, place: 2, role: Role::Redundant });
+    let leaves = Duty::Shifting(Shifting { place: 2, left: Some(PostId(12)) });
+    assert!(may_set_out(waits, Some(3)), "robot 1 knows its parent");
+    assert!(!may_set_out(waits, Some(0)), "robot 1 is still attached to this robot");
+    assert!(may_set_out(leaves, Some(0)), "robot 1 is attached to the one that follows");
+}
+
+/// The second subgroup of Σ has left the posts 11 and 12, of which the first has taken post 11.
+#[test]
+fn nobody_stands_for_a_post_that_the_subgroup_before_has_taken() {
+    let posts = [redundant(10, 11), fixed(11, 20), fixed(12, 11), fixed(13, 12)];
     let mut robot = robot();
-    robot.mission = Current::new(Mission::Shift(Shift { path, subgroups, arrived: 1 }));
+    robot.mission = Current::new(second_subgroup_of(posts));
     for place in [1, 2] {
         let leaves = Duty::Shifting(Shifting { place, left: None });
         robot.hears(Beacon { duty: Some(leaves), ..Beacon::silent(place + 1, east(0.5)) });

@@ -105,6 +105,19 @@ fn a_call_ahead_that_is_in_vain_ends_nothing_and_is_not_repeated() {
     assert!(matches!(stuck.notice(), Notice::Ended { .. }), "it stood still when it called");
 }
 
+/// One that did not call may take over the duty of the caller in an exchange, and would call again, without end.
+#[test]
+fn a_call_ahead_that_is_in_vain_is_repeated_by_nobody() {
+    let mut robot = leader(Strategy::Eager, reach_alone() + 1.0);
+    robot.is_told(Notice::Call { caller: 1, releases_leader: false });
+    let call = RecruitElection { before: None, standstill: None, ahead: false };
+    robot.mission = Current::new(Mission::RecruitElection(call));
+    robot.is_told(Notice::Advance { joined: None });
+    assert_eq!(next_phase(&mut robot), Phase::Advance);
+    robot.review_team();
+    assert_eq!(next_phase(&mut robot), Phase::Advance, "it goes on without another call");
+}
+
 #[test]
 fn the_team_goes_on_while_a_recruit_is_sought() {
     let goal = |strategy, away: f64| {
