@@ -128,14 +128,15 @@ impl Robot {
         Some(self.site.robots + nearest)
     }
 
-    /// The robot of the chain that stands for a post whose holder has left it. The first post of every
-    /// subgroup but the first has been taken by the one before: if its holder is not heard, nobody else stands
-    /// for it.
+    /// The robot of the chain that stands for a post whose holder has left it. That of a robot that is not under
+    /// way has a holder, whether that is heard or not; and the first post of every subgroup but the first has been
+    /// taken by the one before.
     fn stand_in_for(&self, post: PostId) -> Option<NodeId> {
         let shift = self.mission.shift()?;
         let (path, active) = (&shift.path, shift.active()?);
         let place = path.place_of(post)?;
-        if place == active.first && shift.arrived > 0 {
+        let is_taken = place == active.first && shift.arrived > 0;
+        if is_taken || !active.places().contains(&place) {
             return None;
         }
         match path.descends(active.first) {

@@ -3,8 +3,8 @@
 //! A robot *relies* on those to which it sends and on its parent in the tree: their moves change its
 //! load and the length of its link. A robot that hears of moves on which its load could depend judges
 //! them all together, whichever of them are carried out, with its own. If it could be overloaded, or
-//! its link to the tree overstretched, it objects; a mover that hears an objection halves its move.
-//! Otherwise it consents. Shrinking moves never creates a new objection, so that consent to a move
+//! its link to the tree overstretched, it objects; a mover that hears an objection halves its move, and so
+//! does the robot itself if its own move is part of the cause. Otherwise it consents. Shrinking moves never creates a new objection, so that consent to a move
 //! is consent to what is left of it.
 //!
 //! A robot moves only with the consent of all that rely on it, or of a *witness* where nobody does: so there
@@ -149,10 +149,12 @@ impl Robot {
         }
     }
 
-    /// Whether all moves together are acceptable; if not, those that could be the cause are told so.
+    /// Whether all moves together are acceptable; if not, those that could be the cause are told so. Its own
+    /// move is one of them unless those of others are too much by themselves.
     fn accepts_moves(&mut self, outputs: &mut Outputs<Message, MissionEvent>) -> bool {
-        let is_overloaded = self.is_overloaded();
-        let overstretched = self.overstretched_parent();
+        let (own, still) = (self.own_move(), Segment::still(self.position));
+        let (is_overloaded, overstretched) =
+            (self.is_overloaded(own), self.overstretched_parent(own));
         if !is_overloaded && overstretched.is_none() {
             return true;
         }
@@ -163,8 +165,15 @@ impl Robot {
                 outputs.send(mover, Message::Objection { period });
             }
         }
-        self.yield_to_objection();
+        let is_harmless = self.is_overloaded(still) || self.overstretched_parent(still).is_some();
+        if !is_harmless || self.is_last_chance() {
+            self.yield_to_objection();
+        }
         false
+    }
+
+    fn is_last_chance(&self) -> bool {
+        self.stage() == Stage::Negotiation && self.round_count.is_last_chance()
     }
 
     /// Whether it does not know where a robot is on which it relies.
@@ -204,8 +213,8 @@ impl Robot {
         Capsule { axis, radius }
     }
 
-    fn is_overloaded(&self) -> bool {
-        let own = self.reach_of(self.own_move(), self.is_parked());
+    fn is_overloaded(&self, own: Segment) -> bool {
+        let own = self.reach_of(own, self.is_parked());
         let worst = self.worst_load(own, |node| {
             let rests = |known: &Neighbour| known.is_access_point() || known.beacon.parked;
             let is_parked = self.neighbour(node).is_none_or(rests);
@@ -223,9 +232,9 @@ impl Robot {
     }
 
     /// The parent, if the link to it could become longer than its limit and than it is now.
-    fn overstretched_parent(&self) -> Option<NodeId> {
+    fn overstretched_parent(&self, own: Segment) -> Option<NodeId> {
         let link = self.parent_link()?;
-        let (own, other) = (self.own_move(), self.move_of(link.to));
+        let other = self.move_of(link.to);
         if own.length() == 0.0 && other.length() == 0.0 {
             return None;
         }
@@ -250,10 +259,8 @@ impl Robot {
         if self.proposal.is_some() {
             self.must_judge_moves = true;
         }
-        let is_last_chance =
-            self.stage() == Stage::Negotiation && self.round_count.is_last_chance();
         let begins_in_region = self.problem.is_some();
-        self.proposal = match begins_in_region && !is_last_chance {
+        self.proposal = match begins_in_region && !self.is_last_chance() {
             true => self.proposal.map(|segment| segment.halved()),
             false => None,
         };

@@ -215,6 +215,22 @@ fn nobody_stands_for_a_post_that_the_subgroup_before_has_taken() {
     assert_eq!(robot.named_parent(), None, "robot 1 holds post 11, and is not heard");
 }
 
+/// Σ leads up the tree, and the second subgroup has left the posts 11 and 12.
+#[test]
+fn nobody_stands_for_a_post_that_has_not_been_left() {
+    let mut robot = robot();
+    let posts = [redundant(10, 11), redundant(11, 12), redundant(12, 13), fixed(13, 20)];
+    robot.mission = Current::new(second_subgroup_of(posts));
+    for place in [1, 2] {
+        let leaves = Duty::Shifting(Shifting { place, left: None });
+        robot.hears(Beacon { duty: Some(leaves), ..Beacon::silent(place + 1, east(0.5)) });
+    }
+    robot.holds(redundant(0, 12));
+    assert_eq!(robot.named_parent(), Some(2), "robot 2 follows robot 3, which has left post 12");
+    robot.holds(redundant(0, 13));
+    assert_eq!(robot.named_parent(), None, "robot 4 holds post 13, and is not heard");
+}
+
 /// Robot 0 holds a fixed post whose parent, post 21, has had no holder for `periods` control periods.
 fn orphan(periods: u32, heard: Beacon) -> Option<Option<Anchor>> {
     let mut robot = robot();

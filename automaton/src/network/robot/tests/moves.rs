@@ -330,6 +330,32 @@ fn a_child_objects_to_a_move_of_its_parent_that_overstretches_their_link() {
     assert!(consents(judged(0.03 - LITTLE)) && objects(judged(0.03 + LITTLE)));
 }
 
+/// Robot 0 is attached to robot 5, 3 cm short of what its link allows, and both want to go by 5 cm.
+#[test]
+fn a_robot_halves_its_move_only_if_that_is_part_of_the_cause() {
+    let left = |own: f64, parent: f64| {
+        let mut robot = mover();
+        let from = west(robot.build_length() - 0.03);
+        robot.hears(beacon(5, from, fixed(13, 14), &[13, 14]));
+        robot.remember_parent();
+        robot.begin_negotiation();
+        proposed(&mut robot).expect("it may move");
+        robot.proposal = Some(Segment { from: HERE, to: east(own) });
+        let to = from - Vector::new(parent, 0.0);
+        robot.hear_proposal(5, Segment { from, to }, None);
+        let mut outputs = Outputs::of(0);
+        robot.judge_moves(&mut outputs);
+        assert!(matches!(sent(&mut outputs)[..], [Message::Objection { .. }]));
+        assert!(robot.must_judge_moves, "it does not accept them");
+        robot.proposal.map_or(0.0, |segment| segment.length())
+    };
+    let close = |one: f64, other: f64| assert!((one - other).abs() < 1e-12, "{one} is not {other}");
+    close(left(-0.05, 0.05), 0.05); // it follows its parent
+    close(left(0.02, 0.05), 0.02); // its parent alone goes too far
+    close(left(0.02, 0.02), 0.01); // both together do
+    close(left(0.05, 0.02), 0.025);
+}
+
 /// Robot 0 sends nearly all of its time to robot 5, which moves away.
 #[test]
 fn a_sender_objects_to_a_move_of_its_receiver_that_overloads_it() {
