@@ -31,7 +31,8 @@ pub(super) const LAST_RESORT: u32 = 10;
 const CONCESSION: f64 = 4.0;
 
 impl Robot {
-    /// Once a period: a mover that makes no progress looks for a partner among the robots in its way.
+    /// Once a period: a mover that makes no progress looks for a partner among the robots in its way. One that
+    /// does not take part could be gone before it has answered.
     pub(super) fn consider_exchange(&mut self) {
         self.partner = None;
         if self.is_engaged() || self.still_periods < PATIENCE || !self.may_hand_over() {
@@ -101,6 +102,7 @@ impl Robot {
             .children_of(station.post.id)
             .all(|child| self.walk_to(child) <= self.hard_length());
         parked.beacon.parked
+            && !self.roll.absent.contains(parked.id())
             && parked.beacon.offer.is_none()
             && parked.beacon.reply.is_none()
             && within_reach

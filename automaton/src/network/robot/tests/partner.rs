@@ -2,6 +2,7 @@
 
 use pleach_discrete::network::{Offer, Reply};
 
+use super::super::super::roll::Absent;
 use super::*;
 
 /// The leader, which has not got on for this long, 0.09 west of a parked robot that bears `held`; the
@@ -35,6 +36,24 @@ fn a_mover_that_gets_on_or_has_waited_too_little_looks_for_no_partner() {
         robot.hears(parked(BESIDE));
         assert_eq!(partner(&mut robot), expected, "{periods}");
     }
+}
+
+/// It would take the other one for lost as soon as that is gone, and begin again.
+#[test]
+fn a_robot_that_does_not_take_part_is_no_partner() {
+    let robots = || [1].into_iter().collect();
+    let absent = [
+        Absent::default(),
+        Absent { suspended: robots(), ..Absent::default() },
+        Absent { gone: robots(), ..Absent::default() },
+    ];
+    let found = absent.map(|absent| {
+        let mut robot = stuck(5);
+        robot.roll.absent = Arc::new(absent);
+        robot.hears(parked(BESIDE));
+        partner(&mut robot)
+    });
+    assert_eq!(found, [Some(1), None, None]);
 }
 
 #[test]
