@@ -50,6 +50,10 @@ const REASONS: &[([&str; 4], &str)] = &[
     ),
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
     (
+        ["exchange", "offering", "partner lost", ""],
+        "the robot in the way of a mover stops in the very rounds in which it is offered a duty",
+    ),
+    (
         ["exchange", "giving", "partner lost", ""],
         "the mover stops in the very rounds in which the robot in its way has accepted its offer",
     ),
