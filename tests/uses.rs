@@ -66,6 +66,7 @@ pub const USES: &[Use] = &[
     ("own_side", CELL, CELL, "Some(own_side(bisector, position, clearance))"),
     ("planning_clearance", ERRORS, ROBOT_MOTION, "errors.planning_clearance(kept)"),
     ("wall_half_planes", ERRORS, ROBOT_MOTION, "errors.wall_half_planes(&site.workspace"),
+    ("half_planes_beside", ERRORS, ROBOT_ABSENCE, "errors.half_planes_beside(own, wreck"),
     ("worst_corner", ACCEPTANCE, ACCEPTANCE, "worst_corner(ends(&own.axis).map(terms_from))"),
     (
         "is_acceptable",
