@@ -385,17 +385,22 @@ impl Robot {
     }
 
     /// Another node has begun a control period that this robot has not. Control periods begin together: a robot
-    /// that has just begun learns which one this is, and any other begins it as soon as its own is over but for
-    /// the move.
+    /// that has just begun, or has heard nobody since, learns which one this is, and any other begins it as soon
+    /// as its own is over but for the move.
     fn hear_of_later_period(&mut self, period: u32) {
         if self.is_new {
-            self.forgotten_offers = if period > 1 { period } else { 0 };
-            return self.join_in(period);
+            return self.begin_late(period);
         }
         self.is_behind = true;
         if period > self.period + 1 {
-            self.join_in(period - 1);
+            self.begin_late(period - 1);
         }
+    }
+
+    /// It begins later than others. If it has begun before, it has made at most an offer in each period.
+    fn begin_late(&mut self, period: u32) {
+        self.forgotten_offers = if period > 1 { period } else { 0 };
+        self.join_in(period);
     }
 
     /// It forgets everything but its number, where it is in its control period and who takes part, and joins
