@@ -4,8 +4,8 @@
 //! load and the length of its link. A robot that hears of moves on which its load could depend judges
 //! them all together, whichever of them are carried out, with its own. If it could be overloaded, or
 //! its link to the tree overstretched, it objects; a mover that hears an objection halves its move, and so
-//! does the robot itself if its own move is part of the cause. Otherwise it consents. Shrinking moves never creates a new objection, so that consent to a move
-//! is consent to what is left of it.
+//! does the robot itself if its own move is part of the cause. Otherwise it consents. Shrinking moves never
+//! creates a new objection, so that consent to a move is consent to what is left of it.
 //!
 //! A robot moves only with the consent of all that rely on it, or of a *witness* where nobody does: so there
 //! is always a node that knows where a robot is that stops. A message that is lost takes away the

@@ -159,10 +159,8 @@ impl Robot {
         let own = self.duty.post().map(|held| held.id);
         self.holder(post).is_some_and(|holder| {
             let is_child = |held: &Post| own.is_some_and(|own| held.is_child_of(own));
-            holder.beacon.parent != Some(self.id)
-                || holder
-                    .post()
-                    .is_some_and(|held| is_child(held) || self.is_to_follow(held.parent))
+            let is_below = |held: &Post| is_child(held) || self.is_to_follow(held.parent);
+            holder.beacon.parent != Some(self.id) || holder.post().is_some_and(is_below)
         })
     }
 
