@@ -49,7 +49,7 @@ fn faults_are_asked_for_and_checked() {
     };
     let (status, told) = stop("5@10");
     assert_eq!(status, Some(2));
-    assert!(told.contains("--stop names robot 5: robots go from 0 to 4"), "{told}");
+    assert!(told.contains("--stop names robot 5: those of too-few go from 0 to 4"), "{told}");
     assert_eq!(stop("1@20..10").0, Some(2));
     let trace = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lossy.jsonl");
     let trace = trace.to_str().unwrap();

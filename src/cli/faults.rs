@@ -50,7 +50,7 @@ pub fn check_robots(option: &str, stops: &[Stop], scenario: &ValidScenario) -> R
     let robots = scenario.robot.len();
     for (place, Stop { robot, .. }) in stops.iter().enumerate() {
         let what = if *robot >= robots {
-            format!("robots go from 0 to {}", robots.saturating_sub(1))
+            format!("those of {} go from 0 to {}", scenario.name, robots.saturating_sub(1))
         } else if stops[..place].iter().any(|other| other.robot == *robot) {
             "it can be named once".to_owned()
         } else {

@@ -300,10 +300,14 @@ pub const THOROUGH: &[Campaign] = &[
         ..robots(3, Counts { configurations: 44, states: 2_453_581, transitions: 2_664_609 })
     },
     Campaign {
-        name: "three robots in a line, one begins again",
-        graphs: Graphs::Line,
+        name: "three robots, one stops, a message lost",
+        medium: counted(Faults { losses: 1, ..ONE_STOPS }),
+        ..robots(3, Counts { configurations: 44, states: 21_935_995, transitions: 33_096_097 })
+    },
+    Campaign {
+        name: "three robots, one begins again",
         medium: counted(ONE_RESTARTS),
-        ..robots(3, Counts { configurations: 4, states: 1_745_846, transitions: 1_953_921 })
+        ..robots(3, Counts { configurations: 44, states: 13_993_533, transitions: 15_530_563 })
     },
     Campaign {
         name: "four robots in a line, one stops",
