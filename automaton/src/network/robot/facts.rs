@@ -408,11 +408,13 @@ impl Robot {
         }
         facts.first = self.is_first();
         facts.pending = self.is_pending();
-        if facts.first && (facts.slack || facts.pending) {
+        if facts.first {
             // A robot that has joined from afar hears nothing of the team until it is there; if it
-            // never arrives, no other robot notices.
+            // never arrives, no other robot notices. Nor does one where the leader has been cut off, and is
+            // attached elsewhere by now.
             facts.stalled = match self.team {
-                Some(_) => facts.still,
+                Some(_) if facts.slack || facts.pending => facts.still,
+                Some(_) => 0.0,
                 None => f64::from(self.still_periods),
             };
         }
@@ -436,7 +438,7 @@ impl Robot {
 
     /// Whether this robot has joined the team but the robot that it follows cannot attach to it
     /// yet.
-    fn is_pending(&self) -> bool {
+    pub(super) fn is_pending(&self) -> bool {
         let Some(own) = self.duty.post() else { return false };
         match *self.notice() {
             Notice::Advance { joined: Some((newcomer, followed)) } if newcomer == own.id => self

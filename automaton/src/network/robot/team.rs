@@ -74,8 +74,12 @@ pub(super) fn give_up<A>(phase: &A, robot: &Robot, effects: &mut Effects) -> End
             "the primary team stands still although robot {slack} has room on its link: something \
              stands in its way, and a recruit would not help"
         ),
-        (None, None) => format!(
+        (None, None) if robot.is_pending() => format!(
             "robot {} has joined the primary team but cannot reach the robot that it follows",
+            robot.id
+        ),
+        (None, None) => format!(
+            "the primary team stands still: robot {}, its last one, does not hear of the leader any more",
             robot.id
         ),
     };

@@ -3,6 +3,7 @@
 use pleach_discrete::network::{Activity, Phase};
 
 use super::super::super::beacon::TeamReport;
+use super::super::super::record::Outcome;
 use super::super::super::roll::{Absent, Wreck};
 use super::super::Label;
 use super::*;
@@ -243,6 +244,23 @@ fn the_first_of_the_team_counts_for_how_long_it_stands_still_without_need() {
     let bound = 0.96 * leader().build_length();
     assert_eq!((stalled(0.5, false), stalled(0.5, true)), (4.0, 0.0));
     assert_eq!((stalled(bound, false), stalled(bound, true)), (0.0, 0.0));
+}
+
+/// The leader has been cut off, and is attached elsewhere: no report of it comes to the robots that follow.
+#[test]
+fn a_team_that_does_not_hear_of_its_leader_does_not_wait_for_ever() {
+    let mut robot = leader();
+    robot.holds(primary(30, Some(31), 13));
+    robot.hears(beacon(1, east(0.5), primary(31, Some(32), 30), &[31, 30, 13]));
+    robot.hears(beacon(5, west(0.5), fixed(13, 14), &[13, 14]));
+    robot.still_periods = robot.patience().ceil() as u32;
+    robot.review_team();
+    robot.measures();
+    assert_eq!((robot.team, robot.facts.pending), (None, false));
+    robot.jump_mission().expect("its guards have values");
+    let Notice::Ended { outcome, reason, .. } = robot.notice() else { panic!("it waits") };
+    assert_eq!(*outcome, Outcome::Blocked);
+    assert!(reason.contains("does not hear of the leader any more"), "{reason}");
 }
 
 #[test]
