@@ -386,6 +386,23 @@ fn a_mission_is_over_when_every_task_that_is_serviced_has_been_heard_of() {
     assert!(ends(0) && !ends(1));
 }
 
+/// One that is missed may have issued notices that nobody has heard of yet.
+#[test]
+fn an_end_supersedes_what_robots_that_are_missed_may_know() {
+    let supersedes = |standing: Standing| {
+        let mut point = access_point();
+        point.is_asked(&[Task::at(THERE)], 1);
+        point.has_heard_of(0, 30, 0);
+        point.begin_attendance();
+        point.attendees[1] = Attendee::absent(standing, point.site.roll_validity());
+        let epoch = point.bulletin.id().epoch();
+        point.serve().expect("guards have values");
+        assert!(matches!(point.notice(), Notice::Ended { .. }));
+        point.bulletin.id().epoch() > epoch
+    };
+    assert!(supersedes(Standing::Gone(Gone)) && !supersedes(Standing::Present(Present)));
+}
+
 /// It is heard, and answers none of the elections.
 #[test]
 fn a_mission_ends_when_a_robot_does_not_answer() {

@@ -3,7 +3,7 @@
 
 use pleach_discrete::network::{Bid, Election};
 
-use super::super::super::mission::{LeaderElection, RecruitElection};
+use super::super::super::mission::{Idle, LeaderElection, RecruitElection};
 use super::*;
 
 /// Robot 0 hears that the task at `place` is announced; its way leads to the access point.
@@ -245,7 +245,7 @@ fn rounds_of_an_election_are_counted_until_its_waits_are_over() {
     let wait = robot.longest_wait();
     let due: Vec<usize> = (1..=3 * wait).filter(|_| robot.count_round()).collect();
     assert_eq!(due, [wait + 1, 2 * wait]);
-    robot.mission = Current::new(Mission::Idle(super::super::super::mission::Idle));
+    robot.mission = Current::new(Mission::Idle(Idle));
     assert!(!robot.count_round() && robot.waited_rounds == 3 * wait);
     let mut asked = asked(east(1.0));
     assert!(asked.counts_rounds());
@@ -277,7 +277,6 @@ fn the_newest_announcement_by_which_others_go_is_learnt() {
 #[test]
 fn who_has_taken_part_and_begins_again_has_forgotten_what_became_of_it() {
     use super::super::super::duty::{Hop, Path, PathPlace};
-    use super::super::super::mission::Idle;
     use super::super::mission::MissionEffect;
     let says_so = |elects: bool, on_path: Option<NodeId>| {
         let mut robot = asked(east(1.0));
@@ -315,4 +314,7 @@ fn an_announcement_is_learnt_after_the_notices_by_it() {
     assert!(robot.newer_announcement().is_some());
     robot.measures();
     assert!(robot.facts.overtaken && !robot.facts.announcement_heard);
+    robot.mission = Current::new(Mission::Idle(Idle));
+    robot.measures();
+    assert!(!robot.facts.overtaken, "it has no task to give up");
 }
