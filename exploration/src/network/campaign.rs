@@ -122,8 +122,8 @@ pub enum CampaignError {
 /// The name under which a mission is reported that neither ends nor reports why.
 pub const ENDS: &str = "every task is serviced, or the mission ends with a reason";
 
-/// A configuration that has so many states more than twice those of the whole campaign is taken to have no end.
-const LEEWAY: usize = 500_000;
+/// A configuration that has so many states more than are expected of the whole campaign is taken to have no end.
+const LEEWAY: usize = 100_000;
 
 impl Campaign {
     /// Explores every configuration, on as many threads as there are processors.
@@ -132,7 +132,7 @@ impl Campaign {
     /// When one of them has no end.
     pub fn run(&self) -> Result<Findings, CampaignError> {
         let configurations: Vec<_> = self.configurations().collect::<Result<_, _>>()?;
-        let most_states = 2 * self.expected.states + LEEWAY;
+        let most_states = self.expected.states + LEEWAY;
         let found: Vec<Findings> = configurations
             .into_par_iter()
             .map(|(name, configuration)| Findings::of(&name, configuration, most_states))
