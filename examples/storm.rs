@@ -278,7 +278,7 @@ fn many(first: u64, missions: u64, strategy: Option<Strategy>) -> Result<ExitCod
         for told in batch.into_par_iter().map(run).collect::<Vec<_>>() {
             let (seed, verdict) = told?;
             match &verdict.end {
-                Some(end) if end.outcome == Outcome::Serviced => serviced += 1,
+                Some(_) if is_serviced(&verdict) => serviced += 1,
                 Some(_) => given_up += 1,
                 None => under_way.push(seed),
             }

@@ -51,7 +51,7 @@ const REASONS: &[([&str; 4], &str)] = &[
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
     (
         ["exchange", "offering", "partner lost", ""],
-        "the robot in the way of a mover stops in the very rounds in which it is offered a duty",
+        "the robot in its way stops in the very rounds in which it is offered a duty: a unit test takes it",
     ),
     (
         ["exchange", "giving", "partner lost", ""],

@@ -141,7 +141,7 @@ impl Mission {
         }
     }
 
-    /// Whether this robot has called for a recruit ahead of a standstill since one joined last, in vain.
+    /// Whether a recruit has been called for ahead of a standstill since one joined last, in vain.
     pub const fn has_called_in_vain(&self) -> bool {
         matches!(self, Mission::Advance(Advance { in_vain: true, .. }))
     }

@@ -122,7 +122,8 @@ pub enum CampaignError {
 /// The name under which a mission is reported that neither ends nor reports why.
 pub const ENDS: &str = "every task is serviced, or the mission ends with a reason";
 
-/// A configuration that has so many states more than are expected of the whole campaign is taken to have no end.
+/// How many states one configuration may have beyond those expected of the whole campaign before its exploration
+/// is abandoned.
 const LEEWAY: usize = 100_000;
 
 impl Campaign {

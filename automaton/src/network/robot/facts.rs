@@ -226,7 +226,7 @@ facts! {
             eager: robot.is_eager(),
             /// A recruit is sought, or on its way.
             recruiting: robot.tree_is_frozen(),
-            /// It has called for a recruit ahead of a standstill since one joined last, and none could come.
+            /// A recruit has been called for ahead of a standstill since one joined last, and none could come.
             in_vain: robot.mission.has_called_in_vain(),
             /// A redundant robot is attached to its post.
             bears_redundant: robot.bears_redundant(),

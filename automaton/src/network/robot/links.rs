@@ -147,9 +147,12 @@ impl Robot {
 
     /// The robot that waits at or has left `place` of the path.
     fn robot_at(&self, place: usize) -> Option<NodeId> {
-        self.neighbours
-            .iter()
-            .find(|n| n.beacon.duty.as_ref().and_then(Duty::place) == Some(place))
-            .map(Neighbour::id)
+        self.neighbours_at(place).next().map(Neighbour::id)
+    }
+
+    /// The neighbours that wait at or have left `place` of the path.
+    pub(super) fn neighbours_at(&self, place: usize) -> impl Iterator<Item = &Neighbour> {
+        let place_of = |known: &Neighbour| known.beacon.duty.as_ref().and_then(Duty::place);
+        self.neighbours.iter().filter(move |known| place_of(known) == Some(place))
     }
 }

@@ -101,9 +101,8 @@ impl Robot {
         ahead < active.end
             && self.has_reported(ahead)
             && self
-                .neighbours
-                .iter()
-                .find(|n| n.beacon.duty.as_ref().and_then(Duty::place) == Some(ahead))
+                .neighbours_at(ahead)
+                .next()
                 .is_some_and(|next| next.distance <= QUEUE * self.clearance())
     }
 

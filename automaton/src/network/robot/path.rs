@@ -166,13 +166,14 @@ impl Robot {
 
     /// Whether the robot ahead on Σ has left this post, and waits for this one to follow.
     fn is_to_follow(&self, post: Option<Anchor>) -> bool {
-        let (Some(Anchor::Post(post)), Some(shift)) = (post, self.mission.shift()) else {
+        let (Some(Anchor::Post(post)), Some(shift), Some(place)) =
+            (post, self.mission.shift(), self.waiting_place())
+        else {
             return false;
         };
-        let ahead = self.waiting_place().map(|place| place + 1);
-        let has_left = |duty: &Duty| matches!(duty, Duty::Shifting(it) if Some(it.place) == ahead);
-        shift.path.place_of(post) == ahead
-            && self.neighbours.iter().filter_map(|it| it.beacon.duty.as_ref()).any(has_left)
+        let ahead = place + 1;
+        let has_left = |known: &Neighbour| matches!(known.beacon.duty, Some(Duty::Shifting(_)));
+        shift.path.place_of(post) == Some(ahead) && self.neighbours_at(ahead).any(has_left)
     }
 
     /// The place that this robot goes to along Σ.

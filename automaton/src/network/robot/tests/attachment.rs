@@ -173,6 +173,17 @@ fn second_subgroup_of(posts: [Post; 4]) -> Mission {
     Mission::Shift(Shift { path, subgroups, arrived: 1 })
 }
 
+impl Robot {
+    /// The second subgroup of Σ has left its posts, robots 2 and 3.
+    fn hears_second_subgroup_leave(&mut self, posts: [Post; 4]) {
+        self.mission = Current::new(second_subgroup_of(posts));
+        for place in [1, 2] {
+            let leaves = Duty::Shifting(Shifting { place, left: None });
+            self.hears(Beacon { duty: Some(leaves), ..Beacon::silent(place + 1, east(0.5)) });
+        }
+    }
+}
+
 /// Σ leads up the tree. Robot 1 has taken the post of this robot, whose parent stood at the next place.
 #[test]
 fn a_robot_stands_for_the_post_that_the_one_ahead_has_left() {
@@ -200,11 +211,7 @@ fn a_robot_stands_for_the_post_that_the_one_ahead_has_left() {
 fn nobody_stands_for_a_post_that_the_subgroup_before_has_taken() {
     let posts = [redundant(10, 11), fixed(11, 20), fixed(12, 11), fixed(13, 12)];
     let mut robot = robot();
-    robot.mission = Current::new(second_subgroup_of(posts));
-    for place in [1, 2] {
-        let leaves = Duty::Shifting(Shifting { place, left: None });
-        robot.hears(Beacon { duty: Some(leaves), ..Beacon::silent(place + 1, east(0.5)) });
-    }
+    robot.hears_second_subgroup_leave(posts);
     robot.holds(redundant(0, 12));
     assert_eq!(
         robot.named_parent(),
@@ -220,11 +227,7 @@ fn nobody_stands_for_a_post_that_the_subgroup_before_has_taken() {
 fn nobody_stands_for_a_post_that_has_not_been_left() {
     let mut robot = robot();
     let posts = [redundant(10, 11), redundant(11, 12), redundant(12, 13), fixed(13, 20)];
-    robot.mission = Current::new(second_subgroup_of(posts));
-    for place in [1, 2] {
-        let leaves = Duty::Shifting(Shifting { place, left: None });
-        robot.hears(Beacon { duty: Some(leaves), ..Beacon::silent(place + 1, east(0.5)) });
-    }
+    robot.hears_second_subgroup_leave(posts);
     robot.holds(redundant(0, 12));
     assert_eq!(robot.named_parent(), Some(2), "robot 2 follows robot 3, which has left post 12");
     robot.holds(redundant(0, 13));
