@@ -315,4 +315,10 @@ pub const THOROUGH: &[Campaign] = &[
         medium: counted(ONE_STOPS),
         ..robots(4, Counts { configurations: 5, states: 3_333_482, transitions: 3_698_280 })
     },
+    Campaign {
+        name: "four robots in a line, one begins again",
+        graphs: Graphs::Line,
+        medium: counted(ONE_RESTARTS),
+        ..robots(4, Counts { configurations: 5, states: 14_269_635, transitions: 15_888_132 })
+    },
 ];

@@ -83,7 +83,7 @@ impl Node {
     }
 
     /// All that decides on what the node does, beside what it has heard last.
-    fn account(&self, periods_count: bool) -> String {
+    fn account(&self, periods_count: bool) -> Vec<String> {
         match (self, periods_count) {
             (Node::Robot(robot), false) => robot.account(),
             (Node::Robot(robot), true) => robot.account_in_time(),
@@ -111,6 +111,12 @@ impl Node {
     }
 }
 
+/// The number of a text among those met, in the order in which they were.
+fn number_in(numbers: &mut BTreeMap<String, u32>, text: String) -> u32 {
+    let next = numbers.len() as u32;
+    *numbers.entry(text).or_insert(next)
+}
+
 /// Different things in the order in which they were met, each with its number.
 #[derive(Debug)]
 struct Numbered<T> {
@@ -125,9 +131,8 @@ impl<T: fmt::Debug> Numbered<T> {
 
     /// The number of a thing.
     fn number_of(&mut self, thing: T) -> u32 {
-        let next = self.things.len() as u32;
-        let number = *self.numbers.entry(format!("{thing:?}")).or_insert(next);
-        if number == next {
+        let number = number_in(&mut self.numbers, format!("{thing:?}"));
+        if number as usize == self.things.len() {
             self.things.push(thing);
         }
         number
@@ -206,7 +211,9 @@ pub struct Nodes {
     beacons: Numbered<Arc<Beacon>>,
     messages: Numbered<Said>,
     locals: Vec<Local>,
-    local_ids: BTreeMap<(String, Vec<BeaconId>), LocalId>,
+    /// By the paragraphs of its account and the beacons heard: few texts, in many combinations.
+    local_ids: BTreeMap<Box<[u32]>, LocalId>,
+    paragraphs: BTreeMap<String, u32>,
     outcomes: BTreeMap<(LocalId, Stimulus), LocalId>,
 }
 
@@ -220,6 +227,7 @@ impl Nodes {
             messages: Numbered::new(),
             locals: Vec::new(),
             local_ids: BTreeMap::new(),
+            paragraphs: BTreeMap::new(),
             outcomes: BTreeMap::new(),
         }
     }
@@ -275,16 +283,18 @@ impl Nodes {
     pub fn take_up(&mut self, mut node: Node, heard: Vec<BeaconId>) -> LocalId {
         let (period, roll, confirmed) = node.tell_now(self.periods_count);
         if let Node::Robot(robot) = &node {
-            debug_assert!(robot.leaves_out_nothing(), "{}", robot.account());
+            debug_assert!(robot.leaves_out_nothing(), "{:?}", robot.account());
         }
-        let key = (node.account(self.periods_count), heard);
+        let account = node.account(self.periods_count).into_iter();
+        let told = account.map(|paragraph| number_in(&mut self.paragraphs, paragraph));
+        let key: Box<[u32]> = told.chain(heard.iter().copied()).collect();
         if let Some(&id) = self.local_ids.get(&key) {
             return id;
         }
         let beacon = self.beacons.number_of(Arc::new(node.beacon(self.periods_count)));
         let message = self.messages.number_of(Said { beacon, period, roll, confirmed });
         let id = self.locals.len() as LocalId;
-        self.locals.push(Local { node, beacon, message, heard: key.1.clone() });
+        self.locals.push(Local { node, beacon, message, heard });
         self.local_ids.insert(key, id);
         id
     }

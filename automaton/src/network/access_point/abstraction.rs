@@ -74,21 +74,24 @@ impl AccessPoint {
     }
 
     /// The [`account`](Self::account) of an access point where control periods count.
-    pub fn account_in_time(&self) -> String {
+    pub fn account_in_time(&self) -> Vec<String> {
         let attendees: Vec<_> = self.attendees.iter().map(Attendee::account).collect();
         let patience = self.patience_with_tasks() + 1;
         let tasks: Vec<u32> =
             self.known_tasks.iter().map(|task| task.silence.min(patience)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful, &self.joiners);
         let told = (self.period, &self.roll, reports, (self.is_new, self.is_behind));
-        format!("{}{:?}", self.account(), (told, attendees, tasks))
+        let mut account = self.account();
+        account.extend([format!("{told:?}"), format!("{attendees:?}{tasks:?}")]);
+        account
     }
 
-    /// Everything, apart from what it receives, that decides what the access point sends from now on.
+    /// Everything, apart from what it receives, that decides what the access point sends from now on,
+    /// in paragraphs that seldom change together.
     ///
     /// Left out is what the explorer stands for and what follows from the rest; how long a wait has
     /// been over does not matter. A field that is neither told nor left out does not compile.
-    pub fn account(&self) -> String {
+    pub fn account(&self) -> Vec<String> {
         let AccessPoint {
             // Told.
             number,
@@ -140,13 +143,10 @@ impl AccessPoint {
         };
         let patience = (PATIENCE_WITH_ELECTIONS * longest_wait + 1).max(self.longest_search());
         let rounds = if self.is_electing() { (*election_rounds).min(patience) } else { 0 };
-        format!(
-            "{:?}",
-            (
-                (number, bulletin, announced, &**service, election, rounds),
-                (agreement, route, crossing, stretched, longest_wait, (attached, roster), settled),
-                closed,
-            )
-        )
+        vec![
+            format!("{:?}", (number, bulletin, announced, &**service, election, rounds)),
+            format!("{:?}", (agreement, route, crossing, stretched, longest_wait)),
+            format!("{:?}", (attached, roster, settled, closed)),
+        ]
     }
 }

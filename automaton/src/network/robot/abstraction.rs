@@ -201,24 +201,26 @@ impl Robot {
 
     /// The [`account`](Self::account) of a robot where control periods count. Where bodies lie that do
     /// not take part is left out: it matters for motion alone.
-    pub fn account_in_time(&self) -> String {
+    pub fn account_in_time(&self) -> Vec<String> {
         let seen = self.out_of_sight.iter().chain(self.wrecks.iter().copied());
         let seen: BTreeSet<NodeId> = seen.map(|wreck| wreck.robot).collect();
         let heard: Vec<_> = self.neighbours.iter().map(|it| (it.heard_in, it.confirmed)).collect();
         let reports = (&self.strays, &self.serves, &self.forgetful);
         let told = (self.period, &self.roll, self.confirmation, reports);
         let waits = (self.orphaned_periods, self.is_late, self.is_new, self.is_behind);
-        format!("{}{:?}", self.account(), (told, waits, seen, heard))
+        let mut account = self.account();
+        account.extend([format!("{told:?}"), format!("{waits:?}{seen:?}{heard:?}")]);
+        account
     }
 
     /// Everything, apart from the beacons that it goes by, that decides what the robot sends and does
     /// from now on: robots with equal accounts that go by the same beacons have the same future, as
-    /// long as they are moved alike.
+    /// long as they are moved alike. It is told in paragraphs that seldom change together.
     ///
     /// Left out is what the explorer stands for, routes and motion, and what follows from the rest;
     /// how long a wait has been over does not matter. A field that is neither told nor left out does
     /// not compile.
-    pub fn account(&self) -> String {
+    pub fn account(&self) -> Vec<String> {
         let Robot {
             // Told.
             id,
@@ -334,22 +336,13 @@ impl Robot {
             false => 0,
         };
         let silences: Vec<u8> = self.audible().map(|(_, silent)| silent).collect();
-        format!(
-            "{:?}",
-            (
-                (id, position, still_periods, &**duty, posts_made, &**mission, unused_periods),
-                (
-                    &**exchange,
-                    answered,
-                    self.partners_since_notice(),
-                    parent,
-                    &**place,
-                    below,
-                    can_detach
-                ),
-                ((bulletin, epoch, announced, has_reached), election, bid, waited, route),
-                (agreement, team, stretched, self.longest_wait(), followed_post, closed, silences),
-            )
-        )
+        let wait = self.longest_wait();
+        vec![
+            format!("{:?}", (id, position, still_periods, parent, &**place, can_detach, silences)),
+            format!("{:?}", (&**duty, posts_made, unused_periods, followed_post, below, closed)),
+            format!("{:?}", (&**mission, election, bid, waited, agreement, team, stretched, wait)),
+            format!("{:?}", (&**exchange, answered, self.partners_since_notice())),
+            format!("{:?}", (bulletin, epoch, announced, has_reached, route)),
+        ]
     }
 }
