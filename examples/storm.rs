@@ -120,8 +120,8 @@ fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
         say!("{name}: {} periods without faults", calm.periods);
         missions.push((scenario, calm.periods));
     }
-    say!("| storm | serviced | periods | separation | clearance | others |");
-    say!("| --- | --- | --- | --- | --- | --- |");
+    say!("| faults | serviced | longest | contacts | walls touched | other |");
+    say!("| --- | ---: | ---: | ---: | ---: | --- |");
     for &kind in Kind::ALL.iter().filter(|kind| only.is_none_or(|only| kind.name().contains(only)))
     {
         let (mut runs, mut serviced, mut longer) = (0, 0, 0.0_f64);
@@ -166,8 +166,9 @@ fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
             .filter(|(name, _)| !["separation", "clearance"].contains(&name.as_str()))
             .map(|(name, times)| format!("{name} {times}"))
             .collect();
+        let longest = if serviced > 0 { format!("×{longer:.2}") } else { String::new() };
         say!(
-            "| {} | {serviced} of {runs} | at most ×{longer:.2} | {} | {} | {} |",
+            "| {} | {serviced} of {runs} | {longest} | {} | {} | {} |",
             kind.name(),
             of("separation"),
             of("clearance"),

@@ -283,8 +283,8 @@ pub struct Reports {
 
 impl Reports {
     /// Takes in the beacon of a robot that node `own` hears, and whose post is attached to that node's or
-    /// is not. Robots that know no way count if the node itself `knows_way`.
-    pub fn take_in(&mut self, beacon: &Beacon, is_child: bool, own: NodeId, knows_way: bool) {
+    /// is not. Robots that know no way count if others hear of this node: if it `is_linked` to one of the tree.
+    pub fn take_in(&mut self, beacon: &Beacon, is_child: bool, own: NodeId, is_linked: bool) {
         if is_child {
             self.take_in_branch(beacon);
         } else if beacon.parent == Some(own) {
@@ -292,7 +292,7 @@ impl Reports {
             self.strays.merge(&beacon.below);
             self.strays.merge(&beacon.strays);
             self.serves.merge(&beacon.serves);
-        } else if beacon.lineage.is_none() && knows_way {
+        } else if beacon.lineage.is_none() && is_linked {
             self.strays.insert(beacon.sender);
             self.serves.extend(beacon.task());
         }

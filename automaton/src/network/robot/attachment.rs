@@ -266,9 +266,11 @@ impl Robot {
             serves: self.duty.post().and_then(|post| post.task).into_iter().collect(),
             ..Reports::default()
         };
+        // On its way along Σ it holds no post, and knows no way itself.
+        let is_linked = self.lineage().is_some() || own.is_none();
         for neighbour in self.neighbours.iter().filter(|it| it.is_present(self.period)) {
             let is_child = neighbour.is_attached_to(own);
-            reports.take_in(&neighbour.beacon, is_child, self.id, self.lineage().is_some());
+            reports.take_in(&neighbour.beacon, is_child, self.id, is_linked);
         }
         renew(&mut self.below, reports.below);
         renew(&mut self.strays, reports.strays);

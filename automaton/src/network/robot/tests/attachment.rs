@@ -502,3 +502,19 @@ fn an_access_point_hears_of_whom_a_branch_reports() {
     robot.look_after_place().expect("it goes on");
     assert_eq!((&*robot.below, &*robot.strays), (&*set(&[0]), &*set(&[])));
 }
+
+/// Others hear of a robot on Σ through the one ahead, and of those that hear nobody else: one that was missed
+/// would be announced to again and again.
+#[test]
+fn a_robot_on_its_way_along_sigma_reports_robots_that_know_no_way() {
+    let strays = |duty: Duty| {
+        let mut robot = robot();
+        robot.duty = Current::new(duty);
+        robot.hears(beacon(3, north(0.5), redundant(16, 17), &[]));
+        robot.look_after_place().expect("it goes on");
+        IdSet::clone(&robot.strays)
+    };
+    assert_eq!(strays(Duty::Shifting(Shifting { place: 0, left: None })), IdSet::singleton(3));
+    let detached = holding(redundant(0, 11), Point::new(5.0, 2.0));
+    assert_eq!(strays(detached), IdSet::default(), "nobody hears of one that knows no way itself");
+}
