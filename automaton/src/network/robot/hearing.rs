@@ -248,7 +248,8 @@ impl Robot {
 
     /// Whether the robot may leave its place in this control period: it takes part, knows who does not, is where
     /// others allow for it if they do not hear it any more, and has heard in this period where each robot is
-    /// that was near when it was heard last, or could have come near since, but those that are gone.
+    /// that was near when it was heard last, or could have come near since, but those that are gone; and its
+    /// parent, if its duty leads it away from that.
     ///
     /// If one of two robots that could meet moves, it so knows where the other is. If both move, each
     /// keeps to its own side of the line between them (17); if one stays, its place lies on its own
@@ -265,6 +266,7 @@ impl Robot {
             && self.is_near_trail()
             && self.neighbours.iter().all(is_sure)
             && !self.missing.iter().any(|lost| self.may_meet(&lost))
+            && !self.would_lose_parent()
     }
 
     /// The nodes that the robot hears, and for how many rounds each has been silent.

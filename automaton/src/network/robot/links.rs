@@ -63,6 +63,19 @@ impl Robot {
         Some(TreeLink { to, limit: self.limit_of(Some(&*self.duty)) })
     }
 
+    /// Whether its duty leads it away from its parent while it does not hear that: neither could tell how long
+    /// their link becomes. On Σ an access point may be its parent that is not within range yet.
+    pub(super) fn would_lose_parent(&self) -> bool {
+        let parent = self.tree_parent();
+        match *self.duty {
+            Duty::Shifting(_) => parent.is_none(),
+            Duty::Leading(_) | Duty::Following(_) => {
+                self.anchor().is_some() && parent.and_then(|node| self.neighbour(node)).is_none()
+            }
+            _ => false,
+        }
+    }
+
     /// The robots that report that they are attached to this one.
     pub(super) fn tree_children(&self) -> impl Iterator<Item = &Neighbour> {
         self.neighbours.iter().filter(|neighbour| neighbour.beacon.parent == Some(self.id))

@@ -70,7 +70,7 @@ fn a_robot_has_strayed_where_errors_have_led_it_out_of_the_free_space() {
 fn a_robot_outside_of_its_constraints_returns_towards_its_goal_or_stays() {
     let moved = |goal: Point| {
         let mut robot = unsure();
-        robot.holds(primary(30, None, 13));
+        robot.holds(Post { parent: None, ..primary(30, None, 13) });
         robot.advances_to(goal);
         robot.roll.called = NOW;
         robot.position = Point::new(5.0, CLEARANCE + POSITION_ERROR + MOTION_ERROR - 0.01);

@@ -221,6 +221,27 @@ fn a_robot_moves_only_if_it_has_heard_all_that_are_near_in_this_period() {
     assert!(!robot.may_leave_place(), "the roll is not valid any more");
 }
 
+/// The link to a parent that is not heard could become too long unnoticed.
+#[test]
+fn a_robot_does_not_go_on_while_it_does_not_hear_its_parent() {
+    let held = |post: Post| holding(post, Point::new(5.0, 2.0));
+    let moves = |duty: Duty, hears_parent: bool| {
+        let mut robot = robot();
+        robot.roll.called = NOW;
+        robot.duty = Current::new(duty);
+        if hears_parent {
+            robot.hears(beacon(1, east(1.1), fixed(11, 12), &[11, 12]));
+        }
+        robot.may_leave_place()
+    };
+    let leads = held(primary(0, None, 11));
+    assert!(moves(leads.clone(), true) && !moves(leads, false));
+    assert!(!moves(held(primary(0, Some(10), 11)), false));
+    assert!(moves(held(Post { parent: None, ..primary(0, None, 11) }), false), "it has none");
+    assert!(!moves(Duty::Shifting(Shifting { place: 0, left: None }), false), "nor on Σ");
+    assert!(moves(held(redundant(0, 11)), false), "it stays near its post");
+}
+
 /// A robot that has fallen silent well in range may come nearer unheard. A roll that is called late enough tells
 /// whether it takes part.
 #[test]

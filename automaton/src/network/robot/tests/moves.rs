@@ -9,12 +9,19 @@ use super::super::reservation::{FlowGrant, RequestNumber};
 use super::*;
 use crate::node::Outputs;
 
-/// The leader on its way to the east, called by the roll.
+/// The leader on its way to the east, called by the roll, and attached to none.
 pub(super) fn mover() -> Robot {
     let mut robot = robot();
-    robot.holds(primary(30, None, 13));
+    robot.holds(Post { parent: None, ..primary(30, None, 13) });
     robot.advances_to(east(3.0));
     robot.roll.called = NOW;
+    robot
+}
+
+/// The same, attached to the holder of post 13.
+pub(super) fn attached_mover() -> Robot {
+    let mut robot = mover();
+    robot.holds(primary(30, None, 13));
     robot
 }
 
@@ -65,7 +72,7 @@ fn a_robot_nearer_than_two_steps_and_clearances_limits_a_move() {
 
 #[test]
 fn a_link_of_the_tree_ends_a_move_at_its_limit() {
-    let mut robot = mover();
+    let mut robot = attached_mover();
     let build = robot.build_length();
     robot.hears(beacon(5, west(build - 0.03), fixed(13, 14), &[13, 14]));
     let segment = proposed(&mut robot).expect("there is some room");
@@ -127,7 +134,7 @@ fn a_move_is_free_where_its_load_does_not_change() {
 #[test]
 fn a_robot_relies_on_robots_that_it_has_heard_in_this_period() {
     let is_unsure = |heard: Beacon| {
-        let mut robot = mover();
+        let mut robot = attached_mover();
         robot.hears(heard);
         robot.survey_links();
         robot.links[0].share = 0.1;
@@ -219,7 +226,7 @@ fn witness(robot: &mut Robot) -> Option<NodeId> {
 
 #[test]
 fn a_robot_on_which_nobody_relies_moves_when_a_witness_knows_of_it() {
-    let mut robot = mover();
+    let mut robot = attached_mover();
     robot.hears(beacon(4, north(0.7), fixed(12, 14), &[12, 14]));
     robot.hears(beacon(5, west(0.7), fixed(13, 14), &[13, 14]));
     robot.remember_parent();
@@ -334,7 +341,7 @@ fn a_child_objects_to_a_move_of_its_parent_that_overstretches_their_link() {
 #[test]
 fn a_robot_halves_its_move_only_if_that_is_part_of_the_cause() {
     let left = |own: f64, parent: f64| {
-        let mut robot = mover();
+        let mut robot = attached_mover();
         let from = west(robot.build_length() - 0.03);
         robot.hears(beacon(5, from, fixed(13, 14), &[13, 14]));
         robot.remember_parent();
