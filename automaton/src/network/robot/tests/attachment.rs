@@ -481,7 +481,8 @@ fn an_access_point_hears_of_whom_a_branch_reports() {
     let set = |robots: &[usize]| -> Arc<IdSet> { Arc::new(robots.iter().copied().collect()) };
     let mut robot = robot();
     robot.holds(Post { task: Some(3), ..fixed(20, 13) });
-    robot.hears(beacon(1, west(0.9), fixed(13, 14), &[13, 14]));
+    let parent = Beacon { parent: Some(8), ..beacon(1, west(0.9), fixed(13, 14), &[13, 14]) };
+    robot.hears(parent);
     let child = Beacon {
         below: set(&[2, 4]),
         serves: set(&[1]),
@@ -489,13 +490,18 @@ fn an_access_point_hears_of_whom_a_branch_reports() {
     };
     robot.hears(child);
     robot.hears(beacon(3, north(0.5), redundant(16, 17), &[]));
-    let other =
-        Beacon { below: set(&[5]), ..beacon(5, south(0.5), redundant(15, 13), &[15, 13, 14]) };
-    robot.hears(other);
+    let cut_off = Beacon {
+        below: set(&[6, 7]),
+        serves: set(&[2]),
+        ..beacon(6, north(0.6), fixed(18, 19), &[18, 19, 14])
+    };
+    robot.hears(cut_off);
+    let other = beacon(5, south(0.5), redundant(15, 13), &[15, 13, 14]);
+    robot.hears(Beacon { parent: Some(1), below: set(&[5]), ..other });
     robot.look_after_place().expect("it goes on");
     assert_eq!(*robot.below, *set(&[0, 2, 4]), "itself and what its children report");
-    assert_eq!(*robot.strays, *set(&[3]), "one that knows no way");
-    assert_eq!(*robot.serves, *set(&[1, 3]));
+    assert_eq!(*robot.strays, *set(&[3, 6, 7]), "one that knows no way, and a branch cut off");
+    assert_eq!(*robot.serves, *set(&[1, 2, 3]));
     assert_eq!(robot.parent, Some(1));
     // One that has not been heard in this period or the one before is not reported.
     robot.period = NOW + 2;
