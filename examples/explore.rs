@@ -25,8 +25,10 @@ fn main() -> Result<ExitCode, CampaignError> {
     let chosen = campaigns.iter().filter(|campaign| campaign.name.contains(&wanted));
     let chosen: Vec<&Campaign> = chosen.collect();
     if chosen.is_empty() {
+        eprintln!("usage: explore [thorough] [WORDS OF A CAMPAIGN'S NAME]");
         eprintln!("no campaign has '{wanted}' in its name; there are:");
-        campaigns.iter().for_each(|campaign| eprintln!("    {}", campaign.name));
+        QUICK.iter().for_each(|campaign| eprintln!("    {}", campaign.name));
+        THOROUGH.iter().for_each(|campaign| eprintln!("    thorough {}", campaign.name));
         return Ok(ExitCode::from(2));
     }
     let (mut all_met, mut all) = (true, Findings::default());

@@ -81,13 +81,22 @@ fn at_least_one() -> RangedU64ValueParser {
 
 fn kind(name: &str) -> Result<Kind, String> {
     let known = Kind::ALL.iter().find(|kind| kind.name() == name);
-    known.copied().ok_or_else(|| {
-        let names: Vec<String> = Kind::ALL.iter().map(|kind| kind.name()).collect();
-        format!("no kind of storm has this name; there are: {}", names.join(", "))
+    known.copied().ok_or_else(|| format!("no kind of storm has this name; {}", kinds()))
+}
+
+fn kinds() -> String {
+    let names: Vec<String> = Kind::ALL.iter().map(|kind| kind.name()).collect();
+    format!("there are: {}", names.join(", "))
+}
+
+fn main() -> ExitCode {
+    run().unwrap_or_else(|error| {
+        eprintln!("error: {error}");
+        ExitCode::from(2)
     })
 }
 
-fn main() -> Result<ExitCode, Box<dyn Error>> {
+fn run() -> Result<ExitCode, Box<dyn Error>> {
     let CommandLine { command, missions, first, strategy } = CommandLine::parse();
     match command {
         Some(Command::One { scenario, kind, seed }) => one(&scenario, kind, seed)?,
@@ -113,6 +122,9 @@ fn is_serviced(verdict: &Verdict) -> bool {
 
 /// What becomes of missions under each kind of storm.
 fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
+    if let Some(only) = only.filter(|only| !Kind::ALL.iter().any(|it| it.name().contains(only))) {
+        return Err(format!("no kind of storm has '{only}' in its name; {}", kinds()).into());
+    }
     let mut missions = Vec::new();
     for name in SHIPPED {
         let scenario = shipped(name);

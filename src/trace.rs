@@ -194,7 +194,7 @@ pub enum TraceError {
     #[error("line {line}: cannot be read: {source}")]
     Unreadable { line: usize, source: io::Error },
     /// Not one of the four kinds of line.
-    #[error("line {line}: not a line of a trace: {source}")]
+    #[error("line {line}: not a line of a trace: {}", within_line(source))]
     NotALine { line: usize, source: serde_json::Error },
     /// Another format or another version.
     #[error(
@@ -207,6 +207,11 @@ pub enum TraceError {
     /// A step whose lists do not fit together.
     #[error("line {line}: {wrong}")]
     Uneven { line: usize, wrong: String },
+}
+
+/// What is wrong in a line that was read alone.
+fn within_line(error: &serde_json::Error) -> String {
+    error.to_string().replace(" at line 1 column ", " in column ")
 }
 
 impl TraceError {

@@ -151,6 +151,19 @@ fn storms_in_which_recruits_are_called_ahead_break_no_promise() {
     }
 }
 
+/// The robots of a branch whose parent has stopped are gone until the next team passes them. One of them would
+/// stand in its way for good.
+#[test]
+fn a_branch_that_is_cut_off_takes_part_again_when_a_team_passes_it() {
+    let crash = Crash { time: 282.0, inputs: 0, back: None };
+    let troubles = vec![(8, Trouble { crash: Some(crash), ..Trouble::default() })];
+    let storm = Storm { troubles, ..Storm::default() };
+    let verdict = ride(&shipped("study-2"), &storm, 1_500).expect("nodes go on");
+    assert_eq!(verdict.violations, []);
+    let end = verdict.end.expect("it ends in time");
+    assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
+}
+
 /// It begins again with a post of its own before others miss it. Those that were attached to its former post do
 /// not hold it back.
 #[test]

@@ -25,10 +25,11 @@ Exit status:
   0  all tasks are serviced, or are over
   1  the program failed
   2  the scenario or the arguments are wrong, and nothing was run
-  3  the mission ended with tasks unserviced, the reason is named
+  3  the mission ended with tasks unserviced, or was interrupted, and the reason is named
   4  an invariant was violated, and the mission was stopped
 
-Start with: pleach run scenarios/study-1.toml";
+Start with: pleach run scenarios/study-1.toml
+A process for every node: see docs/how-to/processes.md for robot, access-point, watch and launch";
 
 /// The commands of the program.
 #[derive(Debug, Subcommand)]

@@ -12,7 +12,7 @@ use std::str::FromStr;
 #[derive(Clone, Debug, Args)]
 pub struct FaultArguments {
     /// The probability that a message over the radio is lost
-    #[arg(long, value_name = "SHARE", default_value = "0")]
+    #[arg(long, value_name = "SHARE", default_value = "0", allow_negative_numbers = true)]
     pub loss: Share,
     /// The seed that decides which messages are lost
     #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "loss")]

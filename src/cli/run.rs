@@ -77,6 +77,10 @@ fn run_many(
     arguments: &RunArguments,
     interrupt: &Interrupt,
 ) -> Result<Status, Failure> {
+    if arguments.trace.as_ref().is_some_and(|folder| folder.as_os_str() == STANDARD) {
+        let what = "--trace names a folder for several runs: one trace fits on the standard output";
+        return Err(Failure::Usage(what.to_owned()));
+    }
     for folder in [&arguments.trace, &arguments.figures].into_iter().flatten() {
         output::create_folder(folder)?;
     }

@@ -214,7 +214,8 @@ fn short(value: f64) -> String {
 
 /// What a length allows for `position_error` and `motion_error`.
 fn told_margin(margin: f64) -> String {
-    match margin {
+    // Sums of what people write are not what they would write.
+    match (margin * 1e9).round() / 1e9 {
         0.0 => String::new(),
         margin => format!(", {margin} of it for position_error and motion_error"),
     }
