@@ -148,7 +148,7 @@ pub struct Beacon {
     /// The robots that are attached to it, itself included.
     #[serde(with = "wire")]
     pub below: Arc<IdSet>,
-    /// Robots that these hear and that are cut off from the access points.
+    /// Robots that these hear and that know no way to an access point.
     #[serde(with = "wire")]
     pub strays: Arc<IdSet>,
     /// The tasks that all of them service.
@@ -242,6 +242,11 @@ impl Beacon {
         self.branches.iter().map(sighting)
     }
 
+    /// The task that is serviced from the post of the sender.
+    pub fn task(&self) -> Option<usize> {
+        self.duty.as_ref()?.post()?.task
+    }
+
     /// Adds the robots that have forgotten what became of an announcement, if the sender goes by the same one.
     #[inline]
     pub(super) fn tell_forgetful(&self, own: Option<&Announced>, known: &mut Arc<IdSet>) {
@@ -254,12 +259,6 @@ impl Beacon {
     /// Adds the tasks that are over by the sender. None of them is ever taken up again.
     pub(super) fn tell_closed(&self, known: &mut Arc<IdSet>) {
         merge_set(known, &self.closed);
-    }
-
-    /// Whether the sender is a robot that knows no way to an access point, or does not hear the parent over which
-    /// that led.
-    pub fn is_cut_off(&self) -> bool {
-        self.duty.is_some() && (self.lineage.is_none() || self.parent.is_none())
     }
 
     /// Whether the same sender surely sent this before `other`: it had received, or offered, less.
@@ -276,7 +275,7 @@ impl Beacon {
 pub struct Reports {
     /// The robots of its branch of the tree.
     pub below: IdSet,
-    /// Robots that are heard there and are cut off from the access points.
+    /// Robots that are heard there and know no way to an access point.
     pub strays: IdSet,
     /// The tasks that all of them service.
     pub serves: IdSet,
@@ -284,7 +283,7 @@ pub struct Reports {
 
 impl Reports {
     /// Takes in the beacon of a robot that node `own` hears, and whose post is attached to that node's or
-    /// is not. A branch that is cut off counts if others hear of this node: if it `is_linked` to one of the tree.
+    /// is not. Robots that know no way count if others hear of this node: if it `is_linked` to one of the tree.
     pub fn take_in(&mut self, beacon: &Beacon, is_child: bool, own: NodeId, is_linked: bool) {
         if is_child {
             self.take_in_branch(beacon);
@@ -293,10 +292,9 @@ impl Reports {
             self.strays.merge(&beacon.below);
             self.strays.merge(&beacon.strays);
             self.serves.merge(&beacon.serves);
-        } else if beacon.is_cut_off() && is_linked {
+        } else if beacon.lineage.is_none() && is_linked {
             self.strays.insert(beacon.sender);
-            self.strays.merge(&beacon.below);
-            self.serves.merge(&beacon.serves);
+            self.serves.extend(beacon.task());
         }
     }
 

@@ -55,7 +55,7 @@ impl Holds<PlaceInTree> for Robot {
 /// What a robot hears of the way to an access point from the parent of its post.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HeardWay {
-    /// Nothing: its post has no parent.
+    /// Nothing: its post has no parent, or that is not heard and the robot itself is gone by the roll.
     NoParent,
     /// Nothing: its parent is not heard, or knows no way.
     Silence,
@@ -93,6 +93,7 @@ impl Robot {
             return HeardWay::NoParent;
         };
         match (self.lineage_of(anchor), self.lineage()) {
+            (None, _) if self.is_gone(self.id) => HeardWay::NoParent,
             (None, _) => HeardWay::Silence,
             (Some(way), Some(own)) if own.extends(&way, post.id) => HeardWay::Known,
             (Some(way), _) if way.contains(post.id) => HeardWay::Cycle,

@@ -3,6 +3,7 @@
 use pleach_discrete::network::{Anchor, IdSet, PostId, Role};
 
 use super::super::super::duty::{Hop, PathPlace, Waiting};
+use super::super::super::roll::{Absent, Roll};
 use super::super::attachment::PATIENCE_WITH_UNUSED_POSTS;
 use super::*;
 
@@ -481,8 +482,7 @@ fn an_access_point_hears_of_whom_a_branch_reports() {
     let set = |robots: &[usize]| -> Arc<IdSet> { Arc::new(robots.iter().copied().collect()) };
     let mut robot = robot();
     robot.holds(Post { task: Some(3), ..fixed(20, 13) });
-    let parent = Beacon { parent: Some(8), ..beacon(1, west(0.9), fixed(13, 14), &[13, 14]) };
-    robot.hears(parent);
+    robot.hears(beacon(1, west(0.9), fixed(13, 14), &[13, 14]));
     let child = Beacon {
         below: set(&[2, 4]),
         serves: set(&[1]),
@@ -490,23 +490,43 @@ fn an_access_point_hears_of_whom_a_branch_reports() {
     };
     robot.hears(child);
     robot.hears(beacon(3, north(0.5), redundant(16, 17), &[]));
-    let cut_off = Beacon {
-        below: set(&[6, 7]),
-        serves: set(&[2]),
-        ..beacon(6, north(0.6), fixed(18, 19), &[18, 19, 14])
-    };
-    robot.hears(cut_off);
-    let other = beacon(5, south(0.5), redundant(15, 13), &[15, 13, 14]);
-    robot.hears(Beacon { parent: Some(1), below: set(&[5]), ..other });
+    let other =
+        Beacon { below: set(&[5]), ..beacon(5, south(0.5), redundant(15, 13), &[15, 13, 14]) };
+    robot.hears(other);
     robot.look_after_place().expect("it goes on");
     assert_eq!(*robot.below, *set(&[0, 2, 4]), "itself and what its children report");
-    assert_eq!(*robot.strays, *set(&[3, 6, 7]), "one that knows no way, and a branch cut off");
-    assert_eq!(*robot.serves, *set(&[1, 2, 3]));
+    assert_eq!(*robot.strays, *set(&[3]), "one that knows no way");
+    assert_eq!(*robot.serves, *set(&[1, 3]));
     assert_eq!(robot.parent, Some(1));
     // One that has not been heard in this period or the one before is not reported.
     robot.period = NOW + 2;
     robot.look_after_place().expect("it goes on");
     assert_eq!((&*robot.below, &*robot.strays), (&*set(&[0]), &*set(&[])));
+}
+
+/// A way is kept while the parent is not heard, until the robot is gone: then it counts as one that knows none, and
+/// takes part again where another hears it.
+#[test]
+fn a_robot_that_is_gone_and_does_not_hear_its_parent_forgets_the_way() {
+    let mut robot = robot();
+    robot.holds(fixed(20, 13));
+    let parent = beacon(1, west(0.9), fixed(13, 14), &[13, 14]);
+    robot.hears(parent.clone());
+    let knows_way = |robot: &mut Robot| {
+        robot.look_after_place().expect("it goes on");
+        robot.lineage().is_some()
+    };
+    assert!(knows_way(&mut robot));
+    let gone = Absent { gone: IdSet::singleton(robot.id), ..Absent::default() };
+    robot.roll = Roll { called: NOW, absent: Arc::new(gone) };
+    assert!(knows_way(&mut robot), "it hears its parent");
+    robot.neighbours.clear();
+    assert!(!knows_way(&mut robot));
+    robot.roll.absent = Arc::default();
+    robot.hears(parent);
+    assert!(knows_way(&mut robot));
+    robot.neighbours.clear();
+    assert!(knows_way(&mut robot), "it takes part");
 }
 
 /// Others hear of a robot on Σ through the one ahead, and of those that hear nobody else: one that was missed
