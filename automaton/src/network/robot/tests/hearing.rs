@@ -235,7 +235,7 @@ fn a_robot_does_not_go_on_while_it_does_not_hear_its_parent() {
         robot.may_leave_place()
     };
     let leads = held(primary(0, None, 11));
-    assert!(moves(leads.clone(), true) && !moves(leads, false));
+    assert!(moves(leads, true) && !moves(leads, false));
     assert!(!moves(held(primary(0, Some(10), 11)), false));
     assert!(moves(held(Post { parent: None, ..primary(0, None, 11) }), false), "it has none");
     assert!(!moves(Duty::Shifting(Shifting { place: 0, left: None }), false), "nor on Σ");
