@@ -1,7 +1,7 @@
 //! Bids in the elections of leaders and recruits, and the way to the robot that calls (Algorithm 1,
 //! Remarks 5.3 and 5.4).
 
-use pleach_discrete::network::{Bid, Election};
+use pleach_discrete::network::{Bid, Election, IdSet, NoticeId};
 
 use super::super::super::mission::{Idle, LeaderElection, RecruitElection};
 use super::*;
@@ -37,6 +37,23 @@ fn the_nearer_to_the_task_the_better_the_bid_of_a_leader() {
     behind.position = Point::new(6.5, 7.5);
     let bid = leader_bid(&mut behind).expect("it competes");
     assert!(-bid.merit > (2.0 / unit) as i64);
+}
+
+/// One that begins again may have learnt a later announcement, and hear an election by an earlier one.
+#[test]
+fn an_election_is_not_over_by_the_roster_of_a_later_announcement() {
+    let mut robot = asked(east(1.0));
+    leader_bid(&mut robot);
+    let (id, known) = robot.announced.clone().expect("it knows the task");
+    let roster = Arc::new(IdSet::singleton(0));
+    let announcement = Shared::new(Announcement { roster, ..(*known).clone() });
+    let by = |id: NoticeId, robot: &mut Robot| {
+        robot.announced = Some((id, announcement.clone()));
+        robot.election_is_over()
+    };
+    assert!(by(id, &mut robot));
+    let epochs_later = NoticeId::new(u32::MAX - 1, id.issuer);
+    assert!(!by(epochs_later, &mut robot));
 }
 
 #[test]
