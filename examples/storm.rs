@@ -122,7 +122,10 @@ fn is_serviced(verdict: &Verdict) -> bool {
 
 /// What becomes of missions under each kind of storm.
 fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
-    if let Some(only) = only.filter(|only| !Kind::ALL.iter().any(|it| it.name().contains(only))) {
+    let is_wanted = |kind: &&Kind| only.is_none_or(|only| kind.name().contains(only));
+    let wanted: Vec<Kind> = Kind::ALL.iter().filter(is_wanted).copied().collect();
+    if wanted.is_empty() {
+        let only = only.unwrap_or_default();
         return Err(format!("no kind of storm has '{only}' in its name; {}", kinds()).into());
     }
     let mut missions = Vec::new();
@@ -134,8 +137,7 @@ fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
     }
     say!("| faults | serviced | longest | contacts | walls touched | other |");
     say!("| --- | ---: | ---: | ---: | ---: | --- |");
-    for &kind in Kind::ALL.iter().filter(|kind| only.is_none_or(|only| kind.name().contains(only)))
-    {
+    for kind in wanted {
         let (mut runs, mut serviced, mut longer) = (0, 0, 0.0_f64);
         let mut broken: Vec<(String, usize)> = Vec::new();
         for (scenario, calm) in &missions {

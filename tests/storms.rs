@@ -5,7 +5,7 @@
 use crate::floor_plans::in_storms::{DURATION, mission_of_turn, shipped};
 use crate::floor_plans::strategies;
 use crate::stressed::stressed_scenarios;
-use pleach::automaton::network::record::{MissionEvent, Outcome};
+use pleach::automaton::network::record::{End, MissionEvent, Outcome};
 use pleach::automaton::network::scenario::{Strategy, ValidScenario};
 use pleach::automaton::network::{Crash, Trouble};
 use pleach::verify::network::Property;
@@ -28,6 +28,16 @@ fn storm_for(periods: usize, name: &str, kind: Kind, seed: u64) -> Verdict {
     let is_exact = kind.errors(&scenario).are_none();
     let periods = if is_exact { periods } else { PERIODS_WITH_ERRORS };
     ride(&scenario, &storm, periods).expect("nodes go on whatever they receive")
+}
+
+/// How the mission of a shipped scenario ends in which one node stops and nothing else fails; no promise is broken.
+fn end_although_one_stops(name: &str, node: usize, crash: Crash, periods: usize) -> End {
+    let time = crash.time;
+    let troubles = vec![(node, Trouble { crash: Some(crash), ..Trouble::default() })];
+    let storm = Storm { troubles, ..Storm::default() };
+    let verdict = ride(&shipped(name), &storm, periods).expect("nodes go on");
+    assert_eq!(verdict.violations, [], "{name}, node {node} at {time} s");
+    verdict.end.unwrap_or_else(|| panic!("{name}, node {node} at {time} s: no end"))
 }
 
 #[test]
@@ -156,11 +166,7 @@ fn storms_in_which_recruits_are_called_ahead_break_no_promise() {
 #[test]
 fn a_branch_that_is_cut_off_takes_part_again_when_a_team_passes_it() {
     let crash = Crash { time: 282.0, inputs: 0, back: None };
-    let troubles = vec![(8, Trouble { crash: Some(crash), ..Trouble::default() })];
-    let storm = Storm { troubles, ..Storm::default() };
-    let verdict = ride(&shipped("study-2"), &storm, 1_500).expect("nodes go on");
-    assert_eq!(verdict.violations, []);
-    let end = verdict.end.expect("it ends in time");
+    let end = end_although_one_stops("study-2", 8, crash, 1_500);
     assert_eq!(end.outcome, Outcome::Serviced, "{}", end.reason);
 }
 
@@ -178,11 +184,7 @@ fn a_robot_that_begins_again_soon_holds_nobody_up() {
     ];
     for (name, robot, time) in stops {
         let crash = Crash { time, inputs: 0, back: Some(time + 2.0) };
-        let troubles = vec![(robot, Trouble { crash: Some(crash), ..Trouble::default() })];
-        let storm = Storm { troubles, ..Storm::default() };
-        let verdict = ride(&shipped(name), &storm, 2_000).expect("nodes go on");
-        assert_eq!(verdict.violations, [], "{name}");
-        let end = verdict.end.expect("it ends in time");
+        let end = end_although_one_stops(name, robot, crash, 2_000);
         assert_eq!(end.outcome, Outcome::Serviced, "{name}: {}", end.reason);
     }
 }
@@ -211,11 +213,7 @@ fn robots_that_come_back_are_asked_before_a_task_is_given_up() {
 fn a_robot_whose_partner_stops_in_an_exchange_answers_again() {
     for (name, robot, time) in [("corridor", 10, 52.0), ("corridor", 12, 111.0)] {
         let crash = Crash { time, inputs: 0, back: None };
-        let troubles = vec![(robot, Trouble { crash: Some(crash), ..Trouble::default() })];
-        let storm = Storm { troubles, ..Storm::default() };
-        let verdict = ride(&shipped(name), &storm, 1_000).expect("nodes go on");
-        assert_eq!(verdict.violations, [], "{name}");
-        let end = verdict.end.expect("it ends in time");
+        let end = end_although_one_stops(name, robot, crash, 1_000);
         // The one that has stopped stands in the only way.
         let names = format!("robots [{robot}] have stopped");
         assert!(end.reason.contains(&names), "{name}: {}", end.reason);
@@ -321,16 +319,10 @@ fn the_mission_goes_on_when_the_first_access_point_restarts() {
 /// Where another access point is in reach, robots attach to that; without the first one, the user is told.
 #[test]
 fn an_access_point_that_stops_is_replaced_by_another_or_named() {
-    let scenario = shipped("study-2");
-    let robots = scenario.robot.len();
+    let robots = shipped("study-2").robot.len();
     let becomes_of = |access_point: usize, time| {
-        let crash = Some(Crash { time, inputs: 0, back: None });
-        let trouble = Trouble { crash, ..Trouble::default() };
-        let troubles = vec![(robots + access_point, trouble)];
-        let storm = Storm { troubles, ..Storm::default() };
-        let verdict = ride(&scenario, &storm, 1_500).expect("nodes go on");
-        assert_eq!(verdict.violations, [], "access point {access_point}, {time} s");
-        verdict.end.unwrap_or_else(|| panic!("access point {access_point}, {time} s: no end"))
+        let crash = Crash { time, inputs: 0, back: None };
+        end_although_one_stops("study-2", robots + access_point, crash, 1_500)
     };
     for time in [30.0, 150.0, 300.0] {
         let end = becomes_of(1, time);

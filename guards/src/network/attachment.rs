@@ -13,7 +13,8 @@ pub fn way_changed() -> Guard {
 }
 
 /// Its post has no parent, the way of its parent leads through its post, or it has been given the
-/// post of another robot. A parent that is not heard may be on its way along Σ: then the robot waits.
+/// post of another robot. A parent that is not heard may be on its way along Σ: then the robot waits,
+/// unless it is gone.
 pub fn way_lost() -> Guard {
     let has_no_way = (!proposition("names_parent")).or(proposition("hears_cycle"));
     Guard::new("way lost", proposition("displaced").or(has_no_way))

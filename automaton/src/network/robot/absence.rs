@@ -79,7 +79,7 @@ impl Robot {
         self.roll.lets_move(self.id, self.period, self.site.roll_validity())
     }
 
-    /// Whether another robot is called gone.
+    /// Whether a robot is called gone.
     pub(super) fn is_gone(&self, robot: NodeId) -> bool {
         self.roll.calls_gone(robot)
     }

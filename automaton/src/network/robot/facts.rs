@@ -148,7 +148,7 @@ facts! {
         propositions {
             /// Another node has begun the next control period.
             behind: robot.is_behind,
-            /// Its post has a parent.
+            /// Its post has a parent, and it hears that or is not gone.
             names_parent: robot.heard_way != HeardWay::NoParent,
             /// Its parent tells a way to an access point that leads through its own post.
             hears_cycle: robot.heard_way == HeardWay::Cycle,

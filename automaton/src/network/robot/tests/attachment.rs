@@ -541,6 +541,6 @@ fn a_robot_on_its_way_along_sigma_reports_robots_that_know_no_way() {
         IdSet::clone(&robot.strays)
     };
     assert_eq!(strays(Duty::Shifting(Shifting { place: 0, left: None })), IdSet::singleton(3));
-    let detached = holding(redundant(0, 11), Point::new(5.0, 2.0));
+    let detached = holding(redundant(0, 11), HERE);
     assert_eq!(strays(detached), IdSet::default(), "nobody hears of one that knows no way itself");
 }

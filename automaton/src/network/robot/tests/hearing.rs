@@ -224,7 +224,7 @@ fn a_robot_moves_only_if_it_has_heard_all_that_are_near_in_this_period() {
 /// The link to a parent that is not heard could become too long unnoticed.
 #[test]
 fn a_robot_does_not_go_on_while_it_does_not_hear_its_parent() {
-    let held = |post: Post| holding(post, Point::new(5.0, 2.0));
+    let held = |post: Post| holding(post, HERE);
     let moves = |duty: Duty, hears_parent: bool| {
         let mut robot = robot();
         robot.roll.called = NOW;
