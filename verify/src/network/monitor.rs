@@ -1,4 +1,5 @@
-//! The monitor: every property, over every snapshot of a mission.
+//! The monitor: every property of the world and of teams, over every snapshot of a mission. What events claim and
+//! observers conclude, the [judge](super::judge) checks.
 
 use std::collections::BTreeSet;
 use std::fmt;

@@ -38,17 +38,35 @@ impl<'a> Period<'a> {
         let follows = after.step == before.step + 1
             && after.time > before.time
             && after.positions.len() == before.positions.len();
-        if !follows {
-            return Err(Instant::of(after).violation(
-                Property::Record,
-                &[],
-                (after.time, before.time),
-                format!("it does not follow step {} at t = {} s", before.step, before.time),
-            ));
-        }
+        if follows { Ok(Period::of(before, after)) } else { Err(Period::gap(before, after)) }
+    }
+
+    /// What lies between two snapshots where nodes begin their control periods at different times: a whole period or a
+    /// part of one.
+    ///
+    /// # Errors
+    ///
+    /// [`Property::Record`] if a period is left out, time goes back, or the numbers of robots differ.
+    pub fn part(before: &'a Snapshot, after: &'a Snapshot) -> Result<Self, Violation> {
+        let follows = (before.step..=before.step + 1).contains(&after.step)
+            && after.time >= before.time
+            && after.positions.len() == before.positions.len();
+        if follows { Ok(Period::of(before, after)) } else { Err(Period::gap(before, after)) }
+    }
+
+    fn of(before: &'a Snapshot, after: &'a Snapshot) -> Self {
         let ends = before.positions.iter().zip(&after.positions);
         let motions = ends.map(|(&from, &to)| Segment { from, to }).collect();
-        Ok(Period { before, after, motions })
+        Period { before, after, motions }
+    }
+
+    fn gap(before: &Snapshot, after: &Snapshot) -> Violation {
+        Instant::of(after).violation(
+            Property::Record,
+            &[],
+            (after.time, before.time),
+            format!("it does not follow step {} at t = {} s", before.step, before.time),
+        )
     }
 
     /// The opening of a mission: a period without duration in which every robot rests.

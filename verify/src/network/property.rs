@@ -4,8 +4,8 @@ use std::fmt;
 
 /// A property of the robot network that holds at every instant of a mission.
 ///
-/// Each is stated once: as a sentence by [`statement`](Property::statement), and as the pure
-/// function that its variant links to.
+/// Each is stated once: as a sentence by [`statement`](Property::statement), and as pure functions, to which, or to
+/// whose module, its variant links.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Property {
@@ -108,17 +108,6 @@ impl Property {
         Property::Stage,
         Property::Teams,
         Property::Outcome,
-    ];
-
-    /// What no loss of messages breaks.
-    pub const KEPT_UNDER_LOSS: [Property; 7] = [
-        Property::Separation,
-        Property::Clearance,
-        Property::Residual,
-        Property::Shares,
-        Property::Load,
-        Property::TreeRange,
-        Property::RootedTree,
     ];
 
     /// The name used in messages and documents.

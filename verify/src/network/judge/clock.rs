@@ -9,14 +9,14 @@ use crate::network::property::Property;
 
 /// The time of a mission, and the places from which its robots start.
 #[derive(Clone, Debug)]
-pub(super) struct Clock {
+pub(in crate::network) struct Clock {
     period: f64,
     max_steps: usize,
     starts: Vec<[f64; 2]>,
 }
 
 impl Clock {
-    pub(super) fn of(scenario: &ValidScenario) -> Self {
+    pub(in crate::network) fn of(scenario: &ValidScenario) -> Self {
         let settings = scenario.settings();
         Clock {
             period: settings.period,

@@ -29,6 +29,7 @@ mod posts;
 mod referee;
 mod safety;
 mod states;
+mod tasks;
 mod terms;
 mod verdicts;
 mod walk;
@@ -46,13 +47,14 @@ use super::limits::Limits;
 use super::monitor::Monitor;
 use super::property::Property;
 use super::violation::{Instant, Violation};
-use clock::Clock;
+pub(super) use clock::Clock;
 use conclusions::Conclusions;
 use ground::Ground;
 pub use ledger::{Ledger, Stage};
 use places::Places;
 pub use referee::Referee;
 pub use safety::{Safety, relayed};
+pub(super) use tasks::TaskClaims;
 use terms::Terms;
 pub use verdicts::missing;
 use verdicts::{Trial, Tried};
@@ -72,7 +74,7 @@ pub struct Dispute {
 }
 
 impl Dispute {
-    fn of(property: Property, robots: &[usize], sentence: String) -> Self {
+    pub(super) fn of(property: Property, robots: &[usize], sentence: String) -> Self {
         Dispute { property, robots: robots.to_vec(), measured: (0.0, 1.0), sentence }
     }
 
@@ -80,7 +82,7 @@ impl Dispute {
         Dispute { measured: (value, bound), ..self }
     }
 
-    fn at(self, instant: Instant) -> Violation {
+    pub(super) fn at(self, instant: Instant) -> Violation {
         instant.violation(self.property, &self.robots, self.measured, self.sentence)
     }
 }

@@ -3,9 +3,9 @@
 use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 
+use super::Dispute;
 use super::clock::Clock;
-use super::terms::Terms;
-use super::{Dispute, claims};
+use super::tasks::TaskClaims;
 use crate::network::extremes::{Extremes, keep_larger, keep_smaller};
 use crate::network::limits::{Limits, SLACK};
 use crate::network::period::{self, Period};
@@ -28,12 +28,9 @@ use crate::network::{instant, link};
 #[derive(Clone, Debug)]
 pub struct Safety {
     limits: Limits,
-    faults: Faults,
     clock: Clock,
     previous: Option<Snapshot>,
-    /// Whether a node has been absent: what flowed there is lost.
-    has_lost_nodes: bool,
-    terms: Terms,
+    claims: TaskClaims,
     extremes: Extremes,
 }
 
@@ -42,11 +39,9 @@ impl Safety {
     pub fn new(scenario: &ValidScenario, faults: Faults) -> Self {
         Safety {
             limits: Limits::of(scenario),
-            faults,
             clock: Clock::of(scenario),
             previous: None,
-            has_lost_nodes: false,
-            terms: Terms::of(scenario),
+            claims: TaskClaims::new(scenario, faults),
             extremes: Extremes::default(),
         }
     }
@@ -66,44 +61,13 @@ impl Safety {
         instant::record(snapshot, &self.limits)?;
         self.clock.check(snapshot, self.previous.is_none()).map_err(told)?;
         self.observe_period(snapshot)?;
-        self.observe_instant(snapshot)?;
-        if snapshot.absent.contains(&self.limits.robots()) {
-            self.terms.miss_access_point();
+        instant::shares(snapshot, &self.limits)?;
+        self.claims.observe(snapshot, events, &self.limits).map_err(told)?;
+        // What flows to a node that does not run is lost.
+        if self.claims.all_run() {
+            relayed(snapshot, &self.limits)?;
         }
-        for event in events {
-            claims::names_exist(event, &self.limits).map_err(told)?;
-        }
-        for event in in_order(events) {
-            self.enter(event, snapshot).map_err(told)?;
-        }
-        self.announcements_follow(events).map_err(told)?;
         self.previous = Some(snapshot.clone());
-        Ok(())
-    }
-
-    fn enter(&mut self, event: &MissionEvent, snapshot: &Snapshot) -> Result<(), Dispute> {
-        self.terms.enter(event, snapshot.step)?;
-        match *event {
-            MissionEvent::TaskServiced { task, robot } => {
-                claims::is_at_task(task, robot, snapshot, &self.limits)
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Tasks are announced one after another, in one control period where they are serviced at once.
-    fn announcements_follow(&self, events: &[MissionEvent]) -> Result<(), Dispute> {
-        let announced = events.iter().filter_map(|event| match *event {
-            MissionEvent::TaskAnnounced { task } => Some(task),
-            _ => None,
-        });
-        for task in announced {
-            if let Some(before) = self.terms.unfinished_before(task) {
-                let sentence =
-                    format!("task {task} is announced, and task {before} has not been serviced");
-                return Err(Dispute::of(Property::Events, &[], sentence));
-            }
-        }
         Ok(())
     }
 
@@ -121,15 +85,6 @@ impl Safety {
         period::tree_range(&period, limits)
     }
 
-    fn observe_instant(&mut self, snapshot: &Snapshot) -> Result<(), Violation> {
-        self.has_lost_nodes |= !snapshot.absent.is_empty();
-        instant::shares(snapshot, &self.limits)?;
-        if !self.faults.nodes && !self.has_lost_nodes {
-            relayed(snapshot, &self.limits)?;
-        }
-        Ok(())
-    }
-
     /// Judges how the mission ended.
     ///
     /// # Errors
@@ -137,43 +92,16 @@ impl Safety {
     /// [`Property::Outcome`] if the record does not show what the outcome says.
     pub fn conclude(&self, end: &End) -> Result<(), Violation> {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
-        let last = self.previous.as_ref().map(|snapshot| snapshot.step);
-        let (done, tasks) = (self.terms.done(), self.limits.tasks().len());
-        let contradiction = self.clock.contradiction(end, last, (done, tasks));
-        let contradiction = contradiction.or_else(|| self.terms.contradiction(end.outcome));
-        match contradiction.or_else(|| self.needless_end(end, done)) {
+        match self.claims.contradiction(end, &self.clock, &self.limits) {
             None => Ok(()),
             Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),
         }
-    }
-
-    /// A mission is given up over a task. Where nodes stop or are cut off, the one that gives it up need not know
-    /// that it has been serviced.
-    fn needless_end(&self, end: &End, done: usize) -> Option<String> {
-        let all_run = !self.faults.nodes && !self.has_lost_nodes;
-        let is_done = done == self.limits.tasks().len() && self.terms.pursued().is_none();
-        let is_needless = end.outcome.is_given_up() && all_run && is_done;
-        is_needless
-            .then(|| format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
     }
 
     /// How near the mission has come to its bounds so far.
     pub const fn extremes(&self) -> &Extremes {
         &self.extremes
     }
-}
-
-/// The events of a control period as they can follow each other: nodes tell them in no order. What is announced
-/// comes first, then what is serviced, and then what is over.
-fn in_order(events: &[MissionEvent]) -> Vec<&MissionEvent> {
-    let rank = |event: &&MissionEvent| match event {
-        MissionEvent::TaskAnnounced { .. } | MissionEvent::TaskReannounced { .. } => 0,
-        MissionEvent::TaskServiced { .. } => 1,
-        _ => 2,
-    };
-    let mut events: Vec<&MissionEvent> = events.iter().collect();
-    events.sort_by_key(rank);
-    events
 }
 
 /// [`Property::Residual`]: a robot to which others send passes on all of it, and what is its own.

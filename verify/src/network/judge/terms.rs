@@ -122,10 +122,11 @@ impl Terms {
         self.last.filter(|&task| self.is_open(task))
     }
 
-    /// A task that was announced before this one, and is neither serviced nor over. Tasks are announced in
-    /// their order.
+    /// A task before this one that is neither serviced nor over: tasks are announced in their order. An access point
+    /// that has forgotten what it announced need not announce all of them.
     pub(super) fn unfinished_before(&self, task: usize) -> Option<usize> {
-        self.announced.range(..task).copied().find(|&other| self.is_open(other))
+        let counts = |other: &usize| !self.has_forgotten || self.announced.contains(other);
+        (0..task).filter(counts).find(|&other| self.is_open(other))
     }
 
     /// A task that should have been closed more than `patience` steps ago, in a sentence: one that was
@@ -207,6 +208,15 @@ mod tests {
         terms.enter(&event, step).expect_err("it cannot be so").sentence
     }
 
+    /// The first of three tasks is serviced.
+    fn serviced_first() -> Terms {
+        let mut terms = terms(&[Task::at([3.0, 3.0]); 3]);
+        let mut enter = |event| terms.enter(&event, 7).expect("it is in time");
+        enter(MissionEvent::TaskAnnounced { task: 0 });
+        enter(MissionEvent::TaskServiced { task: 0, robot: 0 });
+        terms
+    }
+
     /// Where a robot stands at a task already, several are announced in one control period.
     #[test]
     fn a_task_that_is_announced_later_need_not_be_serviced_before() {
@@ -218,6 +228,10 @@ mod tests {
         enter(MissionEvent::TaskAnnounced { task: 2 });
         assert_eq!([0, 1, 2].map(|task| terms.unfinished_before(task)), [None, None, Some(1)]);
         assert_eq!((terms.pursued(), terms.done()), (Some(2), 1));
+        let left_out = serviced_first().unfinished_before(2);
+        let mut forgetful = serviced_first();
+        forgetful.miss_access_point();
+        assert_eq!((left_out, forgetful.unfinished_before(2)), (Some(1), None));
     }
 
     /// A robot stops, and another one services its task from then on.

@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 
 use pleach_automaton::network::Frail;
-use pleach_automaton::network::record::Snapshot;
+use pleach_automaton::network::record::{End, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
 use pleach_automaton::node::Observed;
 use pleach_discrete::network::{Anchor, Post, PostId, Role};
 
-use super::super::judge::relayed;
+use super::super::judge::{Clock, Dispute, TaskClaims, relayed};
 use super::super::limits::SLACK;
 use super::super::period::{self, Period};
 use super::super::property::Property;
@@ -21,10 +21,10 @@ use crate::network::violation::Instant;
 #[derive(Debug)]
 pub struct Judge {
     limits: Limits,
-    /// Whether nodes stop in this storm, or are cut off: what flowed there is lost.
-    loses_nodes: bool,
+    clock: Clock,
+    claims: TaskClaims,
     previous: Option<Snapshot>,
-    /// The nodes that had begun when this control period did, and have been clear of all others since.
+    /// The nodes that had begun when this control period did, and have been clear of all others once since.
     begun: Vec<usize>,
     violations: Vec<Violation>,
     unheard: Option<Violation>,
@@ -36,7 +36,8 @@ impl Judge {
     pub fn new(scenario: &ValidScenario, storm: &Storm) -> Self {
         Judge {
             limits: Limits::of(scenario),
-            loses_nodes: storm.faults().nodes,
+            clock: Clock::of(scenario),
+            claims: TaskClaims::new(scenario, storm.faults()),
             previous: None,
             begun: Vec::new(),
             violations: Vec::new(),
@@ -56,19 +57,33 @@ impl Judge {
         self.last_motion
     }
 
-    /// Robots are about to move.
-    pub fn observe(&mut self, snapshot: &Snapshot, nodes: &[Frail]) {
+    /// Robots are about to move; these are the events of the control period that ends.
+    pub fn observe(&mut self, snapshot: &Snapshot, events: &[MissionEvent], nodes: &[Frail]) {
+        if let Err(malformed) = instant::record(snapshot, &self.limits) {
+            return self.find(Err(malformed));
+        }
+        let claimed = self.claims.observe(snapshot, events, &self.limits);
+        self.find(claimed.map_err(|dispute| dispute.at(Instant::of(snapshot))));
         self.look_at_instant(snapshot, nodes);
-        if let Some(before) = self.previous.take()
-            && let Ok(period) = Period::between(&before, snapshot)
-        {
+        if let Some(before) = self.previous.take() {
+            match Period::part(&before, snapshot) {
+                Ok(period) => self.look_at_period(&period, nodes.len()),
+                Err(gap) => self.find(Err(gap)),
+            }
             if before.positions != snapshot.positions {
                 self.last_motion = before.step;
             }
-            self.look_at_period(&period, nodes.len());
         }
         self.count_begun(snapshot, nodes);
         self.previous = Some(snapshot.clone());
+    }
+
+    /// The mission has ended.
+    pub fn conclude(&mut self, end: &End) {
+        let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
+        let contradiction = self.claims.contradiction(end, &self.clock, &self.limits);
+        let dispute = contradiction.map(|it| Dispute::of(Property::Outcome, &[], it).at(now));
+        self.find(dispute.map_or(Ok(()), Err));
     }
 
     /// A node that begins next to another one, which did not know of it, counts when it is clear of it.
@@ -111,7 +126,8 @@ impl Judge {
     fn look_at_instant(&mut self, seen: &Snapshot, nodes: &[Frail]) {
         let limits = self.limits.clone();
         self.find(instant::shares(seen, &limits));
-        if !self.loses_nodes {
+        // What flows to a node that does not run is lost.
+        if self.claims.all_run() {
             self.find(relayed(seen, &limits));
         }
         self.find(rooted(seen, nodes));

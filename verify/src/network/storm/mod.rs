@@ -21,7 +21,7 @@ use pleach_automaton::node::{Medium, Unreliable, Weather};
 use pleach_automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
 use pleach_continuous::Point;
 
-use super::{Property, Violation};
+use super::Violation;
 pub use draw::{Kind, allowing_for, draw};
 pub use judge::Judge;
 pub use shrink::shrink;
@@ -84,13 +84,6 @@ pub struct Verdict {
     pub last_motion: usize,
     /// What happened, each with its control period.
     pub events: Vec<(usize, MissionEvent)>,
-}
-
-impl Verdict {
-    /// The first violation of one of these properties.
-    pub fn broken(&self, properties: &[Property]) -> Option<&Violation> {
-        self.violations.iter().find(|violation| properties.contains(&violation.property))
-    }
 }
 
 /// The network of a scenario in a storm.
@@ -175,7 +168,10 @@ pub fn ride_watched(
         Reason::Horizon => None,
         other => return Err(StormError::Stopped(ending.at.t, format!("{other:?}"))),
     };
-    let Log { judge, events, .. } = log;
+    let Log { mut judge, events, .. } = log;
+    if let Some(end) = &end {
+        judge.conclude(end);
+    }
     let last_motion = judge.last_motion();
     let (violations, unheard) = judge.into_violations();
     Ok(Verdict { end, periods: network.step(), violations, unheard, last_motion, events })
@@ -195,8 +191,9 @@ impl<M: Medium<Message, Point>, F: FnMut(&Snapshot)> Observer<Network<M, Frail>>
         let step = network.step();
         let snapshot = network.snapshot();
         (self.watch)(&snapshot);
-        self.judge.observe(&snapshot, network.nodes());
-        self.events.extend(network.events().into_iter().map(|event| (step, event)));
+        let events = network.events();
+        self.judge.observe(&snapshot, &events, network.nodes());
+        self.events.extend(events.into_iter().map(|event| (step, event)));
         ControlFlow::Continue(())
     }
 }
