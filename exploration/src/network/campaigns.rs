@@ -18,7 +18,7 @@ const fn rounds(faults: Faults) -> Medium {
     Medium::Rounds { faults, period: None }
 }
 
-/// The same in control periods: robots move after every `rounds` rounds.
+/// The same in control periods: robots move after every [`ROUNDS_OF_A_PERIOD`] rounds.
 const fn periods(faults: Faults) -> Medium {
     Medium::Rounds { faults, period: Some(ROUNDS_OF_A_PERIOD) }
 }
@@ -33,7 +33,7 @@ const ONE_STOPS: Faults = Faults { stops: 1, ..Faults::NONE };
 /// A robot stops, and begins again after any time, or never.
 const ONE_RESTARTS: Faults = Faults { stops: 1, restarts: 1, ..Faults::NONE };
 
-/// How many rounds the control periods have in which two faults are explored.
+/// How many rounds a control period has.
 const ROUNDS_OF_A_PERIOD: u32 = 4;
 
 /// On every graph of this many robots and an access point, with one task beside it; all messages
@@ -127,7 +127,7 @@ pub const QUICK: &[Campaign] = &[
     },
 ];
 
-/// What takes minutes.
+/// What takes three quarters of an hour together.
 pub const THOROUGH: &[Campaign] = &[
     Campaign {
         name: "three robots, every numbering, two tasks",
@@ -201,8 +201,7 @@ pub const THOROUGH: &[Campaign] = &[
     },
     Campaign {
         name: "four robots, a message late",
-        steps: &[1],
-        medium: rounds(Faults { delays: 1, ..Faults::NONE }),
+        medium: ONE_LATE,
         contacts: 1,
         ..robots(4, Counts { configurations: 290, states: 661_801, transitions: 1_196_849 })
     },
@@ -213,9 +212,7 @@ pub const THOROUGH: &[Campaign] = &[
     },
     Campaign {
         name: "five robots, a message lost",
-        steps: &[1],
-        medium: rounds(Faults { losses: 1, ..Faults::NONE }),
-        contacts: 0,
+        medium: ONE_LOST,
         ..robots(5, Counts { configurations: 2_442, states: 9_453_507, transitions: 19_281_298 })
     },
     Campaign {
@@ -234,7 +231,6 @@ pub const THOROUGH: &[Campaign] = &[
     },
     Campaign {
         name: "four robots in contact, a message lost, moves once a period",
-        steps: &[1],
         medium: periods(Faults { losses: 1, ..Faults::NONE }),
         contacts: 1,
         ..robots(4, Counts { configurations: 290, states: 1_042_172, transitions: 1_991_763 })
@@ -246,16 +242,13 @@ pub const THOROUGH: &[Campaign] = &[
     },
     Campaign {
         name: "three robots in contact, two messages lost, moves once a period",
-        steps: &[1],
         medium: periods(Faults { losses: 2, ..Faults::NONE }),
         contacts: 1,
         ..robots(3, Counts { configurations: 44, states: 372_729, transitions: 1_303_176 })
     },
     Campaign {
         name: "four robots, two messages lost, moves once a period",
-        steps: &[1],
         medium: periods(Faults { losses: 2, ..Faults::NONE }),
-        contacts: 0,
         ..robots(4, Counts { configurations: 290, states: 2_696_008, transitions: 10_927_990 })
     },
     Campaign {

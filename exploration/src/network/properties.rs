@@ -171,7 +171,7 @@ fn team_is_a_chain(
 }
 
 /// A post with the post of a robot with a duty as a child is held, unless a subgroup of Σ is on its
-/// way: then its robots stand for the posts that they have left. One that has failed holds none.
+/// way: then its robots stand for the posts that they have left. Not checked once a robot has failed: it holds none.
 pub fn bearing_posts_are_held(protocol: &Protocol, state: &State) -> bool {
     if protocol.has_failures(state) {
         return true;
@@ -205,13 +205,13 @@ fn holders(protocol: &Protocol, state: &State, task: usize) -> usize {
     posts(protocol, state).iter().filter(|post| post.task == Some(task)).count()
 }
 
-/// Every task that has been serviced is the duty of a robot, unless that has failed.
+/// Every task that has been serviced is the duty of a robot. Not checked once a robot has failed.
 pub fn serviced_tasks_are_held(protocol: &Protocol, state: &State) -> bool {
     protocol.has_failures(state)
         || (0..serviced(protocol, state)).all(|task| holders(protocol, state, task) > 0)
 }
 
-/// No task is the duty of two robots, but while one relieves the other on Σ; nor once a robot has failed:
+/// No task is the duty of two robots, but while one relieves the other on Σ. Not checked once a robot has failed:
 /// one that is cut off may be given up while it services a task.
 pub fn no_task_is_held_twice(protocol: &Protocol, state: &State) -> bool {
     if protocol.has_failures(state) {
@@ -224,8 +224,7 @@ pub fn no_task_is_held_twice(protocol: &Protocol, state: &State) -> bool {
 }
 
 /// A robot stands at every serviced task, and at the place of every post, fixed or waiting on Σ,
-/// on which two branches hang: also while one robot relieves another of it. One that has failed stands there
-/// until the task is announced again.
+/// on which two branches hang: also while one robot relieves another of it. Not checked once a robot has failed.
 pub fn junctions_and_tasks_are_occupied(protocol: &Protocol, state: &State) -> bool {
     if protocol.has_failures(state) {
         return true;
@@ -310,30 +309,28 @@ pub fn subgroups_agree(protocol: &Protocol, state: &State) -> bool {
         .all(|(id, groups)| known.iter().all(|(other, others)| other != id || groups == others))
 }
 
-/// The subgroups partition Σ before its last break point.
+/// The subgroups that a robot has formed partition Σ at the break points that its places have voted for.
 pub fn subgroups_partition_the_path(protocol: &Protocol, state: &State) -> bool {
     protocol.robots(state).filter(|robot| robot.phase() == Phase::Shift).all(|robot| {
         let (Some(path), groups) = (robot.path(), robot.subgroups()) else { return true };
         let places: Vec<usize> = (0..path.len()).collect();
-        let points: Vec<usize> = groups
-            .iter()
-            .map(|group| group.first)
-            .chain(groups.last().map(|group| group.end))
-            .collect();
         let formed: Vec<&[usize]> = groups.iter().map(|group| &places[group.places()]).collect();
+        let agreement = robot.beacon().agreement;
+        let points = agreement.and_then(|agreement| agreement.break_points(path.len()));
         groups.is_empty()
-            || team::subgroups_partition(&places, &points, &formed)
-                && team::break_points_divide(&places, &points)
+            || points.is_some_and(|points| {
+                team::subgroups_partition(&places, &points, &formed)
+                    && team::break_points_divide(&places, &points)
+            })
     })
 }
 
-/// No robot that waits on Σ before its last place, or is on its way along it, is in the primary
-/// team.
+/// No robot that waits on Σ before its last place holds a post of the primary team.
 pub fn teams_are_disjoint(protocol: &Protocol, state: &State) -> bool {
     protocol.robots(state).all(|robot| {
         let Some(path) = robot.path() else { return true };
         let before_last = robot.duty().place().is_some_and(|place| place + 1 < path.len());
-        !(before_last && robot.duty().is_primary())
+        !(before_last && robot.duty().post().is_some_and(Post::is_primary))
     })
 }
 
