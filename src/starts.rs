@@ -104,3 +104,18 @@ impl Dice {
         (drawn.norm() <= 1.0).then_some(drawn)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_know_where_all_start() {
+        let scenario = crate::scenario_file::read("scenarios/too-few.toml".as_ref()).unwrap();
+        let drawn = draw(&scenario, 1).unwrap();
+        for (number, robot) in drawn.robot.iter().enumerate() {
+            assert_eq!(drawn.site().start_of(number), Some(robot.position.into()));
+            assert_ne!(drawn.site().start_of(number), scenario.site().start_of(number));
+        }
+    }
+}

@@ -9,7 +9,7 @@ use std::{fs, io};
 
 use crate::generated::{is_update, read, root};
 use pleach::automaton::network::Automata;
-use pleach::automaton::network::access_point::ACCESS_POINT_GLOSSARY;
+use pleach::automaton::network::access_point::{ACCESS_POINT_GLOSSARY, ATTENDANCE_GLOSSARY};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
 use pleach::automaton::network::robot::GLOSSARY;
@@ -73,6 +73,7 @@ macro_rules! for_each_automaton {
             $act("The place of a robot in the tree", "place", PLACE, &it.attachment),
             $act("The control period of a robot", "control", CONTROL, &it.control),
             $act("The service of an access point", "service", SERVICE, &it.service),
+            $act("Whether a robot takes part", "attendance", ATTENDANCE, &it.attendance),
             $act("The control period of an access point", "rounds", ROUNDS, &it.rounds),
             $act("The user", "request", REQUEST, &it.request),
         ]
@@ -104,7 +105,7 @@ const INTRODUCTION: &str = "\
 # The automata of the network
 
 Every robot runs the first five of these automata over its own state, every access point the next
-two, and the user the last. This page is written by the library from the tables, guards, resets,
+three, one of them for each robot, and the user the last. This page is written by the library from the tables, guards, resets,
 flows, invariants and laws that the nodes run. A transition reads `event [guard] / reset (urgency,
 priority)`; all of them are taken *at once*, and where several could be, the smaller priority goes
 first. A location shows its flow, its invariant after the word \"while\", and what is chosen there
@@ -149,6 +150,12 @@ All access points run this automaton. Transitions of priority 0 follow the newes
 hears; those of priority 1 are taken by the access point that the user has asked for tasks.
 ";
 
+const ATTENDANCE: &str = "\
+Access points keep a record of each robot. The first one calls the roll from it once a control period: robots that are
+present may move, those that are suspended or returning may not, and others expect to hear them, and others go round
+those that are gone. Between a roll that lets a robot move and one that calls it gone no roll is valid for both.
+";
+
 const ROUNDS: &str = "\
 Access points pass on what they hear in the same rounds of beacons as robots. They take no part in
 routes and moves, and rest until the next sample.
@@ -166,8 +173,9 @@ fn glossaries() -> String {
     };
     let robots = glossary("Robots", GLOSSARY);
     let access_points = glossary("Access points", ACCESS_POINT_GLOSSARY);
+    let attendance = glossary("A robot as an access point knows it", ATTENDANCE_GLOSSARY);
     let user = glossary("The user", USER_GLOSSARY);
-    format!("## What the guards speak of\n\n{robots}\n{access_points}\n{user}")
+    format!("## What the guards speak of\n\n{robots}\n{access_points}\n{attendance}\n{user}")
 }
 
 fn chapter<L: Location, E: Event, S: Valuation>(

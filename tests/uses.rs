@@ -179,6 +179,18 @@ pub const USES: &[Use] = &[
         "guards::rolls_expired()",
     ),
     (
+        "heard_in_time",
+        "guards/src/network/attendance.rs",
+        "automaton/src/network/access_point/attendance.rs",
+        "guards::heard_in_time()",
+    ),
+    (
+        "with_starts",
+        "automaton/src/network/scenario/valid.rs",
+        "src/starts.rs",
+        "scenario.with_starts(&starts)",
+    ),
+    (
         "readmitted",
         "guards/src/network/attendance.rs",
         "automaton/src/network/access_point/attendance.rs",

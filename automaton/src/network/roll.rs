@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_continuous::network::acceptance::Segment;
-use pleach_discrete::network::{IdSet, NodeId};
+use pleach_discrete::network::{Attendance, IdSet, NodeId};
 use serde::{Deserialize, Serialize};
 
 use super::wire;
@@ -120,6 +120,15 @@ impl Absent {
         }
     }
 
+    /// Whether `robot` takes part, or how it stands; one that returns is suspended by the roll.
+    pub(super) fn standing_of(&self, robot: NodeId) -> Attendance {
+        match (self.gone.contains(robot), self.suspended.contains(robot)) {
+            (true, _) => Attendance::Gone,
+            (false, true) => Attendance::Suspended,
+            (false, false) => Attendance::Present,
+        }
+    }
+
     /// Whether `robot` does not take part.
     pub fn contains(&self, robot: NodeId) -> bool {
         self.suspended.contains(robot) || self.gone.contains(robot)
@@ -141,10 +150,15 @@ impl Roll {
         differs
     }
 
+    /// Whether this roll is valid in control period `period`, if rolls are for `validity` periods.
+    pub const fn is_valid(&self, period: u32, validity: u32) -> bool {
+        period <= self.called.saturating_add(validity)
+    }
+
     /// Whether `robot` may move in control period `period` by this roll, if rolls are valid for
     /// `validity` periods.
     pub fn lets_move(&self, robot: NodeId, period: u32, validity: u32) -> bool {
-        period <= self.called.saturating_add(validity) && !self.absent.contains(robot)
+        self.is_valid(period, validity) && !self.absent.contains(robot)
     }
 
     /// Whether `robot` is called gone.

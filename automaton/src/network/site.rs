@@ -25,7 +25,7 @@ const ROLL_MARGIN: u32 = 6;
 const ROUNDS_TO_SPARE: usize = 5;
 
 /// Common knowledge of the robots; it does not change during a mission.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Site {
     /// 𝒲.
     pub workspace: Workspace,
@@ -63,7 +63,14 @@ pub struct Site {
     pub automata: Automata,
     /// How ways are measured where they are not those of the floor plan.
     #[cfg(feature = "abstraction")]
-    measure: Option<Box<dyn Measure>>,
+    measure: Option<std::sync::Arc<dyn Measure>>,
+}
+
+/// The numbers of robots by where they start.
+fn from_west_to_east(starts: &[Point]) -> Vec<NodeId> {
+    let mut numbers: Vec<NodeId> = (0..starts.len()).collect();
+    numbers.sort_by(|&one, &other| starts[one].x.total_cmp(&starts[other].x));
+    numbers
 }
 
 /// A way to measure ways where only the shape of a network matters: by a graph of places.
@@ -103,16 +110,14 @@ impl Site {
         let radio = scenario.link.link()?;
         let link = Self::as_measured(&radio, &settings)?;
         let starts: Vec<Point> = scenario.robot.iter().map(|robot| robot.position.into()).collect();
-        let mut west_to_east: Vec<NodeId> = (0..starts.len()).collect();
-        west_to_east.sort_by(|&one, &other| starts[one].x.total_cmp(&starts[other].x));
         Ok(Site {
             workspace,
             repairs,
             free_space,
             access_points: scenario.access_point.iter().map(|ap| ap.position.into()).collect(),
             robots: starts.len(),
+            west_to_east: from_west_to_east(&starts),
             starts,
-            west_to_east,
             usual: settings.usual_links(),
             stretched: settings.stretched_links(),
             begins_stretched: false,
@@ -171,7 +176,7 @@ impl Site {
     #[cfg(feature = "abstraction")]
     #[must_use]
     pub fn measured_by(self, measure: impl Measure + 'static) -> Self {
-        Site { measure: Some(Box::new(measure)), ..self }
+        Site { measure: Some(std::sync::Arc::new(measure)), ..self }
     }
 
     /// Some steps more than the distance from which two robots could come into contact in one control period,
@@ -190,6 +195,11 @@ impl Site {
     /// How long links of the tree may be, before and after no robot was left that can be recruited.
     pub const fn lengths(&self, stretched: bool) -> LinkLengths {
         if stretched { self.stretched } else { self.usual }
+    }
+
+    /// The same site where the robots start at other places. Links are as long as before.
+    pub(super) fn with_starts(&self, starts: Vec<Point>) -> Self {
+        Site { west_to_east: from_west_to_east(&starts), starts, ..self.clone() }
     }
 
     /// The same site where links are from the beginning as long as they may be.
@@ -235,6 +245,11 @@ impl Site {
             return false;
         }
         distance <= Self::well_in_range(&self.settings, &self.link)
+    }
+
+    /// The number of the access point that is this node; none if it is a robot.
+    pub fn access_point_of(&self, node: NodeId) -> Option<usize> {
+        node.checked_sub(self.robots).filter(|&number| number < self.access_points.len())
     }
 
     /// Where a robot starts, if there is one of this number.

@@ -178,7 +178,7 @@ impl User {
     }
 
     /// The access point that the user sends its requests to.
-    fn desk(&self) -> NodeId {
+    fn first_access_point(&self) -> NodeId {
         self.site.robots
     }
 
@@ -222,7 +222,7 @@ impl User {
                 UserAct::CountSilence => self.silence = self.silence.saturating_add(1),
                 UserAct::Ask => {
                     let order = Order::by(self.passed, &self.tasks);
-                    outputs.send(self.desk(), Message::Request(order));
+                    outputs.send(self.first_access_point(), Message::Request(order));
                 }
             }
         }

@@ -12,7 +12,8 @@ use super::NodeId;
 #[cfg(any(kani, test))]
 mod proofs;
 
-/// Far more notices than are issued for one task.
+/// The notices of an epoch: many more than are issued for one task. A node that announces a task begins the next epoch
+/// where [half of them](NoticeId::is_late_in_its_epoch) have been issued.
 const EPOCH: u32 = 1 << 12;
 
 /// The identity of a notice. Identities are ordered by number and then by issuer, and a node issues
@@ -35,12 +36,17 @@ impl NoticeId {
 
     /// The identity of the notice that `issuer` issues after this one.
     pub const fn next(self, issuer: NodeId) -> Self {
-        NoticeId { number: self.number + 1, issuer }
+        NoticeId { number: self.number.saturating_add(1), issuer }
     }
 
-    /// How often a task had been announced again before it was issued.
+    /// How often notices had been [superseded](Bulletin::superseding) before it was issued.
     pub const fn epoch(self) -> u32 {
         self.number / EPOCH
+    }
+
+    /// Whether half of the notices of its epoch have been issued.
+    pub const fn is_late_in_its_epoch(self) -> bool {
+        self.number % EPOCH >= EPOCH / 2
     }
 
     /// Whether this notice is newer than `other`.

@@ -2,7 +2,7 @@
 //!
 //! Every robot sends its lineage to its neighbours. A redundant robot attaches to the neighbour
 //! with the shortest one; a lineage that already contains the robot's own post is refused, so
-//! that no cycle can close.
+//! that no cycle closes. Where messages are lost, lineages may be old: then a [`Confirmation`](super::Confirmation) tells.
 
 use super::PostId;
 

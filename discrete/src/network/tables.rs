@@ -10,7 +10,7 @@ use crate::{Row, TransitionTable, Urgency, vocabulary};
 mod proofs;
 
 vocabulary! {
-    /// What moves the mission on, in the eyes of one robot (Algorithms 1, 3 and 5).
+    /// What moves the mission on, as known to one robot (Algorithms 1, 3 and 5).
     pub enum MissionStep: Event {
         /// The mission has ended.
         Ended = "ended",

@@ -1,6 +1,6 @@
 //! The guards of a robot's attendance, as an access point knows it.
 
-use crate::{Guard, Predicate, variable};
+use crate::{Guard, Predicate, proposition, variable};
 
 fn is_missed() -> Predicate {
     variable("silence").more_than(variable("patience"))
@@ -14,6 +14,11 @@ pub fn missed() -> Guard {
 /// It has been heard of lately.
 pub fn heard_again() -> Guard {
     Guard::new("heard again", !is_missed())
+}
+
+/// It has been heard of again while no valid roll calls it gone.
+pub fn heard_in_time() -> Guard {
+    Guard::new("heard in time", !is_missed() & (!proposition("recalled")).or(rolls_have_expired()))
 }
 
 fn rolls_have_expired() -> Predicate {

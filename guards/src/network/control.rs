@@ -91,7 +91,7 @@ pub fn next_attempt() -> Guard {
     Guard::new("next attempt", (!proposition("hears_proposals")).and(!last))
 }
 
-/// Moves have been judged as often as they are.
+/// The last attempt is over.
 pub fn move_certified() -> Guard {
     let last = proposition("last_attempt");
     Guard::new("move certified", (!proposition("hears_proposals")).and(last))

@@ -19,8 +19,8 @@ pub mod mission {
     use super::{Guard, proposition, variable};
     use crate::Predicate;
 
-    /// A step that a robot takes only while it is not exchanging duties: what two robots have
-    /// offered each other stays as it is until both have taken it.
+    /// A step that may change the duty, which a robot takes only while it is not exchanging duties: what two robots
+    /// have offered each other stays as it is until both have taken it.
     fn disengaged(name: &'static str, predicate: Predicate) -> Guard {
         Guard::new(name, predicate.and(!proposition("engaged")))
     }

@@ -59,6 +59,9 @@ pub struct Attendee {
     silence: u32,
     /// Control periods since its standing changed.
     age: u32,
+    /// Whether it has been suspended since the access point began, and a roll of before that is still valid may call it
+    /// gone.
+    recalled: bool,
     /// Control periods for which a roll is valid.
     validity: u32,
 }
@@ -99,7 +102,10 @@ crate::observed! {
         /// Control periods for which a roll is valid.
         validity: f64::from(attendee.validity),
     }
-    propositions {}
+    propositions {
+        /// It is suspended since the access point began, and a roll of before may call it gone.
+        recalled: attendee.recalled,
+    }
 }
 
 impl Holds<Standing> for Attendee {
@@ -114,7 +120,7 @@ impl Holds<Standing> for Attendee {
     }
 
     fn carry_out(&mut self, (): ()) {
-        self.age = 0;
+        (self.age, self.recalled) = (0, false);
     }
 }
 
@@ -126,6 +132,7 @@ impl Attendee {
             known: false,
             silence: 0,
             age: 0,
+            recalled: false,
             validity,
         }
     }
@@ -183,9 +190,21 @@ impl Attendee {
 
     /// What decides on its standing from now on; how long a wait has been over does not matter.
     #[cfg(any(test, feature = "abstraction"))]
-    pub(super) fn account(&self) -> (Attendance, bool, u32, u32) {
+    pub(super) fn account(&self) -> (Attendance, bool, bool, u32, u32) {
         let (silence, age) = (self.silence.min(PATIENCE + 1), self.age.min(self.validity + 1));
-        (self.standing.location(), self.known, silence, age)
+        (self.standing.location(), self.known, self.recalled, silence, age)
+    }
+
+    /// The access point has begun, or begun again, and hears a roll by which the robot stands like this. Where that
+    /// is not valid any more, later ones that are may let it move, or call it gone.
+    fn recall(&mut self, called: Attendance, is_valid: bool) {
+        let (standing, recalled) = match called {
+            Attendance::Gone if is_valid => (Standing::Gone(Gone), false),
+            Attendance::Present if is_valid && self.known => return,
+            Attendance::Present if is_valid => (Standing::Suspended(Suspended), false),
+            _ => (Standing::Suspended(Suspended), true),
+        };
+        *self = Attendee { recalled, ..Attendee::absent(standing, self.validity) };
     }
 
     /// Another control period begins.
@@ -246,18 +265,13 @@ impl AccessPoint {
         attendees.any(|(robot, attendee)| attendee.may_begin() && !self.roster.contains(robot))
     }
 
-    /// It has begun, or begun again, while others went by this roll: who does not take part by it does
-    /// not from now on. Nor does anyone that it has not heard of, until it does: it cannot tell for how long
-    /// that one has been silent.
-    pub(super) fn recall(&mut self, roll: &Roll) {
-        let Absent { suspended, gone } = &*roll.absent;
-        let validity = self.site.roll_validity();
+    /// It has begun, or begun again, while others went by this roll, in this control period: who does not take part
+    /// by it does not from now on. Nor does anyone that it has not heard of, until it does: it cannot tell for how
+    /// long that one has been silent.
+    pub(super) fn recall(&mut self, roll: &Roll, period: u32) {
+        let is_valid = roll.is_valid(period, self.site.roll_validity());
         for (robot, attendee) in self.attendees.iter_mut().enumerate() {
-            if gone.contains(robot) {
-                *attendee = Attendee::absent(Standing::Gone(Gone), validity);
-            } else if suspended.contains(robot) || !attendee.known {
-                *attendee = Attendee::absent(Standing::Suspended(Suspended), validity);
-            }
+            attendee.recall(roll.absent.standing_of(robot), is_valid);
         }
     }
 
@@ -347,9 +361,12 @@ pub fn attendance_automaton() -> Result<AttendanceAutomaton, BuildError> {
     Automaton::builder(ATTENDANCE, Attendance::Present)
         .observing()
         .carried_out(row(On::Missed, guards::missed(), "it may not move", |_: &Present| Suspended))
-        .carried_out(row(On::HeardAgain, guards::heard_again(), "it may move", |_: &Suspended| {
-            Present
-        }))
+        .carried_out(row(
+            On::HeardAgain,
+            guards::heard_in_time(),
+            "it may move",
+            |_: &Suspended| Present,
+        ))
         .carried_out(row(
             On::RollsExpired,
             guards::rolls_expired(),
@@ -367,6 +384,8 @@ pub fn attendance_automaton() -> Result<AttendanceAutomaton, BuildError> {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
+
+    use pleach_discrete::Location as _;
 
     use super::*;
 
@@ -406,7 +425,7 @@ mod tests {
 
     /// Of any robot, heard of or not in any periods: its standing, what decides on it from now on, and for how
     /// many periods it has not been called present, and gone; more than any roll is valid are the same.
-    type Record = ((Attendance, bool, u32, u32), u32, u32);
+    type Record = ((Attendance, bool, bool, u32, u32), u32, u32);
 
     fn record_of(attendee: &Attendee, present: u32, gone: u32) -> Record {
         (attendee.account(), present.min(VALIDITY + 1), gone.min(VALIDITY + 1))
@@ -448,6 +467,62 @@ mod tests {
             }
         }
         assert!(known.len() > 50 && returned > 10, "{} {returned}", known.len());
+    }
+
+    /// The same where the access point begins again at any time, and hears any roll of before.
+    #[test]
+    fn an_access_point_that_begins_again_calls_nobody_gone_who_may_move() {
+        /// As many as are valid in this control period; all but the first are in the next one.
+        type Rolls = [Attendance; VALIDITY as usize + 1];
+        let automaton = attendance_automaton().expect("it is well formed");
+        let first = (Attendee::new(VALIDITY), [Attendance::Present; VALIDITY as usize + 1]);
+        let mut known = BTreeSet::from([(first.0.account(), first.1)]);
+        let mut waiting: Vec<(Attendee, Rolls)> = vec![first];
+        while let Some((attendee, rolls)) = waiting.pop() {
+            let valid = rolls.map(|called| (called, true));
+            let expired = Attendance::ALL.iter().map(|&called| (called, false));
+            let as_told = |(called, is_valid)| match called {
+                Attendance::Returning => (Attendance::Suspended, is_valid),
+                _ => (called, is_valid),
+            };
+            let begun_again =
+                valid.into_iter().chain(expired).map(as_told).flat_map(|(called, is_valid)| {
+                    [false, true].map(|is_heard_of| {
+                        let mut anew = Attendee::new(VALIDITY);
+                        if is_heard_of {
+                            anew.attend();
+                        }
+                        anew.recall(called, is_valid);
+                        anew
+                    })
+                });
+            for mut next in begun_again.chain([attendee.clone()]) {
+                for is_heard_of in [false, true] {
+                    if is_heard_of {
+                        next.attend();
+                    }
+                    let mut next = next.clone();
+                    next.review(&automaton).expect("its guards have values");
+                    let standing = next.standing.location();
+                    let conflict = match standing {
+                        Attendance::Present => Some(Attendance::Gone),
+                        Attendance::Gone => Some(Attendance::Present),
+                        Attendance::Suspended | Attendance::Returning => None,
+                    };
+                    assert!(
+                        conflict.is_none_or(|it| !rolls[1..].contains(&it)),
+                        "{standing:?} after {rolls:?}"
+                    );
+                    let mut later = rolls;
+                    later.rotate_left(1);
+                    later[VALIDITY as usize] = standing;
+                    if known.insert((next.account(), later)) {
+                        waiting.push((next, later));
+                    }
+                }
+            }
+        }
+        assert!(known.len() > 100, "{}", known.len());
     }
 
     /// Its body may stand in the way of others.

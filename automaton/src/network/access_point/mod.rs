@@ -238,14 +238,14 @@ impl AccessPoint {
         Ok(())
     }
 
-    /// Takes in a beacon. One that arrives after a newer one of its sender is ignored, and so is one
-    /// that has been late since an earlier control period.
+    /// Takes in a beacon. One that arrives after a newer one of its sender only says that this is heard; one that has
+    /// been late since an earlier control period is ignored.
     fn hear(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
         let is_later = roll.called > self.roll.called;
         self.roll.merge(roll);
         // Nobody but the first access point calls rolls: it has begun again since.
         if is_later && (self.is_new || self.is_first()) {
-            self.recall(roll);
+            self.recall(roll, self.period.max(period));
         }
         if period < self.period {
             return;

@@ -40,7 +40,7 @@ crate::observed! {
         round: point.round() as f64,
         /// The number of rounds in this control period.
         rounds: point.site.settings.rounds_per_period as f64,
-        /// The number of robots that are connected to an access point.
+        /// The number of robots that take part, as far as it has heard.
         robots: point.roster.len() as f64,
         /// Rounds for which the roster has not changed.
         settled: point.settled_rounds as f64,
@@ -322,7 +322,7 @@ impl AccessPoint {
     /// How it issues a notice. Robots that it misses may know later ones, or go by an earlier announcement
     /// when they come back.
     fn issue(&self, notice: Notice) -> ServiceEffect {
-        match self.misses_robots() {
+        match self.misses_robots() || self.bulletin.id().is_late_in_its_epoch() {
             true => ServiceEffect::Supersede(notice),
             false => ServiceEffect::Issue(notice),
         }
@@ -417,11 +417,10 @@ fn announce<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Option<Elec
     let task = point.next_task()?;
     let announcement = point.announcement_of(task)?;
     let announced = Some(point.announced_now(&announcement));
-    effects.push(ServiceEffect::Report(match point.abandoned_task() {
-        Some(task) => {
-            MissionEvent::TaskReannounced { task, gone: point.gone(), joined: Vec::new() }
-        }
-        None => MissionEvent::TaskAnnounced { task },
+    let is_new = task >= point.known_tasks.len();
+    effects.push(ServiceEffect::Report(match is_new {
+        true => MissionEvent::TaskAnnounced { task },
+        false => MissionEvent::TaskReannounced { task, gone: point.gone(), joined: Vec::new() },
     }));
     effects.push(point.issue(Notice::Task(Shared::new(announcement))));
     Some(Electing { announced })

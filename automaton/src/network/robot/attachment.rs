@@ -3,7 +3,7 @@
 //! Redundant robots belong to the tree too. Each attaches to the node that is fewest links
 //! from an access point and, among those, most reliable, over links no longer than d_build. It
 //! chooses from the lineages that its neighbours tell it. Fixed and primary posts keep their
-//! parents; only p₁ may change its own (Remark 5.6).
+//! parents, but for that of p₁ (Remark 5.6), as long as a robot holds these.
 
 use std::collections::BTreeSet;
 
@@ -157,7 +157,7 @@ impl Robot {
                 && leads_elsewhere(lineage)
                 && self.walk_to(neighbour) <= limit;
             let order = (!self.is_confirmed(neighbour), lineage.hops());
-            usable.then(|| (order, self.anchor_of(neighbour)))
+            usable.then(|| Some((order, self.anchor_of(neighbour)?)))?
         });
         ways.min_by_key(|&(order, _)| order).map(|(_, anchor)| Some(anchor))
     }
@@ -200,6 +200,7 @@ impl Robot {
             let better = best.is_none_or(|(fewest, reliability, _)| {
                 hops < fewest || hops == fewest && neighbour.reliability > reliability
             });
+            let Some(anchor) = self.anchor_of(neighbour) else { continue };
             if better
                 && admits(neighbour)
                 && neighbour.distance <= self.build_length() * (1.0 + ROUNDING)
@@ -209,7 +210,7 @@ impl Robot {
                 && self.may_build(self.walk_to(neighbour))
                 && self.confirms(lineage)
             {
-                best = Some((hops, neighbour.reliability, self.anchor_of(neighbour)));
+                best = Some((hops, neighbour.reliability, anchor));
             }
         }
         best.map(|(hops, _, anchor)| (hops, anchor))
@@ -232,11 +233,9 @@ impl Robot {
     }
 
     /// What a neighbour that [accepts](Self::accepts_redundant) others stands for.
-    fn anchor_of(&self, neighbour: &Neighbour) -> Anchor {
-        match neighbour.post() {
-            Some(post) => Anchor::Post(post.id),
-            None => Anchor::Access(neighbour.id() - self.site.robots),
-        }
+    fn anchor_of(&self, neighbour: &Neighbour) -> Option<Anchor> {
+        let post = neighbour.post().map(|post| Anchor::Post(post.id));
+        post.or_else(|| self.site.access_point_of(neighbour.id()).map(Anchor::Access))
     }
 
     /// Whether this robot may attach to this neighbour: not to one that is attached to it.
@@ -317,7 +316,7 @@ impl Robot {
         let mut nearest = self.site.distance(parent.position(), goal) - gain;
         let mut better = None;
         for neighbour in self.neighbours.iter().filter(|n| self.may_attach_to(n)) {
-            let candidate = self.anchor_of(neighbour);
+            let Some(candidate) = self.anchor_of(neighbour) else { continue };
             let is_child = neighbour.beacon.lineage.as_ref().is_none_or(|lineage| {
                 own.is_some_and(|own| lineage.contains(own)) || !self.confirms(lineage)
             });

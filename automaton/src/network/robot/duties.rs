@@ -98,7 +98,9 @@ impl Robot {
             self.is_quiet = false;
             self.note_change();
             if self.duty.post().is_some_and(|post| Some(post.id) != held) {
-                self.confirmation.take_over(self.period);
+                // Who held the post before may be one control period ahead.
+                let period = self.period.saturating_add(u32::from(self.is_behind));
+                self.confirmation.take_over(period);
             }
             if self.duty.post().is_some_and(|post| post.id == self.new_post().id) {
                 self.posts_made += 1;

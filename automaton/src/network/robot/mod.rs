@@ -8,7 +8,9 @@
 //! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
 //! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`);
-//! what its guards see of all this are `facts`.
+//! what its guards see of all this are `facts`. What its automata do stands in `duties`, `mission`, `exchange`,
+//! `lineage` and `control`, and where it goes in `target`; `step` takes inputs, `rounds` counts rounds, `skipped_work`
+//! is what need not be done again, and `view` what observers read.
 
 mod absence;
 #[cfg(feature = "abstraction")]
@@ -16,7 +18,6 @@ mod abstraction;
 mod attachment;
 mod confirmation;
 mod control;
-mod diligence;
 mod duties;
 mod exchange;
 mod facts;
@@ -33,6 +34,7 @@ mod recruit;
 mod reservation;
 mod rounds;
 mod routing;
+mod skipped_work;
 mod step;
 mod target;
 mod team;
@@ -214,7 +216,8 @@ pub struct Robot {
     accomplished: Option<NoticeId>,
     /// The robots that have elected by this announcement and restarted since.
     forgetful: Arc<IdSet>,
-    /// The point of 𝒲_f nearest to the task announced, where the leader goes.
+    /// Where the leader goes: the point of 𝒲_f nearest to the task announced of those to which a way leads from where
+    /// the robot has learnt of it.
     target: Option<Point>,
     election: Option<Arc<Election>>,
     /// What it has bid in this election itself.

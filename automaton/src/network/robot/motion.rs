@@ -288,7 +288,10 @@ impl Robot {
         } else {
             self.still_periods = self.still_periods.saturating_add(1);
         }
-        self.trail.push((self.period, segment.from));
+        match self.trail.last_mut() {
+            Some((period, place)) if *place == segment.from => *period = self.period,
+            _ => self.trail.push((self.period, segment.from)),
+        }
         self.velocity = (segment.to - segment.from) / self.site.settings.period;
         self.arrival = segment.to;
         self.note_change();

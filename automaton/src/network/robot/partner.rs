@@ -3,7 +3,7 @@
 //! A mover that touches a parked robot nearer to its goal offers it its duty. The parked robot
 //! answers with its own; the mover, which is within δ of the post, takes it; and when the parked
 //! robot sees that, it takes the mover's duty: the [`Offers`] of the two. From the offer to the end
-//! neither takes a step of the mission, so that what is taken over is what was offered. While both run, a
+//! neither takes a step of the mission that changes a duty, so that what is taken over is what was offered. While both run, a
 //! post is never without a robot; no duty is ever done by two. With every exchange the way that remains
 //! gets shorter, so that exchanges come to an end. A robot whose partner is gone cannot tell who has which duty: it
 //! begins again, as if it had stopped, and has neither. A mover that cannot pass takes a partner somewhat
@@ -162,14 +162,17 @@ impl Robot {
     }
 
     /// Whether the mover goes by the same announcement, and the same Σ if one of the duties that they
-    /// would exchange is on it: places on another path are other places.
+    /// would exchange is on it: places on another path are other places. Where this robot knows that Σ has been walked,
+    /// or that the mission has ended, it does not take a place on it any more.
     fn pursues_the_same(&self, mover: NodeId, offer: &Offer<Duty>) -> bool {
         let Some(mover) = self.neighbour(mover) else { return false };
         let task = |announced: &Option<Announced>| announced.as_ref().map(|(id, _)| *id);
         let path = |agreement: &Option<Agreement>| agreement.as_ref().map(Agreement::id);
         let is_on_path = offer.duty.place().is_some() || self.duty.place().is_some();
+        let knows_path = || self.mission.walk().is_some();
+        let is_same_path = || path(&mover.beacon.agreement) == path(&self.agreement);
         task(&mover.beacon.announced) == task(&self.announced)
-            && (!is_on_path || path(&mover.beacon.agreement) == path(&self.agreement))
+            && (!is_on_path || knows_path() && is_same_path())
     }
 
     /// Whether it goes by the announcement by which the others go, and knows Σ where one is announced: one

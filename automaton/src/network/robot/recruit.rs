@@ -277,7 +277,10 @@ impl Robot {
         let known = |beacon: &Beacon| beacon.route.as_ref().is_some_and(|&(call, _)| call == id);
         let may_cross = self.waited_rounds > self.longest_wait();
         let joins = |neighbour: &Neighbour| match neighbour.post() {
-            None => own.parent == Some(Anchor::Access(neighbour.id() - self.site.robots)),
+            None => self
+                .site
+                .access_point_of(neighbour.id())
+                .is_some_and(|number| own.parent == Some(Anchor::Access(number))),
             Some(post) => {
                 post.is_child_of(own.id)
                     || own.is_child_of(post.id)

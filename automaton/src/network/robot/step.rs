@@ -59,7 +59,7 @@ pub enum RobotFault {
         /// Its invariant.
         source: InvariantError,
     },
-    /// A robot jumps and jumps, and no time passes.
+    /// A robot takes transitions without end at one instant.
     #[error("robot {robot} takes more than {MOST_JUMPS} transitions at one instant")]
     Zeno {
         /// Which.

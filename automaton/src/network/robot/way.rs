@@ -15,11 +15,11 @@ pub(super) const KEEP_OUT: f64 = 2.1;
 /// goes straight on and exchanges duties with the robot in its way.
 const DETOUR_ALLOWANCE: f64 = 8.0;
 /// A way as good as another but for this many ρ is kept: robots do not alternate between two sides.
-const CONSTANCY: f64 = 1.0;
+const HYSTERESIS: f64 = 1.0;
 /// A waypoint this many ρ away is as good as reached: no reason to keep to it.
 const NEARBY: f64 = 0.1;
 /// Control periods without progress after which a robot does not keep to its way any more.
-const OBSTINACY: u32 = 3;
+const PATIENCE_WITH_WAYS: u32 = 3;
 
 impl Robot {
     /// a₁ of the way to the goal: of the geodesic, round wrecks, and round parked robots where that is a short
@@ -61,8 +61,8 @@ impl Robot {
             Some(kept) => {
                 let onward = free_space.geodesic_to(kept, self.destination.as_ref()?)?;
                 let length = (kept - self.position).norm() + around(kept, onward).length;
-                let constancy = CONSTANCY * self.clearance();
-                Some(if length <= path.length + constancy { kept } else { corner })
+                let margin = HYSTERESIS * self.clearance();
+                Some(if length <= path.length + margin { kept } else { corner })
             }
             None => Some(corner),
         }
@@ -85,7 +85,7 @@ impl Robot {
             return None;
         }
         let onward = space.geodesic_to(parent, self.destination.as_ref()?)?;
-        let least = left(onward.length) + CONSTANCY * self.clearance();
+        let least = left(onward.length) + HYSTERESIS * self.clearance();
         if left(back.length + path.length) <= least {
             return None;
         }
@@ -100,7 +100,7 @@ impl Robot {
             |piece: Segment| parked.iter().any(|disc| piece.distance(disc.center) < disc.radius);
         let allowance = match way.segments(self.position).any(is_obstructed) {
             true => DETOUR_ALLOWANCE,
-            false => CONSTANCY,
+            false => HYSTERESIS,
         };
         (by_path > left(onward.length) + allowance * self.clearance()).then_some(way)
     }
@@ -108,7 +108,7 @@ impl Robot {
     /// Whether the waypoint of the period before can still be used. One that it has almost
     /// reached would stop it: solvers end slightly short of a waypoint.
     fn may_keep(&self, waypoint: Point) -> bool {
-        self.still_periods < OBSTINACY
+        self.still_periods < PATIENCE_WITH_WAYS
             && (waypoint - self.position).norm() > NEARBY * self.clearance()
             && self.site.free_space.sees(self.position, waypoint)
     }

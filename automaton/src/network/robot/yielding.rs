@@ -18,7 +18,7 @@ const WAY_AHEAD: f64 = 4.0;
 /// A robot this many ρ from the way of a mover lets it pass.
 const PASSING: f64 = 2.2;
 /// Robots within this many ρ of a mover do not settle: they would close the way again.
-const COURTESY: f64 = 4.0;
+const SETTLING_DISTANCE: f64 = 4.0;
 /// Places considered when stepping aside: directions, and how many paces, each of this many ρ.
 const DIRECTIONS: u32 = 16;
 const PACES: u32 = 6;
@@ -41,7 +41,7 @@ impl Robot {
             !neighbour.is_access_point()
                 && !neighbour.beacon.parked
                 && neighbour.beacon.way.is_none()
-                && neighbour.distance <= COURTESY * self.clearance()
+                && neighbour.distance <= SETTLING_DISTANCE * self.clearance()
         })
     }
 

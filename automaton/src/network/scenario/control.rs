@@ -120,7 +120,7 @@ pub enum Values {
 
 /// The shortest length that a setting may have, in ranges of the links: what a robot could not
 /// cover within the longest mission, or what coordinates of [`FARTHEST`] cannot resolve, is a
-/// slip of the pen.
+/// mistake.
 pub const SHORTEST: f64 = 1e-6;
 
 /// The largest magnitude of a coordinate, in ranges of the links.

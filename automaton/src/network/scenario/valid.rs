@@ -80,10 +80,11 @@ impl ValidScenario {
         }
         scenario.check_values()?;
         let faults = placement::faults(&scenario, &self.site);
-        match faults.is_empty() {
-            true => Ok(Self { scenario, site: Arc::clone(&self.site) }),
-            false => Err(faults.into()),
+        if !faults.is_empty() {
+            return Err(faults.into());
         }
+        let site = self.site.with_starts(starts.iter().map(|&start| start.into()).collect());
+        Ok(Self { scenario, site: Arc::new(site) })
     }
 
     /// The scenario.

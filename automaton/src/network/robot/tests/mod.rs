@@ -24,7 +24,7 @@ use serde_json::json;
 
 use super::super::beacon::{Announcement, Beacon, Notice};
 use super::super::duty::{Duty, Following, Held, Leading, Path, Relay, Shifting, Standby, Station};
-use super::super::mission::{Advance, Mission, Shift};
+use super::super::mission::{Advance, Ended, Mission, Shift};
 use super::super::roll::Roll;
 use super::super::scenario::Scenario;
 use super::super::shared::Shared;

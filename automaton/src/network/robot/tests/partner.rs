@@ -237,6 +237,21 @@ fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
         mover.agreement = Some(pleach_discrete::network::Agreement::new(mover.bulletin.id()));
     };
     assert!(!relieved(&on_path), "they are on different paths");
+    let on_the_same = |phase: &dyn Fn(Shift) -> Mission| {
+        relieved(&|robot, mover| {
+            on_path(robot, mover);
+            robot.agreement = mover.agreement.clone();
+            let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
+            let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
+            robot.mission = Current::new(phase(shift));
+        })
+    };
+    assert!(on_the_same(&Mission::Shift));
+    let ended = |_| Mission::Ended(Ended { walk: None });
+    assert!(
+        !on_the_same(&ended),
+        "it has heard that the mission has ended: nobody walks on Σ any more"
+    );
     let offer = relieved(&|_, mover| mover.offer = None);
     assert!(offer, "nobody asks");
 }
