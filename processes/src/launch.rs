@@ -153,13 +153,18 @@ impl Fleet {
 
     /// A process that has failed ends the mission.
     fn check(&mut self) -> Result<(), Failure> {
-        let processes = self.robots.iter_mut().chain([&mut self.access_points]);
-        for process in processes.flatten() {
-            if let Some(status) = process.try_wait()?
+        let robots = self.robots.iter_mut().enumerate();
+        let robots = robots.map(|(robot, process)| (Some(robot), process));
+        for (robot, process) in robots.chain([(None, &mut self.access_points)]) {
+            if let Some(process) = process
+                && let Some(status) = process.try_wait()?
                 && status.code().is_none_or(|code| !matches!(code, 0 | 3))
             {
-                let id = process.id();
-                return Err(Failure::Internal(format!("process {id} has ended with {status}")));
+                let node =
+                    robot.map_or("the access points".into(), |robot| format!("robot {robot}"));
+                return Err(Failure::Internal(format!(
+                    "the process of {node} has ended with {status}: what it says stands above"
+                )));
             }
         }
         Ok(())

@@ -5,7 +5,8 @@
 //! sent.
 
 use crate::repeats::Content;
-use pleach::automaton::network::Message;
+use pleach::automaton::network::scenario::MOST_PERIODS;
+use pleach::automaton::network::{Message, Site};
 use pleach::automaton::node::{Destination, NodeId};
 use pleach::continuous::Point;
 use serde::{Deserialize, Serialize};
@@ -140,9 +141,10 @@ impl Packet {
             return Err(Refusal::TooLong);
         }
         let packet: Packet = read(bytes).ok_or(Refusal::Malformed)?;
-        let Stamp { round, answer, .. } = packet.stamp;
+        let Stamp { period, round, answer } = packet.stamp;
         let is_known = |letter: &Letter| letter.to.is_none_or(|to| (to as usize) < nodes);
         let is_sound = packet.position.iter().all(|number| number.is_finite())
+            && period < MOST_PERIODS
             && (1..MOST_ROUNDS).contains(&round)
             && answer < MOST_ROUNDS
             && packet.next.is_none_or(|next| (round + 1..MOST_ROUNDS).contains(&next))
@@ -176,16 +178,17 @@ impl Letter {
     }
 }
 
-/// The message that node `from` has sent in these bytes.
+/// The message that node `from` of this site has sent in these bytes.
 ///
 /// # Errors
 /// Why it is refused.
-pub fn open(bytes: &[u8], from: NodeId) -> Result<Message, Refusal> {
+pub fn open(bytes: &[u8], from: NodeId, site: &Site) -> Result<Message, Refusal> {
     let message: Message = read(bytes).ok_or(Refusal::Message)?;
-    match &message {
-        Message::Beacon { beacon, .. } if beacon.sender != from => Err(Refusal::Message),
-        _ => Ok(message),
-    }
+    let is_own = match &message {
+        Message::Beacon { beacon, .. } => beacon.sender == from,
+        _ => true,
+    };
+    if is_own && message.is_possible(site) { Ok(message) } else { Err(Refusal::Message) }
 }
 
 /// Reads a value, if the bytes are one and nothing more.

@@ -188,12 +188,14 @@ impl<'a> Process<'a> {
         self.is_running = true;
         let status = loop {
             let begin = Instant::now();
-            match self.take_part_in(period)? {
+            let part = self.take_part_in(period);
+            match part.map_err(|failure| self.located(failure, period))? {
                 Period::Over => {}
                 Period::Last => break Status::Done,
                 Period::Interrupted => break Status::Unserviced,
             }
-            self.move_on(begin)?;
+            let moved = self.move_on(begin);
+            moved.map_err(|failure| self.located(failure, period))?;
             period += 1;
             if period as usize >= self.scenario.site().settings.max_steps {
                 break Status::Done;
@@ -204,6 +206,16 @@ impl<'a> Process<'a> {
             tell(format_args!("{}: {}", self.own_name(), self.refusals));
         }
         Ok(status)
+    }
+
+    /// The same failure with its node and its control period.
+    fn located(&self, failure: Failure, period: u32) -> Failure {
+        match failure {
+            Failure::Internal(what) => {
+                internal(format!("{} at k = {period}: {what}", self.own_name()))
+            }
+            other => other,
+        }
     }
 
     fn own_name(&self) -> String {

@@ -18,6 +18,7 @@ use std::sync::Arc;
 /// The radio of a process, at the receiving end.
 #[derive(Debug)]
 pub struct Receiver {
+    site: Arc<Site>,
     radio: Radio,
     bodies: Vec<Point>,
     air: Unreliable<Arc<Letter>, FullMesh<Arc<Letter>>>,
@@ -30,12 +31,13 @@ impl Receiver {
     /// The receiver of a process at a site, where nodes stand at `bodies` as far as is known; robots
     /// are out of reach until they are heard. Messages over the radio are lost with probability
     /// `loss`, drawn from `seed`.
-    pub fn new(site: &Site, bodies: Vec<Point>, loss: f64, seed: u64) -> Self {
+    pub fn new(site: &Arc<Site>, bodies: Vec<Point>, loss: f64, seed: u64) -> Self {
         let weather = Weather { loss, wired_from: Some(site.robots), ..Weather::default() };
         let mut radio = Radio::new(site);
         radio.update(&bodies);
         let air = Unreliable::new(FullMesh::new(), weather, seed);
-        Receiver { radio, bodies, air, heard: Heard::default(), beacons: BTreeMap::new() }
+        let (site, heard, beacons) = (Arc::clone(site), Heard::default(), BTreeMap::new());
+        Receiver { site, radio, bodies, air, heard, beacons }
     }
 
     /// How many messages were lost on purpose.
@@ -100,7 +102,7 @@ impl Receiver {
         if let Some((_, message)) = known.filter(|(known, _)| *known == bytes) {
             return Ok(message.clone());
         }
-        let mut message = open(&bytes, from)?;
+        let mut message = open(&bytes, from, &self.site)?;
         if let Message::Beacon { beacon, .. } = &mut message {
             if let Some((_, Message::Beacon { beacon: last, .. })) = known
                 && **last == **beacon

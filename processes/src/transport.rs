@@ -6,7 +6,7 @@
 //! a process with another scenario is told by name.
 
 use crate::arguments::{NetworkArguments, Session};
-use crate::packet::{Refusal, Refusals};
+use crate::packet::{LONGEST_PACKET, Refusal, Refusals};
 use crate::repeats;
 use crate::report::LONGEST_REPORT;
 use pleach::automaton::network::scenario::Scenario;
@@ -24,6 +24,8 @@ use zenoh::pubsub::{Publisher, Subscriber};
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::sample::{Locality, Sample, SampleKind};
 
+/// The most bytes of a hello: a name has at most a hundred.
+const LONGEST_HELLO: usize = 1 << 10;
 /// The most that waits to be read.
 const LONGEST_QUEUE: usize = 1 << 14;
 
@@ -275,7 +277,12 @@ fn sender_of(sample: &Sample) -> Option<NodeId> {
 
 fn arrival(sample: &Sample, kind: Kind) -> Arrival {
     let Some(from) = sender_of(sample) else { return Arrival::Refused(Refusal::NoSuchNode) };
-    if sample.payload().len() > LONGEST_REPORT {
+    let longest = match kind {
+        Kind::Packet => LONGEST_PACKET,
+        Kind::Report => LONGEST_REPORT,
+        Kind::Hello => LONGEST_HELLO,
+    };
+    if sample.payload().len() > longest {
         return Arrival::Refused(Refusal::TooLong);
     }
     let bytes = sample.payload().to_bytes();

@@ -4,7 +4,7 @@
 
 use pleach::automaton::Executor;
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::automaton::network::{Message, Network, Radio};
+use pleach::automaton::network::{Message, Network, Radio, Site};
 use pleach::automaton::node::{Delivery, Destination, Envelope, Medium, NodeId};
 use pleach::continuous::Point;
 use pleach::discrete::network::IdSet;
@@ -61,6 +61,10 @@ fn nodes() -> usize {
     scenario().robot.len() + scenario().access_point.len() + 1
 }
 
+fn site() -> &'static Site {
+    scenario().site()
+}
+
 /// The letters of a whole mission, each with its sender; of the many that say the same a few.
 fn letters() -> &'static [(NodeId, Letter)] {
     static LETTERS: OnceLock<Vec<(NodeId, Letter)>> = OnceLock::new();
@@ -93,7 +97,7 @@ fn packet(letters: Vec<Letter>) -> Packet {
 fn messages_of_a_mission_are_read_as_they_were_written() {
     assert!(letters().len() > 1_000);
     for (from, letter) in letters() {
-        let message = open(&letter.message, *from).unwrap();
+        let message = open(&letter.message, *from, site()).unwrap();
         assert_eq!(Letter::of(Destination::Everyone, &message).unwrap().message, letter.message);
     }
 }
@@ -101,10 +105,10 @@ fn messages_of_a_mission_are_read_as_they_were_written() {
 #[test]
 fn no_beacon_is_taken_in_the_name_of_another_node() {
     let is_beacon = |(from, letter): &&(NodeId, Letter)| {
-        matches!(open(&letter.message, *from).unwrap(), Message::Beacon { .. })
+        matches!(open(&letter.message, *from, site()).unwrap(), Message::Beacon { .. })
     };
     let (from, letter) = letters().iter().find(is_beacon).unwrap();
-    assert_eq!(open(&letter.message, from + 1), Err(Refusal::Message));
+    assert_eq!(open(&letter.message, from + 1, site()), Err(Refusal::Message));
 }
 
 #[test]
@@ -117,6 +121,7 @@ fn packets_are_bounded() {
         assert_eq!(Packet::decode(&packet.encode().unwrap(), nodes()), Err(Refusal::Malformed));
     };
     let at = |round, answer| Stamp { period: 0, round, answer };
+    refused(Packet { stamp: Stamp { period: u32::MAX, round: 1, answer: 0 }, ..sound.clone() });
     refused(Packet { position: [f64::NAN, 0.0], ..sound.clone() });
     refused(Packet { stamp: at(0, 0), ..sound.clone() });
     refused(Packet { stamp: at(u32::MAX, 0), next: None, ..sound.clone() });
@@ -187,11 +192,11 @@ proptest! {
     fn bytes_are_read_or_refused(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
         let _ = Packet::decode(&bytes, nodes());
         let _ = Report::decode(&bytes, scenario());
-        let _ = open(&bytes, 0);
+        let _ = open(&bytes, 0, site());
         let beacon = Some(Content::Whole(bytes.clone()));
         let letter = Letter { to: None, message: bytes, beacon };
         let whole = Heard::default().message(0, 1, &letter);
-        let _ = open(&whole.unwrap_or_default(), 0);
+        let _ = open(&whole.unwrap_or_default(), 0, site());
     }
 
     /// For machines sets are written as runs.
@@ -237,7 +242,7 @@ proptest! {
                 let heard: Vec<_> = letters
                     .iter()
                     .filter(|((from, _), at)| *at == round && *from != node)
-                    .filter_map(|((from, letter), _)| Some((*from, node, open(&letter.message, *from).ok()?)))
+                    .filter_map(|((from, letter), _)| Some((*from, node, open(&letter.message, *from, site()).ok()?)))
                     .collect();
                 prop_assert!(crew.tick(round).is_ok());
                 prop_assert!(crew.hear(&heard).is_ok());

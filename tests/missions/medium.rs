@@ -222,15 +222,16 @@ impl Passage for Noted {
 }
 
 /// As between processes: every message is written as text by its sender and read by each of its
-/// receivers, and nothing else goes from node to node.
-#[derive(Debug, Default)]
+/// receivers, who take it for possible, and nothing else goes from node to node.
+#[derive(Debug)]
 pub struct Written {
+    site: Site,
     bytes: u64,
 }
 
 impl Written {
     pub fn new(site: &Site) -> Through<Self> {
-        Through::new(site, Written::default())
+        Through::new(site, Written { site: site.clone(), bytes: 0 })
     }
 
     /// The length of all texts so far.
@@ -249,6 +250,7 @@ impl Passage for Written {
         self.bytes += text.len() as u64;
         let message: Message =
             serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
+        assert!(message.is_possible(&self.site), "{text}");
         hand_over(Delivery { from, to, message: &message })
     }
 }

@@ -14,7 +14,10 @@
 //! assert!(serde_json::from_str::<Message>(r#"{"demand":null}"#).is_err());
 //! # Ok::<(), serde_json::Error>(())
 //! ```
+//!
+//! Whether the nodes and tasks exist that it names, [`Message::is_possible`] tells.
 
+mod bounds;
 #[cfg(test)]
 mod tests;
 

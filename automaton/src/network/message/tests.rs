@@ -20,6 +20,7 @@ use super::super::record::Outcome;
 use super::super::robot::RequestNumber;
 use super::super::roll::{Absent, Wreck};
 use super::super::shared::Shared;
+use super::bounds::Bounds;
 use super::*;
 use crate::located::Place as _;
 
@@ -310,4 +311,69 @@ fn numbers_that_are_not_finite_are_refused() {
     }
     let deserializer: F64Deserializer<Error> = 0.5.into_deserializer();
     assert_eq!(wire::deserialize::<f64, _>(deserializer), Ok(0.5));
+}
+
+/// What is wrong with a message: nodes, access points, tasks or places that do not exist, or absurd counts.
+#[test]
+fn messages_that_no_node_can_have_sent_are_impossible() {
+    let bounds = Bounds { robots: 301, access_points: 2 };
+    assert!(!bounds.admit(&messages()[0]), "a robot has a duty");
+    for message in &messages()[1..] {
+        assert!(bounds.admit(message), "{message:?}");
+    }
+    let sound = || talkative(duties()[1], notices()[1].clone());
+    let beacon = |change: &dyn Fn(&mut Beacon)| {
+        let mut beacon = sound();
+        change(&mut beacon);
+        Message::Beacon {
+            period: 7,
+            roll: Roll::default(),
+            confirmed: None,
+            beacon: Arc::new(beacon),
+        }
+    };
+    let told = |period, called, confirmed| Message::Beacon {
+        period,
+        roll: Roll { called, absent: Arc::default() },
+        confirmed,
+        beacon: Arc::new(sound()),
+    };
+    let set = |id| Arc::new(IdSet::singleton(id));
+    let (nobody, shifting) = (301, |place| Duty::Shifting(Shifting { place, left: None }));
+    let number = RequestNumber { period: u32::MAX, number: 1 };
+    let impossible = [
+        told(u32::MAX, 0, None),
+        told(7, 10, None),
+        told(7, 7, Some(10)),
+        Message::Objection { period: u32::MAX },
+        Message::AskFlow(FlowRequest { number, held: 0.0, wanted: 0.1 }),
+        Message::News(Bulletin::first(Shared::new(Notice::Serviced { task: usize::MAX }))),
+        Message::News(Bulletin::first(Shared::new(Notice::Call {
+            caller: nobody,
+            releases_leader: true,
+        }))),
+        beacon(&|it| it.sender = nobody),
+        beacon(&|it| it.duty = Some(shifting(nobody))),
+        beacon(&|it| {
+            it.duty = Some(Duty::Relay(Relay(held(post(
+                4,
+                PostKind::Fixed,
+                Some(Anchor::Access(2)),
+                None,
+            )))))
+        }),
+        beacon(&|it| it.parent = Some(304)),
+        beacon(&|it| it.below = set(nobody)),
+        beacon(&|it| it.serves = set(65_536)),
+        beacon(&|it| it.crossing = vec![2]),
+        beacon(&|it| it.lineage = Some(Arc::new(Lineage::of_access_point(2)))),
+        beacon(&|it| it.offers_made = u32::MAX),
+        beacon(&|it| it.offer = Some(Offer { to: nobody, number: 5, duty: shifting(0) })),
+        beacon(&|it| {
+            it.branches = Arc::new(vec![Branch { robot: nobody, place: Point::origin() }])
+        }),
+    ];
+    for message in impossible {
+        assert!(!bounds.admit(&message), "{message:?}");
+    }
 }
