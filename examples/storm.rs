@@ -1,12 +1,13 @@
 //! Missions in storms: messages are lost, late and copied, robots crash, restart and join late, and
 //! positions and moves have errors.
 //!
-//! `cargo run --release --example storm -- COUNT [FIRST_SEED]` runs as many missions, of all kinds
-//! and on all plans in turn, and tells the first that breaks a promise of safety, shrunk; it ends with
-//! status 1 if there is one.
+//! `cargo run --release --example storm -- COUNT [FIRST_SEED]` runs as many missions, of all kinds, in shipped
+//! scenarios and on random floor plans in turn, and tells the first that breaks a promise of safety, shrunk; it
+//! ends with status 1 if there is one.
 //! `cargo run --release --example storm -- seed SEED` tells the mission of that seed.
+//! `cargo run --release --example storm -- one SCENARIO KIND SEED` tells that of a shipped scenario.
 //! `cargo run --release --example storm -- table SEEDS [KIND]` prints a table of what becomes of
-//! missions under each kind of storm.
+//! missions under each kind of storm, and of what breaks.
 
 #[path = "../tests/floor_plans/mod.rs"]
 mod floor_plans;
@@ -24,7 +25,9 @@ use pleach::verify::network::storm::{
     Kind, Storm, Verdict, allowing_for, draw, ride, ride_watched, shrink,
 };
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::error::Error;
+use std::fmt::{self, Display, Formatter};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -37,7 +40,7 @@ const MOST_PERIODS: usize = 3_000;
 struct CommandLine {
     #[command(subcommand)]
     command: Option<Command>,
-    /// How many missions, of all kinds and on all plans in turn
+    /// How many missions, of all kinds, in shipped scenarios and on random floor plans in turn
     #[arg(required = true, value_parser = at_least_one())]
     missions: Option<u64>,
     /// The seed of the first
@@ -120,26 +123,25 @@ fn is_serviced(verdict: &Verdict) -> bool {
     verdict.end.as_ref().is_some_and(|end| end.outcome == Outcome::Serviced)
 }
 
+/// How long so many control periods take.
+fn seconds(periods: usize, scenario: &ValidScenario) -> f64 {
+    periods as f64 * scenario.settings().period
+}
+
 /// What becomes of missions under each kind of storm.
 fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
-    let is_wanted = |kind: &&Kind| only.is_none_or(|only| kind.name().contains(only));
-    let wanted: Vec<Kind> = Kind::ALL.iter().filter(is_wanted).copied().collect();
-    if wanted.is_empty() {
-        let only = only.unwrap_or_default();
-        return Err(format!("no kind of storm has '{only}' in its name; {}", kinds()).into());
-    }
+    let wanted = kinds_with(only.unwrap_or_default())?;
     let mut missions = Vec::new();
     for name in SHIPPED {
         let scenario = shipped(name);
-        let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
-        say!("{name}: {} periods without faults", calm.periods);
-        missions.push((scenario, calm.periods));
+        let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?.periods;
+        say!("{name}: {calm} periods without faults");
+        missions.push((scenario, calm));
     }
     say!("| faults | serviced | longest | contacts | walls touched | other |");
     say!("| --- | ---: | ---: | ---: | ---: | --- |");
     for kind in wanted {
-        let (mut runs, mut serviced, mut longer) = (0, 0, 0.0_f64);
-        let mut broken: Vec<(String, usize)> = Vec::new();
+        let mut row = Row::default();
         for (scenario, calm) in &missions {
             let scenario = match allowing_for(kind, scenario) {
                 Ok(scenario) => scenario,
@@ -148,48 +150,75 @@ fn table(seeds: u64, only: Option<&str>) -> Result<(), Box<dyn Error>> {
                     continue;
                 }
             };
-            let scenario = &scenario;
             for seed in 0..seeds {
-                let storm = draw(kind, seed, scenario, *calm as f64);
-                let periods = MOST_PERIODS.min(3 * calm);
-                runs += 1;
-                match ride(scenario, &storm, periods) {
-                    Ok(verdict) => {
-                        if is_serviced(&verdict) {
-                            serviced += 1;
-                            longer = longer.max(verdict.periods as f64 / *calm as f64);
-                        }
-                        if only.is_some() {
-                            report(scenario, seed, &verdict);
-                        }
-                        for violation in &verdict.violations {
-                            count(&mut broken, violation.property.name());
-                        }
-                        if verdict.unheard.is_some() {
-                            count(&mut broken, "(contact before it joins)");
-                        }
-                    }
-                    Err(error) => count(&mut broken, &error.to_string()),
+                let storm = draw(kind, seed, &scenario, seconds(*calm, &scenario));
+                let verdict = ride(&scenario, &storm, MOST_PERIODS.min(3 * calm));
+                if let (Some(_), Ok(verdict)) = (only, &verdict) {
+                    report(&scenario, seed, verdict);
                 }
+                row.enter(verdict, *calm);
             }
         }
-        let of =
-            |name: &str| broken.iter().find(|known| known.0 == name).map_or(0, |known| known.1);
-        let others: Vec<String> = broken
-            .iter()
-            .filter(|(name, _)| !["separation", "clearance"].contains(&name.as_str()))
-            .map(|(name, times)| format!("{name} {times}"))
-            .collect();
-        let longest = if serviced > 0 { format!("×{longer:.2}") } else { String::new() };
-        say!(
-            "| {} | {serviced} of {runs} | {longest} | {} | {} | {} |",
-            kind.name(),
-            of("separation"),
-            of("clearance"),
-            others.join(", ")
-        );
+        say!("| {} | {row} |", kind.name());
     }
     Ok(())
+}
+
+/// The kinds of storms with this in their name.
+fn kinds_with(part: &str) -> Result<Vec<Kind>, String> {
+    let found = Kind::ALL.iter().filter(|kind| kind.name().contains(part));
+    let found: Vec<Kind> = found.copied().collect();
+    match found.is_empty() {
+        true => Err(format!("no kind of storm has '{part}' in its name; {}", kinds())),
+        false => Ok(found),
+    }
+}
+
+/// What has become of missions under one kind of storm: a row of the table.
+#[derive(Default)]
+struct Row {
+    missions: usize,
+    serviced: usize,
+    /// The most periods of a mission that is serviced, as a multiple of those without faults.
+    longest: f64,
+    /// How often each property was violated, and other mishaps.
+    broken: BTreeMap<String, usize>,
+}
+
+impl Row {
+    /// Enters a mission that takes so many periods without faults.
+    fn enter<E: Display>(&mut self, verdict: Result<Verdict, E>, calm: usize) {
+        self.missions += 1;
+        let mut count = |what: String| *self.broken.entry(what).or_default() += 1;
+        let verdict = match verdict {
+            Ok(verdict) => verdict,
+            Err(error) => return count(error.to_string()),
+        };
+        for violation in &verdict.violations {
+            count(violation.property.name().to_owned());
+        }
+        if verdict.unheard.is_some() {
+            count("(contact before it joins)".to_owned());
+        }
+        if is_serviced(&verdict) {
+            self.serviced += 1;
+            self.longest = self.longest.max(verdict.periods as f64 / calm as f64);
+        }
+    }
+}
+
+impl Display for Row {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        const COLUMNS: [&str; 2] = ["separation", "clearance"];
+        let [contacts, walls] = COLUMNS.map(|name| self.broken.get(name).unwrap_or(&0));
+        let others = self.broken.iter().filter(|(name, _)| !COLUMNS.contains(&name.as_str()));
+        let others: Vec<String> = others.map(|(name, times)| format!("{name} {times}")).collect();
+        write!(f, "{} of {} | ", self.serviced, self.missions)?;
+        if self.serviced > 0 {
+            write!(f, "×{:.2}", self.longest)?;
+        }
+        write!(f, " | {contacts} | {walls} | {}", others.join(", "))
+    }
 }
 
 /// What was not as it should be.
@@ -214,7 +243,7 @@ fn one(name: &str, kind: Kind, seed: u64) -> Result<(), Box<dyn Error>> {
     let scenario = shipped(name);
     let calm = ride(&scenario, &Storm::default(), MOST_PERIODS)?;
     let scenario = allowing_for(kind, &scenario)?;
-    let storm = draw(kind, seed, &scenario, calm.periods as f64);
+    let storm = draw(kind, seed, &scenario, seconds(calm.periods, &scenario));
     tell_in_full(&scenario, seed, &storm, MOST_PERIODS.min(3 * calm.periods))
 }
 
@@ -260,13 +289,6 @@ fn tell_in_full(
         })?;
     }
     Ok(())
-}
-
-fn count(broken: &mut Vec<(String, usize)>, name: &str) {
-    match broken.iter_mut().find(|known| known.0 == name) {
-        Some(known) => known.1 += 1,
-        None => broken.push((name.to_owned(), 1)),
-    }
 }
 
 /// Runs missions on all cores, and tells the first that breaks a promise.

@@ -133,7 +133,11 @@ fn a_trace_is_judged_from_its_file() {
     std::fs::write(&trace, &text[..text.len() / 2]).unwrap();
     let torn = pleach(&["judge", path]);
     assert_eq!(torn.status.code(), Some(2));
-    assert!(said(&torn.stderr).contains("nothing was judged"), "{torn:?}");
+    assert!(said(&torn.stderr).contains("no property is violated before it"), "{torn:?}");
+    std::fs::write(&trace, &text[..10]).unwrap();
+    let headless = pleach(&["judge", path]);
+    assert_eq!(headless.status.code(), Some(2));
+    assert!(said(&headless.stderr).contains("nothing was judged"), "{headless:?}");
     assert_eq!(pleach(&["judge", "no/such/trace.jsonl"]).status.code(), Some(2));
 }
 

@@ -51,7 +51,7 @@ pub enum Command {
     Run(RunArguments),
     /// Check whether missions can start from scenarios, and draw their starts
     ///
-    /// Nothing is run. Mistakes are reported with file, line, key and what would be right (exit
+    /// Only the first control period is run. Mistakes are reported with file, line, key and what would be right (exit
     /// status 2). Tasks that no robot can service are named (exit status 3), and the links of
     /// the start that cross walls, which the model of the radio does not see, are counted.
     Check(CheckArguments),

@@ -2,7 +2,7 @@
 
 use super::arguments::CheckArguments;
 use super::output;
-use super::plan::Planned;
+use super::plan::{Planned, count_runs};
 use super::remarks;
 use super::source::Source;
 use super::status::{Failure, Status};
@@ -14,14 +14,18 @@ use pleach::figures::{Plan, Scene, quantity};
 use pleach::mission::{self, Watcher};
 use std::fs;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Checks scenarios one after another, and draws their starts.
 pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
     let mut worst = Status::Done;
     let mut mistakes = Vec::new();
-    for source in Source::all(&arguments.scenarios)? {
+    let sources = Source::all(&arguments.scenarios)?;
+    let count = count_runs(sources.len(), &arguments.set, 1)?;
+    let mut number = 0;
+    for source in sources {
         for settings in Sweep::combinations(&arguments.set) {
+            number += 1;
             let scenario = match source.parse(&settings) {
                 Ok(scenario) => scenario,
                 Err(error) => {
@@ -29,9 +33,9 @@ pub fn check(arguments: &CheckArguments) -> Result<Status, Failure> {
                     continue;
                 }
             };
-            let drawing = draw(&scenario, arguments)?;
             let name = source.name.display().to_string();
-            let planned = Planned { settings, ..Planned::once(name, scenario) };
+            let planned = Planned { number, settings, ..Planned::once(name, scenario) };
+            let drawing = draw(&planned, count, arguments)?;
             let remarks = planned.scenario.remarks();
             let told = report(&planned, &remarks, drawing);
             let told = terminal::wrapped(&told, terminal::width(), terminal::SUMMARY_INDENT);
@@ -91,13 +95,22 @@ fn workspace(scenario: &ValidScenario) -> String {
     format!("{} by {}, {holes}", quantity(side(0)), quantity(side(1)))
 }
 
-/// Draws the network before its first move, and says where.
-fn draw(scenario: &ValidScenario, arguments: &CheckArguments) -> Result<Option<PathBuf>, Failure> {
+/// Draws the network before its first move, one of `count`, and says where.
+fn draw(
+    planned: &Planned,
+    count: usize,
+    arguments: &CheckArguments,
+) -> Result<Option<PathBuf>, Failure> {
     if arguments.no_figures {
         return Ok(None);
     }
-    let default = || PathBuf::from("figures").join(&scenario.name);
-    let folder = arguments.figures.clone().unwrap_or_else(default);
+    let scenario = &planned.scenario;
+    let name = planned.file_name(count);
+    let folder = match &arguments.figures {
+        None => Path::new("figures").join(name),
+        Some(folder) if count == 1 => folder.clone(),
+        Some(folder) => folder.join(name),
+    };
     output::create_folder(&folder)?;
     let mut opening = Opening::default();
     mission::run(scenario, &mut [&mut opening])?;

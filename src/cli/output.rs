@@ -1,6 +1,6 @@
 //! What the program writes: files, which errors name, and the standard streams.
 
-use super::source::STANDARD;
+use super::source;
 use super::status::Failure;
 use std::fmt::Display;
 use std::fs::{self, File};
@@ -29,7 +29,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
 
 /// A new file, or for `-` the standard output.
 pub fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
-    match path.as_os_str() == STANDARD {
+    match source::is_standard(path) {
         true => Ok(Box::new(standard())),
         false => Ok(Box::new(create_file(path)?)),
     }

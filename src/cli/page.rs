@@ -16,7 +16,7 @@ pub fn write(arguments: &PageArguments) -> Result<Status, Failure> {
     let page =
         page.map_err(|error| Failure::Trace { path: path.clone(), error: Box::new(error) })?;
     output::write(&place, &page)?;
-    if place.as_os_str() != STANDARD {
+    if !source::is_standard(&place) {
         output::say(&format!("page: open {}\n", place.display()))?;
     }
     Ok(Status::Done)
@@ -24,7 +24,7 @@ pub fn write(arguments: &PageArguments) -> Result<Status, Failure> {
 
 /// Where the page of a trace goes by itself: that of the standard input to the standard output.
 fn beside(trace: &Path) -> PathBuf {
-    match trace.as_os_str() == STANDARD {
+    match source::is_standard(trace) {
         true => STANDARD.into(),
         false => trace.with_extension("html"),
     }

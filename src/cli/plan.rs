@@ -13,6 +13,15 @@ use pleach::verify::network::storm::Storm;
 /// The most runs of one call.
 const MOST_RUNS: usize = 100_000;
 
+/// The number of runs of one call, of so many scenarios.
+pub fn count_runs(scenarios: usize, sweeps: &[Sweep], repeats: usize) -> Result<usize, Failure> {
+    let count = scenarios.saturating_mul(Sweep::count(sweeps)).saturating_mul(repeats);
+    match count > MOST_RUNS {
+        true => Err(Failure::TooManyRuns { count, most: MOST_RUNS }),
+        false => Ok(count),
+    }
+}
+
 /// A run that is going to happen.
 #[derive(Clone, Debug)]
 pub struct Planned {
@@ -36,15 +45,13 @@ pub struct Planned {
 /// mistakes in them are told.
 pub fn plan(arguments: &RunArguments) -> Result<Vec<Planned>, Failure> {
     let sources = Source::all(&arguments.scenarios)?;
+    let repeats = arguments.repeat.map_or(1, |it| usize::try_from(it).unwrap_or(usize::MAX));
+    let count = count_runs(sources.len(), &arguments.set, repeats)?;
     let combinations = Sweep::combinations(&arguments.set);
     let seeds: Vec<Option<u64>> = match arguments.repeat {
         None => vec![None],
         Some(repeats) => (0..repeats).map(|run| Some(arguments.seed.wrapping_add(run))).collect(),
     };
-    let count = sources.len().saturating_mul(combinations.len()).saturating_mul(seeds.len());
-    if count > MOST_RUNS {
-        return Err(Failure::TooManyRuns { count, most: MOST_RUNS });
-    }
     let mut runs = Vec::with_capacity(count);
     let mut mistakes = Vec::new();
     for source in &sources {

@@ -10,7 +10,7 @@ use super::plan::{Planned, plan};
 use super::progress::Progress;
 use super::record::{Record, write_csv, write_json};
 use super::remarks;
-use super::source::STANDARD;
+use super::source::is_standard;
 use super::status::{Failure, Status};
 use super::{table, terminal};
 use std::io;
@@ -77,7 +77,7 @@ fn run_many(
     arguments: &RunArguments,
     interrupt: &Interrupt,
 ) -> Result<Status, Failure> {
-    if arguments.trace.as_ref().is_some_and(|folder| folder.as_os_str() == STANDARD) {
+    if arguments.trace.as_deref().is_some_and(is_standard) {
         let what = "--trace names a folder for several runs: one trace fits on the standard output";
         return Err(Failure::Usage(what.to_owned()));
     }
@@ -141,7 +141,7 @@ pub fn warn_of(run: &Planned) {
 
 /// Whether the standard output carries data, so that what people read goes to the error output.
 fn carries_data(arguments: &RunArguments) -> bool {
-    data_outputs(arguments).any(|path| path.as_os_str() == STANDARD)
+    data_outputs(arguments).any(|path| is_standard(path))
 }
 
 /// Where data go, apart from figures.

@@ -10,9 +10,14 @@ use std::path::{Path, PathBuf};
 /// The name that stands for standard input or output.
 pub const STANDARD: &str = "-";
 
+/// Whether a path stands for standard input or output.
+pub fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == STANDARD
+}
+
 /// What `path` names, to be read: a file, or for `-` the standard input.
 pub fn open(path: &Path) -> io::Result<Box<dyn BufRead>> {
-    match path.as_os_str() == STANDARD {
+    match is_standard(path) {
         true => Ok(Box::new(io::stdin().lock())),
         false => Ok(Box::new(BufReader::new(File::open(path)?))),
     }
@@ -32,7 +37,7 @@ impl Source {
     pub fn all(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
         let mut sources = Vec::new();
         for path in paths {
-            if path.as_os_str() == STANDARD {
+            if is_standard(path) {
                 sources.push(Self::standard_input()?);
             } else if path.is_dir() {
                 let files = files_of(path)?;
