@@ -123,10 +123,16 @@ impl Robot {
         self.duty.post().filter(|post| post.is_primary()).map(|post| post.id)
     }
 
-    /// Whether a neighbour holds the post that follows `own`.
+    /// Whether a neighbour holds the post that follows `own`. One that goes by another announcement is of a team that
+    /// has been dissolved since.
     fn hears_follower(&self, own: PostId) -> bool {
         let follows = |post: &Post| post.kind == PostKind::Primary { follows: Some(own) };
-        self.neighbours.iter().filter_map(Neighbour::post).any(follows)
+        let own_team = self.announced.as_ref().map(|(id, _)| *id);
+        let is_of_another = |neighbour: &Neighbour| {
+            neighbour.beacon.announced.as_ref().is_some_and(|(id, _)| Some(*id) != own_team)
+        };
+        let mut team = self.neighbours.iter().filter(|neighbour| !is_of_another(neighbour));
+        team.any(|neighbour| neighbour.post().is_some_and(follows))
     }
 
     /// Whether a robot has followed it on this post, or has joined the team to do so.

@@ -43,6 +43,12 @@ fn the_first_of_the_team_is_followed_by_nobody() {
     assert!(robot.is_first(), "it was another post that was followed");
     robot.holds(fixed(30, 13));
     assert!(!robot.is_first(), "it is not of the team");
+    let mut anew = leader();
+    let announced = anew.announced.clone().map(|(id, task)| (id.next(6), task));
+    let of_before =
+        Beacon { announced, ..beacon(2, west(0.5), primary(32, Some(30), 13), &[32, 13]) };
+    anew.hears(of_before);
+    assert!(anew.is_first(), "that team has been dissolved");
     let mut joined = leader();
     joined.is_told(Notice::Advance { joined: Some((PostId(40), PostId(30))) });
     assert!(!joined.is_first(), "a robot has joined to follow it");
