@@ -18,6 +18,15 @@ const fn at(post: u32) -> Option<Anchor> {
     Some(Anchor::Post(PostId(post)))
 }
 
+/// That one has not heard yet that this robot has lost its way.
+#[test]
+fn a_robot_does_not_attach_to_one_that_is_attached_to_it() {
+    let attached_to = |parent| Beacon { parent, ..beacon(1, east(0.5), fixed(11, 13), &[11, 13]) };
+    assert_eq!(choice(&mut robot(), [attached_to(Some(5))]), at(11));
+    let own = robot().id;
+    assert_eq!(choice(&mut robot(), [attached_to(Some(own))]), None);
+}
+
 #[test]
 fn a_redundant_robot_attaches_where_links_are_fewest() {
     let heard = [
