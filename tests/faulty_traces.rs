@@ -165,7 +165,7 @@ const SPOILS: [Spoil; 11] = [
     (
         "no task has been serviced",
         |lines| lines.retain(|line| line["event"] != "task_serviced"),
-        Property::Outcome,
+        Property::Service,
     ),
     (
         "the mission is given up, and all tasks are serviced",
@@ -207,6 +207,41 @@ fn a_task_is_announced_when_those_before_it_have_been_serviced() {
     let Verdict::Violated(violation) = verdict(&lines) else { panic!("it is judged sound") };
     assert_eq!(violation.property, Property::Events);
     assert!(violation.to_string().contains("task 1 has not been serviced"), "{violation}");
+}
+
+/// What robots do for a task is judged as long as it is to be serviced.
+#[test]
+fn a_task_that_nobody_services_any_more_is_noticed() {
+    let sound = trace_of("leaf-leader", &lossy());
+    let (at, begun) = event_of(&sound, "task_serviced", 0);
+    let robot = sound[at]["robot"].clone();
+    let found = |first: u64, spoil: &dyn Fn(&mut Value)| {
+        let mut lines = sound.clone();
+        let is_later = |line: &&mut Value| line["k"].as_u64().is_some_and(|step| step >= first);
+        let steps = lines.iter_mut().filter(|line| line["type"] == "step");
+        steps.filter(is_later).for_each(spoil);
+        let Verdict::Violated(violation) = verdict(&lines) else { panic!("it is judged sound") };
+        (violation.property, violation.sentence)
+    };
+    let (property, said) = found(begun + 1, &|line| line["absent"] = json!([robot]));
+    assert_eq!(property, Property::Service, "{said}");
+    let forgets = |line: &mut Value| {
+        line["serviced"].as_array_mut().unwrap().retain(|held| held[0] != 0);
+    };
+    let (property, said) = found(begun, &forgets);
+    assert_eq!(property, Property::Outcome);
+    assert!(said.contains("no robot has serviced task 0 of late"), "{said}");
+    let (property, said) = found(0, &|line| line["serviced"] = json!([[2, 1]]));
+    assert_eq!(property, Property::Service, "{said}");
+}
+
+#[test]
+fn no_node_is_absent_where_nothing_fails() {
+    let mut lines = trace_of("redundant-node", &Storm::default());
+    assert!(matches!(verdict(&lines), Verdict::Sound { .. }));
+    last_step(&mut lines)["absent"] = json!([0]);
+    let Verdict::Violated(violation) = verdict(&lines) else { panic!("it is judged sound") };
+    assert_eq!(violation.property, Property::Record, "{violation}");
 }
 
 /// Errands, where the robot that services task 0 stops: the task is announced again, and another robot services it

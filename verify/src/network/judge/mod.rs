@@ -165,6 +165,10 @@ impl<'a> Judge<'a> {
         self.monitor.observe(snapshot)?;
         let opens = self.previous.is_none();
         self.clock.check(snapshot, opens).map_err(|dispute| dispute.at(now))?;
+        if !snapshot.absent.is_empty() {
+            let sentence = format!("nodes {:?} are absent where nothing fails", snapshot.absent);
+            return Err(Dispute::of(Property::Record, &[], sentence).at(now));
+        }
         for event in events {
             let limits = self.monitor.limits();
             claims::names_exist(event, limits).map_err(|dispute| dispute.at(now))?;

@@ -82,6 +82,7 @@ impl Safety {
         period::step_length(&period, limits)?;
         period::absent_stay(&period)?;
         keep_larger(&mut extremes.load, period::load(&period, limits)?);
+        period::service(&period, limits)?;
         period::tree_range(&period, limits)
     }
 

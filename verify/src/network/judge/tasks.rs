@@ -1,13 +1,18 @@
 //! What a mission with faults claims of its tasks.
 
-use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
-use pleach_automaton::network::scenario::Scenario;
+use std::collections::BTreeMap;
+
+use pleach_automaton::network::record::{End, Faults, MissionEvent, Outcome, Snapshot};
+use pleach_automaton::network::scenario::ValidScenario;
 
 use super::clock::Clock;
 use super::terms::Terms;
 use super::{Dispute, claims};
 use crate::network::limits::Limits;
 use crate::network::property::Property;
+
+/// Control periods after which a robot that is not heard of is missed.
+const PATIENCE: usize = 8;
 
 /// The events and the outcome of a mission with faults, as far as they speak of tasks, held against where robots
 /// are and against what the user asks for.
@@ -16,14 +21,26 @@ pub(in crate::network) struct TaskClaims {
     terms: Terms,
     /// Whether all nodes run and none is cut off, so far.
     all_run: bool,
-    /// The step of the last snapshot.
+    /// The step of the last snapshot, and the nodes that were absent.
     last: Option<usize>,
+    absent: Vec<usize>,
+    /// The last step at which a robot was seen to service a task.
+    seen: BTreeMap<usize, usize>,
+    /// How many control periods news of a service may take to the access point that ends the mission.
+    news: usize,
 }
 
 impl TaskClaims {
     /// Of a mission with these faults in which nothing has been claimed yet.
-    pub(in crate::network) fn new(scenario: &Scenario, faults: Faults) -> Self {
-        TaskClaims { terms: Terms::of(scenario), all_run: !faults.nodes, last: None }
+    pub(in crate::network) fn new(scenario: &ValidScenario, faults: Faults) -> Self {
+        TaskClaims {
+            terms: Terms::of(scenario),
+            all_run: !faults.nodes,
+            last: None,
+            absent: Vec::new(),
+            seen: BTreeMap::new(),
+            news: PATIENCE + scenario.site().roll_validity() as usize,
+        }
     }
 
     /// Whether all nodes run and none is cut off, so far.
@@ -54,9 +71,50 @@ impl TaskClaims {
             self.terms.enter(event, snapshot.step)?;
             if let MissionEvent::TaskServiced { task, robot } = *event {
                 claims::is_at_task(task, robot, snapshot, limits)?;
+                self.runs(robot, snapshot, || format!("robot {robot} services task {task}"))?;
             }
         }
-        self.announcements_follow(events)
+        self.announcements_follow(events)?;
+        for &(task, robot) in &snapshot.serviced {
+            let clause = || format!("robot {robot} is said to service task {task}");
+            self.runs(robot, snapshot, clause)?;
+            if !self.terms.has_been_serviced(task) {
+                let sentence = format!("{}, and no event tells that it does", clause());
+                return Err(Dispute::of(Property::Service, &[robot], sentence));
+            }
+            self.seen.insert(task, snapshot.step);
+        }
+        self.absent.clone_from(&snapshot.absent);
+        Ok(())
+    }
+
+    /// Whether a robot has run in the control period that ends with this snapshot: it may have stopped in it.
+    fn runs(
+        &self,
+        robot: usize,
+        snapshot: &Snapshot,
+        clause: impl Fn() -> String,
+    ) -> Result<(), Dispute> {
+        let is_absent = |absent: &Vec<usize>| absent.binary_search(&robot).is_ok();
+        match is_absent(&self.absent) && is_absent(&snapshot.absent) {
+            true => Err(Dispute::of(
+                Property::Service,
+                &[robot],
+                format!("{}, and it has not run since the step before", clause()),
+            )),
+            false => Ok(()),
+        }
+    }
+
+    /// A task that is to be serviced at the end, and has not been seen to be for longer than news of it takes.
+    fn abandoned(&self, tasks: usize) -> Option<String> {
+        let last = self.last?;
+        let is_abandoned = |task: &usize| {
+            let seen = self.seen.get(task).copied().unwrap_or_default();
+            !self.terms.is_closed(*task) && seen + self.news < last
+        };
+        let task = (0..tasks).find(is_abandoned)?;
+        Some(format!("the outcome is “serviced”, and no robot has serviced task {task} of late"))
     }
 
     /// Tasks are announced one after another, in one control period where they are serviced at once.
@@ -84,7 +142,12 @@ impl TaskClaims {
     ) -> Option<String> {
         let (done, tasks) = (self.terms.done(), limits.tasks().len());
         let told = clock.contradiction(end, self.last, (done, tasks));
-        told.or_else(|| self.terms.contradiction(end.outcome)).or_else(|| {
+        let told = told.or_else(|| self.terms.contradiction(end.outcome));
+        let abandoned = || match end.outcome {
+            Outcome::Serviced => self.abandoned(tasks),
+            _ => None,
+        };
+        told.or_else(abandoned).or_else(|| {
             let is_done = done == tasks && self.terms.pursued().is_none();
             self.needless(end).filter(|_| is_done)
         })

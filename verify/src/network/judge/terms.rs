@@ -18,6 +18,8 @@ pub(super) struct Terms {
     /// The tasks that are serviced, each with the step from which on it has been since it was announced last.
     serviced: BTreeMap<usize, usize>,
     closed: BTreeSet<usize>,
+    /// The tasks that have ever been serviced.
+    begun: BTreeSet<usize>,
     /// Whether the access point that announces tasks has been absent. One that begins again has forgotten what it
     /// announced and closed, and may not have told all of it; what it announces again may be void, since robots
     /// know later notices; and it may be one control period behind the others, so that it counts one too many.
@@ -32,6 +34,7 @@ impl Terms {
             last: None,
             serviced: BTreeMap::new(),
             closed: BTreeSet::new(),
+            begun: BTreeSet::new(),
             has_forgotten: false,
         }
     }
@@ -65,6 +68,7 @@ impl Terms {
             }
             MissionEvent::TaskServiced { task, robot } => {
                 self.serviced.entry(task).or_insert(step);
+                self.begun.insert(task);
                 self.is_announced(task, || format!("robot {robot} services task {task}"))
             }
             MissionEvent::TaskWithdrawn { task } => {
@@ -110,6 +114,16 @@ impl Terms {
             true => Ok(()),
             false => dispute(format!("{}, and it has not been announced", clause())),
         }
+    }
+
+    /// Whether a robot has serviced a task, or may have since the announcing access point forgot what it knew.
+    pub(super) fn has_been_serviced(&self, task: usize) -> bool {
+        self.has_forgotten || self.serviced.contains_key(&task) || self.begun.contains(&task)
+    }
+
+    /// Whether a task is over.
+    pub(super) fn is_closed(&self, task: usize) -> bool {
+        self.closed.contains(&task)
     }
 
     /// Whether a task is neither serviced nor over.
@@ -200,6 +214,7 @@ mod tests {
             last: None,
             serviced: BTreeMap::new(),
             closed: BTreeSet::new(),
+            begun: BTreeSet::new(),
             has_forgotten: false,
         }
     }

@@ -121,6 +121,7 @@ impl Judge {
         self.find(period::clearance(period, &limits).map(drop));
         self.find(period::load(period, &limits).map(drop));
         self.find(period::tree_range(period, &limits));
+        self.find(period::service(period, &limits));
     }
 
     fn look_at_instant(&mut self, seen: &Snapshot, nodes: &[Frail]) {
