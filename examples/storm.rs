@@ -123,7 +123,7 @@ fn is_serviced(verdict: &Verdict) -> bool {
     verdict.end.as_ref().is_some_and(|end| end.outcome == Outcome::Serviced)
 }
 
-/// How long so many control periods take.
+/// The duration of this number of control periods, in seconds.
 fn seconds(periods: usize, scenario: &ValidScenario) -> f64 {
     periods as f64 * scenario.settings().period
 }
@@ -186,7 +186,7 @@ struct Row {
 }
 
 impl Row {
-    /// Enters a mission that takes so many periods without faults.
+    /// Adds a mission. Without faults it takes `calm` control periods.
     fn enter<E: Display>(&mut self, verdict: Result<Verdict, E>, calm: usize) {
         self.missions += 1;
         let mut count = |what: String| *self.broken.entry(what).or_default() += 1;

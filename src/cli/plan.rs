@@ -13,7 +13,7 @@ use pleach::verify::network::storm::Storm;
 /// The most runs of one call.
 const MOST_RUNS: usize = 100_000;
 
-/// The number of runs of one call, of so many scenarios.
+/// How many runs a call asks for; an error if there are too many.
 pub fn count_runs(scenarios: usize, sweeps: &[Sweep], repeats: usize) -> Result<usize, Failure> {
     let count = scenarios.saturating_mul(Sweep::count(sweeps)).saturating_mul(repeats);
     match count > MOST_RUNS {

@@ -59,8 +59,8 @@ pub struct Attendee {
     silence: u32,
     /// Control periods since its standing changed.
     age: u32,
-    /// Whether it has been suspended since the access point began, and a roll of before that is still valid may call it
-    /// gone.
+    /// Whether it has been suspended since the access point began, and an earlier roll that is still valid may
+    /// call it gone.
     recalled: bool,
     /// Control periods for which a roll is valid.
     validity: u32,
@@ -103,7 +103,7 @@ crate::observed! {
         validity: f64::from(attendee.validity),
     }
     propositions {
-        /// It is suspended since the access point began, and a roll of before may call it gone.
+        /// It has been suspended since the access point began, and an earlier roll may call it gone.
         recalled: attendee.recalled,
     }
 }
@@ -469,7 +469,7 @@ mod tests {
         assert!(known.len() > 50 && returned > 10, "{} {returned}", known.len());
     }
 
-    /// The same where the access point begins again at any time, and hears any roll of before.
+    /// The same where the access point begins again at any time, and hears any earlier roll.
     #[test]
     fn an_access_point_that_begins_again_calls_nobody_gone_who_may_move() {
         /// As many as are valid in this control period; all but the first are in the next one.
@@ -481,21 +481,16 @@ mod tests {
         while let Some((attendee, rolls)) = waiting.pop() {
             let valid = rolls.map(|called| (called, true));
             let expired = Attendance::ALL.iter().map(|&called| (called, false));
-            let as_told = |(called, is_valid)| match called {
-                Attendance::Returning => (Attendance::Suspended, is_valid),
-                _ => (called, is_valid),
-            };
-            let begun_again =
-                valid.into_iter().chain(expired).map(as_told).flat_map(|(called, is_valid)| {
-                    [false, true].map(|is_heard_of| {
-                        let mut anew = Attendee::new(VALIDITY);
-                        if is_heard_of {
-                            anew.attend();
-                        }
-                        anew.recall(called, is_valid);
-                        anew
-                    })
-                });
+            let begun_again = valid.into_iter().chain(expired).flat_map(|(called, is_valid)| {
+                [false, true].map(|is_heard_of| {
+                    let mut anew = Attendee::new(VALIDITY);
+                    if is_heard_of {
+                        anew.attend();
+                    }
+                    anew.recall(called, is_valid);
+                    anew
+                })
+            });
             for mut next in begun_again.chain([attendee.clone()]) {
                 for is_heard_of in [false, true] {
                     if is_heard_of {

@@ -4,7 +4,7 @@
 //! exist, or be so large that counters overflow. Nodes in one program never say such things; a process asks
 //! before it hands a message on.
 
-use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, NoticeId, Post};
+use pleach_discrete::network::{Anchor, Election, IdSet, NoticeId, Post};
 
 use super::super::beacon::{Announced, Announcement, Beacon, Notice};
 use super::super::duty::{Duty, Hop};
@@ -13,9 +13,9 @@ use super::super::scenario::MOST_PERIODS;
 use super::super::site::Site;
 use super::Message;
 
-/// Tasks have numbers below this, and places and lists are shorter.
+/// Tasks have numbers below this.
 const MOST_TASKS: usize = 1 << 16;
-/// Numbers of notices and offers stay below this, as do numbers of posts that robots count on from.
+/// Numbers of notices and offers are below this.
 const LARGEST_COUNT: u32 = 1 << 31;
 /// By how many control periods the clocks of two nodes may be apart.
 const PERIODS_APART: u32 = 2;
@@ -72,7 +72,7 @@ impl Bounds {
     }
 
     fn has_robots(&self, robots: &IdSet) -> bool {
-        robots.iter().last().is_none_or(|last| self.has_robot(last))
+        are_below(self.robots, robots)
     }
 
     fn has_access_points(&self, numbers: &[usize]) -> bool {
@@ -103,11 +103,10 @@ impl Bounds {
     }
 
     fn has_announcement(&self, announcement: &Announcement) -> bool {
-        let eligible = announcement.eligible.iter().last();
         is_task(announcement.task)
             && announcement.before.len() <= MOST_TASKS
             && self.has_robots(&announcement.roster)
-            && eligible.is_none_or(|last| self.has_access_point(last))
+            && are_below(self.access_points, &announcement.eligible)
     }
 
     fn has_announced(&self, (id, announcement): &Announced) -> bool {
@@ -117,10 +116,6 @@ impl Bounds {
     fn has_election(&self, election: &Election) -> bool {
         let best = election.best().is_none_or(|(_, robot)| self.has_robot(robot));
         self.has_notice_id(election.id()) && best
-    }
-
-    fn has_agreement(&self, agreement: &Agreement) -> bool {
-        self.has_notice_id(agreement.id())
     }
 
     fn has_hops(&self, hops: &[Hop]) -> bool {
@@ -146,7 +141,6 @@ impl Bounds {
     }
 
     fn has_beacon(&self, beacon: &Beacon) -> bool {
-        let tasks = |tasks: &IdSet| tasks.iter().last().is_none_or(is_task);
         let offer = beacon.offer.as_ref();
         let reply = beacon.reply.as_ref();
         self.has_node(beacon.sender)
@@ -154,7 +148,7 @@ impl Bounds {
             && beacon.announced.as_ref().is_none_or(|it| self.has_announced(it))
             && self.has_robots(&beacon.forgetful)
             && beacon.election.as_ref().is_none_or(|it| self.has_election(it))
-            && beacon.agreement.as_ref().is_none_or(|it| self.has_agreement(it))
+            && beacon.agreement.as_ref().is_none_or(|it| self.has_notice_id(it.id()))
             && (beacon.route.as_ref())
                 .is_none_or(|(call, hops)| self.has_notice_id(*call) && self.has_hops(hops))
             && self.has_access_points(&beacon.crossing)
@@ -162,8 +156,8 @@ impl Bounds {
             && beacon.parent.is_none_or(|it| self.has_node(it))
             && self.has_robots(&beacon.below)
             && self.has_robots(&beacon.strays)
-            && tasks(&beacon.serves)
-            && tasks(&beacon.closed)
+            && are_below(MOST_TASKS, &beacon.serves)
+            && are_below(MOST_TASKS, &beacon.closed)
             // Robots have duties, and access points have none.
             && beacon.duty.is_some() == self.has_robot(beacon.sender)
             && beacon.duty.as_ref().is_none_or(|it| self.has_duty(it))
@@ -175,6 +169,10 @@ impl Bounds {
             && beacon.wrecks.iter().all(|it| self.has_robot(it.robot) && is_period(it.heard_in))
             && beacon.branches.iter().all(|it| self.has_robot(it.robot))
     }
+}
+
+fn are_below(bound: usize, numbers: &IdSet) -> bool {
+    numbers.iter().all(|number| number < bound)
 }
 
 const fn is_period(period: u32) -> bool {

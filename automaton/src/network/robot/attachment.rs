@@ -157,7 +157,7 @@ impl Robot {
                 && leads_elsewhere(lineage)
                 && self.walk_to(neighbour) <= limit;
             let order = (!self.is_confirmed(neighbour), lineage.hops());
-            usable.then(|| Some((order, self.anchor_of(neighbour)?)))?
+            self.anchor_of(neighbour).filter(|_| usable).map(|anchor| (order, anchor))
         });
         ways.min_by_key(|&(order, _)| order).map(|(_, anchor)| Some(anchor))
     }
@@ -232,8 +232,8 @@ impl Robot {
         })
     }
 
-    /// What a neighbour that [accepts](Self::accepts_redundant) others stands for.
-    fn anchor_of(&self, neighbour: &Neighbour) -> Option<Anchor> {
+    /// What a neighbour stands for to which others attach: its post, or itself if it is an access point.
+    pub(super) fn anchor_of(&self, neighbour: &Neighbour) -> Option<Anchor> {
         let post = neighbour.post().map(|post| Anchor::Post(post.id));
         post.or_else(|| self.site.access_point_of(neighbour.id()).map(Anchor::Access))
     }

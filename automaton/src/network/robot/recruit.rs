@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pleach_discrete::network::{Activity, Anchor, Bid, Election, IdSet, NoticeId, Phase};
+use pleach_discrete::network::{Activity, Bid, Election, IdSet, NoticeId, Phase};
 
 use crate::located::Place as _;
 
@@ -277,10 +277,7 @@ impl Robot {
         let known = |beacon: &Beacon| beacon.route.as_ref().is_some_and(|&(call, _)| call == id);
         let may_cross = self.waited_rounds > self.longest_wait();
         let joins = |neighbour: &Neighbour| match neighbour.post() {
-            None => self
-                .site
-                .access_point_of(neighbour.id())
-                .is_some_and(|number| own.parent == Some(Anchor::Access(number))),
+            None => self.anchor_of(neighbour).is_some_and(|anchor| own.parent == Some(anchor)),
             Some(post) => {
                 post.is_child_of(own.id)
                     || own.is_child_of(post.id)

@@ -74,7 +74,7 @@ pub struct Dispute {
 }
 
 impl Dispute {
-    pub(super) fn of(property: Property, robots: &[usize], sentence: String) -> Self {
+    fn of(property: Property, robots: &[usize], sentence: String) -> Self {
         Dispute { property, robots: robots.to_vec(), measured: (0.0, 1.0), sentence }
     }
 

@@ -93,10 +93,8 @@ impl Safety {
     /// [`Property::Outcome`] if the record does not show what the outcome says.
     pub fn conclude(&self, end: &End) -> Result<(), Violation> {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
-        match self.claims.contradiction(end, &self.clock, &self.limits) {
-            None => Ok(()),
-            Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence).at(now)),
-        }
+        let concluded = self.claims.conclude(end, &self.clock, &self.limits);
+        concluded.map_err(|dispute| dispute.at(now))
     }
 
     /// How near the mission has come to its bounds so far.

@@ -133,32 +133,39 @@ impl TaskClaims {
         Ok(())
     }
 
-    /// What contradicts the end of the mission, in a clause.
-    pub(in crate::network) fn contradiction(
+    /// The mission has ended.
+    ///
+    /// # Errors
+    ///
+    /// [`Property::Outcome`] if what has been observed contradicts it.
+    pub(in crate::network) fn conclude(
         &self,
         end: &End,
         clock: &Clock,
         limits: &Limits,
-    ) -> Option<String> {
-        let (done, tasks) = (self.terms.done(), limits.tasks().len());
-        let told = clock.contradiction(end, self.last, (done, tasks));
-        let told = told.or_else(|| self.terms.contradiction(end.outcome));
+    ) -> Result<(), Dispute> {
+        let tasks = limits.tasks().len();
         let abandoned = || match end.outcome {
             Outcome::Serviced => self.abandoned(tasks),
             _ => None,
         };
-        told.or_else(abandoned).or_else(|| {
-            let is_done = done == tasks && self.terms.pursued().is_none();
-            self.needless(end).filter(|_| is_done)
-        })
+        let contradiction = clock
+            .contradiction(end, self.last, (self.terms.done(), tasks))
+            .or_else(|| self.terms.contradiction(end.outcome))
+            .or_else(abandoned)
+            .or_else(|| self.needless(end, tasks));
+        match contradiction {
+            None => Ok(()),
+            Some(sentence) => Err(Dispute::of(Property::Outcome, &[], sentence)),
+        }
     }
 
     /// A mission is given up over a task. Where nodes stop or are cut off, the one that gives it up need not know
     /// that it has been serviced.
-    fn needless(&self, end: &End) -> Option<String> {
-        let name = end.outcome.name();
-        (self.all_run && end.outcome.is_given_up())
-            .then(|| format!("the outcome is “{name}”, and all tasks are serviced"))
+    fn needless(&self, end: &End, tasks: usize) -> Option<String> {
+        let is_done = self.terms.done() == tasks && self.terms.pursued().is_none();
+        (self.all_run && end.outcome.is_given_up() && is_done)
+            .then(|| format!("the outcome is “{}”, and all tasks are serviced", end.outcome.name()))
     }
 }
 

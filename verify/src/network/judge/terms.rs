@@ -118,7 +118,7 @@ impl Terms {
 
     /// Whether a robot has serviced a task, or may have since the announcing access point forgot what it knew.
     pub(super) fn has_been_serviced(&self, task: usize) -> bool {
-        self.has_forgotten || self.serviced.contains_key(&task) || self.begun.contains(&task)
+        self.has_forgotten || self.begun.contains(&task)
     }
 
     /// Whether a task is over.

@@ -8,7 +8,7 @@ use pleach_automaton::network::scenario::ValidScenario;
 use pleach_automaton::node::Observed;
 use pleach_discrete::network::{Anchor, Post, PostId, Role};
 
-use super::super::judge::{Clock, Dispute, TaskClaims, relayed};
+use super::super::judge::{Clock, TaskClaims, relayed};
 use super::super::limits::SLACK;
 use super::super::period::{self, Period};
 use super::super::property::Property;
@@ -81,9 +81,8 @@ impl Judge {
     /// The mission has ended.
     pub fn conclude(&mut self, end: &End) {
         let now = self.previous.as_ref().map_or(Instant { step: 0, time: 0.0 }, Instant::of);
-        let contradiction = self.claims.contradiction(end, &self.clock, &self.limits);
-        let dispute = contradiction.map(|it| Dispute::of(Property::Outcome, &[], it).at(now));
-        self.find(dispute.map_or(Ok(()), Err));
+        let concluded = self.claims.conclude(end, &self.clock, &self.limits);
+        self.find(concluded.map_err(|dispute| dispute.at(now)));
     }
 
     /// A node that begins next to another one, which did not know of it, counts when it is clear of it.
