@@ -47,4 +47,3 @@ mod stressed;
 mod studies;
 mod summary;
 mod trace;
-mod trace_schema;

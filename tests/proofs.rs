@@ -194,6 +194,7 @@ fn the_document_names_every_fault_and_each_applies() {
     assert!(faults.len() >= 15);
     // The first two rows are the head of the table.
     assert_eq!(rows.len(), faults.len() + 2);
+    let names = Names::of_the_packages();
     for fault in faults {
         let planted = fault.planted(root()).unwrap();
         assert!(planted.contains(&fault.after) && !fault.says.is_empty(), "{}", fault.name);
@@ -201,7 +202,7 @@ fn the_document_names_every_fault_and_each_applies() {
         assert!(rows.iter().any(|found| found.starts_with(&row)), "it should have: {row}");
         assert!(fault.command.starts_with("test -p "), "{}", fault.name);
         let filter = fault.command.rsplit([' ', ':']).find(|part| !part.is_empty()).unwrap();
-        assert!(names_a_test(filter), "{}: no test is called {filter}", fault.name);
+        assert!(names.fit(filter), "{}: no test is called {filter}", fault.name);
     }
 }
 
@@ -216,35 +217,40 @@ fn the_document_counts_the_places_of_rounding_and_each_applies() {
     let unseen = places.iter().filter(|place| place.unseen.is_some()).count();
     let sentence = format!("{} places, a test fails at all but {unseen}", places.len());
     assert!(document().contains(&sentence), "it should say: {sentence}");
+    let names = Names::of_the_packages();
     for place in &places {
         let filter = place.test.rsplit([' ', ':']).find(|part| !part.is_empty()).unwrap();
-        assert!(names_a_test(filter) || names_a_file(filter), "no test is called {filter}");
+        assert!(names.fit(filter), "no test is called {filter}");
     }
 }
 
-/// Whether a source has this name.
-fn names_a_file(name: &str) -> bool {
-    let folders =
-        ["guards", "verify"].iter().flat_map(|package| ["src", "tests"].map(|it| (package, it)));
-    let mut files = folders.flat_map(|(package, it)| files_below(root().join(package).join(it)));
-    files.any(|file| file.file_stem().is_some_and(|stem| stem == name))
+/// The names that a filter of tests may fit: of files, of folders, and of functions in sources and tests.
+struct Names {
+    files: BTreeSet<String>,
+    functions: BTreeSet<String>,
 }
 
-/// Whether some test, or a file of tests, has a name that begins like this or contains it. A
-/// command whose filter fits nothing passes.
-fn names_a_test(filter: &str) -> bool {
-    let folders = PACKAGES.iter().flat_map(|package| ["src", "tests"].map(|it| (package, it)));
-    let folders = folders.map(|(package, it)| root().join(package).join(it));
-    folders.filter(|folder| folder.exists()).flat_map(|folder| files_below(&folder)).any(|file| {
-        let is_module = file.with_extension("").iter().any(|part| part.to_string_lossy() == filter);
-        is_module
-            || fs::read_to_string(&file).is_ok_and(|source| {
-                source.lines().any(|line| {
-                    let name = line.trim_start().strip_prefix("fn ");
-                    name.is_some_and(|name| name.split('(').next().unwrap().contains(filter))
-                })
-            })
-    })
+impl Names {
+    fn of_the_packages() -> Self {
+        let folders = PACKAGES.iter().flat_map(|package| ["src", "tests"].map(|it| (package, it)));
+        let folders = folders.map(|(package, it)| root().join(package).join(it));
+        let (mut files, mut functions) = (BTreeSet::new(), BTreeSet::new());
+        for file in folders.filter(|folder| folder.exists()).flat_map(files_below) {
+            let path = relative(&file);
+            let parts = Path::new(&path).with_extension("");
+            files.extend(parts.iter().map(|part| part.to_string_lossy().into_owned()));
+            let source = fs::read_to_string(&file).unwrap_or_default();
+            let names = source.lines().filter_map(|line| line.trim_start().strip_prefix("fn "));
+            functions.extend(names.filter_map(|name| Some(name.split_once('(')?.0.to_owned())));
+        }
+        Self { files, functions }
+    }
+
+    /// Whether a file or a folder has this name, or that of a function contains it. A command whose filter fits
+    /// nothing passes.
+    fn fit(&self, filter: &str) -> bool {
+        self.files.contains(filter) || self.functions.iter().any(|name| name.contains(filter))
+    }
 }
 
 #[test]

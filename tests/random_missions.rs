@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use std::io;
 
 /// Missions of each family in every run; one in fifty may fail.
-const DAILY: u64 = 10;
+const DAILY: u64 = 6;
 /// Missions of each family in the long run.
 const MANY: u64 = 100;
 /// Missions of the hall, which take some fifty times as long.
@@ -73,7 +73,7 @@ proptest! {
         max_shrink_iters: 0,
         rng_seed: RngSeed::Fixed(1),
         failure_persistence: None,
-        ..cases::usually(200)
+        ..cases::usually(40)
     })]
 
     #[test]

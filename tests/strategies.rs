@@ -11,9 +11,9 @@ use pleach::verify::network::storm::ride;
 use rayon::prelude::*;
 
 /// Missions of each family.
-const SEEDS: u64 = 4;
+const SEEDS: u64 = 2;
 /// Missions in storms.
-const STORMS: u64 = 24;
+const STORMS: u64 = 12;
 const PERIODS_IN_STORMS: usize = 1_500;
 
 fn following(strategy: Strategy, mut scenario: Scenario) -> Mission {

@@ -298,10 +298,16 @@ fn strict_bounds_are_left_at_the_next_number() {
             .transition(
                 from(Here).on(Go).to(There).must(time.at_least(begin)).then(place.becomes(0.0)),
             )
-            .transition(from(There).on(Back).to(Here).must(place.more_than(0.0)));
+            .transition(
+                from(There)
+                    .on(Back)
+                    .to(Here)
+                    .must(place.more_than(0.0))
+                    .then(time.becomes(begin - 2.0)),
+            );
         let trajectory = run(parts, begin + 1.0);
         let found = instants(&trajectory);
-        assert!(found.len() >= 2, "{:?}", trajectory.ending());
+        assert_eq!(found.len(), 2, "{:?}", trajectory.ending());
         assert_near(found[1], begin, 1e-300 + 1e-30 * begin);
     }
 }

@@ -24,7 +24,7 @@ use super::robot::{Robot, RobotError, RobotView};
 use super::scenario::{Scenario, ValidScenario};
 use super::site::Site;
 use super::user::User;
-use crate::executor::{Round, System};
+use crate::executor::{Ending, Executor, Round, System};
 use crate::node::{Ensemble, Medium, Node, NodeJump, Observed};
 
 /// What went wrong inside the simulator.
@@ -86,6 +86,16 @@ impl Network<Radio> {
         let site = Arc::clone(scenario.site());
         let medium = Radio::new(&site);
         Network::with_medium(scenario, site, medium)
+    }
+
+    /// Runs up to the horizon, or to the end of the mission if that comes first, while nobody watches; with
+    /// observers see [`Executor::run`].
+    ///
+    /// # Errors
+    /// When a node cannot go on.
+    // Not generic: what runs ordinary networks is compiled in this package, and optimised in tests of others.
+    pub fn run(&mut self, executor: &Executor) -> Result<Ending<End>, NetworkError> {
+        executor.run(self, &mut ())
     }
 }
 

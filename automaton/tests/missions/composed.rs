@@ -15,7 +15,7 @@ fn the_step_is_how_many_control_periods_have_passed() {
         let mut network = Network::new(&valid(scenario)).expect("its automata are well formed");
         assert_eq!(network.step(), 0);
         let executor = Executor::new(5.5 * period, JUMPS_PER_PERIOD).expect("there is time");
-        executor.run(&mut network, &mut ()).expect("robots go on");
+        network.run(&executor).expect("robots go on");
         assert_eq!(network.step(), 5, "periods of {period} s");
     }
 }

@@ -1,0 +1,53 @@
+//! The [JSON Schema](https://json-schema.org) of traces, in `docs/trace.schema.json`. Its tests hold it against every
+//! line, and every key of every line, that is written: `cargo test -p trace-schema`.
+
+use boon::{CompileError, Compiler, SchemaIndex, Schemas};
+use serde_json::Value;
+
+const SOURCE: &str = include_str!("../../docs/trace.schema.json");
+
+/// The schema of the lines of a trace.
+pub struct Schema {
+    schemas: Schemas,
+    index: SchemaIndex,
+    document: Value,
+}
+
+/// Why the document is not a schema.
+pub type SchemaError = Box<dyn std::error::Error>;
+
+impl Schema {
+    /// The schema in the documents.
+    ///
+    /// # Errors
+    /// When the document is no JSON, or no schema.
+    pub fn new() -> Result<Self, SchemaError> {
+        let document: Value = serde_json::from_str(SOURCE)?;
+        let index_of = |schemas: &mut Schemas| -> Result<SchemaIndex, CompileError> {
+            let mut compiler = Compiler::new();
+            compiler.add_resource("trace.json", document.clone())?;
+            compiler.compile("trace.json", schemas)
+        };
+        let mut schemas = Schemas::new();
+        let index = index_of(&mut schemas).map_err(|error| error.to_string())?;
+        Ok(Schema { schemas, index, document })
+    }
+
+    /// What is wrong with a line; `None` if it is as the schema says.
+    #[must_use]
+    pub fn complaint(&self, line: &Value) -> Option<String> {
+        self.schemas.validate(line, self.index).err().map(|error| error.to_string())
+    }
+
+    /// Whether the schema of this kind of line names all of its keys.
+    #[must_use]
+    pub fn describes(&self, line: &Value) -> bool {
+        let name = if line["type"] == "event" { &line["event"] } else { &line["type"] };
+        let definition =
+            name.as_str().and_then(|name| self.document["$defs"][name]["properties"].as_object());
+        let keys = line.as_object().map(|line| line.keys());
+        definition
+            .zip(keys)
+            .is_some_and(|(known, mut keys)| keys.all(|key| known.contains_key(key)))
+    }
+}
