@@ -281,7 +281,7 @@ fn a_robot_whose_partner_stops_in_an_exchange_answers_again() {
 /// Control periods begin with the first clock that is due: missions take as long as with clocks that agree.
 #[test]
 fn missions_are_serviced_although_clocks_are_not_aligned() {
-    for (name, at_most) in [("corridor", 550), ("study-2", 510)] {
+    for (name, at_most) in [("corridor", 393), ("study-2", 510)] {
         let verdict = storm(name, Kind::Clocks, 0);
         assert_eq!(verdict.violations, [], "{name}");
         let end = verdict.end.expect("it ends in time");

@@ -17,17 +17,17 @@ fn decided(path: &str) -> Mission {
 
 #[test]
 fn robots_become_nodes_when_packets_flow_through_them_and_redundant_when_none_do() {
-    decided("scenarios/redundant-node").services_all_within(164);
+    decided("scenarios/redundant-node").services_all_within(138);
 }
 
 #[test]
 fn a_replacement_for_a_leaf_comes_in_two_subgroups() {
-    decided("scenarios/leaf-leader").services_all_within(494);
+    decided("scenarios/leaf-leader").services_all_within(354);
 }
 
 #[test]
 fn a_recruit_comes_from_the_tree_of_another_access_point() {
-    decided("scenarios/two-clusters").services_all_within(550);
+    decided("scenarios/two-clusters").services_all_within(369);
 }
 
 #[test]
