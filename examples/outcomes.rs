@@ -1,6 +1,6 @@
 //! Runs many random missions and tells what became of them, family by family.
 //!
-//! `cargo run --release --example outcomes -- MISSIONS [FOLDER] [--strategy eager]` runs that many missions of
+//! `cargo run --release --example outcomes -- MISSIONS [FOLDER] [--strategy paper]` runs that many missions of
 //! each family (a tenth as many of the halls, which take fifty times as long) and prints a table:
 //!
 //! - *serviced*, *proved* and *unproved*: all tasks were serviced; robots were too few, by a bound that

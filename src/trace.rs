@@ -24,7 +24,7 @@
 mod line;
 
 use crate::automaton::network::record::{End, Faults, MissionEvent, Snapshot};
-use crate::automaton::network::scenario::Scenario;
+use crate::automaton::network::scenario::{Scenario, Strategy};
 use crate::mission::Watcher;
 use line::{EndLine, Line, LineOut, StepLine};
 use serde_json::{Map, Value};
@@ -131,7 +131,7 @@ impl<R: BufRead> TraceReader<R> {
                 Err(TraceError::OtherFormat { format, version })
             }
             Line::Header { scenario, faults, .. } => {
-                Ok(Self { scenario: *scenario, faults, lines, number: 1 })
+                Ok(Self { scenario: as_traced(*scenario), faults, lines, number: 1 })
             }
             _ => Err(TraceError::Misplaced { line: 1, wanted: "the header" }),
         }
@@ -167,6 +167,13 @@ impl<R: BufRead> Iterator for TraceReader<R> {
             }
         }))
     }
+}
+
+/// The scenario of a header as its mission was run. Headers state every default; but where the strategy was that of
+/// the paper, earlier builds left it out, as it was their default. In a scenario file it is `eager` that is left out.
+fn as_traced(mut scenario: Scenario) -> Scenario {
+    scenario.control.strategy.get_or_insert(Strategy::Paper);
+    scenario
 }
 
 /// The line of a step as an object: what [`TraceWriter`] writes, for other ways to show it.

@@ -127,15 +127,15 @@ const HORIZON_OF_STORMS: f64 = 900.0;
 fn drawn_scenarios() -> impl Iterator<Item = ValidScenario> {
     let random = Family::of_every_day()
         .flat_map(|family| (1..=SEEDS).map(move |seed| scenario(family, seed)));
-    let eager = Family::of_every_day()
-        .map(|family| strategies::following(Some(Strategy::Eager), scenario(family, SEEDS + 1)));
+    let paper = Family::of_every_day()
+        .map(|family| strategies::following(Some(Strategy::Paper), scenario(family, SEEDS + 1)));
     let mut by_adal = shipped("study-2");
     by_adal.control.routing_method = Some(RoutingMethod::Adal);
     let mut laden = shipped("study-1");
     laden.robot.iter_mut().for_each(|robot| robot.rate = 0.2);
     let mut idle = shipped("study-2");
     idle.task.clear();
-    random.chain(eager).chain(stressed_scenarios().chain([by_adal, laden, idle]).map(valid))
+    random.chain(paper).chain(stressed_scenarios().chain([by_adal, laden, idle]).map(valid))
 }
 
 /// How many configurations the quick campaigns explore, and in how many of them each row is taken, as their own

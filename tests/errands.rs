@@ -146,13 +146,17 @@ fn no_storm_closes_a_task_before_its_time() {
 /// A task may be taken back whatever its robots are doing: the monitor watches.
 #[test]
 fn a_task_may_be_taken_back_at_any_time() {
-    for withdrawn in (250..490).step_by(24) {
+    let in_papers_order = (250..490).step_by(24).map(|withdrawn| (Strategy::Paper, withdrawn));
+    let ahead = (170..350).step_by(18).map(|withdrawn| (Strategy::Eager, withdrawn));
+    for (strategy, withdrawn) in in_papers_order.chain(ahead) {
         let mut scenario = shipped("leaf-leader");
+        scenario.control.strategy = Some(strategy);
         scenario.task[2].withdrawn = Some(withdrawn);
         scenario.task.push(Task { announced: Some(withdrawn), ..Task::at([0.85, 1.2]) });
         let mission = run(scenario);
-        assert_eq!(mission.end.outcome, Outcome::Serviced, "{withdrawn}: {}", mission.end.reason);
-        assert_eq!(mission.last().serviced.len(), 3, "{withdrawn}");
+        let said = format!("{strategy:?}, {withdrawn}: {}", mission.end.reason);
+        assert_eq!(mission.end.outcome, Outcome::Serviced, "{said}");
+        assert_eq!(mission.last().serviced.len(), 3, "{said}");
     }
 }
 

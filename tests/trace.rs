@@ -1,10 +1,13 @@
 //! What is written into a trace can be read back, and is the same to the byte.
 
 use crate::common::{end, every_event, reports, room, show};
+use crate::missions::{shipped, valid};
 use pleach::automaton::network::record::{End, Outcome, Snapshot};
-use pleach::automaton::network::scenario::Settings;
-use pleach::mission::Watcher;
+use pleach::automaton::network::scenario::{Settings, Strategy};
+use pleach::judge::{Verdict, judge};
+use pleach::mission::{self, Watcher};
 use pleach::trace::{TraceEntry, TraceError, TraceReader, TraceWriter};
+use pleach::verify::network::Property;
 use proptest::prelude::*;
 
 fn written() -> String {
@@ -63,6 +66,34 @@ fn a_trace_without_views_of_robots_is_read() {
         reports().into_iter().map(|report| Snapshot { robots: vec![], ..report.snapshot });
     assert!(steps.eq(expected));
     assert!(pleach::page::of_trace(older.as_bytes()).unwrap().contains("not recorded"));
+}
+
+/// Traces of older builds leave the strategy out where it is that of the paper, and are judged by its order.
+#[test]
+fn a_trace_that_states_no_strategy_is_in_the_papers_order() {
+    for strategy in [Strategy::Paper, Strategy::Eager] {
+        let mut scenario = shipped("too-few");
+        scenario.control.strategy = Some(strategy);
+        let mut writer = TraceWriter::new(Vec::new(), &scenario).unwrap();
+        mission::run(&valid(scenario), &mut [&mut writer]).unwrap();
+        let text = String::from_utf8(writer.finish().unwrap()).unwrap();
+        let reader = TraceReader::new(text.as_bytes()).unwrap();
+        assert_eq!(reader.scenario().control.strategy, Some(strategy));
+        assert!(matches!(judge(reader).unwrap(), Verdict::Sound { .. }), "{strategy:?}");
+
+        let (header, rest) = text.split_once('\n').unwrap();
+        let mut header: serde_json::Value = serde_json::from_str(header).unwrap();
+        let control = header["scenario"]["control"].as_object_mut().unwrap();
+        assert!(control.remove("strategy").is_some(), "a header states every default");
+        let older = format!("{header}\n{rest}");
+        let reader = TraceReader::new(older.as_bytes()).unwrap();
+        assert_eq!(reader.scenario().control.strategy, Some(Strategy::Paper));
+        match (strategy, judge(reader).unwrap()) {
+            (Strategy::Paper, Verdict::Sound { .. }) => {}
+            (Strategy::Eager, Verdict::Violated(it)) if it.property == Property::Events => {}
+            (_, verdict) => panic!("{strategy:?}: {verdict:?}"),
+        }
+    }
 }
 
 #[test]

@@ -14,6 +14,7 @@ use crate::generated::{keep_up_to_date, read};
 use crate::missions::{Mission, Period, run, shipped};
 use change::{Change, Record};
 use pleach::automaton::network::record::{End, Outcome};
+use pleach::automaton::network::scenario::Strategy;
 use pleach::discrete::network::activity::may_follow;
 use pleach::judge::{JudgeError, Verdict, judge};
 use pleach::mission::Watcher;
@@ -25,12 +26,18 @@ use std::sync::OnceLock;
 /// At how many control periods of a mission each change is tried.
 const SITES: usize = 3;
 
-/// Missions in which every kind of event but a repeated election happens.
+/// Missions, in the paper's order, in which every kind of event but a repeated election happens: by default teams do not
+/// stand still in them.
 const MISSIONS: [&str; 2] = ["corridor", "leaf-leader"];
 
 fn missions() -> &'static [Mission] {
     static MISSION: OnceLock<Vec<Mission>> = OnceLock::new();
-    MISSION.get_or_init(|| MISSIONS.map(|name| run(shipped(name))).into())
+    let in_papers_order = |name: &str| {
+        let mut scenario = shipped(name);
+        scenario.control.strategy = Some(Strategy::Paper);
+        run(scenario)
+    };
+    MISSION.get_or_init(|| MISSIONS.map(in_papers_order).into())
 }
 
 /// The trace of a record as its file holds it.

@@ -1,6 +1,7 @@
 //! Missions without faults: what robots decide, how long it takes them, and how they end.
 
 use pleach_automaton::network::record::Outcome;
+use pleach_automaton::network::scenario::Strategy;
 
 use super::story::story;
 use super::{Mission, run, scenario};
@@ -16,17 +17,17 @@ fn decided(path: &str) -> Mission {
 
 #[test]
 fn robots_become_nodes_when_packets_flow_through_them_and_redundant_when_none_do() {
-    decided("scenarios/redundant-node").services_all_within(164);
+    decided("scenarios/redundant-node").services_all_within(138);
 }
 
 #[test]
 fn a_replacement_for_a_leaf_comes_in_two_subgroups() {
-    decided("scenarios/leaf-leader").services_all_within(494);
+    decided("scenarios/leaf-leader").services_all_within(354);
 }
 
 #[test]
 fn a_recruit_comes_from_the_tree_of_another_access_point() {
-    decided("scenarios/two-clusters").services_all_within(550);
+    decided("scenarios/two-clusters").services_all_within(369);
 }
 
 #[test]
@@ -105,10 +106,11 @@ fn robots_step_aside_one_after_the_other() {
 }
 
 /// Rates are near what links carry, steps are long, and links of the tree may be weak: robots object to
-/// moves.
+/// moves. In the paper's order loads come to more than nine tenths, with recruits called for ahead to a little less.
 #[test]
 fn robots_object_to_moves_that_would_overload_them() {
     let mut stressed = scenario("scenarios/leaf-leader");
+    stressed.control.strategy = Some(Strategy::Paper);
     stressed.robot.iter_mut().for_each(|robot| robot.rate = 0.0767);
     stressed.control.build_reliability = Some(0.5);
     stressed.control.tree_reliability = Some(0.5);

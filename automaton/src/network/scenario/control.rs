@@ -34,10 +34,10 @@ pub enum MotionSolver {
 #[non_exhaustive]
 pub enum Strategy {
     /// As in the paper (Sec. V): when the primary team stands still; and it stands until the recruit has joined.
-    #[default]
     Paper,
     /// As soon as the way that is left to the task is longer than the links of the team; and it goes on
     /// meanwhile as far as its links let it.
+    #[default]
     Eager,
 }
 
@@ -82,7 +82,7 @@ pub struct Control {
     pub tree_reliability: Option<f64>,
     /// How the motion problem is solved. Default `exact`.
     pub motion_solver: Option<MotionSolver>,
-    /// When a recruit is called for. Default `paper`.
+    /// When a recruit is called for. Default `eager`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strategy: Option<Strategy>,
 }

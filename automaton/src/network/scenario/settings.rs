@@ -201,7 +201,7 @@ impl From<Settings> for Control {
             build_reliability: Some(settings.build_reliability),
             tree_reliability: Some(settings.tree_reliability),
             motion_solver: Some(settings.motion_solver),
-            strategy: Some(settings.strategy).filter(|it| *it != Strategy::default()),
+            strategy: Some(settings.strategy),
         }
     }
 }
