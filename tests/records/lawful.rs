@@ -8,6 +8,17 @@ pub const REASONS: &[(&str, &str)] = &[
          else depends on so little",
     ),
     ("phase: it is that of the period before", "observers may hear of a step of the mission late"),
+    ("phase: it is the next one", "robots may be on Σ before the event that tells of its path"),
+    (
+        "task: none is pursued",
+        "it has been announced a few periods before, and observers may hear of it late",
+    ),
+    (
+        "active: the first is dropped",
+        "by the eager strategy a member of the primary team may move while a recruit comes, and need not",
+    ),
+    ("path: the last is dropped", EARLY),
+    ("path: the primary team is on it", EARLY),
     (
         "active team: it is emptied",
         "the team has become the active one a few periods before, and observers may hear of it late",
@@ -22,6 +33,10 @@ pub const REASONS: &[(&str, &str)] = &[
     (
         "tree: the edge of a redundant robot is dropped",
         "a redundant robot to which no other is attached may be without a parent",
+    ),
+    (
+        "posts: one is dropped",
+        "its holder has been of the primary team a few periods before, whose posts change when it is set up or dissolved",
     ),
     ("posts: one is a junction", BRANCHES),
     ("posts: a junction is none", BRANCHES),
@@ -38,6 +53,8 @@ pub const REASONS: &[(&str, &str)] = &[
 
 const BRANCHES: &str = "where branches part is compared only while no subgroup is under way and no event \
                         was so recent that news of it may be";
+const EARLY: &str = "robots take their places on Σ one by one before the event that tells of its path, \
+                     which names them all";
 const ITERATE: &str =
     "λ is what a robot's iteration has come to; no property speaks of it but its sign";
 const SHOWN: &str =

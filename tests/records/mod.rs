@@ -26,18 +26,21 @@ use std::sync::OnceLock;
 /// At how many control periods of a mission each change is tried.
 const SITES: usize = 3;
 
-/// Missions, in the paper's order, in which every kind of event but a repeated election happens: by default teams do not
-/// stand still in them.
-const MISSIONS: [&str; 2] = ["corridor", "leaf-leader"];
+/// Missions in which every kind of event but a repeated election happens: teams stand still only in the paper's order.
+const MISSIONS: [(&str, Strategy); 3] = [
+    ("corridor", Strategy::Paper),
+    ("leaf-leader", Strategy::Paper),
+    ("corridor", Strategy::Eager),
+];
 
 fn missions() -> &'static [Mission] {
     static MISSION: OnceLock<Vec<Mission>> = OnceLock::new();
-    let in_papers_order = |name: &str| {
+    let mission_of = |(name, strategy): (&str, Strategy)| {
         let mut scenario = shipped(name);
-        scenario.control.strategy = Some(Strategy::Paper);
+        scenario.control.strategy = Some(strategy);
         run(scenario)
     };
-    MISSION.get_or_init(|| MISSIONS.map(in_papers_order).into())
+    MISSION.get_or_init(|| MISSIONS.map(mission_of).into())
 }
 
 /// The trace of a record as its file holds it.
@@ -118,7 +121,10 @@ fn fates(changes: &[Change]) -> BTreeMap<&'static str, Fate> {
             let fate = fates.entry(name).or_default();
             fate.tried += 1;
             match verdict(judge.clone(), &record, site) {
-                Ok(()) => fate.unnoticed.push(format!("{} at k = {site}", mission.scenario.name)),
+                Ok(()) => fate.unnoticed.push(format!(
+                    "{}, {:?}, at k = {site}",
+                    mission.scenario.name, mission.scenario.control.strategy
+                )),
                 Err(violation) => {
                     fate.noticed += 1;
                     fate.properties.insert(violation.property);
