@@ -3,7 +3,8 @@
 //! The routing method and its sweeps say which flows would be best. The flows in use are held from one
 //! control period to the next and change on request. A robot asks for the flows of its plan; it raises
 //! F_ij to what the receiver has granted, and grants only what its own flows forward. It lowers F_ij
-//! where the rest still carries what it has granted and its rate, and tells the receiver. So
+//! where the rest still carries what it has granted and its rate, and tells the receiver; or raises one and lowers
+//! another by as much at once. So
 //!
 //! ```text
 //! Σ_j F_ij − Σ_j (granted to j) − r_i ≥ 0
@@ -159,6 +160,28 @@ impl HeldFlow {
     }
 }
 
+/// Raises flows and lowers others by as much, at once: that takes nothing to spare, and time only where the link
+/// that takes over is the less reliable one. A sender that is busy all the time with a link that hardly carries
+/// anything could not do without it otherwise. Returns how much is taken over.
+fn replace_flows(links: &mut [&mut RouteLink], mut room: f64, promised: u32) -> f64 {
+    let mut taken_over = 0.0;
+    let count = links.len();
+    for (more, less) in (0..count).flat_map(|more| (0..count).map(move |less| (more, less))) {
+        let Ok([more, less]) = links.get_disjoint_mut([more, less]) else { continue };
+        let lasts = |link: &RouteLink| holds(link.held.until, promised);
+        if lasts(less) && !lasts(more) {
+            continue;
+        }
+        let time = 1.0 / more.reliability - 1.0 / less.reliability;
+        let most = if time > 0.0 { room.max(0.0) / time } else { f64::INFINITY };
+        let taken = more.held.raise(most.min(less.held.flow - less.held.wanted).max(0.0));
+        less.held.lower(taken);
+        room -= taken * time;
+        taken_over += taken;
+    }
+    taken_over
+}
+
 impl Robot {
     /// The plan stands: the robot asks for its flows, and stops those whose grants have ended.
     pub(super) fn ask_for_flows(&mut self, outputs: &mut Out) {
@@ -293,8 +316,8 @@ impl Robot {
         }
     }
 
-    /// Raises flows as far as they are granted and there is time to send, and lowers others as far as the rest
-    /// carries what it has granted, for as long.
+    /// Raises flows as far as they are granted and there is time to send, lowers others as far as the rest
+    /// carries what it has granted, for as long, and replaces one by another.
     fn change_flows(&mut self) {
         let (needed, promised) = (self.needed_outflow(), self.promised_until());
         let mut in_use: Vec<&mut RouteLink> = Vec::with_capacity(self.links.len());
@@ -312,8 +335,10 @@ impl Robot {
             for link in &mut in_use {
                 let less = link.held.lower(spare.max(0.0));
                 spare -= less;
+                room += less / link.reliability;
                 change += less;
             }
+            change += replace_flows(&mut in_use, room, promised);
             if change == 0.0 {
                 break;
             }

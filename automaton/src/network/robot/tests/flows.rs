@@ -424,6 +424,39 @@ fn flows_that_are_raised_together_share_the_time_that_is_left() {
     );
 }
 
+/// A sender whose time is used up, and that has no flow to spare, goes over to a better link all the same; and to a
+/// worse one as far as it has time.
+#[test]
+fn a_flow_takes_the_place_of_another_without_time_or_flow_to_spare() {
+    let flows = |old: f64, new: f64, lasts: u32| {
+        let mut robot = router();
+        let mut outputs = Outputs::of(0);
+        (robot.links[0].reliability, robot.links[1].reliability) = (new, old);
+        robot.links[1].share = robot.rate / old;
+        robot.ask_for_flows(&mut outputs);
+        (robot.links[0].share, robot.links[1].share) = (robot.rate / new, 0.0);
+        robot.ask_for_flows(&mut outputs);
+        let number = requests(&mut outputs)[0].1.number;
+        // It has promised another robot something for a while, so that its own flows have to last.
+        let number_of_other = RequestNumber { period: NOW, number: 1 };
+        robot.hear_request(6, FlowRequest { number: number_of_other, held: 0.0, wanted: 0.0 });
+        robot.reservations[0].until = NOW + LEASE;
+        robot.hear_grant(5, FlowGrant { number, flow: robot.rate, until: NOW + lasts });
+        robot.take_in_requests(&mut outputs);
+        robot.links.iter().map(|link| link.held.flow / robot.rate).collect::<Vec<_>>()
+    };
+    let rate = router().rate;
+    let close = |flows: Vec<f64>, wanted: [f64; 2]| {
+        assert!(flows.iter().zip(wanted).all(|(flow, it)| (flow - it).abs() < 1e-9), "{flows:?}");
+    };
+    close(flows(rate, 1.0, LEASE), [1.0, 0.0]);
+    close(flows(rate, rate, LEASE), [1.0, 0.0]);
+    close(flows(rate, 1.0, LEASE - 1), [0.0, 1.0]);
+    // x / 0.05 + (0.1 − x) = 1.
+    assert!((rate - 0.1).abs() < 1e-12);
+    close(flows(1.0, 0.05, LEASE), [9.0 / 19.0, 10.0 / 19.0]);
+}
+
 /// Demands that go round in a cycle end.
 #[test]
 fn no_more_demands_are_passed_on_in_a_sweep_than_there_are_robots() {
