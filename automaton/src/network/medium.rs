@@ -17,8 +17,13 @@ pub struct Radio {
     range: f64,
     robots: usize,
     access_points: usize,
-    audiences: Vec<Vec<NodeId>>,
+    /// Where the nodes are, by number.
+    bodies: Vec<Point>,
+    audiences: Audiences,
     sent: Vec<Envelope<Message>>,
+    /// Whether one of the messages sent may be answered at once.
+    expects_answer: bool,
+    mail: Mail,
     delivered: u64,
 }
 
@@ -29,8 +34,11 @@ impl Radio {
             range: site.radio.range(),
             robots: site.robots,
             access_points: site.access_points.len(),
-            audiences: Vec::new(),
+            bodies: Vec::new(),
+            audiences: Audiences::default(),
             sent: Vec::new(),
+            expects_answer: false,
+            mail: Mail::default(),
             delivered: 0,
         }
     }
@@ -42,7 +50,32 @@ impl Radio {
 
     /// The nodes that hear `sender`, ascending.
     pub fn audience(&self, sender: NodeId) -> &[NodeId] {
-        self.audiences.get(sender).map_or(&[], Vec::as_slice)
+        self.audiences.of(sender)
+    }
+
+    /// Finds out anew who hears whom.
+    fn survey(&mut self) {
+        let Radio { range, robots, access_points, ref bodies, .. } = *self;
+        let user = robots + access_points;
+        let with_radio = &bodies[..user.min(bodies.len())];
+        let cells = Cells::new(with_radio, range);
+        let mut audiences = Audiences::default();
+        for (node, &place) in bodies.iter().enumerate() {
+            let first = audiences.nodes.len();
+            if node < user {
+                cells.around(place, |other| {
+                    let near = (place - bodies[other]).norm() < range;
+                    if other != node && near && !(node >= robots && other >= robots) {
+                        audiences.nodes.push(other);
+                    }
+                });
+            }
+            let wired = self.wired(node).filter(|&other| other != node && other < bodies.len());
+            audiences.nodes.extend(wired);
+            audiences.nodes[first..].sort_unstable();
+            audiences.ends.push(audiences.nodes.len());
+        }
+        self.audiences = audiences;
     }
 
     /// The nodes that `node` is wired to.
@@ -60,28 +93,14 @@ impl Radio {
 
 impl Medium<Message, Point> for Radio {
     fn update(&mut self, bodies: &[Point]) {
-        self.audiences.resize_with(bodies.len(), Vec::new);
-        let user = self.robots + self.access_points;
-        let with_radio = &bodies[..user.min(bodies.len())];
-        let cells = Cells::new(with_radio, self.range);
-        for node in 0..bodies.len() {
-            let wired = self.wired(node);
-            let audience = &mut self.audiences[node];
-            audience.clear();
-            if node < user {
-                cells.around(bodies[node], |other| {
-                    let near = (bodies[node] - bodies[other]).norm() < self.range;
-                    if other != node && near && !(node >= self.robots && other >= self.robots) {
-                        audience.push(other);
-                    }
-                });
-            }
-            audience.extend(wired.filter(|&other| other != node && other < bodies.len()));
-            audience.sort_unstable();
+        if self.bodies != bodies {
+            bodies.clone_into(&mut self.bodies);
+            self.survey();
         }
     }
 
     fn send(&mut self, envelope: Envelope<Message>) {
+        self.expects_answer |= envelope.message.may_be_answered_at_once();
         self.sent.push(envelope);
     }
 
@@ -95,19 +114,105 @@ impl Medium<Message, Point> for Radio {
         &mut self,
         mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let Radio { audiences, sent, delivered, .. } = self;
-        sent.drain(..).try_for_each(|Envelope { from, to, message }| {
-            let audience = audiences.get(from).map_or(&[][..], Vec::as_slice);
-            let receivers = match to {
-                Destination::Everyone => audience,
-                Destination::One(node) => match audience.binary_search(&node) {
-                    Ok(at) => &audience[at..=at],
-                    Err(_) => &[],
-                },
-            };
+        let Radio { audiences, sent, expects_answer, delivered, .. } = self;
+        *expects_answer = false;
+        sent.drain(..).try_for_each(|envelope| {
+            let receivers = audiences.receivers_of(&envelope);
             *delivered += receivers.len() as u64;
-            receivers.iter().try_for_each(|&to| hand_over(Delivery { from, to, message: &message }))
+            let Envelope { from, message, .. } = &envelope;
+            receivers.iter().try_for_each(|&to| hand_over(Delivery { from: *from, to, message }))
         })
+    }
+
+    /// Node by node, unless a node may answer at once: answers have the order of what they answer.
+    fn deliver_to_each<E>(
+        &mut self,
+        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        if self.expects_answer {
+            return self.deliver(hand_over);
+        }
+        let Radio { audiences, sent, mail, delivered, .. } = self;
+        mail.sort(sent, audiences);
+        *delivered += mail.letters.len() as u64;
+        let result = mail.letters_by_node().try_for_each(|(to, letters)| {
+            letters.iter().try_for_each(|&letter| {
+                let Envelope { from, message, .. } = &sent[letter];
+                hand_over(Delivery { from: *from, to, message })
+            })
+        });
+        sent.clear();
+        result
+    }
+}
+
+/// The nodes that hear each node, one after another.
+#[derive(Debug, Default)]
+struct Audiences {
+    nodes: Vec<NodeId>,
+    /// Where among them those end that hear a node, by its number.
+    ends: Vec<usize>,
+}
+
+impl Audiences {
+    /// The nodes that hear `sender`, ascending.
+    fn of(&self, sender: NodeId) -> &[NodeId] {
+        let Some(&end) = self.ends.get(sender) else { return &[] };
+        let first = sender.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.nodes[first..end]
+    }
+
+    /// The nodes that hear a message, ascending.
+    fn receivers_of(&self, envelope: &Envelope<Message>) -> &[NodeId] {
+        let audience = self.of(envelope.from);
+        match envelope.to {
+            Destination::Everyone => audience,
+            Destination::One(node) => match audience.binary_search(&node) {
+                Ok(at) => &audience[at..=at],
+                Err(_) => &[],
+            },
+        }
+    }
+}
+
+/// Messages sorted by the nodes that hear them: each node has its own together.
+#[derive(Debug, Default)]
+struct Mail {
+    /// The places of the messages among those sent.
+    letters: Vec<usize>,
+    /// Where those of each node end.
+    ends: Vec<usize>,
+}
+
+impl Mail {
+    /// Sorts these messages; those of a node stay in the order in which they were sent.
+    fn sort(&mut self, sent: &[Envelope<Message>], audiences: &Audiences) {
+        let Mail { letters, ends } = self;
+        ends.clear();
+        ends.resize(audiences.ends.len(), 0);
+        let receivers = || sent.iter().map(|envelope| audiences.receivers_of(envelope));
+        receivers().flatten().for_each(|&to| ends[to] += 1);
+        let mut count = 0;
+        for end in ends.iter_mut() {
+            // Until its messages are entered, each node's end is where they begin.
+            count += std::mem::replace(end, count);
+        }
+        letters.resize(count, 0);
+        for (letter, receivers) in receivers().enumerate() {
+            for &to in receivers {
+                letters[ends[to]] = letter;
+                ends[to] += 1;
+            }
+        }
+    }
+
+    /// The messages of each node, by its number.
+    fn letters_by_node(&self) -> impl Iterator<Item = (NodeId, &[usize])> {
+        let mut begin = 0;
+        self.ends
+            .iter()
+            .enumerate()
+            .map(move |(node, &end)| (node, &self.letters[std::mem::replace(&mut begin, end)..end]))
     }
 }
 
@@ -136,5 +241,88 @@ impl Cells {
             let to = self.sorted.partition_point(|&(cell, _)| cell <= (x, row + 1));
             self.sorted[from..to].iter().for_each(|&(_, node)| visit(node));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use serde_json::json;
+
+    use super::super::scenario::Scenario;
+    use super::*;
+
+    /// A radio of three robots in a row, of which only neighbours hear each other, and two access points.
+    fn radio() -> Radio {
+        let scenario: Scenario = serde_json::from_value(json!({
+            "name": "a row",
+            "workspace": {"boundary": [[0.0, 0.0], [10.0, 0.0], [10.0, 4.0], [0.0, 4.0]]},
+            "link": {"full_range": 1.0, "max_range": 2.0},
+            "access_point": [{"position": [1.0, 1.0]}, {"position": [9.0, 1.0]}],
+            "robot": [
+                {"position": [2.0, 1.0], "rate": 0.1},
+                {"position": [3.5, 1.0], "rate": 0.1},
+                {"position": [5.0, 1.0], "rate": 0.1},
+            ],
+            "task": [{"position": [8.0, 1.0]}],
+        }))
+        .expect("it is a scenario");
+        let site = Site::new(&scenario).expect("its numbers make sense");
+        let places = [(2.0, 1.0), (3.5, 1.0), (5.0, 1.0), (1.0, 1.0), (9.0, 1.0), (0.0, 0.0)];
+        let mut radio = Radio::new(&site);
+        radio.update(&places.map(|(x, y)| Point::new(x, y)));
+        radio
+    }
+
+    const NODES: usize = 6;
+
+    /// What each node hears of these messages, with the senders: as all are handed over, and node by node.
+    fn heard(sent: &[(NodeId, Destination, f64)]) -> [[Vec<(NodeId, Message)>; NODES]; 2] {
+        let heard = |by_node: bool| {
+            let mut radio = radio();
+            for &(from, to, flow) in sent {
+                radio.send(Envelope { from, to, message: Message::Flow(flow) });
+            }
+            let mut heard: [Vec<_>; NODES] = Default::default();
+            let hand_over = |Delivery { from, to, message }: Delivery<'_, Message>| {
+                heard[to].push((from, message.clone()));
+                Ok::<(), Infallible>(())
+            };
+            let Ok(()) = match by_node {
+                true => radio.deliver_to_each(hand_over),
+                false => radio.deliver(hand_over),
+            };
+            assert_eq!(radio.time_to_arrival(), None);
+            assert_eq!(radio.delivered(), heard.iter().map(Vec::len).sum::<usize>() as u64);
+            heard
+        };
+        [heard(false), heard(true)]
+    }
+
+    #[test]
+    fn robots_hear_those_in_range_and_access_points_hear_each_other() {
+        let radio = radio();
+        let audiences: Vec<&[NodeId]> = (0..=NODES).map(|node| radio.audience(node)).collect();
+        assert_eq!(audiences, [&[1, 3][..], &[0, 2], &[1], &[0, 4, 5], &[3], &[3], &[]]);
+    }
+
+    #[test]
+    fn each_node_hears_the_same_in_the_same_order_where_each_is_served_in_turn() {
+        use Destination::{Everyone, One};
+        let sent = [
+            (0, Everyone, 0.1),
+            (1, One(2), 0.2),
+            (1, Everyone, 0.3),
+            (3, Everyone, 0.4),
+            (2, One(0), 0.5), // out of range
+            (0, One(1), 0.6),
+            (5, Everyone, 0.7),
+        ];
+        let [all, by_node] = heard(&sent);
+        assert_eq!(all, by_node);
+        let counts = all.map(|heard| heard.len());
+        assert_eq!(counts, [2, 2, 2, 2, 1, 1]);
+        assert_eq!(heard(&[]), Default::default() as [[Vec<_>; NODES]; 2]);
     }
 }

@@ -47,6 +47,10 @@ pub struct Ensemble<N: Node, M> {
     bodies: Vec<N::Body>,
     has_moved: bool,
     seats: Vec<Seat>,
+    /// The round at this instant in which each node ticks next, if it hears nothing until then.
+    ticks: Vec<Option<usize>>,
+    /// The nodes that take part in the current jump.
+    participants: Vec<NodeId>,
     /// The round of ticks at this instant that comes next, from 1.
     round: usize,
 }
@@ -59,16 +63,6 @@ struct Seat {
     takes_part: bool,
     /// The round at this instant in which it has ticked last; 0 if in none.
     ticked: usize,
-    /// The round at this instant in which it ticks next, if it hears nothing until then.
-    ticks: Option<usize>,
-}
-
-impl Seat {
-    /// The node has changed: asks it when it ticks next.
-    fn ask<N: Node>(&mut self, node: &N) {
-        let is_due = node.time_to_tick().is_some_and(|wait| wait <= 0.0);
-        self.ticks = is_due.then(|| self.ticked + 1 + node.rounds_to_pass());
-    }
 }
 
 impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
@@ -77,6 +71,8 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         let mut ensemble = Ensemble {
             bodies: Vec::with_capacity(nodes.len()),
             seats: vec![Seat::default(); nodes.len()],
+            ticks: vec![None; nodes.len()],
+            participants: Vec::new(),
             outputs: Outputs::of(0),
             has_moved: true,
             round: 1,
@@ -112,7 +108,7 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         self.update_medium();
         if let Some(known) = self.nodes.get_mut(node) {
             known.step(Input::Sensed(sensed), self.outputs.now_of(node))?;
-            self.seats[node].ask(known);
+            self.ask(node);
             self.send();
         }
         Ok(())
@@ -132,6 +128,13 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
         }
     }
 
+    /// A node has changed: asks it when it ticks next.
+    fn ask(&mut self, id: NodeId) {
+        let node = &self.nodes[id];
+        let is_due = node.time_to_tick().is_some_and(|wait| wait <= 0.0);
+        self.ticks[id] = is_due.then(|| self.seats[id].ticked + 1 + node.rounds_to_pass());
+    }
+
     fn send(&mut self) {
         for envelope in self.outputs.drain_sent() {
             self.seats[envelope.from].traffic.sent += 1;
@@ -141,37 +144,34 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
 
     /// Says whether anything was heard.
     fn deliver(&mut self) -> Result<bool, N::Error> {
-        let Ensemble { nodes, medium, outputs, seats, .. } = self;
-        let mut is_heard = false;
-        medium.deliver(|delivery| {
+        let Ensemble { nodes, medium, outputs, seats, participants, .. } = self;
+        medium.deliver_to_each(|delivery| {
             let known = nodes.get_mut(delivery.to).zip(seats.get_mut(delivery.to));
             let Some((node, seat)) = known else { return Ok(()) };
-            (is_heard, seat.takes_part) = (true, true);
+            if !std::mem::replace(&mut seat.takes_part, true) {
+                participants.push(delivery.to);
+            }
             seat.traffic.heard += 1;
             let input = Input::Heard { from: delivery.from, message: delivery.message };
             node.step(input, outputs.now_of(delivery.to))
         })?;
-        if is_heard {
-            let hearers =
-                self.seats.iter_mut().zip(&self.nodes).filter(|(seat, _)| seat.takes_part);
-            hearers.for_each(|(seat, node)| seat.ask(node));
-        }
-        Ok(is_heard)
+        (0..self.participants.len()).for_each(|at| self.ask(self.participants[at]));
+        Ok(!self.participants.is_empty())
     }
 
     /// Says whether any clock was due.
     fn tick(&mut self) -> Result<bool, N::Error> {
-        let Some(next) = self.seats.iter().filter_map(|seat| seat.ticks).min() else {
-            return Ok(false);
-        };
+        let Some(next) = self.ticks.iter().flatten().copied().min() else { return Ok(false) };
         // What a node has heard may make it tick earlier than it has said, and not in the past.
         let round = next.max(self.round);
-        for (id, (seat, node)) in self.seats.iter_mut().zip(&mut self.nodes).enumerate() {
-            if seat.ticks.is_some_and(|ticks| ticks <= round) {
+        for id in 0..self.nodes.len() {
+            if self.ticks[id].is_some_and(|ticks| ticks <= round) {
+                let seat = &mut self.seats[id];
                 let passed = round - seat.ticked - 1;
-                node.step(Input::Tick { passed }, self.outputs.now_of(id))?;
                 (seat.takes_part, seat.ticked) = (true, round);
-                seat.ask(node);
+                self.participants.push(id);
+                self.nodes[id].step(Input::Tick { passed }, self.outputs.now_of(id))?;
+                self.ask(id);
             }
         }
         self.round = round + 1;
@@ -181,24 +181,22 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     /// Time has passed, or begins.
     fn begin_instant(&mut self) {
         self.round = 1;
-        for (seat, node) in self.seats.iter_mut().zip(&self.nodes) {
-            seat.ticked = 0;
-            seat.ask(node);
+        for id in 0..self.nodes.len() {
+            self.seats[id].ticked = 0;
+            self.ask(id);
         }
     }
 
     fn record(&mut self, round: &mut Round<'_, NodeJump>, jump: NodeJump) {
+        let Ensemble { seats, participants, .. } = self;
         round.jumped_by(jump, || {
-            let count = self.seats.len();
-            let participants: Box<[NodeId]> =
-                (0..count).filter(|&id| self.seats[id].takes_part).collect();
-            if participants.len() == count {
-                Participants::All
-            } else {
-                Participants::Some(participants)
+            participants.sort_unstable();
+            match participants.len() == seats.len() {
+                true => Participants::All,
+                false => Participants::Some(participants.as_slice().into()),
             }
         });
-        self.seats.iter_mut().for_each(|seat| seat.takes_part = false);
+        participants.drain(..).for_each(|id| seats[id].takes_part = false);
     }
 }
 

@@ -39,6 +39,20 @@ pub trait Medium<M, B> {
         &mut self,
         hand_over: impl FnMut(Delivery<'_, M>) -> Result<(), E>,
     ) -> Result<(), E>;
+
+    /// The same where it does not matter which of two nodes hears first, as in an
+    /// [`Ensemble`](super::Ensemble): each node hears what is for it in that order, and what nodes send in answer
+    /// has that order as well. A medium may serve one node after another, whose state is so touched only once.
+    ///
+    /// # Errors
+    ///
+    /// The first error of `hand_over`.
+    fn deliver_to_each<E>(
+        &mut self,
+        hand_over: impl FnMut(Delivery<'_, M>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.deliver(hand_over)
+    }
 }
 
 /// A medium in which every message arrives at once, at every node that it is for.

@@ -242,6 +242,16 @@ impl FreeSpace {
         self.graph.links(corner, &self.sight.tree)
     }
 
+    /// Whether shortest paths may go from one of these corners to the other, if they see each other.
+    pub(super) fn may_link(&self, one: usize, other: usize) -> bool {
+        self.graph.may_link(one, other)
+    }
+
+    /// The corners over which ways between two points up to a length can lead, ascending.
+    pub(super) fn corners_on_ways(&self, from: Point, to: Point, longest: f64) -> Vec<usize> {
+        self.graph.corners_on_ways(from, to, longest)
+    }
+
     /// The corners that a robot at a point of the sight set sees, ascending, with the distances.
     pub(super) fn corners_seen_from(&self, point: Point) -> impl Iterator<Item = (usize, f64)> {
         let seen =

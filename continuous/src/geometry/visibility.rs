@@ -5,13 +5,14 @@
 
 use std::sync::OnceLock;
 
-use super::Segment;
 use super::edge_tree::EdgeTree;
 use super::segment::side;
 use super::triangulation::{Seen, Triangulation};
+use super::{Neighbours, Segment};
 use crate::{Point, Vector};
 
-/// By how much, relatively, directions that are left out miss the tolerance: more than rounding.
+/// By how much, relatively, directions that are left out miss the tolerance, and corners the longest way: more
+/// than rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// A reflex vertex of the planning outline, around which shortest paths bend.
@@ -36,6 +37,8 @@ pub(super) struct Link {
 #[derive(Debug, Clone)]
 pub(super) struct VisibilityGraph {
     corners: Vec<Corner>,
+    /// The corners by where they are.
+    places: Neighbours,
     links: Vec<OnceLock<Vec<Link>>>,
     /// The walls, with the corners as places; `None` if there is nothing to triangulate.
     triangulation: Option<Triangulation>,
@@ -50,7 +53,8 @@ impl VisibilityGraph {
         let places: Vec<Point> = corners.iter().map(|corner| corner.at).collect();
         let triangulation = Triangulation::new(walls, &places);
         let links = vec![OnceLock::new(); corners.len()];
-        VisibilityGraph { corners, links, triangulation, tolerance }
+        let places = Neighbours::new(&places, 0.0);
+        VisibilityGraph { corners, places, links, triangulation, tolerance }
     }
 
     /// The links of a corner, in ascending order of the other one. Takes the walls that the graph
@@ -60,17 +64,37 @@ impl VisibilityGraph {
     }
 
     fn find_links(&self, index: usize, walls: &EdgeTree) -> Vec<Link> {
-        let corner = &self.corners[index];
         let link_to = |Seen { place, may_touch }: Seen| {
-            let other = &self.corners[place];
-            let path = Segment::new(corner.at, other.at);
-            let is_link = place != index
-                && corner.is_touched_by(&path, self.tolerance)
-                && other.is_touched_by(&path, self.tolerance)
-                && !(may_touch && walls.is_crossed_by(&path));
+            let path = self.path(index, place);
+            let is_link = self.may_link(index, place) && !(may_touch && walls.is_crossed_by(&path));
             is_link.then(|| Link { corner: place, length: path.length() })
         };
         self.seen_from_corner(index).into_iter().filter_map(link_to).collect()
+    }
+
+    fn path(&self, one: usize, other: usize) -> Segment {
+        Segment::new(self.corners[one].at, self.corners[other].at)
+    }
+
+    /// Whether a straight way between two corners is taut, if there is one.
+    pub(super) fn may_link(&self, one: usize, other: usize) -> bool {
+        let path = self.path(one, other);
+        let is_touched = |corner: usize| self.corners[corner].is_touched_by(&path, self.tolerance);
+        one != other && is_touched(one) && is_touched(other)
+    }
+
+    /// The corners over which ways between two points up to a length can lead, ascending.
+    pub(super) fn corners_on_ways(&self, from: Point, to: Point, longest: f64) -> Vec<usize> {
+        let longest = longest * (1.0 + ROUNDING);
+        let mut found = Vec::new();
+        self.places.for_each_within(nalgebra::center(&from, &to), longest / 2.0, |corner, _| {
+            let at = self.corners[corner].at;
+            if (at - from).norm() + (to - at).norm() <= longest {
+                found.push(corner);
+            }
+        });
+        found.sort_unstable();
+        found
     }
 
     /// Corners that are seen from a corner in taut directions, ascending, and perhaps more.

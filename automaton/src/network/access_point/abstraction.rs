@@ -21,15 +21,33 @@ impl AccessPoint {
     /// When a guard cannot be evaluated.
     pub fn deliberate_now(&mut self) -> Result<(), TransitionError> {
         self.deliberate()?;
-        self.heard.clear();
+        self.forget_heard();
         Ok(())
     }
 
     /// In the next round all nodes send again: beacons that are processed are not needed any more.
     pub fn forget_round(&mut self) {
         if self.round() > 1 {
-            self.heard.clear();
+            self.forget_heard();
         }
+    }
+
+    fn forget_heard(&mut self) {
+        self.heard.clear();
+        self.has_news = true;
+    }
+
+    /// Whether nothing would change, but for the count of rounds, if it processed what it has received.
+    pub(super) fn overlooks_nothing(&self) -> bool {
+        let attendees =
+            |point: &Self| point.attendees.iter().map(Attendee::account).collect::<Vec<_>>();
+        let rosters = |point: &Self| (Arc::clone(&point.roster), Arc::clone(&point.connected));
+        let mut again = self.clone();
+        again.deliberate().is_ok()
+            && again.public_state() == self.public_state()
+            && rosters(&again) == rosters(self)
+            && again.known_tasks == self.known_tasks
+            && attendees(&again) == attendees(self)
     }
 
     /// In place of serving the user at the end of each round.
@@ -116,9 +134,10 @@ impl AccessPoint {
             requested: _,
             // Between two stimuli an access point has nothing left to do.
             heard: _,
+            heard_up_to: _,
+            has_news: _,
             sightings: _,
             wrecks: _,
-            silent: _,
             newest: _,
             rounds: _,
             acts: _,

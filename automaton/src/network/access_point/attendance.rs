@@ -224,6 +224,7 @@ impl AccessPoint {
             return Ok(());
         }
         let site = Arc::clone(&self.site);
+        self.has_news = true;
         for attendee in &mut self.attendees {
             attendee.review(&site.automata.attendance)?;
         }
@@ -270,6 +271,7 @@ impl AccessPoint {
     /// long that one has been silent.
     pub(super) fn recall(&mut self, roll: &Roll, period: u32) {
         let is_valid = roll.is_valid(period, self.site.roll_validity());
+        self.has_news = true;
         for (robot, attendee) in self.attendees.iter_mut().enumerate() {
             attendee.recall(roll.absent.standing_of(robot), is_valid);
         }

@@ -7,13 +7,13 @@
 #[cfg(feature = "abstraction")]
 mod abstraction;
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pleach_continuous::Point;
 use pleach_discrete::network::{Agreement, Anchor, Election, IdSet, Lineage, NodeId, NoticeId};
 
 mod attendance;
+mod hearing;
 mod rounds;
 mod service;
 #[cfg(test)]
@@ -25,7 +25,7 @@ use super::member::Sense;
 use super::message::Message;
 use super::order::Order;
 use super::record::MissionEvent;
-use super::robot::{ROUNDS_TO_BE_HEARD, RobotError, RobotFault};
+use super::robot::{RobotError, RobotFault};
 use super::roll::{Roll, Sightings, Wreck};
 use super::service::{Gathering, Resting, Rounds, Serving};
 use super::shared::{Shared, merge_election, renew};
@@ -37,6 +37,7 @@ use crate::node::{Input, Node, Outputs};
 pub(super) use attendance::PATIENCE;
 pub use attendance::{ATTENDANCE_GLOSSARY, AttendanceAutomaton, attendance_automaton};
 use attendance::{Attendee, TaskRecord};
+use hearing::Heard;
 pub use rounds::{RoundAct, RoundActs, RoundAutomaton, round_automaton};
 pub use service::{ACCESS_POINT_GLOSSARY, ServiceAutomaton, ServiceEffect, service_automaton};
 
@@ -54,14 +55,16 @@ pub struct AccessPoint {
     number: usize,
     site: Arc<Site>,
     position: Point,
-    /// The beacon heard last of each node in range, by their senders.
-    heard: Vec<Arc<Beacon>>,
+    /// The nodes in range, by their numbers.
+    heard: Vec<Heard>,
+    /// Where among them the next beacon is expected.
+    heard_up_to: usize,
+    /// Whether what it hears, or anything else of which it makes something once a round, has changed since it did.
+    has_news: bool,
     /// Where each robot was when it was last heard, or heard of.
     sightings: Sightings,
     /// Where robots that do not take part were heard last, here or by the nodes that are heard.
     wrecks: Arc<Vec<Wreck>>,
-    /// The senders of which nothing has been heard in this control period yet.
-    silent: BTreeSet<NodeId>,
     bulletin: Bulletin,
     /// The newest bulletin that it has heard and not taken up.
     newest: Option<Bulletin>,
@@ -128,9 +131,10 @@ impl AccessPoint {
             roll: Roll::default(),
             site,
             heard: Vec::new(),
+            heard_up_to: 0,
+            has_news: true,
             sightings: Sightings::default(),
             wrecks: Arc::default(),
-            silent: BTreeSet::new(),
             bulletin: Bulletin::first(Shared::new(Notice::Quiet)),
             newest: None,
             announced: None,
@@ -226,7 +230,23 @@ impl AccessPoint {
         }
     }
 
-    /// Processes the messages of one round.
+    /// At the end of a round, processes what it has received if that contains news. Where nothing has changed, it
+    /// only counts another round in which the roster stays the same.
+    ///
+    /// # Errors
+    /// When a guard cannot be evaluated.
+    fn process_news(&mut self) -> Result<(), TransitionError> {
+        if std::mem::take(&mut self.has_news) {
+            return self.deliberate();
+        }
+        self.count_settled_round(true);
+        self.locate_wrecks();
+        #[cfg(feature = "abstraction")]
+        debug_assert!(self.overlooks_nothing(), "access point {} overlooks something", self.number);
+        Ok(())
+    }
+
+    /// Processes what it has received, whether or not it contains news.
     ///
     /// # Errors
     /// When a guard cannot be evaluated.
@@ -238,55 +258,11 @@ impl AccessPoint {
         Ok(())
     }
 
-    /// Takes in a beacon. One that arrives after a newer one of its sender only says that this is heard; one that has
-    /// been late since an earlier control period is ignored.
-    fn hear(&mut self, period: u32, roll: &Roll, beacon: &Arc<Beacon>) {
-        let is_later = roll.called > self.roll.called;
-        self.roll.merge(roll);
-        // Nobody but the first access point calls rolls: it has begun again since.
-        if is_later && (self.is_new || self.is_first()) {
-            self.recall(roll, self.period.max(period));
-        }
-        if period < self.period {
-            return;
-        }
-        if period > self.period {
-            self.is_behind = !self.is_new;
-            self.period = period - u32::from(self.is_behind);
-        }
-        self.silent.remove(&beacon.sender);
-        match self.heard.binary_search_by_key(&beacon.sender, |held| held.sender) {
-            Ok(at) if beacon.is_older_than(&self.heard[at]) => {}
-            Ok(at) => self.heard[at] = Arc::clone(beacon),
-            Err(at) => self.heard.insert(at, Arc::clone(beacon)),
-        }
-        if beacon.duty.is_some() {
-            let (robot, place) = (beacon.sender, beacon.position);
-            self.sightings.note(Wreck::heard(robot, place, period));
-            beacon.sightings(period).for_each(|seen| self.sightings.note(seen));
-        }
-    }
-
     /// Where robots that do not take part were heard last, here or by the nodes that are heard.
     fn locate_wrecks(&mut self) {
-        let told = self.heard.iter().flat_map(|beacon| beacon.wrecks.iter().copied());
+        let told = self.heard.iter().flat_map(|heard| heard.beacon.wrecks.iter().copied());
         let seen = self.sightings.iter().chain(told);
         self.roll.absent.locate(&mut self.wrecks, seen, |robot| self.site.start_of(robot));
-    }
-
-    /// A control period begins, in which all nodes send again.
-    fn expect_all(&mut self) {
-        self.silent = self.heard.iter().map(|beacon| beacon.sender).collect();
-    }
-
-    /// After the first rounds all nodes in range have sent: those that were silent are out of range.
-    fn forget_silent(&mut self) {
-        // The round that has begun is one more than those that are over; after the last, none has.
-        if (1..=ROUNDS_TO_BE_HEARD).contains(&self.round()) {
-            return;
-        }
-        let silent = std::mem::take(&mut self.silent);
-        self.heard.retain(|beacon| !silent.contains(&beacon.sender));
     }
 
     /// The first access point sends the user the newest notice.
@@ -300,13 +276,14 @@ impl AccessPoint {
     fn hear_notices(&mut self) -> Result<(), TransitionError> {
         self.hear_announcements();
         let mut newest = self.bulletin.clone();
-        let hear = |has_news, beacon: &Arc<Beacon>| newest.merge(&beacon.bulletin) || has_news;
-        if self.heard.iter().fold(false, hear) {
-            self.newest = Some(newest);
+        let hear = |has_news, beacon: &Beacon| newest.merge(&beacon.bulletin) || has_news;
+        if self.beacons().fold(false, hear) {
+            // What it does not take up now it hears again.
+            (self.newest, self.has_news) = (Some(newest), true);
             self.jump()?;
             self.newest = None;
         }
-        for beacon in &self.heard {
+        for Heard { beacon, .. } in &self.heard {
             self.stretched |= beacon.stretched;
             self.longest_wait = self.site.longer_wait(self.longest_wait, beacon.longest_wait);
             if let (Some(own), Some(heard)) = (&mut self.election, &beacon.election) {
@@ -320,11 +297,11 @@ impl AccessPoint {
     }
 
     fn hear_announcements(&mut self) {
-        let heard = self.heard.iter().filter_map(|beacon| beacon.announced.as_ref());
+        let heard = self.beacons().filter_map(|beacon| beacon.announced.as_ref());
         if let Some(newest) = heard.max_by_key(|&&(id, _)| id).cloned() {
             self.learn(newest);
         }
-        for beacon in &self.heard {
+        for Heard { beacon, .. } in &self.heard {
             beacon.tell_forgetful(self.announced.as_ref(), &mut self.forgetful);
             beacon.tell_closed(&mut self.closed);
         }
@@ -390,7 +367,7 @@ impl AccessPoint {
             return;
         }
         let own = Anchor::Access(self.number);
-        for beacon in &self.heard {
+        for Heard { beacon, .. } in &self.heard {
             let Some((_, onward)) = beacon.route.as_ref().filter(|(call, _)| *call == id) else {
                 continue;
             };
@@ -417,7 +394,7 @@ impl AccessPoint {
     fn survey_robots(&mut self) {
         let own = Anchor::Access(self.number);
         let mut here = Reports::default();
-        for beacon in &self.heard {
+        for beacon in self.beacons() {
             if let Some(duty) = &beacon.duty {
                 let is_child = duty.post().is_some_and(|post| post.parent == Some(own));
                 here.take_in(beacon, is_child, self.id(), true);
@@ -435,7 +412,7 @@ impl AccessPoint {
     /// heard of. One that knows no way to an access point, on its way along Σ or with a parent that has
     /// failed, is not missed as long as it is heard.
     fn update_roster(&mut self, mut reports: Reports) {
-        for beacon in self.heard.iter().filter(|beacon| beacon.duty.is_none()) {
+        for beacon in self.beacons().filter(|beacon| beacon.duty.is_none()) {
             reports.take_in_branch(beacon);
         }
         let roster = if self.keeps_attendance() {
@@ -444,11 +421,16 @@ impl AccessPoint {
         } else {
             reports.below.clone()
         };
-        let is_complete = reports.below.includes(&roster);
-        let settled = is_complete && *self.roster == roster;
-        self.settled_rounds = if settled { self.settled_rounds + 1 } else { 0 };
+        let is_same = *self.roster == roster;
         renew(&mut self.roster, roster);
         renew(&mut self.connected, reports.below);
+        self.count_settled_round(is_same);
+    }
+
+    /// A round is over in which the roster has stayed the same, or not.
+    fn count_settled_round(&mut self, is_same: bool) {
+        let is_settled = is_same && self.connected.includes(&self.roster);
+        self.settled_rounds = if is_settled { self.settled_rounds + 1 } else { 0 };
     }
 
     /// Robots and tasks of which these reports tell are heard of.
@@ -517,6 +499,7 @@ impl Node for AccessPoint {
                     self.requested = Some(order.clone());
                 }
                 self.begin_attendance();
+                self.has_news = true;
             }
             Input::Heard { from, message: Message::Proposal { period, segment, witness } }
                 if *period == self.period =>

@@ -96,7 +96,7 @@ impl AccessPoint {
                 RoundAct::Forget => self.forget_silent(),
                 RoundAct::Deliberate => {
                     let known = self.bulletin.id();
-                    self.deliberate()?;
+                    self.process_news()?;
                     self.serve()?;
                     if self.bulletin.id() != known {
                         self.tell_user(outputs);

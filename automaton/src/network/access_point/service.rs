@@ -142,6 +142,7 @@ impl Holds<Serving> for AccessPoint {
     }
 
     fn carry_out(&mut self, effects: Effects) {
+        self.has_news = true;
         for effect in effects {
             match effect {
                 ServiceEffect::TakeUp(bulletin) => self.take_up(bulletin),

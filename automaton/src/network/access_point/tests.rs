@@ -19,6 +19,7 @@ use super::super::shared::Shared;
 use super::super::site::Site;
 use super::AccessPoint;
 use super::attendance::{Attendee, Gone, Present, Returning, Standing, Suspended, TaskRecord};
+use super::hearing::Heard;
 use crate::located::{Current, Place as _};
 use crate::node::{Input, Node as _, Outputs};
 
@@ -82,6 +83,26 @@ fn it_knows_of_the_move_of_a_robot_that_asks_it_to() {
     assert_eq!(asked(here, 2, 6), (0, 0.0), "the proposal is late");
     let (answers, astray) = asked(Point::new(4.1, 5.0), 2, 7);
     assert!(answers == 1 && (astray - 0.06).abs() < 1e-12, "the beacon from there is lost");
+}
+
+/// The same beacon again is no news; another one is, and so is silence.
+#[test]
+fn it_processes_what_has_changed() {
+    let (mut point, all) = (access_point(), roll(1, &[]));
+    let is_news = |point: &mut AccessPoint, beacon: &Arc<Beacon>| {
+        point.hear(1, &all, beacon);
+        let has_news = point.has_news;
+        point.process_news().expect("guards have values");
+        has_news
+    };
+    let (here, moved) = (Arc::new(beacon(0, HERE)), Arc::new(beacon(0, Point::new(4.5, 5.0))));
+    assert!(is_news(&mut point, &here), "the first one");
+    assert!(!is_news(&mut point, &here), "the same again");
+    assert!(is_news(&mut point, &moved), "another one");
+    assert!(!is_news(&mut point, &moved), "that one again");
+    point.expect_all();
+    point.forget_silent();
+    assert!(point.has_news && point.heard.is_empty(), "nothing is heard of it any more");
 }
 
 /// Robots that have not heard them themselves keep away from these places.
@@ -284,7 +305,7 @@ impl AccessPoint {
         let (outcome, reason) = (Outcome::InsufficientRobots, "too few".into());
         let end = Notice::Ended { outcome, reason, task: Some(0) };
         let bulletin = self.bulletin.next(1, Shared::new(end));
-        self.heard = vec![Arc::new(Beacon { bulletin, ..beacon(1, HERE) })];
+        self.heard = vec![Heard::now(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }))];
         self.hear_notices().expect("guards have values");
         std::mem::take(&mut self.log)
     }
@@ -368,7 +389,7 @@ fn what_follows_an_end_is_taken_up() {
     point.hears_of_failure();
     assert!(matches!(point.notice(), Notice::Ended { .. }));
     let bulletin = point.bulletin.superseding(5, Shared::new(Notice::Advance { joined: None }));
-    point.heard = vec![Arc::new(Beacon { bulletin, ..beacon(1, HERE) })];
+    point.heard = vec![Heard::now(&Arc::new(Beacon { bulletin, ..beacon(1, HERE) }))];
     point.hear_notices().expect("guards have values");
     assert_eq!(*point.notice(), Notice::Advance { joined: None });
 }

@@ -1,6 +1,7 @@
 //! Listening: the table of neighbours and what each of them last sent.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use pleach_continuous::Point;
 use pleach_continuous::network::reliability::LinkReliability;
@@ -14,14 +15,14 @@ use super::Robot;
 
 /// A node that the robot hears, R_ij > 0.
 #[derive(Clone, Debug)]
-#[repr(align(64))] // a cache line
 pub(super) struct Neighbour {
+    id: NodeId,
     pub beacon: Arc<Beacon>,
     /// The newest confirmation of its way that it has passed on.
     pub confirmed: Option<u32>,
     pub distance: f64,
     pub reliability: f64,
-    walk: OnceLock<f64>,
+    walk: Walk,
     /// Where the robot stood when it measured the link.
     measured_at: Point,
     /// The control period in which it was heard last.
@@ -30,6 +31,42 @@ pub(super) struct Neighbour {
     is_heard: bool,
     /// Rounds since it was heard.
     silent_rounds: u8,
+}
+
+/// A length that is measured when it is first asked for: the bits of a number, of one that is none before.
+#[derive(Debug)]
+struct Walk(AtomicU64);
+
+impl Walk {
+    fn of(length: f64) -> Self {
+        Walk(AtomicU64::new(length.to_bits()))
+    }
+
+    fn known(&self) -> f64 {
+        f64::from_bits(self.0.load(Ordering::Relaxed))
+    }
+
+    fn or_measured(&self, measure: impl FnOnce() -> f64) -> f64 {
+        let known = self.known();
+        if !known.is_nan() {
+            return known;
+        }
+        let length = measure();
+        self.0.store(length.to_bits(), Ordering::Relaxed);
+        length
+    }
+}
+
+impl Default for Walk {
+    fn default() -> Self {
+        Walk::of(f64::NAN)
+    }
+}
+
+impl Clone for Walk {
+    fn clone(&self) -> Self {
+        Walk::of(self.known())
+    }
 }
 
 /// A beacon is sent in this many rounds, at the beginning of a control period and whenever it has
@@ -51,11 +88,12 @@ impl Neighbour {
     ) -> Self {
         let distance = (beacon.position - own).norm();
         Neighbour {
+            id: beacon.sender,
             beacon: Arc::clone(beacon),
             confirmed,
             distance,
             reliability: site.link.reliability(distance),
-            walk: OnceLock::new(),
+            walk: Walk::default(),
             measured_at: own,
             heard_in: period,
             is_heard: true,
@@ -74,7 +112,7 @@ impl Neighbour {
     }
 
     pub fn id(&self) -> NodeId {
-        self.beacon.sender
+        self.id
     }
 
     pub fn position(&self) -> Point {
@@ -142,7 +180,7 @@ impl Robot {
             self.hear_of_later_period(period);
         }
         // Beacons of a round mostly come in the order of their senders, and have no news.
-        let expected = self.neighbours.get_mut(self.heard_up_to);
+        let expected = self.neighbours.get_mut(self.heard_up_to as usize);
         if let Some(known) = expected
             && Arc::ptr_eq(&known.beacon, beacon)
             && known.measured_at == self.position
@@ -171,7 +209,7 @@ impl Robot {
             }
         }
         let (Ok(at) | Err(at)) = known;
-        self.heard_up_to = at + 1;
+        self.heard_up_to = at as u32 + 1;
     }
 
     /// A neighbour that the robot knows is heard again. What it has passed on counts for the post that it
@@ -286,7 +324,7 @@ impl Robot {
 
     /// The geodesic length of the link to a neighbour.
     pub(super) fn walk_to(&self, neighbour: &Neighbour) -> f64 {
-        *neighbour.walk.get_or_init(|| self.site.walk(self.position, neighbour.position()))
+        neighbour.walk.or_measured(|| self.site.walk(self.position, neighbour.position()))
     }
 
     pub(super) fn neighbour(&self, id: NodeId) -> Option<&Neighbour> {

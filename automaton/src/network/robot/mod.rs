@@ -103,37 +103,72 @@ const POSTS_OF_A_PERIOD: u32 = 8;
 #[derive(Clone, Debug)]
 #[repr(C, align(64))] // in this order, from the beginning of a cache line
 pub struct Robot {
-    // What most messages touch stands together at the beginning: its place, its neighbours and its
-    // links.
-    id: NodeId,
+    // What it touches in every round stands together at the beginning. With a message: where it is, and which of
+    // its neighbours is expected to be heard next.
     /// x.
     position: Point,
     neighbours: Vec<Neighbour>,
-    /// How many control periods have begun.
-    period: u32,
     /// The newest roll that it knows.
     roll: Roll,
+    /// How many control periods have begun.
+    period: u32,
     /// Where in the table of neighbours the next beacon is expected.
-    heard_up_to: usize,
-    /// The link whose other end is expected to tell its multiplier next.
-    expected_link: usize,
-    links: Vec<RouteLink>,
-    /// The robots that send their demand here in a sweep, ascending, each with what has been heard
-    /// of it.
-    demands: Vec<(NodeId, Option<f64>)>,
+    heard_up_to: u32,
 
-    // What it knows from the beginning.
-    rate: f64,
+    // At a tick: what it knows from the beginning, where it stands in its control period and rounds of beacons,
+    // sweeps or negotiation, and what it does now.
     site: Arc<Site>,
-
-    // Where it stands in its control period, rounds of beacons, sweeps or negotiation, what it does
-    // now, and whether that is its first period.
     control: Current<Control>,
     round_count: Rounds,
     acts: Acts,
-    is_new: bool,
+
+    // What has changed since it last processed messages, sent its beacon and measured its facts.
+    has_news: bool,
+    has_unsent_news: bool,
+    is_unmeasured: bool,
+    /// Another parent would be better, and is not confirmed yet.
+    awaits_confirmation: bool,
     /// Another node has begun the next control period.
     is_behind: bool,
+    /// Whether this is its first period.
+    is_new: bool,
+    is_quiet: bool,
+    has_flow_news: bool,
+    has_swept: bool,
+    has_no_reserve: bool,
+    has_shortage_news: bool,
+    /// Its routes of the period before do not carry the rates.
+    routes_fall_short: bool,
+    has_untold_flows: bool,
+    is_unsettled: bool,
+    must_judge_moves: bool,
+
+    id: NodeId,
+    /// The clock τ, with τ̇ = 1 between jumps.
+    clock: f64,
+    /// In how many rounds of this period it has told its beacon as it is now.
+    beacon_told: usize,
+    /// What it reports to observers; no robot reads it.
+    log: Vec<MissionEvent>,
+
+    // Its routes.
+    links: Vec<RouteLink>,
+    /// The link whose other end is expected to tell its multiplier next.
+    expected_link: usize,
+    routing: routing::RoutingState,
+    /// The parent to which it sends its demand in this period.
+    upstream: Option<NodeId>,
+    rate: f64,
+    inflow: f64,
+    residual: f64,
+    inflows: Vec<(NodeId, f64)>,
+    /// The robots that send their demand here in a sweep, ascending, each with what has been heard
+    /// of it.
+    demands: Vec<(NodeId, Option<f64>)>,
+    /// In this sweep.
+    demands_passed_on: usize,
+    reservations: Vec<Reservation>,
+    last_request: RequestNumber,
 
     // Where robots were that it does not hear any more or has only heard of, those that do not take part,
     // and those that are attached to it.
@@ -147,10 +182,8 @@ pub struct Robot {
     branches: Arc<Vec<Branch>>,
     /// Where it has set off since its roll was called, each with the control period.
     trail: Vec<(u32, Point)>,
-
-    // The rest of its continuous state: u and the clock τ, with ẋ = u and τ̇ = 1 between jumps.
+    /// u, with ẋ = u between jumps.
     velocity: Vector,
-    clock: f64,
 
     // Where it is in its automata, and what the duty automaton jumps together with.
     duty: Current<Duty>,
@@ -159,15 +192,7 @@ pub struct Robot {
     posts_made: u32,
     mission: Current<Mission>,
     facts: Facts,
-    is_quiet: bool,
-
-    // What has changed since it last processed messages, sent its beacon and measured its facts.
-    has_news: bool,
-    has_unsent_news: bool,
-    is_unmeasured: bool,
     last_beacon: LastBeacon,
-    /// In how many rounds of this period it has told its beacon as it is now.
-    beacon_told: usize,
 
     // The exchange of duties that it is engaged in.
     exchange: Current<Exchange>,
@@ -199,8 +224,6 @@ pub struct Robot {
     reattaches_to: Option<NodeId>,
     /// How recently the way from its post has been confirmed.
     confirmation: Confirmation,
-    /// Another parent would be better, and is not confirmed yet.
-    awaits_confirmation: bool,
     can_detach: bool,
     unused_periods: u32,
     /// It has joined a mission under way, and not taken a new post yet.
@@ -233,26 +256,6 @@ pub struct Robot {
     /// Its own post, if another robot of the primary team follows it.
     followed_post: Option<PostId>,
 
-    // Communication variables.
-    routing: routing::RoutingState,
-    /// The parent to which it sends its demand in this period.
-    upstream: Option<NodeId>,
-    inflow: f64,
-    inflows: Vec<(NodeId, f64)>,
-    residual: f64,
-    reservations: Vec<Reservation>,
-    last_request: RequestNumber,
-    has_flow_news: bool,
-    has_swept: bool,
-    /// In this sweep.
-    demands_passed_on: usize,
-    has_no_reserve: bool,
-    has_shortage_news: bool,
-    /// Its routes of the period before do not carry the rates.
-    routes_fall_short: bool,
-    has_untold_flows: bool,
-    is_unsettled: bool,
-
     // Motion.
     destination: Option<Destination>,
     waypoint: Option<Point>,
@@ -262,7 +265,6 @@ pub struct Robot {
     /// Problem (21) of the last sample, if it has one: the region in which the robot moves.
     problem: Option<MotionProblem>,
     heard_moves: Vec<(NodeId, Segment)>,
-    must_judge_moves: bool,
     /// The robots that consent to its move, and those that wait for its own consent.
     consents: Vec<NodeId>,
     to_answer: Vec<NodeId>,
@@ -272,9 +274,6 @@ pub struct Robot {
     /// Where it has been, from the last place on, each off those before.
     resting_places: VecDeque<Point>,
     still_periods: u32,
-
-    // What it reports to observers; no robot reads it.
-    log: Vec<MissionEvent>,
 }
 
 impl Robot {

@@ -191,8 +191,9 @@ impl Robot {
         self.reservations.retain(|kept| holds(kept.until, period));
         for at in 0..self.links.len() {
             let to = self.links[at].to;
-            let heard_in = self.neighbour(to).map_or(0, |known| known.heard_in);
-            let can_raise = knows_load && self.knows_place_of(to);
+            let known = self.neighbour(to);
+            let heard_in = known.map_or(0, |known| known.heard_in);
+            let can_raise = knows_load && self.knows_place_of_neighbour(to, known);
             let link = &mut self.links[at];
             // Where flows are not reported, the plan can be none.
             let planned = link.flow().clamp(0.0, link.reliability);

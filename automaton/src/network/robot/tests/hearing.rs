@@ -177,7 +177,7 @@ fn a_control_period_begins_when_the_first_clock_is_due() {
 fn the_same_beacon_again_is_no_news_unless_its_sender_was_absent_or_brings_a_confirmation() {
     let mut robot = robot();
     let heard = Arc::new(beacon(1, east(0.5), redundant(11, 12), &[]));
-    let is_news = |robot: &mut Robot, period: u32, confirmed: Option<u32>, hint: usize| {
+    let is_news = |robot: &mut Robot, period: u32, confirmed: Option<u32>, hint: u32| {
         robot.period = period;
         (robot.has_news, robot.heard_up_to) = (false, hint);
         robot.hear_beacon(period, confirmed, &heard);
