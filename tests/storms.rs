@@ -210,6 +210,8 @@ fn storms_in_which_recruits_are_called_ahead_break_no_promise() {
         (Kind::AccessPoint, 25_906, 621_766),
         // Σ crosses an access point, and later passes a post that is attached to it: its robot is a break point.
         (Kind::Everything, 50_476, 1_211_447),
+        // A robot takes over the task of one with a lower number that has stopped: a snapshot names the one that runs.
+        (Kind::Crash, 333_347, 8_000_341),
     ];
     for (kind, turn, seed) in kept {
         let (scenario, storm) = mission_of_turn(turn, kind, seed);

@@ -274,8 +274,7 @@ impl<'a> Observatory<'a> {
             let reports = self.reports.remove(&self.step).unwrap_or_default();
             let (mut events, announced) = self.digest(reports);
             let period = self.scenario.site().settings.period;
-            let snapshot = Snapshot::of_reports(self.step, period, &self.robots);
-            let snapshot = snapshot.without(self.absent());
+            let snapshot = Snapshot::of_reports(self.step, period, &self.robots, self.absent());
             complete_events(&mut events, &snapshot.primary_team);
             self.step += 1;
             let end = gallery.observe(&snapshot, &events);

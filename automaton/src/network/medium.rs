@@ -323,6 +323,6 @@ mod tests {
         assert_eq!(all, by_node);
         let counts = all.map(|heard| heard.len());
         assert_eq!(counts, [2, 2, 2, 2, 1, 1]);
-        assert_eq!(heard(&[]), Default::default() as [[Vec<_>; NODES]; 2]);
+        assert!(heard(&[]).iter().flatten().all(Vec::is_empty));
     }
 }

@@ -98,10 +98,15 @@ impl RobotReport {
 
 impl Snapshot {
     /// The snapshot of control period `step`, whose periods take `period` seconds, from the reports
-    /// of all robots by number.
-    pub fn of_reports(step: usize, period: f64, reports: &[RobotReport]) -> Self {
+    /// of all robots by number, of which these do not run or are not heard.
+    pub fn of_reports(
+        step: usize,
+        period: f64,
+        reports: &[RobotReport],
+        absent: Vec<NodeId>,
+    ) -> Self {
         let overview = Overview { robots: reports };
-        Snapshot {
+        let snapshot = Snapshot {
             step,
             time: step as f64 * period,
             positions: reports.iter().map(|robot| robot.position).collect(),
@@ -116,12 +121,13 @@ impl Snapshot {
             routes: overview.routes(),
             tree: overview.tree(),
             task: overview.newest().and_then(|robot| robot.task),
-            serviced: overview.serviced(),
+            serviced: overview.serviced(&absent),
             closed: overview.closed(),
             posts: overview.posts(),
             robots: reports.iter().map(RobotSnapshot::from).collect(),
             absent: Vec::new(),
-        }
+        };
+        if absent.is_empty() { snapshot } else { snapshot.without(absent) }
     }
 }
 
@@ -153,13 +159,10 @@ pub fn complete_events(events: &mut [MissionEvent], primary_team: &[NodeId]) {
 impl<M, N: RobotNode> Network<M, N> {
     /// The observers' view of this instant, just before the robots move.
     pub fn snapshot(&self) -> Snapshot {
-        let snapshot = Snapshot::of_reports(self.step, self.site.settings.period, &self.reports());
         let nodes = self.nodes.nodes().iter().take(self.site.nodes());
         let absent = nodes.enumerate().filter(|(_, node)| !node.is_running()).map(|(id, _)| id);
-        match absent.collect::<Vec<_>>() {
-            absent if absent.is_empty() => snapshot,
-            absent => snapshot.without(absent),
-        }
+        let period = self.site.settings.period;
+        Snapshot::of_reports(self.step, period, &self.reports(), absent.collect())
     }
 
     /// What observers need to know of each robot, by number.
@@ -274,9 +277,11 @@ impl Overview<'_> {
         self.robots.iter().enumerate().filter_map(edge).collect()
     }
 
-    fn serviced(&self) -> Vec<(usize, NodeId)> {
+    /// The robot of each task. One that has stopped may have had the task of another that has taken it over.
+    fn serviced(&self, absent: &[NodeId]) -> Vec<(usize, NodeId)> {
         let task = |(id, robot): (NodeId, &RobotReport)| Some((robot.duty.post()?.task?, id));
-        let mut serviced: Vec<_> = self.robots.iter().enumerate().filter_map(task).collect();
+        let robots = self.robots.iter().enumerate().filter(|(id, _)| !absent.contains(id));
+        let mut serviced: Vec<_> = robots.filter_map(task).collect();
         serviced.sort_unstable();
         serviced.dedup_by_key(|(task, _)| *task);
         serviced

@@ -160,23 +160,19 @@ impl HeldFlow {
     }
 }
 
-/// Raises flows and lowers others by as much, at once: that takes nothing to spare, and time only where the link
-/// that takes over is the less reliable one. A sender that is busy all the time with a link that hardly carries
-/// anything could not do without it otherwise. Returns how much is taken over.
-fn replace_flows(links: &mut [&mut RouteLink], mut room: f64, promised: u32) -> f64 {
+/// Raises flows and lowers others by as much, at once, where that takes no more time. A sender that has neither time
+/// nor flows to spare could not leave a link that hardly carries anything otherwise. Returns how much is taken over.
+fn replace_flows(links: &mut [&mut RouteLink], promised: u32) -> f64 {
     let mut taken_over = 0.0;
     let count = links.len();
     for (more, less) in (0..count).flat_map(|more| (0..count).map(move |less| (more, less))) {
         let Ok([more, less]) = links.get_disjoint_mut([more, less]) else { continue };
         let lasts = |link: &RouteLink| holds(link.held.until, promised);
-        if lasts(less) && !lasts(more) {
+        if more.reliability < less.reliability || lasts(less) && !lasts(more) {
             continue;
         }
-        let time = 1.0 / more.reliability - 1.0 / less.reliability;
-        let most = if time > 0.0 { room.max(0.0) / time } else { f64::INFINITY };
-        let taken = more.held.raise(most.min(less.held.flow - less.held.wanted).max(0.0));
+        let taken = more.held.raise((less.held.flow - less.held.wanted).max(0.0));
         less.held.lower(taken);
-        room -= taken * time;
         taken_over += taken;
     }
     taken_over
@@ -336,10 +332,9 @@ impl Robot {
             for link in &mut in_use {
                 let less = link.held.lower(spare.max(0.0));
                 spare -= less;
-                room += less / link.reliability;
                 change += less;
             }
-            change += replace_flows(&mut in_use, room, promised);
+            change += replace_flows(&mut in_use, promised);
             if change == 0.0 {
                 break;
             }
