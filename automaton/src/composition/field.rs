@@ -134,10 +134,6 @@ impl<'a> Field<'a> {
     ///
     /// If a coefficient is not finite.
     pub(super) fn linear(&self) -> Result<Option<LinearPart>, InvalidFlow> {
-        let curved = self.rows.iter().filter(|row| **row == Row::Curved).count();
-        if curved > LARGEST_LINEAR {
-            return Ok(None);
-        }
         let Some((offsets, entries)) = self.entries() else { return Ok(None) };
         let mut belongs: Vec<bool> = self.rows.iter().map(|row| *row == Row::Curved).collect();
         entries.iter().for_each(|(_, column, _)| belongs[*column] = true);
@@ -316,15 +312,6 @@ impl<'a> Field<'a> {
         kinks.reduce(f64::min)
     }
 
-    /// Whether there are rates of which the next kink has to be asked for.
-    pub(super) fn has_known_kinks(&self) -> bool {
-        let has_kinks = |rate: &RateProgram| !rate.kinks.is_empty();
-        self.moving.iter().any(|(_, mode)| match &mode.motion {
-            ModeMotion::Rates(rates) => rates.iter().any(has_kinks),
-            ModeMotion::Field(_) | ModeMotion::Exact(_) => false,
-        })
-    }
-
     /// Rates that could grow without bound, with where their variables are.
     pub(super) fn unbounded_rates(&self) -> impl Iterator<Item = (&'a Component, &'a RateProgram)> {
         self.moving.iter().flat_map(|(component, mode)| {
@@ -390,5 +377,151 @@ impl Composition {
             let variable = moving.map(|place| self.variables[group.slots[place]].clone());
             variable.or_else(|| field.solved.first().map(|(component, _)| component.name.clone()))
         })
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use pleach_discrete::vocabulary;
+    use pleach_guards::{Expression, constant, variable};
+
+    use super::*;
+    use crate::{Automaton, Coordinate, Flow, Name, Record, coordinates, from};
+
+    vocabulary! {
+        enum Only: Location { Flowing = "flowing" }
+        enum Nothing: Event { Never = "never" }
+    }
+    coordinates! {
+        struct Plane { x, y }
+    }
+    use Only::Flowing;
+
+    /// x and y at these rates.
+    pub(in crate::composition) fn plane(rates: [Expression; 2]) -> Composition {
+        let Plane { x, y } = Plane::coordinates();
+        let [right, up] = rates;
+        let automaton = Automaton::<Only, Nothing, Plane>::starting_in(Flowing)
+            .initially(Plane { x: 0.0, y: 0.0 })
+            .flow(Flowing, [x.rate(right), y.rate(up)])
+            .transition(from(Flowing).on(Nothing::Never).to(Flowing).may(x.at_least(f64::MAX)))
+            .build()
+            .expect("it is sound");
+        Composition::builder().add("plane", &automaton).build().expect("it is sound")
+    }
+
+    /// x = t and y = `size` sin(`frequency` t), by a function.
+    pub(in crate::composition) fn wave(frequency: f64, size: f64) -> Composition {
+        let flow = Flow::exact("a wave", move |plane: &mut Plane, time| {
+            plane.x += time;
+            plane.y = size * (frequency * plane.x).sin();
+        });
+        let automaton = Automaton::<Only, Nothing, Plane>::starting_in(Flowing)
+            .initially(Plane { x: 0.0, y: 0.0 })
+            .flow(Flowing, flow)
+            .build()
+            .expect("it is sound");
+        Composition::builder().add("plane", &automaton).build().expect("it is sound")
+    }
+
+    /// Its flow from a state on.
+    pub(in crate::composition) fn field(plane: &Composition, start: [f64; 2]) -> Field<'_> {
+        Field::of(plane, &plane.groups[0], &[0], start.to_vec())
+    }
+
+    /// x and y as polynomials in time, without errors.
+    pub(in crate::composition) fn piece(end: f64, rows: [&[f64]; 2]) -> Piece {
+        let mut piece = Piece::new(0.0, end, 0.0, 1.0);
+        rows.iter().for_each(|row| piece.push(row.iter().copied(), 0.0));
+        piece
+    }
+
+    /// x = 2 + 4 t and y = −1 − 8 t: from 0.5 to 0.75 x is between 4 and 5, and y between −7 and −5.
+    #[test]
+    fn strain_moves_variables_by_what_rates_vary_in_units_of_the_tolerance() {
+        let [x, y] = ["x", "y"].map(variable);
+        let tolerances = Tolerances::new(0.5, 0.25).expect("they make sense");
+        let piece = piece(2.0, [&[2.0, 4.0], &[-1.0, -8.0]]);
+        let strain = |rates: [Expression; 2]| {
+            let plane = plane(rates);
+            field(&plane, [2.0, -1.0]).strain(&piece, [0.5, 0.75], tolerances)
+        };
+        let still = || constant(3.0);
+        for (rates, shift) in [
+            ([3.0 * &y, still()], 6.0 * 0.25 / (0.25 + 0.5 * 5.0)),
+            ([still(), 3.0 * &x], 3.0 * 0.25 / (0.25 + 0.5 * 7.0)),
+            ([&x * &x, 3.0 * &x], 9.0 * 0.25 / (0.25 + 0.5 * 5.0)),
+            ([still(), still()], 0.0),
+        ] {
+            let found = strain(rates);
+            assert!((found.shift - shift).abs() < 1e-9, "{found:?} is not {shift}");
+            assert!(!found.is_strained);
+        }
+        assert!(strain([(1000.0 * &x).exp(), still()]).is_strained);
+        assert!(strain([still(), (1000.0 * &x).exp()]).is_strained);
+    }
+
+    /// Only rates that could grow without bound are looked at, and from both sides.
+    #[test]
+    fn ranges_bound_rates_that_could_have_none() {
+        let [x, y] = ["x", "y"].map(variable);
+        // x from 0 to 1, y from 1 to 2001.
+        let piece = piece(1.0, [&[0.0, 1.0], &[1.0, 2000.0]]);
+        let is_bounded = |rates: [Expression; 2]| {
+            let plane = plane(rates);
+            field(&plane, [0.0, 1.0]).bounds_rates(&piece)
+        };
+        assert!(is_bounded([y.ln(), y.power(-2.0)]));
+        assert!(is_bounded([y.ln(), y.exp()]), "an exponential is bounded where its exponent is");
+        assert!(is_bounded([y.exp(), &x * &y]));
+        assert!(!is_bounded([x.ln(), constant(0.0)]), "it comes from below every number");
+        assert!(!is_bounded([y.ln(), -x.ln()]), "it comes from above every number");
+        assert!(!is_bounded([1.0 / &x, y.exp()]));
+    }
+
+    /// x₁ to xₘ decay towards the sum of others, of which some move along lines.
+    fn linear_part(decaying: usize, moving: usize, resting: usize) -> Option<usize> {
+        let all: Vec<String> =
+            (0..decaying + moving + resting).map(|number| format!("x{number}")).collect();
+        let (own, others) = all.split_at(decaying);
+        let sum =
+            || others.iter().map(|name| variable(name)).fold(constant(0.0), |sum, one| sum + one);
+        let state = Record::new(all.iter().map(|name| (name, 1.0))).expect("the names differ");
+        let coordinate = |name: &String| Coordinate::<Record>::new(crate::named::kept(name));
+        let mut rates: Vec<_> =
+            own.iter().map(|name| coordinate(name).rate(sum() - variable(name))).collect();
+        rates.extend(others[..moving].iter().map(|name| coordinate(name).rate(2.0)));
+        let only = Name::new("only");
+        let automaton = Automaton::<Name, Name, Record>::starting_in(only)
+            .initially(state)
+            .flow(only, rates)
+            .build()
+            .expect("it is sound");
+        let composition = Composition::builder().add("decays", &automaton).build();
+        let composition = composition.expect("it is sound");
+        let start = composition.initial.clone();
+        let field = Field::of(&composition, &composition.groups[0], &[0], start);
+        let part = field.linear().expect("its numbers are finite");
+        part.map(|part| part.variables.len())
+    }
+
+    #[test]
+    fn few_variables_that_move_and_not_too_many_others_make_a_matrix() {
+        assert_eq!(linear_part(3, 2, 1), Some(6));
+        assert_eq!(linear_part(LARGEST_LINEAR, 0, 0), Some(LARGEST_LINEAR));
+        assert_eq!(linear_part(LARGEST_LINEAR + 1, 0, 0), None);
+        assert_eq!(linear_part(LARGEST_LINEAR + 2, 0, 0), None);
+        assert_eq!(linear_part(LARGEST_LINEAR - 2, 2, 3), Some(LARGEST_LINEAR + 3));
+        assert_eq!(linear_part(LARGEST_LINEAR - 2, 3, 0), None);
+        assert_eq!(linear_part(1, 0, LARGEST_MATRIX - 1), Some(LARGEST_MATRIX));
+        assert_eq!(linear_part(1, 0, LARGEST_MATRIX), None);
+        assert_eq!(linear_part(2, 0, LARGEST_MATRIX), None);
+    }
+
+    #[test]
+    fn what_moves_is_the_variable_whose_rate_is_not_zero() {
+        let moves = plane([constant(0.0), variable("x") + 1.0]);
+        assert_eq!(moves.mover(&[0], &[0.0, 0.0]), Some("y".to_owned()));
+        assert_eq!(moves.mover(&[0], &[-1.0, 0.0]), None);
     }
 }

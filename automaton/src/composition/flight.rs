@@ -182,3 +182,63 @@ impl Flight {
         Flight { duration: Moment::from(time), must_leave: false, ..self }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pleach_continuous::flow::Uncertainty;
+
+    use super::*;
+
+    /// x = t up to 1, then 2 t − 1 up to 3, and 10 at the end.
+    fn flight() -> Flight {
+        let piece = |start: f64, end: f64, row: [f64; 2]| {
+            let mut piece = Piece::new(start, end, 0.0, 1.0);
+            piece.push(row, 0.0);
+            piece
+        };
+        let doubt = |from: f64, to: f64| Doubt { from, to, why: Uncertainty::Touch };
+        Flight {
+            since: Moment::from(100.0),
+            duration: Moment::from(3.0),
+            pieces: vec![piece(0.0, 1.0, [0.0, 1.0]), piece(1.0, 3.0, [-1.0, 2.0])],
+            landing: vec![10.0],
+            doubts: vec![doubt(0.25, 0.5), doubt(2.0, 3.0)],
+            grazes: vec![doubt(0.5, 2.5)],
+            unknowns: Vec::new(),
+            must_leave: true,
+            halt: None,
+        }
+    }
+
+    #[test]
+    fn a_flight_is_on_the_piece_of_its_time_and_lands_at_its_end() {
+        assert_eq!(flight().due(), Moment::from(103.0));
+        for (time, place) in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (1.5, 2.0), (2.5, 4.0)] {
+            assert_eq!(flight().state_at(time), [place], "{time}");
+        }
+        assert_eq!(flight().state_at(3.0), [10.0]);
+        assert_eq!(flight().state_at(7.0), [10.0]);
+    }
+
+    #[test]
+    fn a_flight_that_is_cut_keeps_what_is_before() {
+        for (time, place, ends) in
+            [(0.5, 0.5, vec![0.5]), (1.0, 1.0, vec![1.0]), (2.0, 3.0, vec![1.0, 2.0])]
+        {
+            let cut = flight().cut(time);
+            assert_eq!((cut.since, cut.duration), (Moment::from(100.0), Moment::from(time)));
+            assert_eq!(cut.landing, [place]);
+            assert!(!cut.must_leave, "nothing happens there");
+            assert_eq!(cut.pieces.iter().map(Curve::end).collect::<Vec<_>>(), ends);
+            assert_eq!(cut.pieces[0].start(), 0.0);
+        }
+        let spans =
+            |doubts: &[Doubt]| doubts.iter().map(|one| [one.from, one.to]).collect::<Vec<_>>();
+        let early = flight().cut(0.375);
+        assert_eq!(spans(&early.doubts), [[0.25, 0.375]]);
+        assert!(early.grazes.is_empty());
+        let late = flight().cut(2.25);
+        assert_eq!(spans(&late.doubts), [[0.25, 0.5], [2.0, 2.25]]);
+        assert_eq!(spans(&late.grazes), [[0.5, 2.25]]);
+    }
+}

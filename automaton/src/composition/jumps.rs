@@ -255,3 +255,32 @@ impl Component {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::within;
+
+    #[test]
+    fn shares_of_an_interval_lie_between_its_ends() {
+        assert_eq!(within([2.0, 6.0], 0.25), 3.0);
+        assert_eq!(within([-6.0, -2.0], 0.75), -3.0);
+        for ends in [[0.1, 0.3], [-1e20, 1.0], [1.0, 1.0], [-0.7, 0.1], [1e-3, 1e9]] {
+            let [lower, upper] = ends;
+            assert_eq!(within(ends, 0.0), lower);
+            assert_eq!(within(ends, 1.0), upper, "also where the width is rounded");
+            for share in [0.1, 0.3, 0.999_999_999_999] {
+                let number = within(ends, share);
+                assert!((lower..=upper).contains(&number), "{number} of {ends:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn intervals_without_numbers_or_without_end_have_no_share() {
+        for ends in [[2.0, 1.0], [0.0, f64::INFINITY], [f64::NEG_INFINITY, 0.0], [f64::NAN, 1.0]] {
+            for share in [0.0, 0.5, 1.0] {
+                assert!(within(ends, share).is_nan(), "{ends:?}");
+            }
+        }
+    }
+}

@@ -72,6 +72,7 @@ mod exploration;
 mod field;
 mod flight;
 mod group;
+mod halving;
 mod hold;
 mod jumps;
 mod kinks;

@@ -116,3 +116,66 @@ impl Record {
 fn values_of(group: &Group, values: &[f64]) -> Vec<f64> {
     group.slots.iter().map(|&slot| values[slot]).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use pleach_continuous::flow::{Doubt as Span, Piece, Uncertainty};
+    use pleach_guards::constant;
+
+    use super::*;
+    use crate::composition::field::tests::plane;
+
+    /// A flow that begins after 8 s and takes 2.
+    fn flight(pieces: usize, numbers: usize) -> Flight {
+        let piece = |number: usize| {
+            let start = 2.0 * number as f64 / pieces as f64;
+            let mut piece = Piece::new(start, start + 2.0 / pieces as f64, 0.0, 1.0);
+            piece.push((0..numbers).map(|_| 1.0), 0.0);
+            piece
+        };
+        Flight {
+            since: Moment::from(8.0),
+            duration: Moment::from(2.0),
+            pieces: (0..pieces).map(piece).collect(),
+            landing: vec![0.0; numbers],
+            doubts: vec![Span { from: 0.25, to: 0.5, why: Uncertainty::Touch }],
+            grazes: vec![Span { from: 1.25, to: 1.5, why: Uncertainty::Touch }],
+            unknowns: vec![Why::Field],
+            must_leave: false,
+            halt: None,
+        }
+    }
+
+    /// Eight bytes for each number, and a little more.
+    #[test]
+    fn the_size_of_a_record_is_that_of_its_numbers() {
+        let plane = plane([constant(0.0), constant(0.0)]);
+        let mut record = Record::of(&plane);
+        assert_eq!(record.size(), 0);
+        let mut numbers = 0;
+        for (pieces, terms) in [(1, 1000), (3, 500), (100, 10)] {
+            record.flown(0, flight(pieces, terms));
+            numbers += (pieces + 1) * terms;
+            let more = record.size() / 8 - numbers as u64;
+            assert!((1..1000).contains(&more), "{more}");
+        }
+        let before = record.size();
+        let taken = Taken { label: "never".to_owned(), moves: Vec::new(), changes: Vec::new() };
+        record.jumped(HybridTime { t: 10.0, j: 0 }, 0, &taken, &plane.groups[0], &[0.0; 2]);
+        assert!((1..100).contains(&((record.size() - before) / 8)));
+    }
+
+    #[test]
+    fn doubts_of_a_flow_are_told_in_the_time_of_the_run() {
+        let plane = plane([constant(0.0), constant(0.0)]);
+        let mut record = Record::of(&plane);
+        record.flown(0, flight(1, 2));
+        let found = record.doubts.iter().map(|doubt| (doubt.from, doubt.to, doubt.why));
+        let found: Vec<_> = found.collect();
+        assert!(found.contains(&(8.25, 8.5, Why::Touch)), "{found:?}");
+        assert!(found.contains(&(9.25, 9.5, Why::Graze)), "{found:?}");
+        assert!(found.contains(&(8.0, 10.0, Why::Field)), "{found:?}");
+        let stretch = record.strands[0].stretches.last().expect("there is one");
+        assert_eq!((stretch.since, stretch.until), (Moment::from(8.0), 10.0));
+    }
+}

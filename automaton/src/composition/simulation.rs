@@ -256,3 +256,19 @@ impl System for Simulation<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The order of a queue is that of the operators, too.
+    #[test]
+    fn what_is_due_first_comes_first_and_of_those_the_first_group() {
+        let due = |seconds: f64, group: usize| Due { at: Moment::from(seconds), group };
+        let later = Due { at: Moment::from(1.0) + Moment::from(1e-20), group: 0 };
+        let all = [due(0.5, 3), due(1.0, 0), due(1.0, 2), later, due(2.0, 1)];
+        assert!(all.is_sorted_by(|one, other| one < other));
+        let queue: BTreeSet<Due> = all.into_iter().rev().collect();
+        assert!(queue.into_iter().eq(all));
+    }
+}

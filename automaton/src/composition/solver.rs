@@ -8,6 +8,7 @@ use pleach_continuous::flow::{
 use pleach_guards::{Enclosure, Expression};
 
 use super::field::{Field, Row};
+use super::halving::middle;
 use super::hold::{Hold, Unclear};
 use super::linear::LinearPart;
 use super::settings::Settings;
@@ -44,10 +45,6 @@ pub(super) struct Solver<'a> {
     enclosures: Vec<Enclosure>,
     /// Whether the integrator itself solves for all variables.
     is_complete: bool,
-    /// Whether rates have kinks that are known beforehand.
-    has_kinks: bool,
-    /// Whether a rate could grow without bound.
-    may_diverge: bool,
     /// What steps must not pass over unseen, where rates are such that they could.
     seen_to: Option<Tolerances>,
 }
@@ -86,8 +83,6 @@ impl<'a> Solver<'a> {
         let seen_to = field.is_sharp().then(|| settings.tolerances());
         let is_complete =
             matches!(method, Method::Steps(_)) && field.rows.iter().all(|row| *row == Row::Curved);
-        let has_kinks = matches!(method, Method::Steps(_)) && field.has_known_kinks();
-        let may_diverge = field.unbounded_rates().next().is_some();
         Ok(Solver {
             field,
             method,
@@ -99,8 +94,6 @@ impl<'a> Solver<'a> {
             grazes,
             enclosures,
             is_complete,
-            has_kinks,
-            may_diverge,
             seen_to,
         })
     }
@@ -197,8 +190,8 @@ impl<'a> Solver<'a> {
     fn extend(&mut self, limit: f64) -> Result<(), String> {
         let start = self.reached;
         let piece = match self.field.hold() {
-            Some(hold) if matches!(self.method, Method::Steps(_)) => self.held(hold, limit)?,
-            _ => self.next_piece(limit)?,
+            Some(hold) => self.held(hold, limit)?,
+            None => self.next_piece(limit)?,
         };
         if self.overflows(&piece) {
             return Err("the state grows beyond the largest number".to_owned());
@@ -224,8 +217,7 @@ impl<'a> Solver<'a> {
                 flow.piece(start).ok_or("the flow has no solution")?.within(start, limit)
             }
             Method::Steps(integrator) => {
-                let kink = self.has_kinks.then(|| self.field.next_kink(start)).flatten();
-                let limit = kink.map_or(limit, |kink| limit.min(kink));
+                let limit = self.field.next_kink(start).map_or(limit, |kink| limit.min(kink));
                 let step = integrator.step(limit).map_err(|fault| without_time(&fault))?;
                 step.piece(start).ok_or("the flow has no solution")?
             }
@@ -245,19 +237,18 @@ impl<'a> Solver<'a> {
         if !self.field.is_strained(piece) {
             return None;
         }
-        let mut spans = vec![[piece.start(), piece.end()]];
-        for number in 0..MOST_GLANCES {
-            let Some([from, to]) = spans.pop() else { break };
+        let whole = [piece.start(), piece.end()];
+        let mut spans = vec![whole];
+        for left in (0..MOST_GLANCES).rev() {
+            let [from, to] = spans.pop()?;
             let strain = self.field.strain(piece, [from, to], tolerances);
-            let is_strained = strain.is_strained && strain.shift > 1.0;
-            let middle = from + 0.5 * (to - from);
-            let is_last = number + 1 == MOST_GLANCES || middle <= from || middle >= to;
-            if is_strained && !is_last {
-                spans.extend([[middle, to], [from, middle]]);
-            } else if number > 0 && strain.shift > 1.0 {
-                return Some(if from > piece.start() { from } else { to });
-            } else if number == 0 {
-                break;
+            if strain.shift <= 1.0 {
+                continue;
+            }
+            match middle(from, to).filter(|_| strain.is_strained && left > 0) {
+                Some(middle) => spans.extend([[middle, to], [from, middle]]),
+                None if [from, to] == whole => return None,
+                None => return Some(if from > piece.start() { from } else { to }),
             }
         }
         None
@@ -426,7 +417,7 @@ impl<'a> Solver<'a> {
     /// it does not, or until nothing is left to halve: then the rate is bounded up to there alone.
     fn check_rates(&mut self, piece: &Piece) -> Result<(), (f64, String)> {
         let field = self.field;
-        if !self.may_diverge || field.bounds_rates(piece) {
+        if field.bounds_rates(piece) {
             return Ok(());
         }
         for (component, rate) in field.unbounded_rates() {
@@ -441,15 +432,14 @@ impl<'a> Solver<'a> {
                 if margins.all(|range| range.lower().is_finite() && range.upper().is_finite()) {
                     continue;
                 }
-                let middle = from + 0.5 * (to - from);
-                if to - from <= CRAWLING * to.abs() || middle <= from || middle >= to {
+                let Some(middle) = middle(from, to).filter(|_| !is_crawling(from, to)) else {
                     let name = component.blueprint.coordinates[rate.coordinate];
                     let reason = format!(
                         "within the error of the solution, the rate of `{name}` may grow without bound \
                          or have no value,"
                     );
                     return Err((from, reason));
-                }
+                };
                 spans.extend([(middle, to), (from, middle)]);
             }
         }
@@ -457,7 +447,7 @@ impl<'a> Solver<'a> {
     }
 
     fn check_progress(&mut self, piece: &Piece) -> Result<(), String> {
-        let crawls = piece.end() - piece.start() <= CRAWLING * piece.end().abs();
+        let crawls = is_crawling(piece.start(), piece.end());
         self.crawled = if crawls { self.crawled + 1 } else { 0 };
         if self.crawled <= MOST_CRAWLING {
             return Ok(());
@@ -472,6 +462,11 @@ impl<'a> Solver<'a> {
     }
 }
 
+/// Whether a span of time is hardly longer than rounding.
+fn is_crawling(from: f64, to: f64) -> bool {
+    to - from <= CRAWLING * to.abs()
+}
+
 /// What is wrong, without the time, which counts from the start of the flow.
 fn without_time(fault: &IntegrationFailure) -> String {
     match fault {
@@ -482,5 +477,152 @@ fn without_time(fault: &IntegrationFailure) -> String {
         }
         IntegrationFailure::Undefined { .. } => "the rates are not finite numbers".to_owned(),
         other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pleach_guards::{constant, variable};
+
+    use super::super::field::tests::{field, piece, plane, wave};
+    use super::*;
+
+    fn solver<'a>(field: &'a Field<'a>, limit: f64) -> Solver<'a> {
+        let linear = field.linear().expect("its numbers are finite");
+        Solver::new(field, linear, &Settings::default(), limit).expect("it can be solved")
+    }
+
+    /// A value counts with its rate, each variable by itself, and only where it began as a number.
+    #[test]
+    fn what_began_finite_overflows_with_its_value_its_rate_or_its_error() {
+        let plane = plane([constant(0.0), constant(0.0)]);
+        let most = f64::MAX;
+        let overflows = |start: [f64; 2], rows: [&[f64]; 2], error: f64| {
+            let mut piece = Piece::new(0.0, 1.0, 0.0, 1.0);
+            piece.push(rows[0].iter().copied(), error);
+            piece.push(rows[1].iter().copied(), 0.0);
+            solver(&field(&plane, start), 1.0).overflows(&piece)
+        };
+        let still = [0.0; 2];
+        assert!(!overflows(still, [&[1.0, 2.0], &[3.0]], 0.0));
+        assert!(!overflows(still, [&[0.9 * most], &[0.9 * most]], 0.0));
+        assert!(overflows(still, [&[0.5 * most, 0.5 * most], &[0.0]], 0.0));
+        assert!(overflows(still, [&[0.0], &[0.0, 0.0, 0.4 * most]], 0.0));
+        assert!(!overflows(still, [&[0.0], &[0.0, 0.0, 0.3 * most]], 0.0));
+        assert!(overflows(still, [&[f64::INFINITY], &[0.0]], 0.0));
+        assert!(!overflows([f64::INFINITY, 0.0], [&[f64::INFINITY], &[0.0]], 0.0));
+        assert!(overflows(still, [&[1.0], &[0.0]], f64::INFINITY));
+    }
+
+    /// As closely as the digits of its values allow, in pieces of one number whatever their unit is.
+    #[test]
+    fn polynomials_stand_for_functions_up_to_rounding() {
+        let pieces = |frequency: f64, size: f64| {
+            let wave = wave(frequency, size);
+            let field = field(&wave, [0.0, 0.0]);
+            let mut solver = solver(&field, 8.0);
+            while solver.reached() < 8.0 {
+                let reached = solver.reached();
+                let piece = solver.piece_at(reached, 8.0).expect("it has a solution");
+                assert!(piece.start() == reached && piece.end() > reached);
+                for part in 0..=32 {
+                    let length = piece.end() - piece.start();
+                    let time = piece.start() + length * f64::from(part) / 32.0;
+                    let exact = size * (frequency * time).sin();
+                    assert!((piece.value(1, time) - exact).abs() < 1e-11 * size, "{time}");
+                }
+                assert!(solver.pieces.len() < 1000, "pieces are short");
+            }
+            assert_eq!(solver.reached(), 8.0);
+            solver.into_pieces(8.0).expect("it is solved").len()
+        };
+        let (slow, fast) = (pieces(1.0, 1.0), pieces(16.0, 1.0));
+        assert!(slow <= 32 && fast <= 40 * slow, "{slow}, {fast}");
+        for exponent in [-40, -3, 3, 40] {
+            assert_eq!(pieces(1.0, 2f64.powi(exponent)), slow, "{exponent}");
+        }
+    }
+
+    /// y′ is e^−((x − c) ÷ w)² ÷ w and x is the time: the step has to end before the spike, or where it is over
+    /// if it begins with it.
+    #[test]
+    fn a_step_ends_before_what_it_does_not_see() {
+        let [x, _] = ["x", "y"].map(variable);
+        let ends = |centre: f64, width: f64, height: f64, steps: [f64; 2]| {
+            let spike = height / width * (-((&x - centre) / width).power(2.0)).exp();
+            let plane = plane([constant(1.0), spike]);
+            let field = field(&plane, [0.0, 0.0]);
+            let mut step = Piece::new(steps[0], steps[1], 0.0, 1.0);
+            step.push([0.0, 1.0], 0.0);
+            step.push([0.0], 0.0);
+            solver(&field, 100.0).unseen(&step)
+        };
+        for width in [1e-2, 1e-3, 1e-4] {
+            for centre in [3.0, 10.0, 47.0, 99.9] {
+                for end in [100.0, 128.0] {
+                    let found = ends(centre, width, 1.0, [0.0, end]).expect("there is a spike");
+                    assert!(centre - 50.0 * width < found && found < centre, "{found}: {centre}");
+                }
+                assert_eq!(ends(centre, width, 1e-14, [0.0, 100.0]), None, "it is small");
+                let [before, after] = [centre - 100.0 * width, centre + 100.0 * width];
+                assert_eq!(ends(centre, width, 1.0, [0.0, before]), None, "it comes later");
+                assert_eq!(ends(centre, width, 1.0, [after, 200.0]), None, "it is over");
+            }
+            // From the middle of the spike on.
+            let found = ends(5.0, width, 1.0, [5.0, 105.0]).expect("there is a spike");
+            assert!(5.0 < found && found < 5.0 + 50.0 * width, "{found}");
+        }
+    }
+
+    /// 1 ÷ x where x = 1 − t, and other rates that have no bound at x = 0.
+    #[test]
+    fn rates_are_bounded_up_to_where_they_are_not() {
+        let [x, y] = ["x", "y"].map(variable);
+        for rate in [1.0 / &x, -1.0 / &x, x.ln(), -x.ln(), x.power(-0.5), &y / x.power(2.0)] {
+            let sides = [("x", [rate.clone(), y.ln()]), ("y", [y.ln(), rate.clone()])];
+            for (name, rates) in sides {
+                let plane = plane(rates);
+                let field = field(&plane, [1.0, 1.0]);
+                let mut solver = solver(&field, 10.0);
+                let mut checked =
+                    |end: f64| solver.check_rates(&piece(end, [&[1.0, -1.0], &[1.0, 1.0]]));
+                assert_eq!(checked(0.5), Ok(()));
+                assert_eq!(checked(1.0 - 1e-9), Ok(()), "{rate}");
+                for end in [1.0, 1.5, 1000.0] {
+                    let (last, reason) = checked(end).expect_err("there is a pole");
+                    assert!(1.0 - 1e-12 < last && last <= 1.0, "{rate}: {last}");
+                    assert!(reason.contains(&format!("`{name}`")), "{reason}");
+                }
+            }
+        }
+    }
+
+    /// What is kept ends where it is asked to, and begins at the start.
+    #[test]
+    fn pieces_are_kept_up_to_the_end_of_a_flight() {
+        let [x, y] = ["x", "y"].map(variable);
+        let plane = plane([y.clone(), -&x + 0.0 * y.power(2.0)]);
+        let field = field(&plane, [0.0, 1.0]);
+        let mut whole = solver(&field, 10.0);
+        while whole.reached() < 10.0 {
+            whole.piece_at(whole.reached(), 10.0).expect("it can be followed");
+        }
+        let ends: Vec<f64> = whole.pieces.iter().map(Curve::end).collect();
+        assert!(ends.len() > 10);
+        for (number, &end) in ends.iter().enumerate().take(10) {
+            let begin = if number == 0 { 0.0 } else { ends[number - 1] };
+            for time in [end, 0.5 * (begin + end)] {
+                let mut solver = solver(&field, 10.0);
+                solver.piece_at(9.9, 10.0).expect("it can be followed");
+                let pieces = solver.into_pieces(time).expect("it can be followed");
+                assert_eq!(pieces.len(), number + 1);
+                assert!(pieces.windows(2).all(|pair| pair[0].end() == pair[1].start()));
+                assert_eq!((pieces[0].start(), pieces[number].end()), (0.0, time));
+            }
+            let middle = 0.5 * (begin + end);
+            let found = whole.piece_at(middle, 10.0).expect("it is solved");
+            assert_eq!((found.start(), found.end()), (begin, end));
+        }
+        assert_eq!(solver(&field, 10.0).into_pieces(0.0).expect("there is none").len(), 0);
     }
 }

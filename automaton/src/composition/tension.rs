@@ -408,3 +408,85 @@ impl Knowledge {
         if time <= zero { Knowledge::Fixed(rises) } else { Knowledge::Switch(time, rises) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pleach_guards::{constant, variable};
+
+    use super::*;
+    use crate::composition::field::tests::{field, plane};
+
+    /// What is known of 2 x + y ÷ 2 − 3 ≥ 0, or > 0, with this slack, where x and y begin at `start` and
+    /// have these rates.
+    fn known(start: [f64; 2], rates: [f64; 2], is_strict: bool, slack: f64) -> Knowledge {
+        let plane = plane(rates.map(constant));
+        let form = Affine { coefficients: [(0, 2.0), (1, 0.5)].into(), constant: -3.0 };
+        Knowledge::of(&form, is_strict, &[0, 1], slack, &field(&plane, start))
+    }
+
+    fn switch(time: f64, after: bool) -> Knowledge {
+        Knowledge::Switch(Moment::from(time), after)
+    }
+
+    #[test]
+    fn a_comparison_along_lines_changes_where_they_cross_its_bound() {
+        for is_strict in [false, true] {
+            // The margin begins at −2 and rises by 2.5 − 2 in a second.
+            assert_eq!(known([0.25, 1.0], [1.25, -4.0], is_strict, 0.0), switch(4.0, true));
+            // It begins at 2 and falls.
+            assert_eq!(known([2.0, 2.0], [-1.0, 3.0], is_strict, 0.0), switch(4.0, false));
+            // It moves away from 0.
+            assert_eq!(known([2.0, 2.0], [1.0, 3.0], is_strict, 0.0), Knowledge::Fixed(true));
+            assert_eq!(known([0.0, 2.0], [-1.0, 3.0], is_strict, 0.0), Knowledge::Fixed(false));
+            // From 0 it goes to either side at once.
+            assert_eq!(known([1.0, 2.0], [1.0, 0.0], is_strict, 0.0), Knowledge::Fixed(true));
+            assert_eq!(known([1.0, 2.0], [-1.0, 0.0], is_strict, 0.0), Knowledge::Fixed(false));
+        }
+    }
+
+    #[test]
+    fn a_margin_that_rests_at_zero_is_enough_where_equality_is() {
+        for (start, is_met) in
+            [([1.0, 2.0], [true, false]), ([2.0, 2.0], [true; 2]), ([0.0; 2], [false; 2])]
+        {
+            for rates in [[0.0, 0.0], [1.0, -4.0]] {
+                let found = [false, true].map(|is_strict| known(start, rates, is_strict, 0.0));
+                assert_eq!(found, is_met.map(Knowledge::Fixed), "{start:?}");
+            }
+        }
+    }
+
+    /// What begins beyond the bound by less than the slack holds until it is beyond it by more; what does
+    /// not begin beyond has none.
+    #[test]
+    fn slack_is_for_a_start_on_the_wrong_side() {
+        for is_strict in [false, true] {
+            // A margin of −0.5.
+            let [x, y] = [0.75, 2.0];
+            assert_eq!(known([x, y], [0.0, 0.0], is_strict, 0.5), Knowledge::Fixed(true));
+            assert_eq!(known([x, y], [0.0, 0.0], is_strict, 0.25), Knowledge::Fixed(false));
+            assert_eq!(known([x, y], [-0.5, 0.0], is_strict, 2.5), switch(2.0, false));
+            assert_eq!(known([x, y], [0.5, 0.0], is_strict, 0.25), switch(0.25, true));
+            // A margin of 0 is not above it.
+            assert_eq!(known([1.0, 2.0], [-0.5, 0.0], is_strict, 2.0), switch(2.0, false));
+            // A margin of 0.5.
+            assert_eq!(known([1.25, y], [-0.5, 0.0], is_strict, 2.0), switch(0.5, false));
+        }
+    }
+
+    #[test]
+    fn nothing_is_known_of_curves_and_of_what_is_not_finite() {
+        let [x, y] = ["x", "y"].map(variable);
+        let form = Affine { coefficients: [(1, 1.0)].into(), constant: -3.0 };
+        let known_of = |rate: pleach_guards::Expression, start: f64| {
+            let plane = plane([constant(1.0), rate]);
+            Knowledge::of(&form, false, &[0, 1], 0.0, &field(&plane, [0.0, start]))
+        };
+        assert_eq!(known_of(constant(2.0), 1.0), switch(1.0, true));
+        assert_eq!(known_of(&x + &y, 1.0), Knowledge::Nothing);
+        assert_eq!(known_of(constant(2.0), f64::INFINITY), Knowledge::Nothing);
+        assert_eq!(known_of(constant(f64::INFINITY), 1.0), Knowledge::Nothing);
+        // The time is beyond all numbers.
+        assert_eq!(known_of(constant(1e-300), -1e300), Knowledge::Nothing);
+    }
+}

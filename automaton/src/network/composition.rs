@@ -278,3 +278,30 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pleach_discrete::Location;
+
+    use super::*;
+
+    /// Each stage adds to one part, and the parts to the whole.
+    #[test]
+    fn the_time_of_a_stage_counts_for_one_part() {
+        let spent = |stage: Stage| {
+            let mut times = KernelTimes::default();
+            *times.of(stage) += Duration::from_secs(1);
+            let KernelTimes { coordination, routing, motion, acceptance } = times;
+            [coordination, routing, motion, acceptance].map(|part| part.as_secs())
+        };
+        for &stage in Stage::ALL {
+            let expected = match stage {
+                Stage::Moving | Stage::Beacons => [1, 0, 0, 0],
+                Stage::Planning => [0, 0, 1, 0],
+                Stage::Negotiation => [0, 0, 0, 1],
+                _ => [0, 1, 0, 0],
+            };
+            assert_eq!(spent(stage), expected, "{stage:?}");
+        }
+    }
+}

@@ -4,6 +4,7 @@ use pleach_continuous::flow::Onset;
 
 use super::Flight;
 use super::search::{End, Fault, Search};
+use crate::composition::halving::middle;
 use crate::composition::simulation::Halt;
 use crate::moment::Moment;
 
@@ -101,13 +102,10 @@ impl Search<'_, '_> {
             after = earlier;
             step *= 2.0;
         };
-        loop {
-            let middle = before + 0.5 * (after - before);
-            if middle <= before || middle >= after {
-                return Ok(before);
-            }
+        while let Some(middle) = middle(before, after) {
             if calm(middle)? { before = middle } else { after = middle }
         }
+        Ok(before)
     }
 
     /// The flow as far as it can be followed.

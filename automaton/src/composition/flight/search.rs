@@ -4,6 +4,7 @@ use pleach_continuous::flow::{Curve, Doubt, Finding, Lost, Onset, Uncertainty, W
 use pleach_guards::Course;
 
 use crate::composition::group::Group;
+use crate::composition::halving::middle;
 use crate::composition::jumps::Standing;
 use crate::composition::settings::Settings;
 use crate::composition::simulation::{Failure, Halt};
@@ -213,13 +214,10 @@ impl<'a> Search<'a, '_> {
     /// something does.
     fn narrowed(&mut self, before: f64, after: f64, tolerance: f64) -> Result<Onset, Stop> {
         let (mut before, mut after) = (before, after);
-        loop {
-            let middle = before + 0.5 * (after - before);
-            if after - before <= tolerance || middle <= before || middle >= after {
-                return Ok(Onset { before, time: after });
-            }
+        while let Some(middle) = middle(before, after).filter(|_| after - before > tolerance) {
             if self.holds_at(middle)? { after = middle } else { before = middle }
         }
+        Ok(Onset { before, time: after })
     }
 
     fn can_jump_at(&mut self, time: Moment) -> Result<bool, Stop> {
@@ -313,16 +311,13 @@ impl<'a> Search<'a, '_> {
 
     /// The last time, from `defined` on, at which every formula has a value.
     fn last_defined(&mut self, mut defined: f64, mut undefined: f64) -> f64 {
-        loop {
-            let middle = defined + 0.5 * (undefined - defined);
-            if middle <= defined || middle >= undefined {
-                return defined;
-            }
+        while let Some(middle) = middle(defined, undefined) {
             match self.holds_at(middle) {
                 Ok(_) => defined = middle,
                 Err(_) => undefined = middle,
             }
         }
+        defined
     }
 
     /// Takes note of a doubt, together with one of the same kind just before it.
