@@ -177,9 +177,7 @@ impl<'a> Field<'a> {
 
     fn add_rates(&self, state: &[f64], rates: &mut [f64]) {
         let mut tapes = self.places.borrow_mut();
-        if tapes.len() < self.moving.len() {
-            tapes.resize(self.moving.len(), Vec::new());
-        }
+        tapes.resize(self.moving.len(), Vec::new());
         for (number, (component, mode)) in self.moving.iter().enumerate() {
             let places = &mut tapes[number];
             match &mode.motion {
@@ -383,7 +381,7 @@ impl Composition {
 #[cfg(test)]
 pub(super) mod tests {
     use pleach_discrete::vocabulary;
-    use pleach_guards::{Expression, constant, variable};
+    use pleach_guards::{Expression, Predicate, constant, never, variable};
 
     use super::*;
     use crate::{Automaton, Coordinate, Flow, Name, Record, coordinates, from};
@@ -399,12 +397,20 @@ pub(super) mod tests {
 
     /// x and y at these rates.
     pub(in crate::composition) fn plane(rates: [Expression; 2]) -> Composition {
+        guarded(rates, &never())
+    }
+
+    /// x and y at these rates, up to where a guard holds.
+    pub(in crate::composition) fn guarded(
+        rates: [Expression; 2],
+        guard: &Predicate,
+    ) -> Composition {
         let Plane { x, y } = Plane::coordinates();
         let [right, up] = rates;
         let automaton = Automaton::<Only, Nothing, Plane>::starting_in(Flowing)
             .initially(Plane { x: 0.0, y: 0.0 })
             .flow(Flowing, [x.rate(right), y.rate(up)])
-            .transition(from(Flowing).on(Nothing::Never).to(Flowing).may(x.at_least(f64::MAX)))
+            .transition(from(Flowing).on(Nothing::Never).to(Flowing).must(guard.clone()))
             .build()
             .expect("it is sound");
         Composition::builder().add("plane", &automaton).build().expect("it is sound")

@@ -93,3 +93,41 @@ impl Forest {
         self.0[one.max(other)] = one.min(other);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Automaton, Name, Record};
+
+    /// Where components find their coordinates among those of their group, and whether they stand together.
+    #[test]
+    fn components_know_their_places_and_whether_these_follow_each_other() {
+        let state = Record::new([("a", 1.0), ("b", 2.0), ("c", 3.0)]).expect("the names differ");
+        let triple = Automaton::<Name, Name, Record>::starting_in(Name::new("resting"))
+            .initially(state)
+            .build()
+            .expect("it is sound");
+        let names = ["alone", "first", "second", "third", "fourth"];
+        let composition = names
+            .into_iter()
+            .fold(Composition::builder(), |all, name| all.add(name, &triple))
+            .connect("third.b", "first.a")
+            .connect("first.b", "second.a")
+            .connect("first.b", "second.b")
+            .connect("second.c", "third.c")
+            .build()
+            .expect("the parts fit");
+        let groups: Vec<&[usize]> =
+            composition.groups.iter().map(|group| &*group.components).collect();
+        assert_eq!(groups, [&[0][..], &[1, 2, 3], &[4]]);
+        let places: Vec<&[usize]> = composition.components.iter().map(|one| &*one.places).collect();
+        // Of the group of three: b and c of the first, c of the second, a and b of the third.
+        assert_eq!(places, [&[0, 1, 2], &[4, 0, 1], &[0, 0, 2], &[3, 4, 2], &[0, 1, 2]]);
+        let windows: Vec<_> = composition.components.iter().map(|one| one.window).collect();
+        assert_eq!(windows, [Some(0), None, None, None, Some(0)]);
+        let back = Composition::builder().add("before", &triple).add("after", &triple);
+        let back = back.connect("before.c", "after.a").build().expect("the parts fit");
+        let windows: Vec<_> = back.components.iter().map(|one| one.window).collect();
+        assert_eq!(windows, [Some(0), Some(2)]);
+    }
+}

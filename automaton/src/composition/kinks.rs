@@ -101,14 +101,14 @@ impl Kinks {
         if speed == 0.0 {
             return None;
         }
+        let rises = speed > 0.0;
         let here = start + speed * after;
         let passed = self.places.partition_point(|place| *place <= here);
         // With the last place that was passed, since a step may have to end right behind it.
         let count = self.places.len();
-        let first =
-            if speed > 0.0 { passed.saturating_sub(1) } else { count - count.min(passed + 1) };
+        let first = if rises { passed.saturating_sub(1) } else { count - count.min(passed + 1) };
         (first..count).find_map(|number| {
-            let place = self.places[if speed > 0.0 { number } else { count - 1 - number }];
+            let place = self.places[if rises { number } else { count - 1 - number }];
             let time = (place - start) / speed;
             let numbers = time.abs() + (size + place.abs()) / speed.abs();
             let beside = if self.are_jumps { BESIDE * numbers } else { 0.0 };

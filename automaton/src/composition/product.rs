@@ -266,3 +266,35 @@ impl<'a> Product<'a> {
         Ok(builder.transition(edge.then(values)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pleach_discrete::vocabulary;
+    use pleach_guards::always;
+
+    use super::*;
+
+    vocabulary! {
+        enum Lamp: Location { Off = "off", On = "on" }
+        enum Press: Event { Press = "press" }
+    }
+
+    #[test]
+    fn a_product_may_have_all_its_locations_and_not_one_more() {
+        let switch = Automaton::starting_in(Lamp::Off)
+            .initially(())
+            .transition(from(Lamp::Off).on(Press::Press).to(Lamp::On).may(always()))
+            .build()
+            .expect("it is sound");
+        let combinations = |count: u32| {
+            let names = (0..count).map(|number| number.to_string());
+            let switches = Composition::builder().add_each(names, &switch).build();
+            let switches = switches.expect("the names differ");
+            Product::of(&switches).map(|product| product.combinations.len())
+        };
+        assert_eq!(combinations(5).ok(), Some(32));
+        assert_eq!(combinations(LOCATIONS.ilog2()).ok(), Some(LOCATIONS));
+        let more = combinations(LOCATIONS.ilog2() + 1);
+        assert!(matches!(more, Err(ProductError::Locations)), "{more:?}");
+    }
+}

@@ -130,3 +130,38 @@ mod unbounded {
         Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Flows and events are looked for as the settings say.
+    #[test]
+    fn tolerances_and_the_resolution_are_those_of_the_settings() {
+        let settings = Settings {
+            relative_tolerance: 1e-3,
+            absolute_tolerance: 1e-5,
+            resolution: 0.25,
+            ..Settings::default()
+        };
+        let tolerances = Tolerances::new(1e-3, 1e-5).expect("they make sense");
+        assert_eq!(settings.tolerances(), tolerances);
+        let shorter = Settings { largest_step: 0.5, ..settings };
+        let tolerances = tolerances.with_largest_step(0.5).expect("it makes sense");
+        assert_eq!(shorter.tolerances(), tolerances);
+        let search = EventSearch::new(0.25, EventSearch::default().looks());
+        assert_eq!(settings.search(), search.expect("it makes sense"));
+    }
+
+    /// An infinite step is no number in JSON, and is read back.
+    #[test]
+    fn settings_are_written_and_read() {
+        for largest_step in [0.5, f64::INFINITY] {
+            let settings = Settings { largest_step, step_limit: 7, ..Settings::default() };
+            let text = serde_json::to_string(&settings).expect("it is written");
+            assert_eq!(text.contains(r#""largest_step":null"#), largest_step.is_infinite());
+            let read: Settings = serde_json::from_str(&text).expect("it is read");
+            assert_eq!(read, settings);
+        }
+    }
+}

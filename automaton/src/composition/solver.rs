@@ -625,4 +625,42 @@ mod tests {
         }
         assert_eq!(solver(&field, 10.0).into_pieces(0.0).expect("there is none").len(), 0);
     }
+
+    /// Of a step that ends at a kink all is kept, up to rounding, unless hardly any of it is: it is a step of its
+    /// own, and as exact as any other.
+    #[test]
+    fn a_step_ends_at_a_kink_and_not_beyond_it() {
+        let [x, y] = ["x", "y"].map(variable);
+        for stiffness in [1.0, 4.0, 37.0] {
+            let plane = plane([y.clone(), stiffness * (1.5 * x.abs() - 2.5 * &x)]);
+            let field = field(&plane, [1.0, 0.5]);
+            let (mut solver, mut kinks) = (solver(&field, 100.0), 0);
+            while solver.reached() < 100.0 {
+                let reached = solver.reached();
+                let piece = solver.piece_at(reached, 100.0).expect("it can be followed").clone();
+                if solver.kink.is_some() {
+                    let share = (piece.end() - piece.start()) / piece.scale();
+                    let is_kept = !(1.01 * BESIDE..1.0 - 1.01 * BESIDE).contains(&share);
+                    assert!(is_kept, "{share} of a step at {reached}");
+                    assert!(piece.value(0, piece.end()).abs() < 1e-6, "there is the kink");
+                    kinks += 1;
+                }
+            }
+            assert!(kinks > 20, "{kinks}");
+        }
+    }
+
+    /// Near 0 numbers are as close as anywhere, in proportion.
+    #[test]
+    fn spans_of_a_thousand_roundings_crawl() {
+        for time in [1e-9, 1.0, 3.0, 1e9] {
+            for spacings in [0.0, 1.0, 900.0] {
+                assert!(is_crawling(time, time * (1.0 + spacings * f64::EPSILON)));
+            }
+            for spacings in [1100.0, 1e6, 1e15] {
+                assert!(!is_crawling(time, time * (1.0 + spacings * f64::EPSILON)));
+            }
+            assert!(!is_crawling(0.0, time) && !is_crawling(0.5 * time, time));
+        }
+    }
 }

@@ -51,9 +51,10 @@ pub struct Report {
 }
 
 impl Report {
-    /// Enters a mutant, and names it if no test has failed for it.
+    /// Enters a mutant, and names it if no test has failed for it: one that did not end may have had no time to,
+    /// and can be run again.
     pub fn enter(&mut self, mutant: &Mutant, verdict: Verdict) {
-        if matches!(verdict, Verdict::NoSwitch | Verdict::Unreached | Verdict::Survived) {
+        if !matches!(verdict, Verdict::Unviable | Verdict::Caught) {
             println!("{}: {}", verdict.name(), mutant.name);
         }
         *self.files.entry(mutant.file.clone()).or_default().entry(verdict).or_default() += 1;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
@@ -15,6 +16,10 @@ const MEMORY: &str = "6000000";
 
 /// No test takes longer.
 const LONGEST: Duration = Duration::from_secs(600);
+/// What ends a program that has used up its processor time.
+const OUT_OF_TIME: i32 = 24;
+/// How many times its processor time a program may take where the machine has other things to do.
+const PATIENCE: u32 = 60;
 /// Tests that together take less than this are run together.
 const SHORT: Duration = Duration::from_millis(100);
 
@@ -49,7 +54,7 @@ pub fn tests(programs: &[PathBuf], folder: &Path, skipped: &[String]) -> Result<
         for name in names.filter(|name| !skipped.iter().any(|part| name.contains(part.as_str()))) {
             let _ = fs::remove_file(&record);
             let begin = Instant::now();
-            let mut command = command(program, &[name], folder);
+            let mut command = command(program, &[name], folder, LONGEST);
             command.env("MUTANTS_REACHED", &record);
             if run(command, LONGEST)? != Outcome::Passed {
                 return Err(Error::Fails(name.to_owned()));
@@ -72,9 +77,10 @@ pub fn try_out(mutant: usize, tests: &[Test], folder: &Path) -> Result<Verdict, 
     }
     for group in groups(&reaching) {
         let names: Vec<&str> = group.iter().map(|test| &*test.name).collect();
-        let mut command = command(&group[0].program, &names, folder);
+        let limit = time_limit(total(&group));
+        let mut command = command(&group[0].program, &names, folder, limit);
         command.env("MUTANT", mutant.to_string());
-        match run(command, time_limit(total(&group)))? {
+        match run(command, limit)? {
             Outcome::Passed => {}
             Outcome::Failed => return Ok(Verdict::Caught),
             Outcome::TimedOut => return Ok(Verdict::TimedOut),
@@ -83,7 +89,7 @@ pub fn try_out(mutant: usize, tests: &[Test], folder: &Path) -> Result<Verdict, 
     Ok(Verdict::Survived)
 }
 
-/// The machine may have other things to do than the tests.
+/// Processor time: a test that waits for other programs is not one that does not end.
 fn time_limit(usual: Duration) -> Duration {
     usual * 10 + Duration::from_secs(5)
 }
@@ -107,9 +113,10 @@ fn groups<'t>(tests: &[&'t Test]) -> Vec<Vec<&'t Test>> {
     groups
 }
 
-fn command(program: &Path, names: &[&str], folder: &Path) -> Command {
+fn command(program: &Path, names: &[&str], folder: &Path, limit: Duration) -> Command {
     let mut command = Command::new("sh");
-    command.args(["-c", &format!("ulimit -v {MEMORY}; exec \"$@\""), "sh"]);
+    let limits = format!("ulimit -v {MEMORY}; ulimit -S -t {}", limit.as_secs() + 1);
+    command.args(["-c", &format!("{limits}; exec \"$@\""), "sh"]);
     command.arg(program).args(names).args(["--exact", "--test-threads", "1"]);
     // A failure need not be made small, nor be remembered.
     command.env("PROPTEST_MAX_SHRINK_ITERS", "0").env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
@@ -126,9 +133,13 @@ fn run(mut command: Command, limit: Duration) -> Result<Outcome, Error> {
     let mut child = command.spawn()?;
     loop {
         if let Some(status) = child.try_wait()? {
-            return Ok(if status.success() { Outcome::Passed } else { Outcome::Failed });
+            return Ok(match status.signal() {
+                Some(OUT_OF_TIME) => Outcome::TimedOut,
+                _ if status.success() => Outcome::Passed,
+                _ => Outcome::Failed,
+            });
         }
-        if begin.elapsed() > limit {
+        if begin.elapsed() > PATIENCE * limit {
             child.kill()?;
             child.wait()?;
             return Ok(Outcome::TimedOut);

@@ -119,3 +119,78 @@ impl Search<'_, '_> {
         Ok(Flight { halt: Some(halt), ..flight })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pleach_guards::variable;
+
+    use super::super::search::tests::{search, times};
+    use super::*;
+
+    fn failed(fault: Fault) -> Halt {
+        panic!("{}", fault.text)
+    }
+
+    /// The time of a run is a sum of two numbers.
+    #[test]
+    fn a_flight_takes_no_time_or_enough_to_change_that_of_the_run() {
+        let [line, _] = times(&variable("x").at_least(50.0));
+        for since in [1.0_f64, 1e6, -3.0] {
+            let least = 2.0 * since.abs() * 2f64.powi(-104);
+            search(&line, since, |it| {
+                assert_eq!(it.spacing(), 0.5 * least);
+                let noticeable = |duration: f64| it.noticeable(Moment::from(duration)).seconds();
+                assert_eq!(noticeable(0.0), 0.0);
+                for brief in [1e-300, 0.5 * least, 0.999 * least] {
+                    assert_eq!(noticeable(brief), least);
+                }
+                for long in [least, 1.001 * least, 1e-6, 3.0] {
+                    assert_eq!(noticeable(long), long);
+                }
+            });
+        }
+    }
+
+    /// What is as short as a few roundings of the time is none, nor is any time in which nothing moves.
+    #[test]
+    fn an_end_within_rounding_of_the_start_is_at_the_start() {
+        let lasting = |since: f64, duration: f64| {
+            times(&variable("x").at_least(50.0)).map(|plane| {
+                search(&plane, since, |mut it| {
+                    it.unless_nothing(duration, &failed).expect("it has a value").seconds()
+                })
+            })
+        };
+        for since in [-2.0_f64, 1.0, 1e6] {
+            let rounding = 4.0 * f64::EPSILON * since.abs();
+            assert_eq!(lasting(since, 0.5 * rounding), [0.0; 2]);
+            assert_eq!(lasting(since, rounding), [0.0; 2]);
+            for duration in [1.01 * rounding, 1.5] {
+                assert_eq!(lasting(since, duration), [duration; 2]);
+            }
+        }
+        let [line, _] = times(&variable("x").at_least(50.0));
+        let found = search(&line, 0.0, |mut it| it.unless_nothing(1e-300, &failed));
+        assert_eq!(found.expect("it has a value"), Moment::from(1e-300));
+        let still = crate::composition::field::tests::plane([0.0, 0.0].map(Into::into));
+        let found = search(&still, 1.0, |mut it| it.unless_nothing(3.0, &failed));
+        assert_eq!(found.expect("it has a value"), Moment::default());
+    }
+
+    /// x is the time, and has to stay below a bound.
+    #[test]
+    fn the_last_calm_number_is_found_however_far_it_is() {
+        for bound in [0.5, 1.0, 1.7] {
+            let [line, _] = times(&variable("x").at_least(bound));
+            for time in [bound, bound.next_up(), bound + 1e-9, bound + 1e-3, 1.5 * bound] {
+                let found = search(&line, 0.0, |mut it| it.just_before(time, &failed));
+                assert_eq!(found.expect("it has a value"), bound.next_down(), "{time}");
+            }
+        }
+        for time in [1e-3, 1.0, 9.0] {
+            let [line, _] = times(&variable("x").at_least(0.0));
+            let found = search(&line, 0.0, |mut it| it.just_before(time, &failed));
+            assert_eq!(found.expect("it has a value"), 0.0, "there is none");
+        }
+    }
+}

@@ -332,3 +332,160 @@ impl<'a> Search<'a, '_> {
         }
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use pleach_guards::{Expression, Predicate, constant, variable};
+
+    use super::*;
+    use crate::composition::field::tests::{field, guarded};
+    use crate::composition::{Composition, Policy};
+
+    /// Has a search look at the flow of x and y from 0 on, which begins at a time of the run.
+    pub(in crate::composition::flight) fn search<T>(
+        plane: &Composition,
+        since: f64,
+        look: impl FnOnce(Search<'_, '_>) -> T,
+    ) -> T {
+        let (settings, mut steps) = (Settings::default(), 1000);
+        let field = field(plane, [0.0, 0.0]);
+        let standing = Standing::new(plane, &[0]);
+        let group = &plane.groups[0];
+        let conditions = Conditions { standing, group, policy: Policy::Late, allowance: 0.0 };
+        let linear = field.linear().expect("its numbers are finite");
+        let solver = Solver::new(&field, linear, &settings, 100.0).expect("it can be solved");
+        look(Search {
+            tension: Tension::along(conditions, &field),
+            solver,
+            settings: &settings,
+            since: Moment::from(since),
+            doubts: Vec::new(),
+            steps: &mut steps,
+            stride: f64::INFINITY,
+        })
+    }
+
+    /// x is the time, along a line and as a curve.
+    pub(in crate::composition::flight) fn times(guard: &Predicate) -> [Composition; 2] {
+        let bent = 1.0 + 0.0 * variable("y").power(2.0);
+        [constant(1.0), bent].map(|rate: Expression| guarded([rate, constant(0.0)], guard))
+    }
+
+    fn is_late(time: f64) -> [Composition; 2] {
+        times(&variable("x").at_least(time))
+    }
+
+    fn found<T>(found: Result<T, Stop>) -> T {
+        found.unwrap_or_else(|stop| panic!("{} at {}", stop.halt, stop.at))
+    }
+
+    #[test]
+    fn nothing_happens_up_to_an_earlier_time() {
+        let onset = End::Onset(Onset { before: 0.5, time: 2.0 });
+        for end in [End::At(Moment::from(2.0)), End::Leaving(Moment::from(2.0)), onset] {
+            assert!(end.is_after(1.0) && end.is_after(2f64.next_down()));
+            assert!(!end.is_after(2.0) && !end.is_after(3.0));
+        }
+        assert!(End::Never.is_after(1e300));
+    }
+
+    #[test]
+    fn an_onset_lies_between_neighbours_or_as_near_as_is_asked() {
+        for bound in [0.1, 1.1, 1.7] {
+            for plane in is_late(bound) {
+                let onset = search(&plane, 0.0, |mut it| found(it.narrowed(0.0, 4.0, 0.0)));
+                assert!((onset.time - bound).abs() < 1e-14, "{bound}: {}", onset.time);
+                assert_eq!(onset.before, onset.time.next_down());
+                let onset = search(&plane, 0.0, |mut it| found(it.narrowed(0.0, 4.0, 0.125)));
+                assert!(onset.before < bound && bound <= onset.time);
+                assert_eq!(onset.time - onset.before, 0.125);
+            }
+        }
+    }
+
+    /// Behind a strict bound it is the next number; right at the start the next time that the run can tell.
+    #[test]
+    fn what_begins_after_an_instant_begins_at_the_next_number() {
+        let later = |bound: f64, since: f64, to: f64| {
+            let [line, _] = times(&variable("x").more_than(bound));
+            let (from, to) = (Moment::from(bound), Moment::from(to));
+            search(&line, since, |mut it| found(it.right_after(from, to)))
+        };
+        for bound in [0.5, 3.0, 7.0] {
+            let onset = later(bound, 0.0, 10.0).expect("it begins");
+            assert_eq!([onset.before, onset.time], [bound, bound.next_up()]);
+            assert!(later(bound, 0.0, bound.next_up()).is_none(), "that is the end");
+        }
+        for since in [1.0, 1e6] {
+            let onset = later(0.0, since, 10.0).expect("it begins");
+            let least = since * f64::EPSILON * f64::EPSILON;
+            assert!(onset.before == 0.0 && 0.0 < onset.time && onset.time <= 2.0 * least);
+            assert!(least <= onset.time, "{}", onset.time);
+        }
+        assert!(later(0.0, 0.0, 10.0).expect("it begins").time < 1e-300);
+        // Of what begins later the last number before is told, too.
+        let [line, _] = is_late(1.5);
+        let (from, to) = (Moment::from(1.0), Moment::from(10.0));
+        let onset = search(&line, 0.0, |mut it| found(it.right_after(from, to)));
+        let onset = onset.expect("it begins");
+        assert_eq!([onset.before, onset.time], [1.5f64.next_down(), 1.5]);
+    }
+
+    /// √(b − x) has a value up to b.
+    #[test]
+    fn the_last_number_with_a_value_is_found() {
+        let x = variable("x");
+        for bound in [0.25, 1.0, 1.7] {
+            let [line, _] = times(&(bound - &x).square_root().at_most(-1.0));
+            assert_eq!(search(&line, 0.0, |mut it| it.last_defined(0.0, 4.0)), bound);
+            assert_eq!(search(&line, 0.0, |mut it| it.last_defined(0.125, bound.next_up())), bound);
+        }
+    }
+
+    #[test]
+    fn doubts_of_one_kind_join_where_they_touch_and_those_of_functions_anyway() {
+        use Uncertainty::{Function, Touch};
+        let [line, _] = is_late(1.0);
+        let noted = |spans: &[(f64, f64, Uncertainty)]| {
+            search(&line, 0.0, |mut it| {
+                spans.iter().for_each(|&(from, to, why)| it.doubt(Doubt { from, to, why }));
+                it.doubts.iter().map(|one| (one.from, one.to, one.why)).collect::<Vec<_>>()
+            })
+        };
+        assert_eq!(noted(&[(1.0, 2.0, Touch), (2.0, 3.0, Touch)]), [(1.0, 3.0, Touch)]);
+        assert_eq!(noted(&[(1.0, 2.0, Touch), (1.5, 3.0, Touch)]), [(1.0, 3.0, Touch)]);
+        let apart = [(1.0, 2.0, Touch), (2.5, 3.0, Touch)];
+        assert_eq!(noted(&apart), apart);
+        assert_eq!(noted(&[(1.0, 2.0, Function), (2.5, 3.0, Function)]), [(1.0, 3.0, Function)]);
+        for pair in [[Touch, Function], [Function, Touch]] {
+            for begin in [2.0, 2.5] {
+                let apart = [(1.0, 2.0, pair[0]), (begin, 3.0, pair[1])];
+                assert_eq!(noted(&apart), apart);
+            }
+        }
+    }
+
+    #[test]
+    fn steps_are_counted_down_and_room_is_limited() {
+        let [_, curve] = is_late(1.0);
+        search(&curve, 0.0, |mut it| {
+            found(it.spend(0.0));
+            found(it.spend(0.0));
+            assert_eq!(*it.steps, 998);
+            *it.steps = 0;
+            let stop = it.spend(0.5).expect_err("there is none left");
+            assert!(matches!(stop.halt, Halt::Limit(Limit::Steps(_))) && stop.at == 0.5);
+        });
+        for (spare, is_enough) in [(0, true), (1, false)] {
+            search(&curve, 0.0, |mut it| {
+                it.solver.piece_at(1.0, 2.0).expect("it can be followed");
+                let memory_limit = 8 * it.solver.size() as u64 - spare;
+                let settings = Settings { memory_limit, ..Settings::default() };
+                let Search { tension, solver, since, doubts, steps, stride, .. } = it;
+                let settings = &settings;
+                let mut it = Search { tension, solver, settings, since, doubts, steps, stride };
+                assert_eq!(it.spend(0.0).is_ok(), is_enough, "{memory_limit}");
+            });
+        }
+    }
+}

@@ -19,9 +19,7 @@ impl Simulation<'_> {
         self.round += 1;
         let members = groups.iter().map(|&group| &self.composition.groups[group].components);
         let mut components: Vec<usize> = members.flatten().copied().collect();
-        if groups.len() > 1 {
-            components.sort_unstable();
-        }
+        components.sort_unstable();
         let mut any = false;
         for component in components {
             if self.jumped[component] == self.round {
