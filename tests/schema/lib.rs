@@ -1,7 +1,7 @@
 //! The [JSON Schema](https://json-schema.org) of traces, in `docs/trace.schema.json`. Its tests hold it against every
 //! line, and every key of every line, that is written: `cargo test -p trace-schema`.
 
-use boon::{CompileError, Compiler, SchemaIndex, Schemas};
+use boon::{Compiler, SchemaIndex, Schemas};
 use serde_json::Value;
 
 const SOURCE: &str = include_str!("../../docs/trace.schema.json");
@@ -23,13 +23,10 @@ impl Schema {
     /// When the document is no JSON, or no schema.
     pub fn new() -> Result<Self, SchemaError> {
         let document: Value = serde_json::from_str(SOURCE)?;
-        let index_of = |schemas: &mut Schemas| -> Result<SchemaIndex, CompileError> {
-            let mut compiler = Compiler::new();
-            compiler.add_resource("trace.json", document.clone())?;
-            compiler.compile("trace.json", schemas)
-        };
-        let mut schemas = Schemas::new();
-        let index = index_of(&mut schemas).map_err(|error| error.to_string())?;
+        let (mut schemas, mut compiler) = (Schemas::new(), Compiler::new());
+        compiler.add_resource("trace.json", document.clone()).map_err(|error| error.to_string())?;
+        let index =
+            compiler.compile("trace.json", &mut schemas).map_err(|error| error.to_string())?;
         Ok(Schema { schemas, index, document })
     }
 
