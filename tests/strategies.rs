@@ -3,7 +3,7 @@
 
 use crate::floor_plans::in_storms::mission_in_storm;
 use crate::floor_plans::{Family, scenario, strategies};
-use crate::missions::{Mission, run, shipped};
+use crate::missions::{Mission, run_by, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
 use pleach::automaton::network::scenario::{Scenario, Strategy, ValidScenario};
 use pleach::discrete::network::{Phase, Role};
@@ -16,14 +16,9 @@ const SEEDS: u64 = 2;
 const STORMS: u64 = 12;
 const PERIODS_IN_STORMS: usize = 1_500;
 
-fn following(strategy: Strategy, mut scenario: Scenario) -> Mission {
-    scenario.control.strategy = Some(strategy);
-    run(scenario)
-}
-
 /// The same mission by either strategy: the paper's, and the eager one.
 fn both(scenario: &Scenario) -> [Mission; 2] {
-    [Strategy::Paper, Strategy::Eager].map(|strategy| following(strategy, scenario.clone()))
+    [Strategy::Paper, Strategy::Eager].map(|strategy| run_by(strategy, scenario.clone()))
 }
 
 fn robots_used(mission: &Mission) -> usize {
@@ -101,7 +96,7 @@ fn random_missions_are_serviced_alike_and_sooner() {
 fn what_failed_once_does_not_fail_with_recruits_called_for_ahead() {
     for file in crate::found_missions::files("tests/scenarios/found") {
         let scenario = pleach::scenario_file::read(&file).unwrap();
-        let eager = following(Strategy::Eager, scenario.into_scenario());
+        let eager = run_by(Strategy::Eager, scenario.into_scenario());
         eager.assert_serviced();
     }
 }

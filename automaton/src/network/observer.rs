@@ -106,7 +106,7 @@ impl Snapshot {
         absent: Vec<NodeId>,
     ) -> Self {
         let overview = Overview { robots: reports };
-        let snapshot = Snapshot {
+        Snapshot {
             step,
             time: step as f64 * period,
             positions: reports.iter().map(|robot| robot.position).collect(),
@@ -126,8 +126,8 @@ impl Snapshot {
             posts: overview.posts(),
             robots: reports.iter().map(RobotSnapshot::from).collect(),
             absent: Vec::new(),
-        };
-        if absent.is_empty() { snapshot } else { snapshot.without(absent) }
+        }
+        .without(absent)
     }
 }
 
