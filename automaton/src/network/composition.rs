@@ -259,7 +259,7 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
         let may_settle =
             || self.at_rest <= LONGEST_SETTLING && self.any_robot(|robot| robot.is_settling());
         self.known_end()
-            .filter(|_| self.at_rest > 0 && !may_settle())
+            .filter(|end| self.at_rest > 0 && (end.outcome.is_given_up() || !may_settle()))
             .or_else(|| (self.step >= limit).then(|| End::at_step_limit(limit)))
     }
 

@@ -13,7 +13,7 @@ use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, NodeId, Phase, 
 use crate::automaton::TransitionError;
 use crate::located::Place as _;
 
-use super::super::beacon::Reports;
+use super::super::beacon::{Notice, Reports};
 use super::super::shared::renew;
 use super::Robot;
 use super::hearing::Neighbour;
@@ -89,6 +89,11 @@ impl Robot {
     /// While a path Σ is being sought or walked, no robot changes its parent.
     pub(super) fn tree_is_frozen(&self) -> bool {
         matches!(self.phase(), Phase::RecruitElection | Phase::PathAgreement | Phase::Shift)
+    }
+
+    /// Whether the mission has been given up.
+    fn has_been_given_up(&self) -> bool {
+        matches!(self.notice(), Notice::Ended { outcome, .. } if outcome.is_given_up())
     }
 
     /// Whether a fixed post or one of the primary team is attached to this robot's post.
@@ -174,8 +179,9 @@ impl Robot {
 
     /// With the eager strategy, while no path Σ is sought: the node farthest up the way from a fixed post to its access
     /// point that a link of length d_build reaches, past relays alone. These become redundant then, Remark 5.6 (ii).
+    /// Where a mission has been given up, the tree stays as it was.
     fn shorten_way(&self) -> Option<Option<Anchor>> {
-        if !self.is_eager() || self.tree_is_frozen() {
+        if !self.is_eager() || self.tree_is_frozen() || self.has_been_given_up() {
             return None;
         }
         let (own, way) = (self.duty.post()?.id, self.lineage()?);
