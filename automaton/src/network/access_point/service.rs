@@ -293,6 +293,13 @@ impl AccessPoint {
         })
     }
 
+    /// The access points whose robots have been asked in the election under way, if those of others had been before.
+    fn access_points_left(&self) -> Option<Vec<usize>> {
+        let Notice::Task(announcement) = self.notice() else { return None };
+        let left: Vec<usize> = announcement.eligible.iter().collect();
+        (left.len() < self.site.access_points.len()).then_some(left)
+    }
+
     /// The robots that have not answered in the election under way.
     fn unanswering(&self, roster: &IdSet) -> Vec<NodeId> {
         let has_token =
@@ -512,6 +519,13 @@ fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects)
             false => why_absent(&absent),
         };
         let reason = format!("no robot is left that can go to task {task}: {why}");
+        return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
+    }
+    if let Some(left) = point.access_points_left() {
+        let reason = format!(
+            "no robot of the access points {left:?} can lead a team to task {task}, and those of the others \
+             find no recruit"
+        );
         return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
     }
     let reason = format!(

@@ -515,3 +515,33 @@ fn no_task_is_out_of_reach_while_a_robot_may_come() {
     assert_eq!(becomes_of(Some(Standing::Present(Present))), (vec![joined], false));
     assert_eq!(becomes_of(Some(Standing::Gone(Gone))), (vec![], true));
 }
+
+/// Where the robots of other access points have found no recruit, and none is left to lead, robots are too few.
+#[test]
+fn a_task_is_not_out_of_reach_where_robots_of_others_have_been_asked_before() {
+    let outcome_of = |eligible: &[usize]| {
+        let mut point = access_point();
+        point.pursues_without(1, Standing::Present(Present));
+        point.attendees.iter_mut().for_each(Attendee::attend);
+        let announcement = Announcement {
+            eligible: Arc::new(eligible.iter().copied().collect()),
+            ..point.announcement_of(0).expect("it is asked for it")
+        };
+        let roster = Arc::clone(&announcement.roster);
+        point.connected = Arc::clone(&roster);
+        let notice = Notice::Task(Shared::new(announcement));
+        point.bulletin = point.bulletin.next(3, Shared::new(notice));
+        let announced = Some(Announced { task: 0, roster, wayless: Arc::default(), unanswered: 0 });
+        point.service = Current::new(Serving::Electing(Electing { announced }));
+        let mut election = Election::new(point.bulletin.id());
+        (0..2).for_each(|robot| election.place(robot, None));
+        point.election = Some(Arc::new(election));
+        point.serves_user();
+        match point.notice() {
+            Notice::Ended { outcome, .. } => Some(*outcome),
+            _ => None,
+        }
+    };
+    assert_eq!(outcome_of(&[0]), Some(Outcome::UnreachableTask));
+    assert_eq!(outcome_of(&[]), Some(Outcome::InsufficientRobots));
+}

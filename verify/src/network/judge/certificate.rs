@@ -53,9 +53,9 @@ pub fn check(judge: &Judge, end: &End) -> Complaint {
             takes_more(judge, claim, end.task)
         }
         (Outcome::InsufficientRobots | Outcome::Blocked, Certificate::Tried { attempts, team })
-            if calls =>
+            if calls || judge.nobody_leads() =>
         {
-            are_all_ways(judge, attempts)?;
+            are_all_ways(judge, attempts, last)?;
             stand(judge, team, last).map(|_| ())
         }
         (Outcome::Blocked, Certificate::Blocked { team }) if !calls => {
@@ -132,12 +132,14 @@ fn takes_more(judge: &Judge, claim: &Bound, task: Option<usize>) -> Complaint {
 
 // ---- Ways tried --------------------------------------------------------------------------------
 
-/// The attempts are those of the record, and in none of them a robot could have come.
-fn are_all_ways(judge: &Judge, attempts: &[Attempt]) -> Complaint {
-    let Some(last) = judge.last_trial() else {
+/// The attempts are those of the record, and in none of them a robot could have come. Where the election was repeated
+/// and no robot leads a team, none is redundant in a tree that was not tried.
+fn are_all_ways(judge: &Judge, attempts: &[Attempt], now: &Snapshot) -> Complaint {
+    let last = judge.last_trial();
+    let trials: Vec<&Trial> = judge.tried.trials().iter().chain(&last).collect();
+    if trials.is_empty() {
         return Err("no robot has called for another".to_owned());
-    };
-    let trials: Vec<&Trial> = judge.tried.trials().iter().chain([&last]).collect();
+    }
     if trials.len() != attempts.len() {
         let (told, made) = (attempts.len(), trials.len());
         return Err(format!("{told} calls are told, and {made} were made"));
@@ -152,7 +154,13 @@ fn are_all_ways(judge: &Judge, attempts: &[Attempt]) -> Complaint {
         }
         tried.extend(tree_of(trial.caller, &trial.snapshot));
     }
-    Ok(())
+    let free = (0..now.roles.len()).filter(|&robot| now.roles[robot] == Role::Redundant);
+    let mut untried =
+        free.filter(|&robot| tree_of(robot, now).is_none_or(|it| !tried.contains(&it)));
+    match untried.next().filter(|_| last.is_none()) {
+        Some(robot) => Err(format!("robot {robot} is redundant, and its tree was not tried")),
+        None => Ok(()),
+    }
 }
 
 /// Who called when, and that every robot outside of its team is told of.

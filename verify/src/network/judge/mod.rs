@@ -392,6 +392,12 @@ impl<'a> Judge<'a> {
         Trial::of(&self.ledger, self.previous.as_ref()?, Then::Ended)
     }
 
+    /// Whether the election was repeated among robots of other trees, and has no leader.
+    fn nobody_leads(&self) -> bool {
+        let last = self.tried.trials().last().map(|trial| trial.then);
+        self.ledger.stage() == Stage::Electing && last == Some(Then::ElectionRepeated)
+    }
+
     /// Up to which length links of the tree are made now.
     fn link_limit(&self) -> f64 {
         self.monitor.limits().link_to_be_made(self.ledger.stretched)
