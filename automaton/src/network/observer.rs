@@ -126,6 +126,7 @@ impl Snapshot {
             posts: overview.posts(),
             robots: reports.iter().map(RobotSnapshot::from).collect(),
             absent: Vec::new(),
+            fleets: Vec::new(),
         };
         if absent.is_empty() { snapshot } else { snapshot.without(absent) }
     }

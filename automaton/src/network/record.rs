@@ -52,6 +52,29 @@ pub struct Snapshot {
     /// The robots and access points that do not run or are not heard, ascending. They are bodies,
     /// and nothing else of them is in the lists above but what each has one entry for every robot.
     pub absent: Vec<usize>,
+    /// What there is one of for each fleet, by access point, where there are several; empty in the snapshot of one
+    /// network. The lists above then hold those of all fleets, and phase and task are those of the first fleet whose
+    /// mission goes on, or of the first.
+    pub fleets: Vec<FleetView>,
+}
+
+/// What there is one of for each fleet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FleetView {
+    /// The access point to which its robots belong.
+    pub access_point: usize,
+    /// Where its mission stands.
+    pub phase: Phase,
+    /// The task that it pursues.
+    pub task: Option<usize>,
+    /// Its active team.
+    pub active_team: Vec<usize>,
+    /// Its primary team.
+    pub primary_team: Vec<usize>,
+    /// Its path Σ.
+    pub path: Vec<usize>,
+    /// The control period from whose beginning on its mission is over, if it is: its robots stand where they are.
+    pub ended: Option<usize>,
 }
 
 impl Snapshot {
@@ -206,12 +229,23 @@ pub struct End {
     pub task: Option<usize>,
     /// What observers add to show that it had to end so, where a mission ends before its tasks are serviced.
     pub certificate: Option<Certificate>,
+    /// How the mission of each fleet ended, by access point, where there are several.
+    pub fleets: Vec<FleetEnd>,
+}
+
+/// How the mission of a fleet ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FleetEnd {
+    /// The access point to which its robots belong.
+    pub access_point: usize,
+    /// How it ended.
+    pub end: End,
 }
 
 impl End {
     /// An end without a certificate.
     pub const fn new(outcome: Outcome, reason: String, task: Option<usize>) -> Self {
-        End { outcome, reason, task, certificate: None }
+        End { outcome, reason, task, certificate: None, fleets: Vec::new() }
     }
 
     /// The end of a mission that has taken as many control periods as it may.

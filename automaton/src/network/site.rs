@@ -202,6 +202,22 @@ impl Site {
         Site { west_to_east: from_west_to_east(&starts), starts, ..self.clone() }
     }
 
+    /// The site of a fleet, with the same workspace and radio. Links are made for the rates of its robots.
+    pub(super) fn of_fleet(&self, fleet: &Scenario) -> Self {
+        let settings = Settings::resolve(fleet);
+        let starts: Vec<Point> = fleet.robot.iter().map(|robot| robot.position.into()).collect();
+        let longest = self.radio.distance_at(settings.build_reliability);
+        Site {
+            access_points: fleet.access_point.iter().map(|ap| ap.position.into()).collect(),
+            robots: starts.len(),
+            west_to_east: from_west_to_east(&starts),
+            starts,
+            usual: settings.link_lengths(longest),
+            settings,
+            ..self.clone()
+        }
+    }
+
     /// The same site where links are from the beginning as long as they may be.
     pub(super) fn stretched_from_the_start(self) -> Self {
         Site { usual: self.stretched, begins_stretched: true, ..self }

@@ -217,7 +217,7 @@ impl PlaceGraph {
                 .map(|place| AccessPoint { position: at(place) })
                 .collect(),
             robot: (0..self.robots)
-                .map(|place| RobotStart { position: at(place), rate: RATE })
+                .map(|place| RobotStart::at(at(place), RATE))
                 .collect(),
             task: self.tasks.iter().map(|&place| Task::at(at(place))).collect(),
         }

@@ -184,11 +184,13 @@ impl Robot {
         }
     }
 
-    /// ψ of the leader: its target or, where a robot has stopped there, the place within δ of the task that is
+    /// ψ of the leader: its target or, where a robot has stopped there or one of another fleet rests there, the place within δ of the task that is
     /// farthest from such robots.
     fn leader_goal(&self) -> Option<Point> {
         let (target, task) = (self.target?, self.announcement()?.position);
-        let keep_out: Vec<Disc> = self.keep_out_discs(KEEP_OUT * self.clearance()).collect();
+        let radius = KEEP_OUT * self.clearance();
+        let wrecks = self.keep_out_discs(radius);
+        let keep_out: Vec<Disc> = wrecks.chain(self.discs_of_bodies(radius)).collect();
         if !keep_out.iter().any(|disc| disc.contains(target)) {
             return Some(target);
         }

@@ -22,8 +22,8 @@ const NEARBY: f64 = 0.1;
 const PATIENCE_WITH_WAYS: u32 = 3;
 
 impl Robot {
-    /// a₁ of the way to the goal: of the geodesic, round wrecks, and round parked robots where that is a short
-    /// way round, unless its link holds it back on that side of an obstacle.
+    /// a₁ of the way to the goal: of the geodesic, round wrecks and bodies that rest, and round parked robots
+    /// where that is a short way round, unless its link holds it back on that side of an obstacle.
     pub(super) fn first_waypoint(&mut self, goal: Point) -> Option<Point> {
         let site = Arc::clone(&self.site);
         let free_space: &FreeSpace = &site.free_space;
@@ -32,7 +32,8 @@ impl Robot {
         }
         let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
         let keep_out = KEEP_OUT * self.clearance();
-        let wrecks: Vec<Disc> = self.keep_out_discs(keep_out).collect();
+        let wrecks = self.keep_out_discs(keep_out);
+        let wrecks: Vec<Disc> = wrecks.chain(self.discs_of_bodies(keep_out)).collect();
         let parked: Vec<Disc> = self
             .neighbours
             .iter()
@@ -41,7 +42,7 @@ impl Robot {
             .chain(wrecks.iter().copied())
             .collect();
         let allowance = DETOUR_ALLOWANCE * self.clearance();
-        // A parked robot in the way takes part in an exchange of duties, a wreck in none.
+        // A parked robot in the way takes part in an exchange of duties, a wreck or a body in none.
         let around = |from: Point, direct: Geodesic| {
             let direct = match wrecks.is_empty() {
                 true => direct,
