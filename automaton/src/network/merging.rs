@@ -76,7 +76,8 @@ impl Snapshot {
         let all = Parts(parts);
         let views: Vec<FleetView> = parts.iter().map(Part::view).collect();
         let shown = views.iter().find(|view| view.phase != Phase::Ended).or(views.first())?;
-        let joined = |list: fn(&FleetView) -> &Vec<usize>| views.iter().flat_map(list).copied().collect();
+        let joined =
+            |list: fn(&FleetView) -> &Vec<usize>| views.iter().flat_map(list).copied().collect();
         let number = |node: &usize| *node;
         Some(Snapshot {
             step: parts.first()?.snapshot.step,

@@ -14,7 +14,12 @@ pub struct Renumbering {
 impl Renumbering {
     /// The renumbering of a whole by its parts: the node of part number i is this one of `count`, and likewise the
     /// task. In the part nothing else exists.
-    pub(super) fn into_part(nodes: &[usize], count: usize, tasks: &[usize], task_count: usize) -> Self {
+    pub(super) fn into_part(
+        nodes: &[usize],
+        count: usize,
+        tasks: &[usize],
+        task_count: usize,
+    ) -> Self {
         let inverse = |numbers: &[usize], count: usize| {
             let mut inverse = vec![None; count];
             numbers.iter().enumerate().for_each(|(own, &number)| inverse[number] = Some(own));
@@ -139,7 +144,9 @@ impl Certificate {
                 let attempts = attempts.iter_mut().map(Attempt::named);
                 attempts.chain(team.iter_mut().map(Standing::named)).fold(all, Named::and)
             }
-            Certificate::Blocked { team } => team.iter_mut().map(Standing::named).fold(all, Named::and),
+            Certificate::Blocked { team } => {
+                team.iter_mut().map(Standing::named).fold(all, Named::and)
+            }
         }
     }
 }
@@ -167,7 +174,9 @@ impl Other {
 impl Standing {
     fn named(&mut self) -> Named<'_> {
         let hindrances = self.hindrances.iter_mut().filter_map(|hindrance| match hindrance {
-            Hindrance::Robot { robot: other, .. } | Hindrance::Link { to: other, .. } => Some(other),
+            Hindrance::Robot { robot: other, .. } | Hindrance::Link { to: other, .. } => {
+                Some(other)
+            }
             Hindrance::Body { .. } | Hindrance::Wall { .. } | Hindrance::Load { .. } => None,
         });
         Named::nodes([&mut self.robot]).and(Named::nodes(hindrances))

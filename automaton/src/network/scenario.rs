@@ -18,7 +18,8 @@ mod valid;
 mod validation;
 
 pub use control::{
-    CONTROL, Control, ControlKey, MOST_PERIODS, MotionSolver, RoutingMethod, Strategy, Teams, Values,
+    CONTROL, Control, ControlKey, MOST_PERIODS, MotionSolver, RoutingMethod, Strategy, Teams,
+    Values,
 };
 pub use fault::{Fault, InvalidScenario, Problem};
 pub use fleet::Fleet;

@@ -204,7 +204,9 @@ pub enum Problem {
     )]
     AccessPointWithoutUse,
     /// An access point that is not there.
-    #[error("there is no access_point[{access_point}]: they are counted from 0, and there are {count}")]
+    #[error(
+        "there is no access_point[{access_point}]: they are counted from 0, and there are {count}"
+    )]
     NoSuchAccessPoint { access_point: usize, count: usize },
     /// A task that no robot may pursue.
     #[error(

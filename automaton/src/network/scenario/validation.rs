@@ -2,7 +2,9 @@
 
 use super::control::{CONTROL, FARTHEST, MOST_PERIODS, SHORTEST, Values};
 use super::radio::STEEPEST;
-use super::{Fault, KeyPath, LinkLengths, LinkModel, LinkRanges, Problem, Scenario, Settings, Teams};
+use super::{
+    Fault, KeyPath, LinkLengths, LinkModel, LinkRanges, Problem, Scenario, Settings, Teams,
+};
 
 /// Two robots 2ρ apart must both be able to service while they hand over a task; they approach
 /// 2ρ without ever reaching it, so δ is at least this many clearances (2 in Remark 5.5).

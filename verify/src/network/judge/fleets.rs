@@ -11,11 +11,11 @@ use pleach_discrete::network::Role;
 
 use super::{Dispute, Referee};
 use crate::network::extremes::{Extremes, keep_larger, keep_smaller};
+use crate::network::instant;
 use crate::network::limits::Limits;
 use crate::network::period::{self, Period};
 use crate::network::property::Property;
 use crate::network::violation::{Instant, Violation};
-use crate::network::instant;
 
 /// Judges the missions of several fleets, period by period, and stops at the first violation.
 ///
@@ -74,9 +74,12 @@ impl<'a> Fleets<'a> {
         instant::record(snapshot, &self.limits)?;
         self.keep_apart(snapshot)?;
         let parts = self.divide(snapshot).map_err(|dispute| dispute.at(Instant::of(snapshot)))?;
-        let events = self.distribute(events).map_err(|dispute| dispute.at(Instant::of(snapshot)))?;
+        let events =
+            self.distribute(events).map_err(|dispute| dispute.at(Instant::of(snapshot)))?;
         for ((bench, (part, ended)), events) in self.benches.iter_mut().zip(parts).zip(events) {
-            bench.close(ended, snapshot.step).map_err(|dispute| dispute.at(Instant::of(snapshot)))?;
+            bench
+                .close(ended, snapshot.step)
+                .map_err(|dispute| dispute.at(Instant::of(snapshot)))?;
             bench.observe(&part, &events, &snapshot.positions)?;
         }
         self.previous = Some(snapshot.clone());
@@ -104,7 +107,11 @@ impl<'a> Fleets<'a> {
         let parts: Option<Vec<_>> = self.benches.iter().map(part).collect();
         let whole = parts.as_ref().and_then(|parts| {
             let pairs = self.benches.iter().zip(parts.iter().cloned());
-            let parts = pairs.map(|(bench, (snapshot, ended))| Part { fleet: &bench.fleet, snapshot, ended });
+            let parts = pairs.map(|(bench, (snapshot, ended))| Part {
+                fleet: &bench.fleet,
+                snapshot,
+                ended,
+            });
             Snapshot::merged(&parts.collect::<Vec<_>>())
         });
         match parts.filter(|_| whole.as_ref() == Some(snapshot)) {
@@ -122,7 +129,8 @@ impl<'a> Fleets<'a> {
         let mut of_fleets = vec![Vec::new(); self.benches.len()];
         for event in events {
             let own = self.benches.iter().enumerate();
-            let own = own.filter_map(|(at, bench)| Some((at, event.renumbered(bench.fleet.inward())?)));
+            let own =
+                own.filter_map(|(at, bench)| Some((at, event.renumbered(bench.fleet.inward())?)));
             match own.collect::<Vec<_>>().as_slice() {
                 [(at, event)] => of_fleets[*at].push(event.clone()),
                 _ => {
@@ -221,7 +229,8 @@ impl<'a> Bench<'a> {
         places: &[Point],
     ) -> Result<(), Violation> {
         let robots = self.fleet.robots();
-        let others = places.iter().enumerate().filter(|(robot, _)| robots.binary_search(robot).is_err());
+        let others =
+            places.iter().enumerate().filter(|(robot, _)| robots.binary_search(robot).is_err());
         self.referee.show_bodies(others.map(|(_, &place)| place).collect());
         let observed = self.referee.observe(part, events);
         observed.map_err(|violation| self.in_whole(violation))
@@ -232,10 +241,14 @@ impl<'a> Bench<'a> {
         let access_point = self.access_point();
         let told = whole.fleets.iter().find(|it| it.access_point == access_point);
         let Some(FleetEnd { end, .. }) = told else {
-            return Err(format!("it is not told how the mission of access point {access_point} ended"));
+            return Err(format!(
+                "it is not told how the mission of access point {access_point} ended"
+            ));
         };
         end.renumbered(self.fleet.inward()).ok_or_else(|| {
-            format!("the end of the mission of access point {access_point} names what is of another")
+            format!(
+                "the end of the mission of access point {access_point} names what is of another"
+            )
         })
     }
 

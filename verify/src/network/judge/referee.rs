@@ -3,6 +3,7 @@
 use pleach_automaton::network::certificate::Certificate;
 use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
+use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
 use super::{Fleets, Judge, Safety};
