@@ -68,8 +68,8 @@ pub enum MissionError {
     },
     /// Faults of nodes where each access point has a team of its own.
     #[error(
-        "no faults are simulated where control.teams is \"per_access_point\": run the mission without them, \
-         or as one team"
+        "where control.teams is \"per_access_point\", messages may fail, and no nodes: run the mission \
+         without faults of nodes and partitions, or with one team"
     )]
     FaultsOfFleets,
     /// A watcher cannot write what it has to.
@@ -98,17 +98,18 @@ pub fn run(
 ) -> Result<Completed, MissionError> {
     match scenario.fleets().is_empty() {
         true => run_network(scenario, &mut Network::new(scenario)?, watchers),
-        false => run_fleets(scenario, watchers),
+        false => run_fleets(scenario, Faults::default(), Fleets::new(scenario)?, watchers),
     }
 }
 
-/// Runs the missions of the fleets of `scenario`, each over the synchronous medium, until all have ended.
-fn run_fleets(
+/// Runs the missions of the fleets of `scenario`, in which these faults occur, until all have ended.
+fn run_fleets<M: Medium<Message, Point>, N: RobotNode>(
     scenario: &ValidScenario,
+    faults: Faults,
+    mut fleets: Fleets<M, N>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    let mut fleets = Fleets::new(scenario)?;
-    let mut gallery = Gallery::new(scenario, watchers);
+    let mut gallery = Gallery::with_faults(scenario, faults, watchers);
     let end = carry_out(scenario, &mut fleets, &mut gallery)?;
     let end = match end.outcome {
         Outcome::Interrupted => fleets.end(&end),
@@ -159,17 +160,22 @@ fn carry_out<S: System<Finish = End, Error = NetworkError>>(
     }
 }
 
-/// Runs the mission of `scenario` in a storm. It is held against what no fault may break.
+/// Runs the mission of `scenario` in a storm. It is held against what no fault may break. Where each access point
+/// has a team of its own, messages fail within each fleet; where the robots of other fleets are, is always known.
 ///
 /// # Errors
-/// When a watcher fails.
+/// When a watcher fails, and when nodes are to fail where there are several teams.
 pub fn run_in_storm(
     scenario: &ValidScenario,
     storm: &Storm,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     if !scenario.fleets().is_empty() {
-        return Err(MissionError::FaultsOfFleets);
+        if !storm.troubles.is_empty() || !storm.weather.partitions.is_empty() {
+            return Err(MissionError::FaultsOfFleets);
+        }
+        let fleets = Fleets::of_networks(scenario, |fleet| storm::network(fleet, storm))?;
+        return run_fleets(scenario, storm.faults(), fleets, watchers);
     }
     let mut network = storm::network(scenario, storm)?;
     run_network_with_faults(scenario, storm.faults(), &mut network, watchers)

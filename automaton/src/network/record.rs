@@ -58,6 +58,26 @@ pub struct Snapshot {
     pub fleets: Vec<FleetView>,
 }
 
+/// A mission under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pursuit<'a> {
+    /// The access point of the fleet, where there are several.
+    pub access_point: Option<usize>,
+    /// Where the mission stands.
+    pub phase: Phase,
+    /// The task being pursued.
+    pub task: Option<usize>,
+    /// The primary team, from p₁ to the leader.
+    pub primary_team: &'a [usize],
+}
+
+impl<'a> Pursuit<'a> {
+    fn of(fleet: &'a FleetView) -> Self {
+        let FleetView { access_point, phase, task, ref primary_team, .. } = *fleet;
+        Pursuit { access_point: Some(access_point), phase, task, primary_team }
+    }
+}
+
 /// What there is one of for each fleet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FleetView {
@@ -78,6 +98,15 @@ pub struct FleetView {
 }
 
 impl Snapshot {
+    /// The mission under way, or that of each fleet.
+    pub fn pursuits(&self) -> Vec<Pursuit<'_>> {
+        let (phase, task, primary_team) = (self.phase, self.task, &*self.primary_team);
+        match self.fleets.is_empty() {
+            true => vec![Pursuit { access_point: None, phase, task, primary_team }],
+            false => self.fleets.iter().map(Pursuit::of).collect(),
+        }
+    }
+
     /// The same, where these nodes do not run or are not heard.
     #[must_use]
     pub fn without(mut self, absent: Vec<usize>) -> Self {

@@ -124,12 +124,12 @@ fn nearest(position: Point, site: &Site) -> usize {
 impl Part {
     fn fleet(self, whole: &Scenario, site: &Site) -> Result<Fleet, Vec<Fault>> {
         let scenario = self.scenario(whole);
-        let site = site.of_fleet(&scenario);
         let (robots, count) = (whole.robot.len(), whole.robot.len() + whole.access_point.len());
         let nodes: Vec<usize> =
             self.robots.iter().copied().chain([robots + self.access_point]).collect();
         let outward = Renumbering::out_of_part(&nodes, &self.tasks);
         let inward = Renumbering::into_part(&nodes, count, &self.tasks, whole.task.len());
+        let site = site.of_fleet(&scenario, &outward);
         let (access_point, robots) = (self.access_point, self.robots);
         match ValidScenario::on(scenario, site) {
             Ok(scenario) => Ok(Fleet { access_point, robots, scenario, inward, outward }),
