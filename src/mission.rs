@@ -98,19 +98,31 @@ pub fn run(
 ) -> Result<Completed, MissionError> {
     match scenario.fleets().is_empty() {
         true => run_network(scenario, &mut Network::new(scenario)?, watchers),
-        false => run_fleets(scenario, Faults::default(), Fleets::new(scenario)?, watchers),
+        false => run_fleets(scenario, &mut Fleets::new(scenario)?, watchers),
     }
 }
 
-/// Runs the missions of the fleets of `scenario`, in which these faults occur, until all have ended.
-fn run_fleets<M: Medium<Message, Point>, N: RobotNode>(
+/// Runs `fleets`, which are those of `scenario` over any media, until the missions of all have ended.
+///
+/// # Errors
+/// When a watcher fails.
+pub fn run_fleets<M: Medium<Message, Point>, N: RobotNode>(
+    scenario: &ValidScenario,
+    fleets: &mut Fleets<M, N>,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<Completed, MissionError> {
+    run_fleets_with_faults(scenario, Faults::default(), fleets, watchers)
+}
+
+/// The same for fleets in which these faults occur.
+fn run_fleets_with_faults<M: Medium<Message, Point>, N: RobotNode>(
     scenario: &ValidScenario,
     faults: Faults,
-    mut fleets: Fleets<M, N>,
+    fleets: &mut Fleets<M, N>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     let mut gallery = Gallery::with_faults(scenario, faults, watchers);
-    let end = carry_out(scenario, &mut fleets, &mut gallery)?;
+    let end = carry_out(scenario, fleets, &mut gallery)?;
     let end = match end.outcome {
         Outcome::Interrupted => fleets.end(&end),
         _ => end,
@@ -174,8 +186,8 @@ pub fn run_in_storm(
         if !storm.troubles.is_empty() || !storm.weather.partitions.is_empty() {
             return Err(MissionError::FaultsOfFleets);
         }
-        let fleets = Fleets::of_networks(scenario, |fleet| storm::network(fleet, storm))?;
-        return run_fleets(scenario, storm.faults(), fleets, watchers);
+        let mut fleets = Fleets::of_networks(scenario, |fleet| storm::network(fleet, storm))?;
+        return run_fleets_with_faults(scenario, storm.faults(), &mut fleets, watchers);
     }
     let mut network = storm::network(scenario, storm)?;
     run_network_with_faults(scenario, storm.faults(), &mut network, watchers)
