@@ -365,8 +365,9 @@ fn beside_bodies(certificate: Option<&Certificate>, end: &End) -> Option<String>
     let is_body = |hindrance: &Hindrance| matches!(hindrance, Hindrance::Body { .. });
     let is_beside = |standing: &&Standing| standing.hindrances.iter().any(is_body);
     let robots: Vec<usize> = team.iter().filter(is_beside).map(|it| it.robot).collect();
-    (!robots.is_empty())
-        .then(|| format!("{}; a robot of another access point is beside {robots:?}", end.reason))
+    (!robots.is_empty()).then(|| {
+        format!("{}; a robot of another access point stands beside robots {robots:?}", end.reason)
+    })
 }
 
 impl<M: Medium<Message, Point>, N: RobotNode> Observer<Network<M, N>> for Gallery<'_, '_> {

@@ -85,8 +85,8 @@ mod tests {
             assert_eq!(see(&[1.0, 2.0 + f64::from(still)]), (2, vec![]));
         }
         assert_eq!(see(&[1.05, 9.0]), (2, vec![1.05]));
-        assert_eq!(see(&[1.1, 9.0]), (2, vec![1.1]), "it has crept, and is within its leash");
-        assert_eq!(see(&[1.15]), (1, vec![]), "it has left it");
+        assert_eq!(see(&[1.08, 9.0]), (2, vec![1.08]), "it has crept, and is within its leash");
+        assert_eq!(see(&[1.2]), (1, vec![]), "it has left it");
         assert_eq!(see(&[]), (0, vec![]));
     }
 }

@@ -181,7 +181,7 @@ impl Robot {
     }
 
     /// Problem (21): cell (18), linearised residual (22), trust region, links of the tree.
-    fn motion_problem(&self, waypoint: Point) -> MotionProblem {
+    pub(super) fn motion_problem(&self, waypoint: Point) -> MotionProblem {
         let step = self.site.settings.step_radius;
         let mut half_planes = self.cell(waypoint, step);
         half_planes.extend(self.sides_of_wrecks());

@@ -11,6 +11,9 @@ use super::motion::ROUNDING;
 
 /// Parked robots are kept at this many ρ when there is a way round.
 pub(super) const KEEP_OUT: f64 = 2.1;
+/// Bodies that rest are kept at this many ρ: gaps between them through which a robot can just pass stay open, since
+/// a body makes no way and takes part in no exchange.
+const KEEP_OUT_OF_BODIES: f64 = 2.0;
 /// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
 /// goes straight on and exchanges duties with the robot in its way.
 const DETOUR_ALLOWANCE: f64 = 8.0;
@@ -33,7 +36,8 @@ impl Robot {
         let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
         let keep_out = KEEP_OUT * self.clearance();
         let wrecks = self.keep_out_discs(keep_out);
-        let wrecks: Vec<Disc> = wrecks.chain(self.discs_of_bodies(keep_out)).collect();
+        let bodies = self.discs_of_bodies(KEEP_OUT_OF_BODIES * self.clearance());
+        let wrecks: Vec<Disc> = wrecks.chain(bodies).collect();
         let parked: Vec<Disc> = self
             .neighbours
             .iter()

@@ -94,8 +94,8 @@ pub struct Control {
     pub routing_reserve: Option<f64>,
     /// κ: how strongly traffic avoids links whose reliability changes with distance. Default 10.
     pub slope_aversion: Option<f64>,
-    /// Reliability of links of the tree when they are made. Default: what all rates together ask of one
-    /// link, from `tree_reliability` to 0.8.
+    /// Reliability of links of the tree when they are made. Default: what all rates of a team together ask of
+    /// one link, from `tree_reliability` to 0.8.
     pub build_reliability: Option<f64>,
     /// Reliability that a link of the tree never falls below. Default 0.1.
     pub tree_reliability: Option<f64>,

@@ -166,3 +166,124 @@ fn in_whole(fault: Fault, access_point: usize, robots: &[usize]) -> Fault {
     }
     Problem::OfFleet { access_point, problem: Box::new(fault.problem) }.at(key)
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::super::InvalidScenario;
+    use super::*;
+    use crate::network::record::MissionEvent;
+
+    /// A room with a wall across it, open at the top, an access point on either side, and two robots beside each.
+    fn room(change: impl FnOnce(&mut Value)) -> Result<ValidScenario, InvalidScenario> {
+        let mut room = json!({
+            "name": "room",
+            "workspace": {
+                "boundary": [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]],
+                "holes": [[[0.9, 0.1], [1.1, 0.1], [1.1, 1.5], [0.9, 1.5]]],
+            },
+            "link": {"full_range": 0.4, "max_range": 0.5},
+            "control": {"teams": "per_access_point"},
+            "access_point": [{"position": [0.4, 0.4]}, {"position": [1.3, 0.4]}],
+            "robot": [
+                {"position": [0.3, 0.5]},
+                {"position": [1.4, 0.5]},
+                {"position": [0.5, 0.5]},
+                {"position": [1.2, 0.5]},
+            ],
+            "task": [{"position": [1.5, 1.5]}, {"position": [0.87, 0.6]}, {"position": [1.2, 1.0]}],
+        });
+        change(&mut room);
+        ValidScenario::new(serde_json::from_value(room).expect("it is a scenario"))
+    }
+
+    fn owned(scenario: &ValidScenario) -> Vec<(usize, Vec<usize>, Vec<usize>)> {
+        let of = |fleet: &Fleet| {
+            let tasks = 0..fleet.scenario().task.len();
+            let tasks = tasks.filter_map(|task| fleet.outward().task(task));
+            (fleet.access_point(), fleet.robots().to_vec(), tasks.collect())
+        };
+        scenario.fleets().iter().map(of).collect()
+    }
+
+    /// Task 1 is nearer to access point 1 as the crow flies, and lies on the other side of the wall.
+    #[test]
+    fn robots_and_tasks_belong_to_the_access_point_to_which_their_way_is_shortest() {
+        let room = room(|_| {}).expect("it is valid");
+        assert_eq!(owned(&room), [(0, vec![0, 2], vec![1]), (1, vec![1, 3], vec![0, 2])]);
+        let fleet = &room.fleets()[1];
+        let places: Vec<[f64; 2]> = fleet.scenario().robot.iter().map(|it| it.position).collect();
+        assert_eq!(places, [[1.4, 0.5], [1.2, 0.5]]);
+        assert_eq!(fleet.scenario().access_point[0].position, [1.3, 0.4]);
+        assert!(fleet.scenario().fleets().is_empty());
+        let built = |scenario: &ValidScenario| scenario.settings().build_reliability;
+        assert!(
+            built(fleet.scenario()) < built(&room),
+            "links carry the rates of two robots, not of four"
+        );
+    }
+
+    #[test]
+    fn robots_and_tasks_belong_to_the_access_point_that_is_stated() {
+        let stated = room(|room| {
+            room["task"][1]["access_point"] = json!(1);
+            room["task"][2]["access_point"] = json!(0);
+        });
+        let stated = stated.expect("it is valid");
+        assert_eq!(owned(&stated), [(0, vec![0, 2], vec![2]), (1, vec![1, 3], vec![0, 1])]);
+        assert!(stated.fleets().iter().all(|it| it.scenario().task[0].access_point.is_none()));
+    }
+
+    #[test]
+    fn an_access_point_without_robots_has_no_fleet_and_no_tasks() {
+        let all = |room: &mut Value, key: &str| {
+            let rows = room[key].as_array_mut().expect("a list");
+            rows.iter_mut().for_each(|row| row["access_point"] = json!(0));
+        };
+        let alone = room(|room| {
+            room["robot"] = json!([{"position": [0.3, 0.5]}, {"position": [0.5, 0.5]}]);
+            all(room, "task");
+        });
+        assert_eq!(owned(&alone.expect("it is valid")), [(0, vec![0, 1], vec![0, 1, 2])]);
+        let lacking = room(|room| room["robot"] = json!([{"position": [0.3, 0.5]}]));
+        let faults = lacking.expect_err("no robot belongs to access point 1").faults;
+        let keys: Vec<String> = faults.iter().map(|fault| fault.key.to_string()).collect();
+        assert_eq!(keys, ["task[0]", "task[2]"]);
+        assert!(faults.iter().all(|it| it.problem == Problem::NoRobotOf { access_point: 1 }));
+    }
+
+    #[test]
+    fn a_fault_of_a_fleet_is_told_by_the_numbers_of_the_whole() {
+        let far = room(|room| room["robot"][3]["position"] = json!([1.9, 1.9]));
+        let faults = far.expect_err("robot 3 is cut off").faults;
+        assert_eq!(faults.len(), 1);
+        assert_eq!(faults[0].key.to_string(), "robot[3].position");
+        let told = faults[0].problem.to_string();
+        assert!(told.starts_with("among what belongs to access point 1: it is cut off:"), "{told}");
+    }
+
+    /// Node 4 is access point 0 of the room, and 5 is access point 1; both are node 2 of their fleets.
+    #[test]
+    fn what_is_renumbered_outward_and_inward_is_as_it_was() {
+        let room = room(|_| {}).expect("it is valid");
+        let fleet = &room.fleets()[1];
+        let own = [
+            MissionEvent::LeaderElected { task: 1, robot: 0, conflict: false },
+            MissionEvent::RecruitElected { robot: 1, path: vec![1, 0], break_points: vec![1] },
+            MissionEvent::Reattached { robot: 1, parent: 2 },
+        ];
+        let whole = [
+            MissionEvent::LeaderElected { task: 2, robot: 1, conflict: false },
+            MissionEvent::RecruitElected { robot: 3, path: vec![3, 1], break_points: vec![3] },
+            MissionEvent::Reattached { robot: 3, parent: 5 },
+        ];
+        for (own, whole) in own.iter().zip(&whole) {
+            assert_eq!(own.renumbered(fleet.outward()).as_ref(), Some(whole));
+            assert_eq!(whole.renumbered(fleet.inward()).as_ref(), Some(own));
+            assert_eq!(whole.renumbered(room.fleets()[0].inward()), None);
+        }
+        let across = MissionEvent::DutiesExchanged { mover: 1, parked: 2 };
+        assert!(room.fleets().iter().all(|it| across.renumbered(it.inward()).is_none()));
+    }
+}

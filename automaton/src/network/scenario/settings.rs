@@ -216,8 +216,8 @@ fn stated_if_any(error: f64) -> Option<f64> {
 }
 
 impl Scenario {
-    /// The same scenario with every default of its radio and control settings written out, but for one team, and
-    /// but for `build_reliability` where that is another one for each team.
+    /// The same scenario with every default of its radio and control settings written out, but that there is one team,
+    /// and but for `build_reliability` where each team has a default of its own.
     #[must_use]
     pub fn with_defaults(&self) -> Self {
         let mut control: Control = Settings::resolve(self).into();
