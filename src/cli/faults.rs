@@ -35,7 +35,7 @@ impl FaultArguments {
         check_robots("--stop", &self.stop, scenario)?;
         if !self.stop.is_empty() && !scenario.fleets().is_empty() {
             let what = "--stop is not simulated where control.teams is \"per_access_point\": leave it out, or run the \
-                mission with one team: --set control.teams=one";
+                mission with one team";
             return Err(Failure::Usage(what.to_owned()));
         }
         let period = scenario.settings().period;
