@@ -110,6 +110,18 @@ fn the_end_names_the_access_point_whose_tasks_are_not_serviced() {
     assert_eq!(mission.end.task.map(|task| task % 2), Some(1), "{}", mission.end.reason);
 }
 
+/// What stands in the way of the team is no robot of its own.
+#[test]
+fn a_team_that_a_body_blocks_says_so() {
+    let path = "tests/scenarios/given-up/body-in-corridor.toml";
+    let mission = run(pleach::scenario_file::read(path.as_ref()).unwrap().into_scenario());
+    assert_eq!(mission.end.outcome, Outcome::Blocked, "{}", mission.end.reason);
+    let told = "a robot of another access point stands beside robots [2]";
+    assert!(mission.end.reason.ends_with(told), "{}", mission.end.reason);
+    let task_of_other = mission.end.fleets[1].end.outcome;
+    assert_eq!(task_of_other, Outcome::Serviced, "it has none");
+}
+
 // ---- Random missions ---------------------------------------------------------------------------
 
 /// Missions of fleets, with tasks on their own side and on that of the next one.
