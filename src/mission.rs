@@ -253,7 +253,7 @@ impl<'a, 'w> Gallery<'a, 'w> {
             return Some(End::new(Outcome::Blocked, reason, None));
         }
         self.saturated = saturated(snapshot);
-        let end = self.check(snapshot, events).err();
+        let end = self.check(snapshot, events);
         end.or_else(|| self.interruption(snapshot.task))
     }
 
@@ -284,14 +284,9 @@ impl<'a, 'w> Gallery<'a, 'w> {
 
     /// An end with what observers add to its reason, and with what shows that it had to be so.
     fn explain(&self, end: End) -> End {
-        let fleets = self.scenario.fleets().iter();
-        let of =
-            |it: &FleetEnd| fleets.clone().find(|fleet| fleet.access_point() == it.access_point);
-        let pairs = end.fleets.iter().filter_map(|it| Some((it, of(it)?)));
-        let fleets: Vec<FleetEnd> =
-            pairs.map(|(it, fleet)| self.explain_fleet(it, fleet)).collect();
-        if !fleets.is_empty() {
-            return End::of_fleets(fleets);
+        if !end.fleets.is_empty() {
+            let fleets = self.scenario.fleets().iter().zip(end.fleets);
+            return End::of_fleets(fleets.map(|(it, told)| self.explain_fleet(it, told)).collect());
         }
         let certificate = self.judge.account(&end);
         let reason = match end.outcome {
@@ -303,11 +298,16 @@ impl<'a, 'w> Gallery<'a, 'w> {
     }
 
     /// The same for the end of the mission of a fleet.
-    fn explain_fleet(&self, told: &FleetEnd, fleet: &Fleet) -> FleetEnd {
-        let (access_point, end) = (told.access_point, told.end.clone());
+    fn explain_fleet(&self, fleet: &Fleet, told: FleetEnd) -> FleetEnd {
+        let FleetEnd { access_point, end } = told;
         let certificate = self.judge.account_of_fleet(access_point, &end);
+        let is_own = |(robot, _): &&(usize, f64)| fleet.robots().binary_search(robot).is_ok();
+        let saturated: Vec<_> = self.saturated.iter().filter(is_own).copied().collect();
         let reason = match end.outcome {
-            Outcome::Blocked => beside_bodies(certificate.as_ref(), &end),
+            Outcome::Blocked => {
+                beside_bodies(certificate.as_ref(), &end).or_else(|| overload(&saturated, &end))
+            }
+            Outcome::StepLimit => overload(&saturated, &end),
             Outcome::InsufficientRobots => {
                 let task = end.task.and_then(|task| fleet.inward().task(task));
                 shortage(fleet.scenario(), task, &end)
@@ -324,10 +324,10 @@ impl<'a, 'w> Gallery<'a, 'w> {
         Some(End::new(Outcome::Interrupted, reason, task))
     }
 
-    fn check(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Result<(), End> {
-        self.judge.observe(snapshot, events).map_err(|violation| {
-            End::new(Outcome::InvariantViolated, violation.to_string(), snapshot.task)
-        })
+    /// The end where a property is violated.
+    fn check(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Option<End> {
+        let violation = self.judge.observe(snapshot, events).err()?;
+        Some(End::new(Outcome::InvariantViolated, violation.to_string(), snapshot.task))
     }
 }
 

@@ -2,18 +2,19 @@
 //! Each mission is held against every property while it runs.
 
 use crate::floor_plans::{Family, scenario};
-use crate::missions::{run, shipped, shipped_mission, valid};
+use crate::missions::{Period, run, shipped, shipped_mission, valid};
 use pleach::automaton::network::Trouble;
-use pleach::automaton::network::record::Outcome;
+use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Teams, ValidScenario};
 use pleach::automaton::node::Weather;
 use pleach::judge::{Verdict, judge};
-use pleach::mission::{self, MissionError};
+use pleach::mission::{self, MissionError, Watcher};
 use pleach::trace::{TraceReader, TraceWriter};
 use pleach::verify::network::Property;
 use pleach::verify::network::storm::Storm;
 use rayon::prelude::*;
 use serde_json::{Value, json};
+use std::io;
 use std::sync::OnceLock;
 
 /// Missions of each family.
@@ -75,8 +76,7 @@ fn two_teams_at_once_take_less_time_than_one_after_the_other() {
 #[test]
 fn a_snapshot_shows_the_fleets_side_by_side() {
     let mission = &shipped_mission("two-teams").0;
-    let both_pursue =
-        |it: &&crate::missions::Period| it.snapshot.fleets.iter().all(|fleet| fleet.task.is_some());
+    let both_pursue = |it: &&Period| it.snapshot.fleets.iter().all(|fleet| fleet.task.is_some());
     let at_once = mission.periods.iter().filter(both_pursue).count();
     assert!(at_once > mission.periods.len() / 2, "{at_once} of {}", mission.periods.len());
     assert_eq!(mission.end.fleets.len(), 2);
@@ -88,12 +88,12 @@ fn a_snapshot_shows_the_fleets_side_by_side() {
 #[test]
 fn a_fleet_that_has_ended_stands_while_the_other_goes_on() {
     let mission = &shipped_mission("two-teams").0;
-    let ended = |period: &crate::missions::Period| period.snapshot.fleets[0].ended;
+    let ended = |period: &Period| period.snapshot.fleets[0].ended;
     let since = mission.periods.iter().find_map(ended).expect("one ends before the other");
     let rest = &mission.periods[since..];
     assert!(rest.len() > 20, "{since}");
     assert!(rest.iter().all(|period| ended(period) == Some(since)));
-    let west = |period: &crate::missions::Period| period.snapshot.positions[..6].to_vec();
+    let west = |period: &Period| period.snapshot.positions[..6].to_vec();
     assert!(rest.iter().all(|period| west(period) == west(&mission.periods[since - 1])));
 }
 
@@ -120,6 +120,40 @@ fn a_team_that_a_body_blocks_says_so() {
     assert!(mission.end.reason.ends_with(told), "{}", mission.end.reason);
     let task_of_other = mission.end.fleets[1].end.outcome;
     assert_eq!(task_of_other, Outcome::Serviced, "it has none");
+}
+
+/// Ends a mission when so many control periods have been seen.
+struct After(usize);
+
+impl Watcher for After {
+    fn observe(&mut self, _: &Snapshot, _: &[MissionEvent]) -> io::Result<()> {
+        self.0 = self.0.saturating_sub(1);
+        Ok(())
+    }
+
+    fn interruption(&self) -> Option<String> {
+        (self.0 == 0).then(|| "enough is seen".to_owned())
+    }
+}
+
+/// Fleet 0 has ended by then, and keeps its own end.
+#[test]
+fn an_interruption_and_a_limit_end_the_missions_that_go_on() {
+    let scenario = valid(shipped("two-teams"));
+    let mut writer = TraceWriter::new(Vec::new(), &scenario).unwrap();
+    let completed = mission::run(&scenario, &mut [&mut writer, &mut After(230)]).unwrap();
+    let outcomes =
+        |end: &End| -> Vec<Outcome> { end.fleets.iter().map(|it| it.end.outcome).collect() };
+    assert_eq!(completed.end.outcome, Outcome::Interrupted);
+    assert_eq!(completed.end.reason, "enough is seen");
+    assert_eq!(outcomes(&completed.end), [Outcome::Serviced, Outcome::Interrupted]);
+    assert!(matches!(verdict(&writer.finish().unwrap()), Verdict::Sound { periods: 230, .. }));
+
+    let mut limited = shipped("two-teams");
+    limited.control.max_steps = Some(230);
+    let (bytes, outcome) = trace(&valid(limited));
+    assert_eq!(outcome, Outcome::StepLimit);
+    assert!(matches!(verdict(&bytes), Verdict::Sound { periods: 230, .. }));
 }
 
 // ---- Random missions ---------------------------------------------------------------------------
