@@ -44,7 +44,9 @@ impl Acts {
         let completed =
             mission::run_fleets(scenario, &mut fleets, watchers).expect("missions without errors");
         let acts = fleets.networks().map(|it| Acts::in_one(it.site(), it.medium().counts()));
-        let acts = acts.reduce(Acts::and).expect("there is a fleet");
+        let mut acts = acts.reduce(Acts::and).expect("there is a fleet");
+        let counts = acts.rows.values_mut().chain(acts.heard.values_mut());
+        counts.for_each(|count| *count = (*count).min(1));
         (completed, Acts { missions: 1, ..acts })
     }
 

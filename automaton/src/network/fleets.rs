@@ -24,7 +24,7 @@ use crate::node::{Medium, NodeJump};
 
 /// The networks of the fleets of a scenario.
 pub struct Fleets<M = Radio, N: RobotNode = Member> {
-    members: Vec<Company<M, N>>,
+    fleets: Vec<FleetNetwork<M, N>>,
     /// How far the radio reaches.
     range: f64,
     /// Whether a control period begins.
@@ -32,14 +32,14 @@ pub struct Fleets<M = Radio, N: RobotNode = Member> {
 }
 
 /// A fleet with its network.
-struct Company<M, N: RobotNode> {
+struct FleetNetwork<M, N: RobotNode> {
     fleet: Fleet,
     network: Network<M, N>,
     /// How its mission has ended, with the first control period after that.
     end: Option<(usize, End)>,
 }
 
-impl<M, N: RobotNode> Company<M, N> {
+impl<M, N: RobotNode> FleetNetwork<M, N> {
     fn part(&self) -> Part<'_> {
         Part {
             fleet: &self.fleet,
@@ -54,11 +54,19 @@ impl<M, N: RobotNode> Company<M, N> {
         events.filter_map(|event| event.renumbered(self.fleet.outward())).collect()
     }
 
-    /// How its mission has ended, in the numbers of the whole; like `others` if it has not.
-    fn end(&self, others: &End) -> FleetEnd {
-        let own = self.end.as_ref().and_then(|(_, end)| end.renumbered(self.fleet.outward()));
-        let end = own.unwrap_or_else(|| End { task: None, ..others.clone() });
-        FleetEnd { access_point: self.fleet.access_point(), end }
+    /// How its mission has ended, if it has, in the numbers of the whole.
+    fn end(&self) -> Option<FleetEnd> {
+        let (_, end) = self.end.as_ref()?;
+        let end = end.renumbered(self.fleet.outward())?;
+        Some(FleetEnd { access_point: self.fleet.access_point(), end })
+    }
+
+    /// The same; that it has ended like this if it has not ended.
+    fn end_or(&self, end: &End) -> FleetEnd {
+        self.end().unwrap_or_else(|| FleetEnd {
+            access_point: self.fleet.access_point(),
+            end: End { task: None, ..end.clone() },
+        })
     }
 }
 
@@ -81,17 +89,17 @@ impl<M, N: RobotNode> Fleets<M, N> {
         scenario: &ValidScenario,
         mut network: impl FnMut(&ValidScenario) -> Result<Network<M, N>, E>,
     ) -> Result<Self, E> {
-        let company = |fleet: &Fleet| {
+        let member = |fleet: &Fleet| {
             let network = network(fleet.scenario())?;
-            Ok(Company { fleet: fleet.clone(), network, end: None })
+            Ok(FleetNetwork { fleet: fleet.clone(), network, end: None })
         };
-        let members = scenario.fleets().iter().map(company).collect::<Result<_, E>>()?;
-        Ok(Fleets { members, range: scenario.site().radio.range(), begins: true })
+        let fleets = scenario.fleets().iter().map(member).collect::<Result<_, E>>()?;
+        Ok(Fleets { fleets, range: scenario.site().radio.range(), begins: true })
     }
 
     /// The network of each fleet, by access point.
     pub fn networks(&self) -> impl Iterator<Item = &Network<M, N>> {
-        self.members.iter().map(|company| &company.network)
+        self.fleets.iter().map(|member| &member.network)
     }
 
     /// Time spent in each part so far, in all networks together.
@@ -101,36 +109,36 @@ impl<M, N: RobotNode> Fleets<M, N> {
 
     /// The observers' view of this instant, just before the robots move; none if there is no fleet.
     pub fn snapshot(&self) -> Option<Snapshot> {
-        let parts: Vec<Part> = self.members.iter().map(Company::part).collect();
+        let parts: Vec<Part> = self.fleets.iter().map(FleetNetwork::part).collect();
         Snapshot::merged(&parts)
     }
 
     /// What has happened in this control period, fleet by fleet.
     pub fn events(&self) -> Vec<MissionEvent> {
-        self.members.iter().flat_map(Company::events).collect()
+        self.fleets.iter().flat_map(FleetNetwork::events).collect()
     }
 
     /// How all have ended where the missions that are still under way end like this.
     pub fn end(&self, others: &End) -> End {
-        End::of_fleets(self.members.iter().map(|company| company.end(others)).collect())
+        End::of_fleets(self.fleets.iter().map(|member| member.end_or(others)).collect())
     }
 }
 
 impl<M: Medium<Message, Point>, N: RobotNode> Fleets<M, N> {
-    /// Tells every robot where the robots of other fleets are that it hears.
+    /// Tells every robot where the robots of other fleets are that are in range.
     fn show_bodies(&mut self) -> Result<(), NetworkError> {
-        let robots = |company: &Company<M, N>| company.network.bodies().collect::<Vec<Point>>();
-        let bodies: Vec<Vec<Point>> = self.members.iter().map(robots).collect();
+        let robots = |member: &FleetNetwork<M, N>| member.network.bodies().collect::<Vec<Point>>();
+        let bodies: Vec<Vec<Point>> = self.fleets.iter().map(robots).collect();
         let fleets = bodies.iter().enumerate();
         let all: Vec<(usize, Point)> =
             fleets.flat_map(|(fleet, its)| its.iter().map(move |&body| (fleet, body))).collect();
         let places: Vec<Point> = all.iter().map(|&(_, place)| place).collect();
         let buckets = Buckets::of(&places, self.range);
-        for (fleet, company) in self.members.iter_mut().enumerate() {
+        for (fleet, member) in self.fleets.iter_mut().enumerate() {
             for (robot, &place) in bodies[fleet].iter().enumerate() {
                 let others = buckets.near(place).filter(|&(number, _)| all[number].0 != fleet);
                 let near: BTreeMap<usize, Point> = others.collect();
-                company.network.sense(robot, Sense::Bodies(near.into_values().collect()))?;
+                member.network.sense(robot, Sense::Bodies(near.into_values().collect()))?;
             }
         }
         Ok(())
@@ -143,9 +151,8 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Fleets<M, N> {
     type Error = NetworkError;
 
     fn finished(&self) -> Option<End> {
-        let ends = self.members.iter().map(|company| company.end.as_ref());
-        let last = ends.collect::<Option<Vec<_>>>()?.last().map(|(_, end)| end.clone())?;
-        Some(self.end(&last))
+        let ends: Option<Vec<FleetEnd>> = self.fleets.iter().map(FleetNetwork::end).collect();
+        ends.map(End::of_fleets)
     }
 
     /// Each network takes a round of its own, in which its nodes have their own numbers.
@@ -153,7 +160,7 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Fleets<M, N> {
         if std::mem::take(&mut self.begins) {
             self.show_bodies()?;
         }
-        self.members.iter_mut().try_for_each(|company| company.network.jump(round))
+        self.fleets.iter_mut().try_for_each(|member| member.network.jump(round))
     }
 
     fn time_to_jump(&self) -> Result<Option<f64>, NetworkError> {
@@ -162,13 +169,14 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Fleets<M, N> {
     }
 
     fn flow(&mut self, duration: f64) -> Result<(), NetworkError> {
-        for company in &mut self.members {
-            company.network.flow(duration)?;
-            let period = company.network.step();
-            let end = || company.network.finished().map(|end| (period, end));
-            company.end = company.end.take().or_else(end);
+        for member in &mut self.fleets {
+            let before = member.network.step();
+            member.network.flow(duration)?;
+            let period = member.network.step();
+            self.begins |= period > before;
+            let end = || member.network.finished().map(|end| (period, end));
+            member.end = member.end.take().or_else(end);
         }
-        self.begins = true;
         Ok(())
     }
 }

@@ -16,7 +16,13 @@ pub struct Part<'a> {
     pub ended: Option<usize>,
 }
 
-impl Part<'_> {
+impl<'a> Part<'a> {
+    /// What a snapshot of several fleets shows of this one; none if it does not show it.
+    pub fn of(fleet: &'a Fleet, whole: &Snapshot) -> Option<Self> {
+        let view = whole.fleets.iter().find(|view| view.access_point == fleet.access_point())?;
+        Some(Part { fleet, snapshot: whole.of_fleet(fleet, view)?, ended: view.ended })
+    }
+
     fn out(&self) -> &Renumbering {
         self.fleet.outward()
     }
@@ -103,10 +109,9 @@ impl Snapshot {
         })
     }
 
-    /// What a snapshot of several fleets shows of this one, in its own numbers, without the entries that name
-    /// anything of another; none if it does not show this fleet.
-    pub fn of_fleet(&self, fleet: &Fleet) -> Option<Self> {
-        let view = self.fleets.iter().find(|view| view.access_point == fleet.access_point())?;
+    /// What a snapshot of several fleets shows of this one and its view, in the fleet's own numbers and without the
+    /// entries that name anything of another fleet.
+    fn of_fleet(&self, fleet: &Fleet, view: &FleetView) -> Option<Self> {
         let by = fleet.inward();
         fn own<T: Clone>(list: &[T], robots: &[usize]) -> Option<Vec<T>> {
             robots.iter().map(|&robot| list.get(robot).cloned()).collect()

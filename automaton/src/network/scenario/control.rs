@@ -96,6 +96,7 @@ pub struct Control {
     pub slope_aversion: Option<f64>,
     /// Reliability of links of the tree when they are made. Default: what all rates of a team together ask of
     /// one link, from `tree_reliability` to 0.8.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub build_reliability: Option<f64>,
     /// Reliability that a link of the tree never falls below. Default 0.1.
     pub tree_reliability: Option<f64>,

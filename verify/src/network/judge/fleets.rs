@@ -24,14 +24,14 @@ use crate::network::violation::{Instant, Violation};
 #[derive(Clone, Debug)]
 pub struct Fleets<'a> {
     limits: Limits,
-    benches: Vec<Bench<'a>>,
+    judges: Vec<FleetJudge<'a>>,
     previous: Option<Snapshot>,
     extremes: Extremes,
 }
 
 /// A fleet with the judge of its mission.
 #[derive(Clone, Debug)]
-struct Bench<'a> {
+struct FleetJudge<'a> {
     fleet: Fleet,
     referee: Referee<'a>,
     /// The control period from whose beginning on its mission is over, and the judge as it was then.
@@ -47,15 +47,15 @@ impl<'a> Fleets<'a> {
         role_table: impl Fn(Role, Role) -> bool + 'a,
     ) -> Self {
         let role_table = Arc::new(role_table);
-        let bench = |fleet: &Fleet| {
+        let judge = |fleet: &Fleet| {
             let role_table = Arc::clone(&role_table);
             let may_follow = move |from, to| role_table(from, to);
             let referee = Referee::of_one(fleet.scenario(), faults, may_follow);
-            Bench { fleet: fleet.clone(), referee, over: None }
+            FleetJudge { fleet: fleet.clone(), referee, over: None }
         };
         Fleets {
             limits: Limits::of(scenario),
-            benches: scenario.fleets().iter().map(bench).collect(),
+            judges: scenario.fleets().iter().map(judge).collect(),
             previous: None,
             extremes: Extremes::default(),
         }
@@ -73,14 +73,12 @@ impl<'a> Fleets<'a> {
     ) -> Result<(), Violation> {
         instant::record(snapshot, &self.limits)?;
         self.keep_apart(snapshot)?;
-        let parts = self.divide(snapshot).map_err(|dispute| dispute.at(Instant::of(snapshot)))?;
-        let events =
-            self.distribute(events).map_err(|dispute| dispute.at(Instant::of(snapshot)))?;
-        for ((bench, (part, ended)), events) in self.benches.iter_mut().zip(parts).zip(events) {
-            bench
-                .close(ended, snapshot.step)
-                .map_err(|dispute| dispute.at(Instant::of(snapshot)))?;
-            bench.observe(&part, &events, &snapshot.positions)?;
+        let at_once = |dispute: Dispute| dispute.at(Instant::of(snapshot));
+        let parts = self.divide(snapshot).map_err(at_once)?;
+        let events = self.distribute(events).map_err(at_once)?;
+        for ((judge, (part, ended)), events) in self.judges.iter_mut().zip(parts).zip(events) {
+            judge.note_end(ended, snapshot.step).map_err(at_once)?;
+            judge.observe(&part, &events, &snapshot.positions)?;
         }
         self.previous = Some(snapshot.clone());
         self.keep_extremes();
@@ -100,22 +98,11 @@ impl<'a> Fleets<'a> {
 
     /// What the snapshot shows of each fleet, and since when its mission is over. Together that is all of it.
     fn divide(&self, snapshot: &Snapshot) -> Result<Vec<(Snapshot, Option<usize>)>, Dispute> {
-        let part = |bench: &'_ Bench<'a>| {
-            let view = snapshot.fleets.iter().find(|it| it.access_point == bench.access_point())?;
-            Some((snapshot.of_fleet(&bench.fleet)?, view.ended))
-        };
-        let parts: Option<Vec<_>> = self.benches.iter().map(part).collect();
-        let whole = parts.as_ref().and_then(|parts| {
-            let pairs = self.benches.iter().zip(parts.iter().cloned());
-            let parts = pairs.map(|(bench, (snapshot, ended))| Part {
-                fleet: &bench.fleet,
-                snapshot,
-                ended,
-            });
-            Snapshot::merged(&parts.collect::<Vec<_>>())
-        });
-        match parts.filter(|_| whole.as_ref() == Some(snapshot)) {
-            Some(parts) => Ok(parts),
+        let parts = self.judges.iter().map(|judge| Part::of(&judge.fleet, snapshot));
+        let parts: Option<Vec<Part>> = parts.collect();
+        let is_whole = |parts: &Vec<Part>| Snapshot::merged(parts).as_ref() == Some(snapshot);
+        match parts.filter(is_whole) {
+            Some(parts) => Ok(parts.into_iter().map(|part| (part.snapshot, part.ended)).collect()),
             None => {
                 let sentence = "the step is not what its fleets show side by side: something is shown of no fleet, \
                     of two, or not at all";
@@ -126,11 +113,11 @@ impl<'a> Fleets<'a> {
 
     /// The events of each fleet.
     fn distribute(&self, events: &[MissionEvent]) -> Result<Vec<Vec<MissionEvent>>, Dispute> {
-        let mut of_fleets = vec![Vec::new(); self.benches.len()];
+        let mut of_fleets = vec![Vec::new(); self.judges.len()];
         for event in events {
-            let own = self.benches.iter().enumerate();
-            let own =
-                own.filter_map(|(at, bench)| Some((at, event.renumbered(bench.fleet.inward())?)));
+            let numbered = self.judges.iter().enumerate();
+            let own = numbered
+                .filter_map(|(at, judge)| Some((at, event.renumbered(judge.fleet.inward())?)));
             match own.collect::<Vec<_>>().as_slice() {
                 [(at, event)] => of_fleets[*at].push(event.clone()),
                 _ => {
@@ -143,8 +130,8 @@ impl<'a> Fleets<'a> {
     }
 
     fn keep_extremes(&mut self) {
-        for bench in &self.benches {
-            let Extremes { clearance, residual, load, .. } = bench.extremes();
+        for judge in &self.judges {
+            let Extremes { clearance, residual, load, .. } = judge.extremes();
             keep_smaller(&mut self.extremes.clearance, clearance);
             keep_smaller(&mut self.extremes.residual, residual);
             keep_larger(&mut self.extremes.load, load);
@@ -163,12 +150,12 @@ impl<'a> Fleets<'a> {
         if end.outcome == Outcome::InvariantViolated {
             return Err(told(format!("the run says: {}", end.reason)));
         }
-        for bench in &self.benches {
-            bench.conclude(bench.end(end).map_err(told)?)?;
+        for judge in &self.judges {
+            judge.conclude(judge.end(end).map_err(told)?)?;
         }
         let whole = End::of_fleets(end.fleets.clone());
         let of = |end: &End| (end.outcome, end.task, end.certificate.clone());
-        match of(&whole) == of(end) && end.fleets.len() == self.benches.len() {
+        match of(&whole) == of(end) && end.fleets.len() == self.judges.len() {
             true => Ok(()),
             false => Err(told(format!(
                 "the outcome of the whole is “{}”, and those of its fleets make it “{}”",
@@ -180,9 +167,9 @@ impl<'a> Fleets<'a> {
 
     /// An observer's account of why the mission of the fleet of this access point ended.
     pub fn account(&self, access_point: usize, end: &End) -> Option<Certificate> {
-        let bench = self.benches.iter().find(|bench| bench.access_point() == access_point)?;
-        let end = end.renumbered(bench.fleet.inward())?;
-        bench.judge().account(&end)?.renumbered(bench.fleet.outward())
+        let judge = self.judges.iter().find(|judge| judge.access_point() == access_point)?;
+        let end = end.renumbered(judge.fleet.inward())?;
+        judge.at_its_end().account(&end)?.renumbered(judge.fleet.outward())
     }
 
     /// How near the missions have come to their bounds so far.
@@ -191,18 +178,18 @@ impl<'a> Fleets<'a> {
     }
 }
 
-impl<'a> Bench<'a> {
+impl<'a> FleetJudge<'a> {
     const fn access_point(&self) -> usize {
         self.fleet.access_point()
     }
 
     /// The judge of its mission, as it was at the end of that.
-    fn judge(&self) -> &Referee<'a> {
+    fn at_its_end(&self) -> &Referee<'a> {
         self.over.as_ref().map_or(&self.referee, |(_, referee)| referee)
     }
 
     /// Takes note of whether its mission is over at the beginning of this control period, and since when.
-    fn close(&mut self, ended: Option<usize>, step: usize) -> Result<(), Dispute> {
+    fn note_end(&mut self, ended: Option<usize>, step: usize) -> Result<(), Dispute> {
         match (&self.over, ended) {
             (None, None) => Ok(()),
             (None, Some(period)) if period == step => {
@@ -253,7 +240,7 @@ impl<'a> Bench<'a> {
     }
 
     fn conclude(&self, end: End) -> Result<(), Violation> {
-        self.judge().conclude(&end).map_err(|violation| self.in_whole(violation))
+        self.at_its_end().conclude(&end).map_err(|violation| self.in_whole(violation))
     }
 
     fn extremes(&self) -> Extremes {
