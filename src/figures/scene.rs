@@ -325,7 +325,8 @@ fn halo_text(content: String, place: Spot, size: f64, colour: &str) -> Text {
 fn subtitle(snapshot: &Snapshot) -> String {
     let mut parts = vec![format!("t = {:.0} s", snapshot.time)];
     for Pursuit { access_point, phase, task, primary_team } in snapshot.pursuits() {
-        let of = access_point.map_or(String::new(), |number| format!("access point {number}: "));
+        let node = access_point.map(|number| snapshot.positions.len() + number);
+        let of = node.map_or(String::new(), |node| format!("AP {node}: "));
         parts.push(format!("{of}phase: {}", phase.name()));
         if let Some(task) = task {
             parts.push(format!("pursued: task {task}"));

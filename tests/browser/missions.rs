@@ -450,7 +450,7 @@ fn a_mission_of_two_teams_tells_of_both() {
         let rows = facts.as_array().unwrap().iter().filter(|row| row[0] == name);
         rows.map(|row| row[1].as_str().unwrap().to_owned()).collect()
     };
-    assert_eq!(told("access point"), ["0", "1"]);
+    assert_eq!(told("access point"), ["AP 12", "AP 13"]);
     let leaders: Vec<usize> =
         snapshot.pursuits().iter().filter_map(|it| it.primary_team.last().copied()).collect();
     assert_eq!(told("leader"), leaders.iter().map(|it| format!("robot {it}")).collect::<Vec<_>>());

@@ -139,7 +139,7 @@ class Facts {
   ofMission(step) {
     const { mission } = this, held = mission.value("serviced", step);
     const missions = mission.missions(step).flatMap(({ access_point, phase, task, primary_team, active_team, path }) => [
-      access_point === null ? null : ["access point", String(access_point)],
+      access_point === null ? null : ["access point", mission.nodeName(mission.robots + access_point)],
       ["phase", phase],
       ["task pursued", task === null ? "none" : String(task)],
       ["leader", primary_team.length ? `robot ${primary_team.at(-1)}` : "none"],
