@@ -182,8 +182,8 @@ impl Robot {
         }
     }
 
-    /// ψ of the leader: its target or, where a robot has stopped there or one of another fleet rests there, the place within δ of the task that is
-    /// farthest from such robots.
+    /// ψ of the leader: its target or, where a robot has stopped there or one of another fleet rests, the place within δ
+    /// of the task that is farthest from such robots.
     fn leader_goal(&self) -> Option<Point> {
         let (target, task) = (self.target?, self.announcement()?.position);
         let radius = KEEP_OUT * self.clearance();
