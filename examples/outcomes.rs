@@ -7,7 +7,8 @@
 //!   rests on lengths alone ([`Spans`]); they were too few by that bound or not, and the mission ended
 //!   all the same. *Bad* are ends that must not be: blocked, out of time, in violation, in error.
 //! - *robots*: of the missions that are serviced, those robots that are not redundant at the end, as a
-//!   multiple of a spanning tree of the access points and tasks over d_build, median and worst.
+//!   multiple of a spanning tree of the access points and tasks over d_build, median and worst; and as a
+//!   multiple of the robots of such a tree, whose edges are chains of whole links.
 //! - *time*: their control periods, as a multiple of the ways from access points to all tasks at full
 //!   speed, one after the other, median and worst.
 //!
@@ -51,7 +52,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let folder = folder.as_deref();
     println!(
-        "family        missions serviced proved unproved  bad   robots median worst   time median worst"
+        "family        missions serviced proved unproved  bad   robots median worst   of whole links   \
+         time median worst"
     );
     let (mut all, mut spent, mut spent_in_all) = (Vec::new(), Vec::new(), Spent::default());
     for family in Family::ALL.into_iter().chain(Family::WINDING) {
@@ -79,7 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum End {
     /// With what robots and time amount to, as multiples of their bounds.
-    Serviced { robots: f64, time: f64 },
+    Serviced { robots: f64, whole: f64, time: f64 },
     /// Too few robots, and whether that is proved.
     Insufficient { proved: bool },
     /// It must not end like this.
@@ -169,11 +171,13 @@ fn mission(
     let end = match outcome {
         Some(Outcome::Serviced) => {
             spent.add(&usage.spent);
-            let links = spans.spanning_tree(tasks) / scenario.site().usual.build;
+            let build = scenario.site().usual.build;
+            let links = spans.spanning_tree(tasks) / build;
             let ways: f64 = (0..tasks).map(|task| spans.way_to(task)).sum();
             let periods = ways / scenario.site().settings.step_radius;
             End::Serviced {
                 robots: usage.robots as f64 / links.max(tasks as f64),
+                whole: usage.robots as f64 / spans.robots_of_spanning_tree(tasks, build),
                 time: usage.periods as f64 / periods.max(1.0),
             }
         }
@@ -205,12 +209,16 @@ fn row(name: &str, results: &[End]) -> String {
         End::Serviced { robots, .. } => Some(*robots),
         _ => None,
     });
+    let whole = sorted(&|end| match end {
+        End::Serviced { whole, .. } => Some(*whole),
+        _ => None,
+    });
     let time = sorted(&|end| match end {
         End::Serviced { time, .. } => Some(*time),
         _ => None,
     });
     format!(
-        "{name:13} {:8} {:8} {:6} {:8} {:4}          {:5.2} {:5.2}        {:5.2} {:5.2}",
+        "{name:13} {:8} {:8} {:6} {:8} {:4}          {:5.2} {:5.2}      {:5.2} {:5.2}        {:5.2} {:5.2}",
         results.len(),
         count(&|end| matches!(end, End::Serviced { .. })),
         count(&|end| *end == End::Insufficient { proved: true }),
@@ -218,6 +226,8 @@ fn row(name: &str, results: &[End]) -> String {
         count(&|end| *end == End::Bad),
         robots.0,
         robots.1,
+        whole.0,
+        whole.1,
         time.0,
         time.1,
     )

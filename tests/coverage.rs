@@ -44,10 +44,6 @@ const REASONS: &[([&str; 4], &str)] = &[
         ["exchange", "offering and refusing", "", ""],
         "a mover that is itself in the way of another has refused its offer",
     ),
-    (
-        ["duty", "", "attached", ""],
-        "no robot holds the post of its parent any more: a robot stops on the way along Σ",
-    ),
     (["mission", "", "", ""], "notices between this one and the one before are not heard"),
     (
         ["exchange", "offering", "partner lost", ""],

@@ -1,7 +1,7 @@
 //! Tasks with times: asked for late, serviced for a while, taken back. How such a mission goes, also where
 //! messages are lost, and what the judge says of records in which tasks are dropped or closed for no reason.
 
-use crate::missions::{Mission, Period, run, shipped, valid};
+use crate::missions::{Mission, Period, run, run_by, shipped, valid};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Strategy, Task};
 use pleach::automaton::network::{Crash, Trouble};
@@ -150,10 +150,9 @@ fn a_task_may_be_taken_back_at_any_time() {
     let ahead = (170..350).step_by(18).map(|withdrawn| (Strategy::Eager, withdrawn));
     for (strategy, withdrawn) in in_papers_order.chain(ahead) {
         let mut scenario = shipped("leaf-leader");
-        scenario.control.strategy = Some(strategy);
         scenario.task[2].withdrawn = Some(withdrawn);
         scenario.task.push(Task { announced: Some(withdrawn), ..Task::at([0.85, 1.2]) });
-        let mission = run(scenario);
+        let mission = run_by(strategy, scenario);
         let said = format!("{strategy:?}, {withdrawn}: {}", mission.end.reason);
         assert_eq!(mission.end.outcome, Outcome::Serviced, "{said}");
         assert_eq!(mission.last().serviced.len(), 3, "{said}");
@@ -215,9 +214,8 @@ fn a_leader_may_be_at_its_task_when_it_is_released() {
     for strategy in [Strategy::Paper, Strategy::Eager] {
         let mut scenario = shipped("errands");
         let place = [0.7, 1.0];
-        scenario.control.strategy = Some(strategy);
         scenario.task = vec![Task::at(place), Task { lasts: Some(30), ..Task::at(place) }];
-        let mission = run(scenario);
+        let mission = run_by(strategy, scenario);
         assert_eq!(mission.end.outcome, Outcome::Serviced, "{}", mission.end.reason);
         let (released, robot) = mission
             .events()

@@ -3,7 +3,7 @@
 
 use crate::floor_plans::in_storms::mission_in_storm;
 use crate::floor_plans::{Family, scenario, strategies};
-use crate::missions::{Mission, run, shipped};
+use crate::missions::{Mission, run_by, shipped};
 use pleach::automaton::network::record::{MissionEvent as Event, Outcome};
 use pleach::automaton::network::scenario::{Scenario, Strategy, ValidScenario};
 use pleach::discrete::network::{Phase, Role};
@@ -16,14 +16,9 @@ const SEEDS: u64 = 2;
 const STORMS: u64 = 12;
 const PERIODS_IN_STORMS: usize = 1_500;
 
-fn following(strategy: Strategy, mut scenario: Scenario) -> Mission {
-    scenario.control.strategy = Some(strategy);
-    run(scenario)
-}
-
 /// The same mission by either strategy: the paper's, and the eager one.
 fn both(scenario: &Scenario) -> [Mission; 2] {
-    [Strategy::Paper, Strategy::Eager].map(|strategy| following(strategy, scenario.clone()))
+    [Strategy::Paper, Strategy::Eager].map(|strategy| run_by(strategy, scenario.clone()))
 }
 
 fn robots_used(mission: &Mission) -> usize {
@@ -74,7 +69,16 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// What is serviced in the paper's order is serviced, sooner in the median, and with as many robots.
+/// Whether a robot is part of the tree although it services nothing and nothing is attached to it.
+fn has_idle_node(mission: &Mission) -> bool {
+    let last = mission.last();
+    let used = |&robot: &usize| last.roles[robot] != Role::Redundant;
+    let bears =
+        |robot: usize| last.tree.iter().any(|(child, parent)| *parent == robot && used(child));
+    (0..last.roles.len()).any(|robot| last.roles[robot] == Role::Node && !bears(robot))
+}
+
+/// What is serviced in the paper's order is serviced, sooner in the median, and with fewer robots in most missions.
 #[test]
 fn random_missions_are_serviced_alike_and_sooner() {
     let families: Vec<Family> = Family::of_every_day().chain(Family::WINDING).collect();
@@ -87,6 +91,7 @@ fn random_missions_are_serviced_alike_and_sooner() {
             let said = format!("{}-{seed}: {}", family.name(), eager.end.reason);
             let is_serviced = |mission: &Mission| mission.end.outcome == Outcome::Serviced;
             assert!(!is_serviced(&paper) || is_serviced(&eager), "{said}");
+            assert!(!is_serviced(&eager) || !has_idle_node(&eager), "{said}");
             let ratio = |of: &dyn Fn(&Mission) -> usize| of(&eager) as f64 / of(&paper) as f64;
             (ratio(&|it| it.periods.len()), ratio(&robots_used))
         })
@@ -94,14 +99,14 @@ fn random_missions_are_serviced_alike_and_sooner() {
     let (times, robots): (Vec<f64>, Vec<f64>) = outcomes.into_iter().unzip();
     let (time, robots) = (median(times), median(robots));
     assert!(time < 0.85, "median of the times: {time}");
-    assert!(robots <= 1.0, "median of the robots: {robots}");
+    assert!(robots < 1.0, "median of the robots: {robots}");
 }
 
 #[test]
 fn what_failed_once_does_not_fail_with_recruits_called_for_ahead() {
     for file in crate::found_missions::files("tests/scenarios/found") {
         let scenario = pleach::scenario_file::read(&file).unwrap();
-        let eager = following(Strategy::Eager, scenario.into_scenario());
+        let eager = run_by(Strategy::Eager, scenario.into_scenario());
         eager.assert_serviced();
     }
 }

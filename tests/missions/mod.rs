@@ -7,7 +7,7 @@ mod medium;
 
 use crate::floor_plans::in_storms;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
-use pleach::automaton::network::scenario::{Scenario, ValidScenario};
+use pleach::automaton::network::scenario::{Scenario, Strategy, ValidScenario};
 use pleach::automaton::network::{Message, Network, Site};
 use pleach::automaton::node::Medium;
 use pleach::automaton::{Executor, HybridTime, Observer, Reason};
@@ -80,6 +80,12 @@ pub fn run(scenario: Scenario) -> Mission {
     let completed =
         mission::run(&scenario, &mut [&mut recorder]).expect("a mission without errors");
     Mission::new(scenario.into_scenario(), recorder, completed)
+}
+
+/// The same by this strategy.
+pub fn run_by(strategy: Strategy, mut scenario: Scenario) -> Mission {
+    scenario.control.strategy = Some(strategy);
+    run(scenario)
 }
 
 /// The same over a medium of the test's own.

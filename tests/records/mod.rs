@@ -11,7 +11,7 @@ mod snapshots;
 mod spoils;
 
 use crate::generated::{keep_up_to_date, read};
-use crate::missions::{Mission, Period, run, shipped};
+use crate::missions::{Mission, Period, run, run_by, shipped};
 use change::{Change, Record};
 use pleach::automaton::network::record::{End, Outcome};
 use pleach::automaton::network::scenario::Strategy;
@@ -35,11 +35,7 @@ const MISSIONS: [(&str, Strategy); 3] = [
 
 fn missions() -> &'static [Mission] {
     static MISSION: OnceLock<Vec<Mission>> = OnceLock::new();
-    let mission_of = |(name, strategy): (&str, Strategy)| {
-        let mut scenario = shipped(name);
-        scenario.control.strategy = Some(strategy);
-        run(scenario)
-    };
+    let mission_of = |(name, strategy)| run_by(strategy, shipped(name));
     MISSION.get_or_init(|| MISSIONS.map(mission_of).into())
 }
 

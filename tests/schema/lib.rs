@@ -40,11 +40,8 @@ impl Schema {
     #[must_use]
     pub fn describes(&self, line: &Value) -> bool {
         let name = if line["type"] == "event" { &line["event"] } else { &line["type"] };
-        let definition =
-            name.as_str().and_then(|name| self.document["$defs"][name]["properties"].as_object());
-        let keys = line.as_object().map(|line| line.keys());
-        definition
-            .zip(keys)
-            .is_some_and(|(known, mut keys)| keys.all(|key| known.contains_key(key)))
+        let (Some(name), Some(line)) = (name.as_str(), line.as_object()) else { return false };
+        let known = &self.document["$defs"][name]["properties"];
+        line.keys().all(|key| !known[key].is_null())
     }
 }

@@ -74,6 +74,10 @@ impl KernelTimes {
 /// Times that differ by this share of a control period are the same: elapsed time is a sum.
 const SAME: f64 = 1e-6;
 
+/// Control periods for which observers look on when a mission has ended and no robot moves, if robots are still about
+/// to change their places in the tree.
+const LONGEST_SETTLING: usize = 8;
+
 /// The network of robots. Its nodes are [`Member`]s, or [`Frail`](super::Frail) ones.
 pub struct Network<M = Radio, N: RobotNode = Member> {
     pub(super) site: Arc<Site>,
@@ -84,6 +88,8 @@ pub struct Network<M = Radio, N: RobotNode = Member> {
     pub(super) step: usize,
     /// Whether the current control period is over.
     has_flowed: bool,
+    /// Control periods at whose end the mission had ended and no robot could move, up to now.
+    at_rest: usize,
     times: KernelTimes,
 }
 
@@ -185,6 +191,7 @@ impl<M: Medium<Message, Point>, N: RobotNode> Network<M, N> {
             elapsed: 0.0,
             step: 0,
             has_flowed: false,
+            at_rest: 0,
             times: KernelTimes::default(),
         })
     }
@@ -213,6 +220,12 @@ impl<M, N: RobotNode> Network<M, N> {
 
     fn members(&self) -> impl Iterator<Item = &Member> {
         self.nodes.nodes().iter().map(RobotNode::member)
+    }
+
+    /// Whether this holds for a robot that runs.
+    fn any_robot(&self, holds: fn(RobotView<'_>) -> bool) -> bool {
+        let mut running = self.nodes.nodes().iter().filter(|node| node.is_running());
+        running.any(|node| node.member().view().robot().is_some_and(holds))
     }
 
     /// How the mission has ended, as the user knows it.
@@ -263,12 +276,10 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
             return None;
         }
         let limit = self.site.settings.max_steps;
-        let running = || self.nodes.nodes().iter().filter(|node| node.is_running());
-        let may_move = |robot: RobotView<'_>| robot.is_active() && robot.is_called();
-        let is_at_rest =
-            || !running().any(|node| node.member().view().robot().is_some_and(may_move));
+        let may_settle =
+            || self.at_rest <= LONGEST_SETTLING && self.any_robot(|robot| robot.is_settling());
         self.known_end()
-            .filter(|_| is_at_rest())
+            .filter(|end| self.at_rest > 0 && (end.outcome.is_given_up() || !may_settle()))
             .or_else(|| (self.step >= limit).then(|| End::at_step_limit(limit)))
     }
 
@@ -295,6 +306,8 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
         self.elapsed += duration;
         self.step = (self.elapsed / self.site.settings.period + SAME).floor() as usize;
         self.has_flowed = true;
+        let has_ended = self.known_end().is_some() && !self.any_robot(|robot| robot.may_move());
+        self.at_rest = if has_ended { self.at_rest + 1 } else { 0 };
         Ok(())
     }
 }

@@ -106,7 +106,7 @@ impl Snapshot {
         absent: Vec<NodeId>,
     ) -> Self {
         let overview = Overview { robots: reports };
-        let snapshot = Snapshot {
+        Snapshot {
             step,
             time: step as f64 * period,
             positions: reports.iter().map(|robot| robot.position).collect(),
@@ -127,8 +127,8 @@ impl Snapshot {
             robots: reports.iter().map(RobotSnapshot::from).collect(),
             absent: Vec::new(),
             fleets: Vec::new(),
-        };
-        if absent.is_empty() { snapshot } else { snapshot.without(absent) }
+        }
+        .without(absent)
     }
 }
 

@@ -266,6 +266,16 @@ impl Site {
         distance <= self.watch_radius
     }
 
+    /// Whether robots at this distance are in contact, if they are up to another one. Robots on places of a graph are
+    /// wherever explorers have them meet.
+    pub fn may_touch(&self, distance: f64, contact: f64) -> bool {
+        #[cfg(feature = "abstraction")]
+        if self.measure.is_some() {
+            return true;
+        }
+        distance <= contact
+    }
+
     /// Whether two robots could come into contact in this control period that were this far apart when one
     /// of them was heard last, so many periods ago.
     pub fn could_meet(&self, distance: f64, periods: u32) -> bool {

@@ -19,11 +19,13 @@ const START: usize = 0;
 const GOAL: usize = 1;
 const FIRST_CORNER: usize = 2;
 
-/// Ways up to these multiples of the straight one are sought first, over the few corners that can be on them.
-const NEARLY_STRAIGHT: [f64; 3] = [1.05, 1.3, 2.0];
+/// Ways up to this multiple of the straight one are looked at first, and then ones that are longer by this factor.
+const NEARLY_STRAIGHT: f64 = 1.05;
+const GROWTH: f64 = 1.5;
 
-/// That many corners are few.
-const FEW: usize = 64;
+/// Corners nearby are looked at one by one if they are no more than this, nor than one in this many of all corners.
+const FEW_NEARBY: usize = 64;
+const SHARE: usize = 16;
 
 /// A shortest path from `from` to `to`, both in the free space, around every one of `discs`, whose
 /// rims are replaced by polygons; `None` if there is none.
@@ -31,24 +33,18 @@ const FEW: usize = 64;
 /// The search is A\* (<https://doi.org/10.1109/TSSC.1968.300136>) with the straight distance to the
 /// goal as bound. Whether two nodes see each other is tested only when the step between them is
 /// the most promising one left, so that most pairs are never tested. Most paths are hardly longer than
-/// the straight line: they are found without a look at corners farther away.
+/// the straight line: corners farther away are looked at only when no shorter way is left.
 pub(super) fn shortest_path(
     space: &FreeSpace,
     from: Point,
     to: Point,
     discs: &[Disc],
 ) -> Option<Geodesic> {
-    let straight = (to - from).norm();
-    let nearby =
-        NEARLY_STRAIGHT.iter().map(|share| Nearby::on_ways(space, from, to, share * straight));
-    let mut searches = nearby
-        .take_while(|nearby| nearby.corners.len() <= FEW)
-        .map(Some)
-        .chain([None])
-        .map(|nearby| Search::new(space, from, to, discs, nearby));
-    let (search, waypoints) =
-        searches.find_map(|search| search.run().map(|waypoints| (search, waypoints)))?;
-    Some(space.departure(from, waypoints, |path| search.is_passable(path)))
+    let mut search = Search::new(space, from, to, discs);
+    search.look_up_to(NEARLY_STRAIGHT * (to - from).norm());
+    let waypoints = search.run()?;
+    let is_passable = |path: &Segment| avoids(path, discs) && space.is_clear(path);
+    Some(space.departure(from, waypoints, is_passable))
 }
 
 /// Whether `path` keeps out of every disc.
@@ -56,28 +52,23 @@ pub(super) fn avoids(path: &Segment, discs: &[Disc]) -> bool {
     discs.iter().all(|disc| disc.gap(path) >= -GRAZE * disc.radius)
 }
 
+/// The nodes of a search are its start, its goal, the corners of the free space and those of the polygons around
+/// the discs.
 struct Search<'a> {
     space: &'a FreeSpace,
     discs: &'a [Disc],
-    /// Start, goal, corners of the free space, corners of the polygons around the discs.
-    nodes: Vec<Point>,
-    /// The corners of the free space among them, if not all.
-    nearby: Option<Nearby>,
-    /// The first node beyond the corners of the free space.
-    first_rim: usize,
-}
-
-/// The corners of the free space that can be on ways up to a length.
-struct Nearby {
+    ends: [Point; 2],
+    rims: Vec<Point>,
+    /// The length up to which ways are looked at.
     longest: f64,
-    /// Their numbers, ascending.
-    corners: Vec<usize>,
-}
-
-impl Nearby {
-    fn on_ways(space: &FreeSpace, from: Point, to: Point, longest: f64) -> Nearby {
-        Nearby { longest, corners: space.corners_on_ways(from, to, longest) }
-    }
+    /// The corners over which ways up to that length can lead, ascending.
+    nearby: Vec<usize>,
+    /// The steps that wait for their turn.
+    frontier: BinaryHeap<Ranked<Step>>,
+    /// The length of the shortest way to each node that has been reached, and the node before.
+    reached: Vec<Option<(f64, usize)>>,
+    /// The nodes that have been reached whose steps to corners are in the frontier up to the longest ways only.
+    unfinished: Vec<usize>,
 }
 
 /// The step from one node to another, as it waits for its turn.
@@ -85,119 +76,163 @@ impl Nearby {
 struct Step {
     to: usize,
     from: usize,
+    /// Whether nothing of the free space is in the way: it is a link between corners.
+    is_link: bool,
 }
 
 impl<'a> Search<'a> {
-    fn new(
-        space: &'a FreeSpace,
-        from: Point,
-        to: Point,
-        discs: &'a [Disc],
-        nearby: Option<Nearby>,
-    ) -> Search<'a> {
-        let mut nodes = vec![from, to];
-        let corners = space.corners();
-        match &nearby {
-            Some(nearby) => nodes.extend(nearby.corners.iter().map(|&corner| corners[corner].at)),
-            None => nodes.extend(corners.iter().map(|corner| corner.at)),
-        }
-        let first_rim = nodes.len();
+    fn new(space: &'a FreeSpace, from: Point, to: Point, discs: &'a [Disc]) -> Search<'a> {
         let is_usable = |corner: &Point| {
             space.contains(*corner) && avoids(&Segment::new(*corner, *corner), discs)
         };
-        nodes.extend(discs.iter().flat_map(|disc| rim(disc, from)).filter(is_usable));
-        Search { space, discs, nodes, nearby, first_rim }
-    }
-
-    /// Waypoints of a shortest path, without the start; none if there is none, or none of the length up to
-    /// which corners are at hand. Steps on ways up to that length have their turns in the same order as if all
-    /// corners were.
-    fn run(&self) -> Option<Vec<Point>> {
-        let mut lengths: Vec<Option<f64>> = vec![None; self.nodes.len()];
-        let mut previous = vec![START; self.nodes.len()];
-        let mut frontier = BinaryHeap::new();
-        lengths[START] = Some(0.0);
-        self.for_each_step(START, |step| frontier.push(self.ranked(step, 0.0)));
-        let longest = self.nearby.as_ref().map_or(f64::INFINITY, |nearby| nearby.longest);
-        while let Some(Ranked { cost, item: step }) = frontier.pop() {
-            if cost > longest {
-                return None;
-            }
-            let Some(so_far) = lengths[step.from] else { continue };
-            if lengths[step.to].is_some() || !self.is_possible(step) {
-                continue;
-            }
-            let length = so_far + self.segment(step).length();
-            lengths[step.to] = Some(length);
-            previous[step.to] = step.from;
-            if step.to == GOAL {
-                return Some(self.waypoints(&previous));
-            }
-            self.for_each_step(step.to, |next| {
-                if lengths[next.to].is_none() {
-                    frontier.push(self.ranked(next, length));
-                }
-            });
+        let rims: Vec<Point> =
+            discs.iter().flat_map(|disc| rim(disc, from)).filter(is_usable).collect();
+        let nodes = FIRST_CORNER + space.corners().len() + rims.len();
+        Search {
+            space,
+            discs,
+            ends: [from, to],
+            rims,
+            longest: 0.0,
+            nearby: Vec::new(),
+            frontier: BinaryHeap::new(),
+            reached: vec![None; nodes],
+            unfinished: Vec::new(),
         }
-        None
     }
 
-    /// Visits the steps that a path may take from a node: along the links of the graph between
-    /// corners of the free space, and to everything else.
-    fn for_each_step(&self, from: usize, mut visit: impl FnMut(Step)) {
-        visit(Step { to: GOAL, from });
-        match &self.nearby {
-            _ if !self.is_corner(from) => {
-                (FIRST_CORNER..self.first_rim).for_each(|to| visit(Step { to, from }));
-            }
-            Some(Nearby { corners, .. }) => {
-                let own = corners[from - FIRST_CORNER];
-                let others = (FIRST_CORNER..).zip(corners);
-                others
-                    .filter(|&(_, &other)| self.space.may_link(own, other))
-                    .for_each(|(to, _)| visit(Step { to, from }));
-            }
-            None => {
-                let links = self.space.links(from - FIRST_CORNER).iter();
-                links.for_each(|link| visit(Step { to: link.corner + FIRST_CORNER, from }));
+    /// Waypoints of a shortest path, without the start.
+    fn run(mut self) -> Option<Vec<Point>> {
+        self.reach(START, START, 0.0);
+        while self.reached[GOAL].is_none() {
+            match self.frontier.peek() {
+                Some(next) if next.cost > self.longest => self.look_farther(),
+                Some(_) => self.take_next_step(),
+                None if self.longest < f64::INFINITY => self.look_farther(),
+                None => return None,
             }
         }
-        (self.first_rim..self.nodes.len()).for_each(|to| visit(Step { to, from }));
+        Some(self.waypoints())
     }
 
-    fn ranked(&self, step: Step, so_far: f64) -> Ranked<Step> {
-        let onwards = (self.nodes[GOAL] - self.nodes[step.to]).norm();
-        Ranked { cost: so_far + self.segment(step).length() + onwards, item: step }
+    /// Takes the most promising step, if there is a way.
+    fn take_next_step(&mut self) {
+        let Some(Ranked { item: step, .. }) = self.frontier.pop() else { return };
+        let Some((so_far, _)) = self.reached[step.from] else { return };
+        if self.reached[step.to].is_none() && self.is_possible(step) {
+            self.reach(step.to, step.from, so_far + self.segment(step).length());
+        }
+    }
+
+    /// The shortest way to a node is known. What may come next joins the frontier.
+    fn reach(&mut self, node: usize, previous: usize, length: f64) {
+        self.reached[node] = Some((length, previous));
+        let rims = self.first_rim()..self.reached.len();
+        for to in rims.chain([GOAL]) {
+            self.consider(Step { to, from: node, is_link: false });
+        }
+        if self.is_corner(node) && !self.has_few_nearby() {
+            let space = self.space;
+            for link in space.links(node - FIRST_CORNER) {
+                self.consider(Step { to: link.corner + FIRST_CORNER, from: node, is_link: true });
+            }
+        } else {
+            self.unfinished.push(node);
+            self.consider_nearby(node, f64::NEG_INFINITY);
+        }
+    }
+
+    fn consider(&mut self, step: Step) {
+        self.queue(step, self.cost(step));
+    }
+
+    /// Considers the steps from a node to corners nearby, on ways longer than those that have been looked at.
+    fn consider_nearby(&mut self, node: usize, shorter: f64) {
+        for at in 0..self.nearby.len() {
+            let corner = self.nearby[at];
+            let step = Step { to: corner + FIRST_CORNER, from: node, is_link: false };
+            let cost = self.cost(step);
+            if shorter < cost && cost <= self.longest && self.may_be_taut(node, corner) {
+                self.queue(step, cost);
+            }
+        }
+    }
+
+    fn queue(&mut self, step: Step, cost: f64) {
+        if self.reached[step.to].is_none() {
+            self.frontier.push(Ranked { cost, item: step });
+        }
+    }
+
+    /// Whether shortest paths may go from a node straight to a corner.
+    fn may_be_taut(&self, node: usize, corner: usize) -> bool {
+        !self.is_corner(node) || self.space.may_link(node - FIRST_CORNER, corner)
+    }
+
+    /// Whether steps to the corners nearby are looked at one by one. Links, which the free space finds when they are
+    /// asked for first and keeps, lead to corners everywhere.
+    fn has_few_nearby(&self) -> bool {
+        self.nearby.len() <= FEW_NEARBY.min(self.space.corners().len() / SHARE)
+    }
+
+    /// No way is left of the length up to which ways are looked at.
+    fn look_farther(&mut self) {
+        let shorter = self.longest;
+        let longer = GROWTH * shorter;
+        self.look_up_to(if longer > shorter { longer } else { f64::INFINITY });
+        for node in self.unfinished.clone() {
+            self.consider_nearby(node, shorter);
+        }
+    }
+
+    /// Looks at ways up to this length, or at all where most corners are nearby.
+    fn look_up_to(&mut self, length: f64) {
+        let [from, to] = self.ends;
+        let corners = self.space.corners().len();
+        (self.longest, self.nearby) = (length, self.space.corners_on_ways(from, to, length));
+        if self.nearby.len() >= corners / 2 {
+            (self.longest, self.nearby) = (f64::INFINITY, (0..corners).collect());
+        }
+    }
+
+    /// The length of the way that takes this step and goes straight on to the goal, if it can.
+    fn cost(&self, step: Step) -> f64 {
+        let so_far = self.reached[step.from].map_or(0.0, |(length, _)| length);
+        let onwards = (self.at(GOAL) - self.at(step.to)).norm();
+        so_far + self.segment(step).length() + onwards
     }
 
     fn is_possible(&self, step: Step) -> bool {
         let path = self.segment(step);
-        let is_link = self.is_corner(step.from) && self.is_corner(step.to);
-        if is_link && self.nearby.is_none() {
-            avoids(&path, self.discs)
-        } else {
-            self.is_passable(&path)
-        }
-    }
-
-    fn is_passable(&self, path: &Segment) -> bool {
-        avoids(path, self.discs) && self.space.is_clear(path)
+        avoids(&path, self.discs) && (step.is_link || self.space.is_clear(&path))
     }
 
     fn is_corner(&self, node: usize) -> bool {
-        (FIRST_CORNER..self.first_rim).contains(&node)
+        (FIRST_CORNER..self.first_rim()).contains(&node)
+    }
+
+    fn first_rim(&self) -> usize {
+        FIRST_CORNER + self.space.corners().len()
+    }
+
+    fn at(&self, node: usize) -> Point {
+        match node {
+            START | GOAL => self.ends[node],
+            _ if self.is_corner(node) => self.space.corners()[node - FIRST_CORNER].at,
+            _ => self.rims[node - self.first_rim()],
+        }
     }
 
     fn segment(&self, step: Step) -> Segment {
-        Segment::new(self.nodes[step.from], self.nodes[step.to])
+        Segment::new(self.at(step.from), self.at(step.to))
     }
 
-    fn waypoints(&self, previous: &[usize]) -> Vec<Point> {
+    fn waypoints(&self) -> Vec<Point> {
         let mut waypoints = Vec::new();
-        let mut at = GOAL;
-        while at != START {
-            waypoints.push(self.nodes[at]);
-            at = previous[at];
+        let mut node = GOAL;
+        while let Some((_, previous)) = self.reached[node].filter(|_| node != START) {
+            waypoints.push(self.at(node));
+            node = previous;
         }
         waypoints.reverse();
         waypoints
@@ -222,33 +257,33 @@ mod tests {
     use super::*;
     use crate::geometry::Workspace;
 
-    /// A hall of five by five square pillars, where many ways are equally long.
+    /// A hall of nine by nine square pillars, where many ways are equally long.
     fn hall() -> FreeSpace {
         let square = |x: f64, y: f64, width: f64| {
             [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
                 .map(|(a, b)| Point::new(x + a * width, y + b * width))
                 .to_vec()
         };
-        let pillars = (0..25).map(|index| square(f64::from(index % 5), f64::from(index / 5), 0.5));
-        let workspace = Workspace::new(square(-0.5, -0.5, 5.5), pillars.collect()).unwrap();
+        let pillars = (0..81).map(|index| square(f64::from(index % 9), f64::from(index / 9), 0.5));
+        let workspace = Workspace::new(square(-0.5, -0.5, 9.5), pillars.collect()).unwrap();
         FreeSpace::new(&workspace, 0.1).unwrap()
     }
 
     #[test]
     fn paths_over_the_corners_nearby_are_those_over_all() {
         let space = hall();
-        let aisles = (0..5).flat_map(|x| (0..5).map(move |y| (f64::from(x), f64::from(y))));
+        let aisles = (0..9).flat_map(|x| (0..9).map(move |y| (f64::from(x), f64::from(y))));
         let places: Vec<Point> =
             aisles.map(|(x, y)| Point::new(x - 0.25, y + 0.23 - 0.1 * x)).collect();
-        let disc = Disc { center: places[12], radius: 0.05 };
+        let ends = || places.iter().step_by(3);
+        let disc = Disc { center: places[40], radius: 0.05 };
         for discs in [&[][..], &[disc]] {
-            for (from, to) in
-                places.iter().flat_map(|from| places.iter().map(move |to| (*from, *to)))
-            {
-                let search = Search::new(&space, from, to, discs, None);
-                let over_all = search.run().map(|waypoints| {
-                    space.departure(from, waypoints, |path| search.is_passable(path))
-                });
+            for (from, to) in ends().flat_map(|from| ends().map(move |to| (*from, *to))) {
+                let mut search = Search::new(&space, from, to, discs);
+                search.look_up_to(f64::INFINITY);
+                let is_passable = |path: &Segment| avoids(path, discs) && space.is_clear(path);
+                let over_all =
+                    search.run().map(|waypoints| space.departure(from, waypoints, is_passable));
                 assert_eq!(shortest_path(&space, from, to, discs), over_all, "{from} to {to}");
             }
         }

@@ -162,10 +162,12 @@ pub fn merged() -> Guard {
     named("merged", variable("branches").less_than(2.0))
 }
 
-/// For some periods no branch has depended on it.
+/// For some periods no branch has depended on it, and no recruit is sought: which robots may answer a call does not
+/// change while it is under way.
 pub fn retired() -> Guard {
     let unused = variable("unused").at_least(variable("unused_patience"));
-    disengaged("retired", unused & variable("branches").less_than(1.0))
+    let free = variable("branches").less_than(1.0) & !proposition("recruiting");
+    disengaged("retired", unused & free)
 }
 
 /// It takes over a duty called `name` in an exchange.

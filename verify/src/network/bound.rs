@@ -86,21 +86,34 @@ impl Spans {
     }
 
     /// The length of a shortest spanning tree of the access points, as one, and the first `tasks`
-    /// tasks (Prim); infinite if no way leads to one of these.
+    /// tasks; infinite if no way leads to one of these.
     pub fn spanning_tree(&self, tasks: usize) -> f64 {
+        self.spanning_edges(tasks).iter().sum()
+    }
+
+    /// The robots of such a tree, where each of its edges is a chain of links that are no longer than `link`, and
+    /// ends with a robot of its own. Infinite if no way leads to a task.
+    pub fn robots_of_spanning_tree(&self, tasks: usize, link: f64) -> f64 {
+        let robots = |length: &f64| (length / link - ROUNDING).ceil().max(1.0);
+        self.spanning_edges(tasks).iter().map(robots).sum()
+    }
+
+    /// The lengths of the edges of a shortest spanning tree of the access points, as one, and the first `tasks`
+    /// tasks (Prim).
+    fn spanning_edges(&self, tasks: usize) -> Vec<f64> {
         let mut ways: Vec<f64> = self.from_access[..tasks].to_vec();
         let mut outside: Vec<usize> = (0..tasks).collect();
-        let mut length = 0.0;
+        let mut edges = Vec::with_capacity(tasks);
         while let Some(at) =
             (0..outside.len()).min_by(|&a, &b| ways[outside[a]].total_cmp(&ways[outside[b]]))
         {
             let joined = outside.swap_remove(at);
-            length += ways[joined];
+            edges.push(ways[joined]);
             for &task in &outside {
                 ways[task] = ways[task].min(self.between(task, joined));
             }
         }
-        length
+        edges
     }
 
     /// A bound from below on the length of any network that joins the access points with the first

@@ -2,8 +2,9 @@
 //!
 //! Redundant robots belong to the tree too. Each attaches to the node that is fewest links
 //! from an access point and, among those, most reliable, over links no longer than d_build. It
-//! chooses from the lineages that its neighbours tell it. Fixed and primary posts keep their
-//! parents, but for that of p₁ (Remark 5.6), as long as a robot holds these.
+//! chooses from the lineages that its neighbours tell it. Primary posts keep their parents, but for
+//! that of p₁ (Remark 5.6), as long as a robot holds these. So do fixed posts in the paper's order;
+//! otherwise they may be attached farther up the same way.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +13,7 @@ use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, NodeId, Phase, 
 use crate::automaton::TransitionError;
 use crate::located::Place as _;
 
-use super::super::beacon::Reports;
+use super::super::beacon::{Notice, Reports};
 use super::super::shared::renew;
 use super::Robot;
 use super::hearing::Neighbour;
@@ -45,7 +46,9 @@ impl Robot {
             Activity::Following | Activity::Leading => {
                 self.replace_parent().or_else(|| self.reattach())
             }
-            Activity::Relay | Activity::Junction | Activity::Leaf => self.replace_parent(),
+            Activity::Relay | Activity::Junction | Activity::Leaf => {
+                self.replace_parent().or_else(|| self.shorten_way())
+            }
             _ => None,
         };
         self.desired_parent = self.await_confirmation(desired);
@@ -76,9 +79,21 @@ impl Robot {
         self.is_quiet &= self.unused_periods < PATIENCE_WITH_UNUSED_POSTS;
     }
 
+    /// Whether it looks for another parent for its fixed post, or no branch depends on that any more.
+    pub(super) fn is_settling(&self) -> bool {
+        let looks_for_parent = self.awaits_confirmation || self.finds_better_parent();
+        let is_unused = self.duty.location() == Activity::Relay && !self.bears_branch();
+        self.is_eager() && (looks_for_parent && !self.duty.is_redundant() || is_unused)
+    }
+
     /// While a path Σ is being sought or walked, no robot changes its parent.
     pub(super) fn tree_is_frozen(&self) -> bool {
         matches!(self.phase(), Phase::RecruitElection | Phase::PathAgreement | Phase::Shift)
+    }
+
+    /// Whether the mission has been given up.
+    fn has_been_given_up(&self) -> bool {
+        matches!(self.notice(), Notice::Ended { outcome, .. } if outcome.is_given_up())
     }
 
     /// Whether a fixed post or one of the primary team is attached to this robot's post.
@@ -160,6 +175,36 @@ impl Robot {
             self.anchor_of(neighbour).filter(|_| usable).map(|anchor| (order, anchor))
         });
         ways.min_by_key(|&(order, _)| order).map(|(_, anchor)| Some(anchor))
+    }
+
+    /// With the eager strategy, while no path Σ is sought: the node farthest up the way from a fixed post to its access
+    /// point that a link of length d_build reaches, past relays alone. These become redundant then, Remark 5.6 (ii).
+    /// Where a mission has been given up, the tree stays as it was.
+    fn shorten_way(&self) -> Option<Option<Anchor>> {
+        if !self.is_eager() || self.tree_is_frozen() || self.has_been_given_up() {
+            return None;
+        }
+        let (own, way) = (self.duty.post()?.id, self.lineage()?);
+        let leads_up = |node: &Neighbour| {
+            let way = node.beacon.lineage.as_ref();
+            way.is_some_and(|way| !way.contains(own) && self.confirms(way))
+        };
+        let posts = way.posts().iter().skip(1).map(|&post| Anchor::Post(post));
+        let mut farthest = None;
+        for anchor in posts.chain([Anchor::Access(way.root())]) {
+            let Some(node) = self.neighbour_at(anchor) else { break };
+            if Some(anchor) != self.anchor()
+                && self.may_attach_to(node)
+                && leads_up(node)
+                && self.may_build(self.walk_to(node))
+            {
+                farthest = Some(anchor);
+            }
+            if !node.is_relay() {
+                break;
+            }
+        }
+        farthest.map(Some)
     }
 
     fn choose_parent(&self) -> Option<Option<Anchor>> {

@@ -453,7 +453,8 @@ fn retire(relay: &Relay, _: &Robot, _: &mut Effects) -> Standby {
     Standby(with_kind(relay.0, PostKind::Redundant))
 }
 
-/// Another parent in the tree: for a redundant robot or p₁ (Remark 5.6), or where the parent is gone.
+/// Another parent in the tree: for a redundant robot or p₁ (Remark 5.6), where the parent is gone, or where the way is
+/// shorter without it.
 fn attach<A: Holder + From<Held>>(duty: &A, robot: &Robot, effects: &mut Effects) -> A {
     let mut held = *duty.held();
     if let Some(desired) = robot.desired_parent {

@@ -8,7 +8,7 @@ use pleach_continuous::network::reliability::LinkReliability;
 use pleach_discrete::network::{Anchor, NodeId, Post, PostId};
 
 use super::super::beacon::Beacon;
-use super::super::duty::Station;
+use super::super::duty::{Duty, Station};
 use super::super::roll::Wreck;
 use super::super::site::Site;
 use super::Robot;
@@ -130,6 +130,11 @@ impl Neighbour {
     /// Whether its post is attached to `post`, if there is one.
     pub fn is_attached_to(&self, post: Option<PostId>) -> bool {
         post.is_some_and(|post| self.post().is_some_and(|held| held.is_child_of(post)))
+    }
+
+    /// Whether it holds a fixed post from which no task is serviced and no branches part.
+    pub fn is_relay(&self) -> bool {
+        matches!(self.beacon.duty, Some(Duty::Relay(_)))
     }
 
     pub fn is_access_point(&self) -> bool {

@@ -156,9 +156,15 @@ impl Robot {
             && self.knows_mission()
             && self.offers().offer().is_none()
             && self.duty.station().is_some()
-            && self
-                .offer_to_answer()
-                .is_none_or(|(mover, offer)| self.pursues_the_same(mover, offer))
+            && self.offer_to_answer().is_none_or(|(mover, offer)| {
+                self.touches(mover) && self.pursues_the_same(mover, offer)
+            })
+    }
+
+    /// Whether it still touches the mover: it may have moved since that has made its offer.
+    fn touches(&self, mover: NodeId) -> bool {
+        let contact = CONTACT * self.clearance();
+        self.neighbour(mover).is_some_and(|mover| self.site.may_touch(mover.distance, contact))
     }
 
     /// Whether the mover goes by the same announcement, and the same Σ if one of the duties that they

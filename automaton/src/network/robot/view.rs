@@ -165,9 +165,20 @@ impl<'a> RobotView<'a> {
         self.0.is_active()
     }
 
+    /// Whether it may move in this control period and takes part by a roll that is valid.
+    pub fn may_move(self) -> bool {
+        self.is_active() && self.is_called()
+    }
+
     /// Whether it takes part by a roll that is valid: otherwise it does not move.
     pub fn is_called(self) -> bool {
         self.0.is_called()
+    }
+
+    /// Whether its place in the tree may change without a move: it looks for another parent for its fixed post, or
+    /// no branch depends on that any more.
+    pub fn is_settling(self) -> bool {
+        self.0.is_settling()
     }
 
     /// Whether it stands still unless it is asked for; robots that settle on their post count as

@@ -237,7 +237,10 @@ impl Conclusions {
         // The members of a team that is dissolved leave it one by one, as they hear of it.
         let is_dissolving = ledger.primary_team.is_empty()
             && self.primary_team.values().any(|known| is_part(&seen, known));
-        if seen != self.apart(&ledger.primary_team) && !is_dissolving {
+        // While the leader hands its duty over, nobody may be seen to lead, and then no team is seen.
+        let has_leader = ledger.leader.is_none_or(|leader| !self.apart(&[leader]).is_empty());
+        let is_handed_over = !has_leader && snapshot.primary_team.is_empty();
+        if seen != self.apart(&ledger.primary_team) && !is_dissolving && !is_handed_over {
             let sentence = format!(
                 "the primary team is reported as {:?}, and the events make it {:?}",
                 snapshot.primary_team, ledger.primary_team
@@ -258,7 +261,7 @@ impl Conclusions {
         let is_early = ledger.walk.is_none() && ledger.stage() == Stage::Calling;
         let is_known = self.active_team.values().any(|known| self.apart(known) == team)
             || next.is_some_and(|next| self.apart(next.active_team()) == team);
-        if is_known || is_early || team.is_empty() && may_be_none {
+        if is_known || is_early || team.is_empty() && (may_be_none || is_handed_over) {
             return Ok(());
         }
         let sentence = format!(

@@ -12,6 +12,7 @@ mod lemmas;
 mod moves;
 mod partner;
 mod seen;
+mod shortening;
 mod team;
 mod ways;
 mod wrecks;

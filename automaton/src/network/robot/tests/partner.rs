@@ -223,6 +223,8 @@ fn a_parked_robot_makes_room_only_for_a_mover_of_the_same_mission() {
         robot.may_be_relieved()
     };
     assert!(relieved(&|_, _| {}));
+    let away = |ways: f64| relieved(&|_, mover| mover.position = west(ways * CLEARANCE));
+    assert!(away(2.6 - LITTLE) && !away(2.6 + LITTLE), "they touch no more");
     assert!(!relieved(&|_, mover| mover.announced = None), "it goes by no announcement");
     assert!(!relieved(&|robot, _| robot.announced = None), "this one goes by none");
     assert!(!relieved(&|robot, _| robot.facts.path_announced = true), "it has yet to learn Σ");

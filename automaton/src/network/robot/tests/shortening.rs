@@ -1,0 +1,97 @@
+//! Ways of fixed posts that are made shorter, so that nodes on them become redundant.
+
+use super::super::super::duty::Junction;
+use super::super::super::mission::RecruitElection;
+use super::super::super::scenario::Strategy;
+use super::*;
+
+/// Robot 0 holds a fixed post that is attached to post 13, half a unit to the west.
+fn holder(strategy: Strategy) -> Robot {
+    let mut scenario = hall();
+    scenario.control.strategy = Some(strategy);
+    let mut robot = robot_of(&scenario);
+    robot.holds(fixed(30, 13));
+    robot
+}
+
+/// To what that wants to be attached that hears these.
+fn choice(mut robot: Robot, heard: impl IntoIterator<Item = Beacon>) -> Option<Anchor> {
+    heard.into_iter().for_each(|beacon| robot.hears(beacon));
+    robot.trace_lineage().expect("its automaton goes on");
+    robot.keep_place().expect("its automaton goes on");
+    robot.desired_parent.flatten()
+}
+
+const fn at(post: u32) -> Option<Anchor> {
+    Some(Anchor::Post(PostId(post)))
+}
+
+/// Its parent, on a way over the posts 14 and 15.
+fn parent() -> Beacon {
+    beacon(1, west(0.5), fixed(13, 14), &[13, 14, 15])
+}
+
+/// The node before, so far away.
+fn grandparent(away: f64) -> Beacon {
+    beacon(2, west(away), fixed(14, 15), &[14, 15])
+}
+
+#[test]
+fn a_fixed_post_is_attached_past_its_parent_where_a_link_of_d_build_reaches() {
+    let build = robot().build_length();
+    let heard = |away| [parent(), grandparent(away)];
+    assert_eq!(choice(holder(Strategy::Eager), heard(build - LITTLE)), at(14));
+    assert_eq!(choice(holder(Strategy::Eager), heard(build + LITTLE)), None);
+    assert_eq!(choice(holder(Strategy::Paper), heard(build - LITTLE)), None);
+}
+
+#[test]
+fn of_the_nodes_on_its_way_the_farthest_counts() {
+    let next = |away| beacon(3, west(away), fixed(15, 16), &[15]);
+    let heard = |away| [parent(), grandparent(0.8), next(away)];
+    assert_eq!(choice(holder(Strategy::Eager), heard(1.0)), at(15));
+    assert_eq!(choice(holder(Strategy::Eager), heard(1.9)), at(14));
+    let near_access = heard(1.0).into_iter().chain([access_point(west(1.1))]);
+    assert_eq!(choice(holder(Strategy::Eager), near_access), Some(Anchor::Access(0)));
+    let with_gap = [parent(), next(1.0)];
+    assert_eq!(choice(holder(Strategy::Eager), with_gap), None, "it does not hear the one between");
+}
+
+/// A junction, and a robot that services a task, are needed whatever is attached past them.
+#[test]
+fn only_relays_are_passed_over() {
+    let needed = |beacon: Beacon, duty: fn(Held) -> Duty| {
+        let held = beacon.duty.as_ref().and_then(Duty::held).expect("it holds a post");
+        Beacon { duty: Some(duty(*held)), ..beacon }
+    };
+    let junction = |held| Duty::Junction(Junction(held));
+    let heard = [needed(parent(), junction), grandparent(0.8)];
+    assert_eq!(choice(holder(Strategy::Eager), heard), None);
+    let next = beacon(3, west(1.0), fixed(15, 16), &[15]);
+    let heard = [parent(), needed(grandparent(0.8), junction), next];
+    assert_eq!(choice(holder(Strategy::Eager), heard), at(14));
+}
+
+#[test]
+fn no_way_is_shortened_that_is_contradicted_or_while_a_path_is_sought() {
+    let newer = beacon(2, west(0.8), fixed(14, 17), &[14, 17]);
+    let own_way = Beacon { parent: Some(0), ..grandparent(0.8) };
+    assert_eq!(choice(holder(Strategy::Eager), [parent(), newer]), at(14), "a way of its own");
+    assert_eq!(
+        choice(holder(Strategy::Eager), [parent(), own_way]),
+        None,
+        "attached to this robot"
+    );
+    let below = beacon(2, west(0.8), fixed(14, 30), &[14, 30, 13, 17]);
+    assert_eq!(
+        choice(holder(Strategy::Eager), [parent(), below]),
+        None,
+        "its own post is on the way"
+    );
+    let lost = beacon(2, west(0.8), fixed(14, 15), &[]);
+    assert_eq!(choice(holder(Strategy::Eager), [parent(), lost]), None, "it knows no way");
+    let mut recruiting = holder(Strategy::Eager);
+    let election = RecruitElection { before: None, standstill: None, ahead: false };
+    recruiting.mission = Current::new(Mission::RecruitElection(election));
+    assert_eq!(choice(recruiting, [parent(), grandparent(0.8)]), None);
+}
