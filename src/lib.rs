@@ -65,7 +65,7 @@
 //!     WorkspaceOutline,
 //! };
 //!
-//! let robot = |x, y| RobotStart { position: [x, y], rate: 0.075 };
+//! let robot = |x, y| RobotStart::at([x, y], 0.075);
 //! let scenario = ValidScenario::new(Scenario {
 //!     name: "room".into(),
 //!     description: None,
@@ -91,7 +91,7 @@
 //! #     AccessPoint, Control, LinkRanges, RobotStart, Scenario, Task, ValidScenario,
 //! #     WorkspaceOutline,
 //! # };
-//! # let robot = |x, y| RobotStart { position: [x, y], rate: 0.075 };
+//! # let robot = |x, y| RobotStart::at([x, y], 0.075);
 //! # let scenario = ValidScenario::new(Scenario {
 //! #     name: "room".into(),
 //! #     description: None,

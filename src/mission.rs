@@ -1,6 +1,6 @@
 //! A mission from its start to its end, and those who watch it.
 //!
-//! [`run`] hands the network of a scenario to the executor. Every control period it takes the
+//! [`run`] hands the network of a scenario, or those of its fleets, to the executor. Every control period it takes the
 //! observers' view of the network, holds it against the properties of [`crate::verify`], and
 //! shows it to the [`Watcher`]s: the trace writer, the progress display, the summary, the
 //! figures. None of them can influence the robots; a violated property ends the run, and so does
@@ -11,13 +11,14 @@ use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use crate::automaton::network::record::{End, Faults, MissionEvent, Outcome, Snapshot};
-use crate::automaton::network::scenario::ValidScenario;
+use crate::automaton::network::certificate::{Certificate, Hindrance, Standing};
+use crate::automaton::network::record::{End, Faults, FleetEnd, MissionEvent, Outcome, Snapshot};
+use crate::automaton::network::scenario::{Fleet, ValidScenario};
 use crate::automaton::network::{
-    KernelTimes, Message, Network, NetworkError, RobotNode, SATURATED,
+    Fleets, KernelTimes, Message, Network, NetworkError, RobotNode, SATURATED,
 };
 use crate::automaton::node::Medium;
-use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason};
+use crate::automaton::{Executor, HybridTime, InvalidLimit, Observer, Reason, System};
 use crate::continuous::Point;
 use crate::discrete::network::activity::may_follow;
 use crate::verify::network::judge::missing;
@@ -65,6 +66,12 @@ pub enum MissionError {
         /// How the executor names it.
         reason: String,
     },
+    /// Faults of nodes where each access point has a team of its own.
+    #[error(
+        "where control.teams is \"per_access_point\", messages may fail, and no nodes: run the mission \
+         without faults of nodes and partitions, or with one team"
+    )]
+    FaultsOfFleets,
     /// A watcher cannot write what it has to.
     #[error("cannot write: {0}")]
     Watcher(#[from] io::Error),
@@ -89,7 +96,38 @@ pub fn run(
     scenario: &ValidScenario,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    run_network(scenario, &mut Network::new(scenario)?, watchers)
+    match scenario.fleets().is_empty() {
+        true => run_network(scenario, &mut Network::new(scenario)?, watchers),
+        false => run_fleets(scenario, &mut Fleets::new(scenario)?, watchers),
+    }
+}
+
+/// Runs `fleets`, which are those of `scenario` over any media, until the missions of all have ended.
+///
+/// # Errors
+/// When a watcher fails.
+pub fn run_fleets<M: Medium<Message, Point>, N: RobotNode>(
+    scenario: &ValidScenario,
+    fleets: &mut Fleets<M, N>,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<Completed, MissionError> {
+    run_fleets_with_faults(scenario, Faults::default(), fleets, watchers)
+}
+
+/// The same for fleets in which these faults occur.
+fn run_fleets_with_faults<M: Medium<Message, Point>, N: RobotNode>(
+    scenario: &ValidScenario,
+    faults: Faults,
+    fleets: &mut Fleets<M, N>,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<Completed, MissionError> {
+    let mut gallery = Gallery::with_faults(scenario, faults, watchers);
+    let end = carry_out(scenario, fleets, &mut gallery)?;
+    let end = match end.outcome {
+        Outcome::Interrupted => fleets.end(&end),
+        _ => end,
+    };
+    Ok(Completed { times: fleets.times(), ..gallery.conclude(end)? })
 }
 
 /// Runs `network`, which is the network of `scenario` over any medium, to its end.
@@ -115,27 +153,42 @@ pub fn run_network_with_faults<M: Medium<Message, Point>, N: RobotNode>(
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
     let mut gallery = Gallery::with_faults(scenario, faults, watchers);
-    let settings = network.site().settings;
-    let horizon = settings.period * (settings.max_steps as f64 + 1.0);
-    let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(network, &mut gallery)?;
-    let end = match ending.reason {
-        Reason::Finished(end) | Reason::Interrupted(end) => end,
-        other => {
-            return Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") });
-        }
-    };
+    let end = carry_out(scenario, network, &mut gallery)?;
     Ok(Completed { times: network.times(), ..gallery.conclude(end)? })
 }
 
-/// Runs the mission of `scenario` in a storm. It is held against what no fault may break.
+/// Runs networks while the gallery looks on, and says how they ended.
+fn carry_out<S: System<Finish = End, Error = NetworkError>>(
+    scenario: &ValidScenario,
+    networks: &mut S,
+    gallery: &mut impl Observer<S>,
+) -> Result<End, MissionError> {
+    let settings = scenario.settings();
+    let horizon = settings.period * (settings.max_steps as f64 + 1.0);
+    let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(networks, gallery)?;
+    match ending.reason {
+        Reason::Finished(end) | Reason::Interrupted(end) => Ok(end),
+        other => Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") }),
+    }
+}
+
+/// Runs the mission of `scenario` in a storm. It is held against what no fault may break. Where each access point
+/// has a team of its own, messages fail within each fleet; where the robots of other fleets are, is always known.
 ///
 /// # Errors
-/// When a watcher fails.
+/// When a watcher fails, and when nodes are to fail where there are several teams.
 pub fn run_in_storm(
     scenario: &ValidScenario,
     storm: &Storm,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
+    if !scenario.fleets().is_empty() {
+        if !storm.troubles.is_empty() || !storm.weather.partitions.is_empty() {
+            return Err(MissionError::FaultsOfFleets);
+        }
+        let mut fleets = Fleets::of_networks(scenario, |fleet| storm::network(fleet, storm))?;
+        return run_fleets_with_faults(scenario, storm.faults(), &mut fleets, watchers);
+    }
     let mut network = storm::network(scenario, storm)?;
     run_network_with_faults(scenario, storm.faults(), &mut network, watchers)
 }
@@ -200,7 +253,7 @@ impl<'a, 'w> Gallery<'a, 'w> {
             return Some(End::new(Outcome::Blocked, reason, None));
         }
         self.saturated = saturated(snapshot);
-        let end = self.check(snapshot, events).err();
+        let end = self.check(snapshot, events);
         end.or_else(|| self.interruption(snapshot.task))
     }
 
@@ -231,40 +284,38 @@ impl<'a, 'w> Gallery<'a, 'w> {
 
     /// An end with what observers add to its reason, and with what shows that it had to be so.
     fn explain(&self, end: End) -> End {
+        if !end.fleets.is_empty() {
+            let fleets = self.scenario.fleets().iter().zip(end.fleets);
+            return End::of_fleets(fleets.map(|(it, told)| self.explain_fleet(it, told)).collect());
+        }
         let certificate = self.judge.account(&end);
         let reason = match end.outcome {
-            Outcome::Blocked | Outcome::StepLimit => self.overload(&end),
-            Outcome::InsufficientRobots => self.shortage(&end),
+            Outcome::Blocked | Outcome::StepLimit => overload(&self.saturated, &end),
+            Outcome::InsufficientRobots => shortage(&self.scenario, end.task, &end),
             _ => None,
         };
         End { reason: reason.unwrap_or(end.reason), certificate, ..end }
     }
 
-    /// A mission that gets stuck while robots send all the time may be stuck because of their links: the reason
-    /// names them, too.
-    fn overload(&self, end: &End) -> Option<String> {
-        let loads =
-            self.saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
-        let loads: Vec<String> = loads.collect();
-        if loads.is_empty() {
-            return None;
-        }
-        Some(format!(
-            "{}; the load is {}, and links carry no more: lower the rates, place robots closer together or \
-             add some",
-            end.reason,
-            loads.join(", ")
-        ))
-    }
-
-    /// Where robots are too few wherever they stand, the reason says so.
-    fn shortage(&self, end: &End) -> Option<String> {
-        let least = missing(&self.scenario, end.task? + 1)?;
-        let robots = self.scenario.robot.len();
-        Some(format!(
-            "{}; wherever robots stand, the tasks so far take {least} of them, and there are {robots}",
-            end.reason
-        ))
+    /// The same for the end of the mission of a fleet.
+    fn explain_fleet(&self, fleet: &Fleet, told: FleetEnd) -> FleetEnd {
+        let FleetEnd { access_point, end } = told;
+        let certificate = self.judge.account_of_fleet(access_point, &end);
+        let is_own = |(robot, _): &&(usize, f64)| fleet.robots().binary_search(robot).is_ok();
+        let saturated: Vec<_> = self.saturated.iter().filter(is_own).copied().collect();
+        let reason = match end.outcome {
+            Outcome::Blocked => {
+                beside_bodies(certificate.as_ref(), &end).or_else(|| overload(&saturated, &end))
+            }
+            Outcome::StepLimit => overload(&saturated, &end),
+            Outcome::InsufficientRobots => {
+                let task = end.task.and_then(|task| fleet.inward().task(task));
+                shortage(fleet.scenario(), task, &end)
+            }
+            _ => None,
+        };
+        let end = End { reason: reason.unwrap_or(end.reason), certificate, ..end };
+        FleetEnd { access_point, end }
     }
 
     /// The end that a watcher asks for.
@@ -273,11 +324,50 @@ impl<'a, 'w> Gallery<'a, 'w> {
         Some(End::new(Outcome::Interrupted, reason, task))
     }
 
-    fn check(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Result<(), End> {
-        self.judge.observe(snapshot, events).map_err(|violation| {
-            End::new(Outcome::InvariantViolated, violation.to_string(), snapshot.task)
-        })
+    /// The end where a property is violated.
+    fn check(&mut self, snapshot: &Snapshot, events: &[MissionEvent]) -> Option<End> {
+        let violation = self.judge.observe(snapshot, events).err()?;
+        Some(End::new(Outcome::InvariantViolated, violation.to_string(), snapshot.task))
     }
+}
+
+/// A mission that gets stuck while robots send all the time may be stuck because of their links: the reason
+/// names them, too.
+fn overload(saturated: &[(usize, f64)], end: &End) -> Option<String> {
+    let loads = saturated.iter().map(|(robot, load)| format!("{load:.3} at robot {robot}"));
+    let loads: Vec<String> = loads.collect();
+    if loads.is_empty() {
+        return None;
+    }
+    Some(format!(
+        "{}; the load is {}, and links carry no more: lower the rates, place robots closer together or \
+             add some",
+        end.reason,
+        loads.join(", ")
+    ))
+}
+
+/// Where robots are too few wherever they stand, the reason says so: `task` by its number in the scenario.
+fn shortage(scenario: &ValidScenario, task: Option<usize>, end: &End) -> Option<String> {
+    let least = missing(scenario, task? + 1)?;
+    let robots = scenario.robot.len();
+    Some(format!(
+        "{}; wherever robots stand, the tasks so far take {least} of them, and there are {robots}",
+        end.reason
+    ))
+}
+
+/// Where robots of other fleets are beside the robots that stand still, the reason names these.
+fn beside_bodies(certificate: Option<&Certificate>, end: &End) -> Option<String> {
+    let (Certificate::Blocked { team } | Certificate::Tried { team, .. }) = certificate? else {
+        return None;
+    };
+    let is_body = |hindrance: &Hindrance| matches!(hindrance, Hindrance::Body { .. });
+    let is_beside = |standing: &&Standing| standing.hindrances.iter().any(is_body);
+    let robots: Vec<usize> = team.iter().filter(is_beside).map(|it| it.robot).collect();
+    (!robots.is_empty()).then(|| {
+        format!("{}; a robot of another access point stands beside robots {robots:?}", end.reason)
+    })
 }
 
 impl<M: Medium<Message, Point>, N: RobotNode> Observer<Network<M, N>> for Gallery<'_, '_> {
@@ -285,6 +375,18 @@ impl<M: Medium<Message, Point>, N: RobotNode> Observer<Network<M, N>> for Galler
 
     fn flows(&mut self, network: &Network<M, N>, _: HybridTime, _: f64) -> ControlFlow<End> {
         match self.observe(&network.snapshot(), &network.events()) {
+            None => ControlFlow::Continue(()),
+            Some(end) => ControlFlow::Break(end),
+        }
+    }
+}
+
+impl<M: Medium<Message, Point>, N: RobotNode> Observer<Fleets<M, N>> for Gallery<'_, '_> {
+    const SEES_JUMPS: bool = false;
+
+    fn flows(&mut self, fleets: &Fleets<M, N>, _: HybridTime, _: f64) -> ControlFlow<End> {
+        let snapshot = fleets.snapshot();
+        match snapshot.and_then(|snapshot| self.observe(&snapshot, &fleets.events())) {
             None => ControlFlow::Continue(()),
             Some(end) => ControlFlow::Break(end),
         }

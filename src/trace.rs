@@ -19,7 +19,10 @@
 //! automaton and its place in the automaton of the `exchange` of duties, its `known_phase` of the
 //! mission, its `target` (or null), and how many messages it has `sent` and `heard` in the period. From when
 //! a task is over on, `closed` lists it; while robots or access points do not run or are not heard, `absent` lists
-//! them.
+//! them. Where each access point has a team of its own, `fleets` has of each, by `access_point`, its `phase`, `task`,
+//! `active_team`, `primary_team` and `path`, and from the control period on at whose beginning its mission is over the
+//! number of that period, `ended`. The keys above then hold the robots of all of them, and `phase` and `task` are those
+//! of the first whose mission goes on, or of the first. The `end` has in `fleets` how the mission of each ended.
 
 mod line;
 

@@ -27,7 +27,7 @@ use pleach::verify::network::storm::Storm;
 use pleach::{scenario_file, story};
 
 /// The documents that people write, with their links and tables.
-const WRITTEN: [&str; 26] = [
+const WRITTEN: [&str; 27] = [
     "README.md",
     "docs/SUMMARY.md",
     "docs/classics/README.md",
@@ -52,6 +52,7 @@ const WRITTEN: [&str; 26] = [
     "docs/how-to/trace.md",
     "docs/how-to/mcap.md",
     "docs/how-to/python.md",
+    "docs/how-to/teams.md",
     "docs/how-to/processes.md",
     "docs/how-to/real-robots.md",
 ];

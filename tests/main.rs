@@ -24,6 +24,7 @@ mod determinism;
 mod documents;
 mod errands;
 mod faulty_traces;
+mod fleets;
 mod found_missions;
 mod harnesses;
 mod import;

@@ -77,7 +77,7 @@ const ROUNDS: usize = 32;
 
 fn with_hermit(rate: f64) -> Scenario {
     let mut scenario = without_hermit();
-    scenario.robot.push(RobotStart { position: FAR_CORNER, rate });
+    scenario.robot.push(RobotStart::at(FAR_CORNER, rate));
     scenario
 }
 

@@ -30,7 +30,7 @@ fn room(task: [f64; 2]) -> Scenario {
             ..Control::default()
         },
         access_point: vec![AccessPoint { position: [0.3, 0.5] }],
-        robot: places.map(|position| RobotStart { position, rate: 0.075 }).into(),
+        robot: places.map(|position| RobotStart::at(position, 0.075)).into(),
         task: vec![Task::at(task)],
     }
 }

@@ -42,7 +42,7 @@ fn scattered(seed: u64) -> Scenario {
             places.push(place);
         }
     }
-    let robots = places[1..].iter().map(|position| RobotStart { position: *position, rate: 0.02 });
+    let robots = places[1..].iter().map(|position| RobotStart::at(*position, 0.02));
     Scenario {
         name: format!("scattered-{seed}"),
         description: None,

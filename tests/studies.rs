@@ -13,7 +13,7 @@ use pleach::verify::network::SLACK;
 use std::collections::BTreeSet;
 
 /// Every shipped scenario with its outcome and the number of tasks serviced.
-const SHIPPED: [(&str, Outcome, usize); 14] = [
+const SHIPPED: [(&str, Outcome, usize); 15] = [
     ("corridor", Outcome::Serviced, 2),
     ("discs", Outcome::Serviced, 3),
     ("errands", Outcome::Serviced, 3),
@@ -27,6 +27,7 @@ const SHIPPED: [(&str, Outcome, usize); 14] = [
     ("study-2", Outcome::Serviced, 2),
     ("too-few", Outcome::InsufficientRobots, 1),
     ("two-clusters", Outcome::Serviced, 3),
+    ("two-teams", Outcome::Serviced, 4),
     ("unreachable", Outcome::UnreachableTask, 1),
 ];
 

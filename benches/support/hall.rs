@@ -62,7 +62,7 @@ pub fn hall(robots: usize, tasks: usize) -> ValidScenario {
             .iter()
             .map(|&corner| AccessPoint { position: within(corner, ACCESS_POINT) })
             .collect(),
-        robot: (0..robots).map(|robot| RobotStart { position: place(robot), rate: RATE }).collect(),
+        robot: (0..robots).map(|robot| RobotStart::at(place(robot), RATE)).collect(),
         task: (0..tasks)
             .map(|task| (task as f64 + 0.5) / tasks as f64 * height)
             .map(|y| Task::at([width - 0.1, y]))

@@ -31,12 +31,26 @@ const GLANCE: Duration = Duration::from_millis(100);
 /// More exchanges in one control period are taken for endless.
 const MOST_EXCHANGES: usize = 100_000;
 
+/// The scenario in a file, of which all robots are one team.
+///
+/// # Errors
+/// No mission can start from it, or each of its access points has a team of its own.
+pub fn scenario_in(path: &Path) -> Result<ValidScenario, Failure> {
+    let scenario = scenario_file::read(path)?;
+    if scenario.fleets().is_empty() {
+        return Ok(scenario);
+    }
+    let what = "control.teams is \"per_access_point\", and processes run missions of one team: leave it out, or give \
+        the team of each access point a scenario of its own";
+    Err(Failure::Usage(format!("{}: {what}", path.display())))
+}
+
 /// Runs a robot.
 ///
 /// # Errors
 /// What keeps it from taking part.
 pub fn run_robot(arguments: &RobotArguments) -> Result<Status, Failure> {
-    let scenario = scenario_file::read(&arguments.scenario)?;
+    let scenario = scenario_in(&arguments.scenario)?;
     let id = arguments.id;
     let count = scenario.robot.len();
     if id >= count {
@@ -59,7 +73,7 @@ pub fn run_robot(arguments: &RobotArguments) -> Result<Status, Failure> {
 /// # Errors
 /// What keeps them from taking part.
 pub fn run_access_point(arguments: &AccessPointArguments) -> Result<Status, Failure> {
-    let scenario = scenario_file::read(&arguments.scenario)?;
+    let scenario = scenario_in(&arguments.scenario)?;
     let count = scenario.access_point.len();
     let numbers = match arguments.id {
         None => 0..count,

@@ -5,7 +5,7 @@
 
 use crate::arguments::{MEETING_POINT, OutputArguments, WatchArguments};
 use crate::packet::{Refusal, Refusals};
-use crate::process::{digest_of, name_of};
+use crate::process::{digest_of, name_of, scenario_in};
 use crate::report::{Report, Tally};
 use crate::transport::{Arrival, Endpoints, Interest, Transport};
 use pleach::automaton::network::Robot;
@@ -22,7 +22,6 @@ use pleach::cli::run::{status_of, told, warn_of};
 use pleach::cli::status::{Failure, Status};
 use pleach::continuous::Point;
 use pleach::mission::{Completed, Gallery};
-use pleach::scenario_file;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
@@ -68,7 +67,7 @@ pub type Meanwhile<'a> = dyn FnMut(usize) -> Result<Vec<(NodeId, Point)>, Failur
 /// # Errors
 /// No mission can start from it.
 pub fn planned(path: &Path) -> Result<Planned, Failure> {
-    let scenario = scenario_file::read(path)?;
+    let scenario = scenario_in(path)?;
     let source = path.display().to_string();
     Ok(Planned::once(source, scenario))
 }

@@ -9,7 +9,7 @@ use super::status::{Failure, Status};
 use super::sweep::Sweep;
 use super::terminal;
 use pleach::automaton::network::record::{MissionEvent, Snapshot};
-use pleach::automaton::network::scenario::{Remark, ValidScenario};
+use pleach::automaton::network::scenario::{Fleet, Remark, Scenario, ValidScenario};
 use pleach::figures::{Plan, Scene, quantity};
 use pleach::mission::{self, Watcher};
 use std::fs;
@@ -54,17 +54,13 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
     let resolved = scenario.settings();
     let set: String = settings.iter().map(|setting| format!(" with {setting}")).collect();
     let (links, crossing) = scenario.count_links();
-    let site = scenario.site();
     let mut rows = vec![
         ("workspace", workspace(scenario)),
         ("access points", scenario.access_point.len().to_string()),
         ("robots", scenario.robot.len().to_string()),
         ("tasks", scenario.task.len().to_string()),
         ("links", format!("{links} at the start, {crossing} of them through walls")),
-        (
-            "longest new link",
-            format!("{}, along the shortest way around walls", quantity(site.usual.build)),
-        ),
+        ("longest new link", longest_link(scenario)),
         (
             "clearance",
             format!(
@@ -74,10 +70,31 @@ fn report(planned: &Planned, remarks: &[Remark], drawing: Option<PathBuf>) -> St
             ),
         ),
     ];
+    rows.extend(scenario.fleets().iter().map(|fleet| ("team", team(fleet))));
     rows.extend(drawing.map(|path| ("start", path.display().to_string())));
     rows.extend(remarks::lines(remarks).into_iter().map(|line| ("remark", line)));
     let rows = rows.iter().map(|(label, text)| format!("  {label:<19} {text}\n"));
     format!("{source}{set}: a mission can start\n{}", rows.collect::<String>())
+}
+
+/// Up to which length links are made; each team has its own.
+fn longest_link(scenario: &ValidScenario) -> String {
+    let fleets = scenario.fleets().iter().map(Fleet::scenario);
+    let scenarios = if scenario.fleets().is_empty() { vec![scenario] } else { fleets.collect() };
+    let mut lengths: Vec<String> =
+        scenarios.into_iter().map(|it| quantity(it.site().usual.build)).collect();
+    lengths.dedup();
+    format!("{}, along the shortest way around walls", lengths.join(" and "))
+}
+
+fn team(fleet: &Fleet) -> String {
+    let Scenario { robot, task, .. } = fleet.scenario().scenario();
+    let counted = |count: usize, noun: &str| match count {
+        1 => format!("1 {noun}"),
+        count => format!("{count} {noun}s"),
+    };
+    let (robots, tasks) = (counted(robot.len(), "robot"), counted(task.len(), "task"));
+    format!("{robots} and {tasks} of access point {}", fleet.access_point())
 }
 
 fn workspace(scenario: &ValidScenario) -> String {

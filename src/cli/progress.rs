@@ -5,7 +5,7 @@
 
 use super::{output, terminal};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pleach::automaton::network::record::{End, MissionEvent, Snapshot};
+use pleach::automaton::network::record::{End, FleetView, MissionEvent, Snapshot};
 use pleach::automaton::network::scenario::Scenario;
 use pleach::discrete::Location as _;
 use pleach::mission::Watcher;
@@ -82,14 +82,28 @@ fn spinner() -> ProgressBar {
 
 /// Where the mission stands: step, phase, task, leader.
 fn standing(snapshot: &Snapshot, tasks: usize) -> String {
+    let serviced = snapshot.serviced.len();
+    if !snapshot.fleets.is_empty() {
+        let phases: Vec<String> = snapshot.fleets.iter().map(phase_of_fleet).collect();
+        return format!(
+            "k = {}  {}  {serviced} of {tasks} tasks serviced",
+            snapshot.step,
+            phases.join(", ")
+        );
+    }
     let phase = snapshot.phase.name();
     let task = match snapshot.task {
-        Some(task) => format!("task {task} ({} of {tasks} serviced)", snapshot.serviced.len()),
-        None => format!("{} of {tasks} tasks serviced", snapshot.serviced.len()),
+        Some(task) => format!("task {task} ({serviced} of {tasks} serviced)"),
+        None => format!("{serviced} of {tasks} tasks serviced"),
     };
     let leader = match snapshot.primary_team.last() {
         Some(leader) => format!("robot {leader} leads"),
         None => "no leader".into(),
     };
     format!("k = {}  {phase}  {task}  {leader}", snapshot.step)
+}
+
+/// Where the mission of a fleet stands.
+fn phase_of_fleet(fleet: &FleetView) -> String {
+    format!("access point {}: {}", fleet.access_point, fleet.phase.name())
 }

@@ -167,7 +167,12 @@ impl Album {
 
     fn add_picture(&mut self, snapshot: &Snapshot, events: &[MissionEvent], started: bool) {
         let captions: Vec<_> = events.iter().filter_map(story::caption).collect();
-        let named = events.iter().find_map(story::task_of).or(snapshot.task);
+        let of_team = |robot: usize| {
+            let pursuits = snapshot.pursuits();
+            pursuits.iter().find(|it| it.primary_team.contains(&robot)).and_then(|it| it.task)
+        };
+        let pursued = captions.first().and_then(|caption| of_team(caption.number));
+        let named = events.iter().find_map(story::task_of).or(pursued).or(snapshot.task);
         let mut headlines: Vec<String> = named.iter().map(|task| format!("task {task}")).collect();
         let mut slugs: Vec<String> = named.iter().map(|task| format!("task-{task}")).collect();
         if started {

@@ -179,11 +179,12 @@ impl TaskState {
 
     /// How far `task` has come at an instant.
     pub(crate) fn of(snapshot: &Snapshot, task: usize) -> TaskState {
+        let is_pursued = || snapshot.pursuits().iter().any(|it| it.task == Some(task));
         let is_serviced = || snapshot.serviced.iter().any(|(done, _)| *done == task);
         match snapshot.closed.contains(&task) {
             true => TaskState::Over,
             false if is_serviced() => TaskState::Serviced,
-            false if snapshot.task == Some(task) => TaskState::Pursued,
+            false if is_pursued() => TaskState::Pursued,
             false => TaskState::Unannounced,
         }
     }

@@ -1,6 +1,6 @@
 //! One instant of a mission as a picture, in the visual language of Figs. 8 to 10 and 14.
 
-use pleach_automaton::network::record::Snapshot;
+use pleach_automaton::network::record::{Pursuit, Snapshot};
 use pleach_discrete::Location as _;
 use pleach_drawing::svg::Document;
 use pleach_drawing::svg::node::element::{Circle, Group, Polyline, Text};
@@ -324,13 +324,17 @@ fn halo_text(content: String, place: Spot, size: f64, colour: &str) -> Text {
 /// The second line: time, phase, team and what is done.
 fn subtitle(snapshot: &Snapshot) -> String {
     let mut parts = vec![format!("t = {:.0} s", snapshot.time)];
-    parts.push(format!("phase: {}", snapshot.phase.name()));
-    if let Some(task) = snapshot.task {
-        parts.push(format!("pursued: task {task}"));
-    }
-    if !snapshot.primary_team.is_empty() {
-        let members: Vec<String> = snapshot.primary_team.iter().map(usize::to_string).collect();
-        parts.push(format!("primary team: {}", members.join(" – ")));
+    for Pursuit { access_point, phase, task, primary_team } in snapshot.pursuits() {
+        let node = access_point.map(|number| snapshot.positions.len() + number);
+        let of = node.map_or(String::new(), |node| format!("AP {node}: "));
+        parts.push(format!("{of}phase: {}", phase.name()));
+        if let Some(task) = task {
+            parts.push(format!("pursued: task {task}"));
+        }
+        if !primary_team.is_empty() {
+            let members: Vec<String> = primary_team.iter().map(usize::to_string).collect();
+            parts.push(format!("primary team: {}", members.join(" – ")));
+        }
     }
     let held: Vec<String> = snapshot
         .serviced

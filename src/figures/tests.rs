@@ -114,6 +114,7 @@ fn moment(step: usize, share: f64) -> Snapshot {
         }],
         robots: Vec::new(),
         absent: Vec::new(),
+        fleets: Vec::new(),
     }
 }
 

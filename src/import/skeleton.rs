@@ -139,10 +139,7 @@ pub fn skeleton(
     let rate = RATES / starts.len().max(1) as f64;
     scenario.robot = starts
         .into_iter()
-        .map(|position| RobotStart {
-            position: rounded(position, &scenario),
-            rate: rounded_rate(rate),
-        })
+        .map(|position| RobotStart::at(rounded(position, &scenario), rounded_rate(rate)))
         .collect();
     let tasks = first_of([&choices.tasks, &named.tasks]);
     scenario.task = match tasks.is_empty() {
@@ -366,7 +363,7 @@ pub fn text(scenario: &Scenario, origin: &str, notes: &[String]) -> String {
     for AccessPoint { position } in &scenario.access_point {
         let _ = write!(text, "\n[[access_point]]\nposition = {position:?}\n");
     }
-    for RobotStart { position, rate } in &scenario.robot {
+    for RobotStart { position, rate, .. } in &scenario.robot {
         let _ = write!(text, "\n[[robot]]\nposition = {position:?}\nrate = {rate}\n");
     }
     for Task { position, .. } in &scenario.task {

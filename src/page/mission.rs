@@ -2,7 +2,7 @@
 
 use std::io;
 
-use pleach_automaton::network::record::{End, Faults, MissionEvent, Outcome, Snapshot};
+use pleach_automaton::network::record::{End, Faults, MissionEvent, Outcome, Pursuit, Snapshot};
 use pleach_automaton::network::scenario::{Scenario, Settings, ValidScenario};
 use pleach_continuous::geometry::{Destination, FreeSpace};
 use pleach_discrete::network::activity::may_follow;
@@ -173,20 +173,22 @@ impl MissionPage {
             ("mark", json!(marks)),
             ("task_state", json!(tasks)),
             ("distance", json!(distances)),
-            ("geodesic", json!(self.geodesic(snapshot))),
+            ("geodesic", json!(self.geodesics(snapshot))),
         ]
         .map(|(name, value)| (name.to_owned(), value))
         .into_iter()
         .collect()
     }
 
-    /// The waypoints of the shortest way from the leader to its task.
-    fn geodesic(&self, snapshot: &Snapshot) -> Vec<[f64; 2]> {
-        let way = || {
-            let leader = snapshot.positions.get(*snapshot.primary_team.last()?)?;
-            self.free_space.geodesic_to(*leader, self.destinations.get(snapshot.task?)?)
+    /// The waypoints of the shortest way from each leader to its task, with the leader.
+    fn geodesics(&self, snapshot: &Snapshot) -> Vec<(usize, Vec<[f64; 2]>)> {
+        let way = |pursuit: Pursuit| {
+            let leader = *pursuit.primary_team.last()?;
+            let (place, task) = (*snapshot.positions.get(leader)?, pursuit.task?);
+            let way = self.free_space.geodesic_to(place, self.destinations.get(task)?)?;
+            Some((leader, way.waypoints.into_iter().map(Into::into).collect()))
         };
-        way().map_or_else(Vec::new, |way| way.waypoints.into_iter().map(Into::into).collect())
+        snapshot.pursuits().into_iter().filter_map(way).collect()
     }
 }
 

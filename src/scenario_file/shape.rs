@@ -63,6 +63,7 @@ pub(super) const SCENARIO: &[Entry] = &[
         Shape::ListOf(&Shape::Table(&[
             required("position", Shape::Point),
             optional("rate", Shape::Number),
+            optional("access_point", ACCESS_POINT),
         ])),
     ),
     optional(
@@ -72,9 +73,13 @@ pub(super) const SCENARIO: &[Entry] = &[
             optional("announced", Shape::Count(0, MOST_PERIODS as u64)),
             optional("withdrawn", Shape::Count(1, MOST_PERIODS as u64)),
             optional("lasts", Shape::Count(1, MOST_PERIODS as u64)),
+            optional("access_point", ACCESS_POINT),
         ])),
     ),
 ];
+
+/// The number of an access point. Whether there is one is seen later.
+const ACCESS_POINT: Shape = Shape::Count(0, u32::MAX as u64);
 
 /// The keys of `[control]`, each with the shape of its values.
 const CONTROL_ENTRIES: [Entry; CONTROL.len()] = {

@@ -2,7 +2,8 @@
 
 use crate::automaton::network::certificate::Certificate;
 use crate::automaton::network::record::{
-    End, Faults, MissionEvent, Outcome, PostView, RobotSnapshot, Route, Snapshot,
+    End, Faults, FleetEnd, FleetView, MissionEvent, Outcome, PostView, RobotSnapshot, Route,
+    Snapshot,
 };
 use crate::automaton::network::scenario::Scenario;
 use crate::discrete::Location;
@@ -76,6 +77,21 @@ pub(super) struct StepLine {
     closed: Vec<usize>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     absent: Vec<usize>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    fleets: Vec<FleetLine>,
+}
+
+/// A [`FleetView`] with the names of the format.
+#[derive(Serialize, Deserialize)]
+struct FleetLine {
+    access_point: usize,
+    phase: Cow<'static, str>,
+    task: Option<usize>,
+    active_team: Vec<usize>,
+    primary_team: Vec<usize>,
+    path: Vec<usize>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    ended: Option<usize>,
 }
 
 /// The [`RobotSnapshot`]s, each list with an element for each robot; traces may lack all of them.
@@ -109,6 +125,16 @@ pub(super) struct EndLine {
     task: Option<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     certificate: Option<Certificate>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    fleets: Vec<FleetEndLine>,
+}
+
+/// A [`FleetEnd`]: the access point, and what an [`EndLine`] holds.
+#[derive(Serialize, Deserialize)]
+struct FleetEndLine {
+    access_point: usize,
+    #[serde(flatten)]
+    end: EndLine,
 }
 
 impl From<&Snapshot> for StepLine {
@@ -135,6 +161,7 @@ impl From<&Snapshot> for StepLine {
             robots: RobotsLine::from(&*snapshot.robots),
             closed: snapshot.closed.clone(),
             absent: snapshot.absent.clone(),
+            fleets: snapshot.fleets.iter().map(FleetLine::from).collect(),
         }
     }
 }
@@ -177,6 +204,7 @@ impl TryFrom<StepLine> for Snapshot {
             robots: line.robots.views(robots)?,
             closed: line.closed,
             absent: line.absent,
+            fleets: line.fleets.into_iter().map(FleetView::try_from).collect::<Result<_, _>>()?,
         })
     }
 }
@@ -268,13 +296,52 @@ impl From<&End> for EndLine {
             reason: (!serviced).then(|| end.reason.clone()),
             task: end.task.filter(|_| !serviced),
             certificate: end.certificate.clone(),
+            fleets: end.fleets.iter().map(FleetEndLine::from).collect(),
         }
     }
 }
 
 impl From<EndLine> for End {
     fn from(line: EndLine) -> Self {
-        let EndLine { outcome, reason, task, certificate } = line;
-        Self { outcome, reason: reason.unwrap_or_default(), task, certificate }
+        let EndLine { outcome, reason, task, certificate, fleets } = line;
+        let fleets = fleets.into_iter().map(FleetEnd::from).collect();
+        Self { outcome, reason: reason.unwrap_or_default(), task, certificate, fleets }
+    }
+}
+
+impl From<&FleetEnd> for FleetEndLine {
+    fn from(fleet: &FleetEnd) -> Self {
+        Self { access_point: fleet.access_point, end: EndLine::from(&fleet.end) }
+    }
+}
+
+impl From<FleetEndLine> for FleetEnd {
+    fn from(line: FleetEndLine) -> Self {
+        Self { access_point: line.access_point, end: line.end.into() }
+    }
+}
+
+impl From<&FleetView> for FleetLine {
+    fn from(fleet: &FleetView) -> Self {
+        let FleetView { access_point, phase, task, ended, .. } = *fleet;
+        Self {
+            access_point,
+            phase: phase.name().into(),
+            task,
+            active_team: fleet.active_team.clone(),
+            primary_team: fleet.primary_team.clone(),
+            path: fleet.path.clone(),
+            ended,
+        }
+    }
+}
+
+impl TryFrom<FleetLine> for FleetView {
+    type Error = String;
+
+    fn try_from(line: FleetLine) -> Result<Self, String> {
+        let FleetLine { access_point, phase, task, active_team, primary_team, path, ended } = line;
+        let phase = called("phase", Phase::ALL, Phase::name, &phase)?;
+        Ok(Self { access_point, phase, task, active_team, primary_team, path, ended })
     }
 }

@@ -433,3 +433,30 @@ fn a_violated_invariant_is_told_and_marked() {
     page.photograph("violated");
     assert_content(&page);
 }
+
+/// Both teams and their tasks are told, and the way to the task is drawn from each leader.
+#[test]
+#[ignore = "needs Chromium: tests/browser/check"]
+fn a_mission_of_two_teams_tells_of_both() {
+    let run = Run::of("two-teams");
+    let snapshot = &run.snapshots()[80];
+    let mut page = open("two-teams", &run.trace);
+    page.value("pleach.player.seek(80)");
+    let facts = page.value(
+        "[...document.querySelectorAll('table.facts tr')].map(row => \
+           [...row.children].map(cell => cell.textContent))",
+    );
+    let told = |name: &str| -> Vec<String> {
+        let rows = facts.as_array().unwrap().iter().filter(|row| row[0] == name);
+        rows.map(|row| row[1].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(told("access point"), ["AP 12", "AP 13"]);
+    let leaders: Vec<usize> =
+        snapshot.pursuits().iter().filter_map(|it| it.primary_team.last().copied()).collect();
+    assert_eq!(told("leader"), leaders.iter().map(|it| format!("robot {it}")).collect::<Vec<_>>());
+    let tasks = snapshot.pursuits().into_iter().map(|it| it.task.unwrap().to_string());
+    assert_eq!(told("task pursued"), tasks.collect::<Vec<_>>());
+    let ways = page.value("pleach.mission.value('geodesic', 80).map(([leader]) => leader)");
+    assert_eq!(ways, serde_json::json!(leaders));
+    assert_content(&page);
+}

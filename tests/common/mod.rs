@@ -97,6 +97,7 @@ fn snapshot(step: usize, place: [f64; 2]) -> Snapshot {
             },
         ],
         absent: vec![],
+        fleets: vec![],
     }
 }
 

@@ -107,7 +107,7 @@ impl Brief {
         places.gather(self.crowd, robots, dice)?;
         let rates = self.rates_of(places.robots().len(), dice);
         scenario.robot = (places.robots().iter().zip(&rates))
-            .map(|(place, &rate)| RobotStart { position: [place.x, place.y], rate })
+            .map(|(place, &rate)| RobotStart::at([place.x, place.y], rate))
             .collect();
         Some(self.carried_over(scenario, robots))
     }

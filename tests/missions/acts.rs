@@ -2,7 +2,7 @@
 
 use super::medium::Noted;
 use pleach::automaton::network::scenario::ValidScenario;
-use pleach::automaton::network::{NamedRow, Network, Site};
+use pleach::automaton::network::{Fleets, NamedRow, Network, Site};
 use pleach::mission::{self, Completed, Watcher};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -27,6 +27,27 @@ impl Acts {
         let completed = mission::run_network(scenario, &mut network, watchers)
             .expect("a mission without errors");
         (completed, Acts::in_one(&site, network.medium().counts()))
+    }
+
+    /// Runs the missions of the fleets of a scenario, with the monitor watching.
+    pub fn in_fleets(
+        scenario: &ValidScenario,
+        watchers: &mut [&mut dyn Watcher],
+    ) -> (Completed, Self) {
+        let network = |fleet: &ValidScenario| {
+            let mut site = Site::clone(fleet.site());
+            site.automata = site.automata.counted();
+            let medium = Noted::new(&site);
+            Network::with_medium(fleet, Arc::new(site), medium)
+        };
+        let mut fleets = Fleets::of_networks(scenario, network).unwrap();
+        let completed =
+            mission::run_fleets(scenario, &mut fleets, watchers).expect("missions without errors");
+        let acts = fleets.networks().map(|it| Acts::in_one(it.site(), it.medium().counts()));
+        let mut acts = acts.reduce(Acts::and).expect("there is a fleet");
+        let counts = acts.rows.values_mut().chain(acts.heard.values_mut());
+        counts.for_each(|count| *count = (*count).min(1));
+        (completed, Acts { missions: 1, ..acts })
     }
 
     /// What has acted in one mission on this site.

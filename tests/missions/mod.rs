@@ -61,7 +61,9 @@ pub fn shipped_mission(name: &str) -> &'static (Mission, Acts) {
     MISSIONS[name].get_or_init(|| {
         let mut recorder = Recorder::default();
         let scenario = valid(shipped(name));
-        let (completed, acts) = Acts::in_mission(&scenario, &mut [&mut recorder]);
+        let in_mission =
+            if scenario.fleets().is_empty() { Acts::in_mission } else { Acts::in_fleets };
+        let (completed, acts) = in_mission(&scenario, &mut [&mut recorder]);
         (Mission::new(scenario.into_scenario(), recorder, completed), acts)
     })
 }

@@ -28,7 +28,8 @@ fn trace(scenario: &ValidScenario) -> Vec<Value> {
 #[test]
 fn every_line_of_a_trace_is_what_the_schema_says() {
     let schema = Schema::new().unwrap();
-    for name in ["too-few", "unreachable", "leaf-leader", "redundant-node", "errands"] {
+    for name in ["too-few", "unreachable", "leaf-leader", "redundant-node", "errands", "two-teams"]
+    {
         let mut scenario = shipped(name);
         if name == "too-few" {
             scenario.link.model = LinkModel::Logistic;

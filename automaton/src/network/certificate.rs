@@ -151,6 +151,13 @@ pub enum Hindrance {
         /// Whether it does not run or is not heard.
         stopped: bool,
     },
+    /// A robot of another access point at most 4ρ away.
+    Body {
+        /// Where it is.
+        position: [f64; 2],
+        /// How far away it is.
+        distance: f64,
+    },
     /// A wall at most 1.2ρ away.
     Wall {
         /// How far away it is.

@@ -50,6 +50,16 @@ pub struct KernelTimes {
 }
 
 impl KernelTimes {
+    /// What two networks have spent together.
+    pub(super) fn and(self, other: Self) -> Self {
+        KernelTimes {
+            coordination: self.coordination + other.coordination,
+            routing: self.routing + other.routing,
+            motion: self.motion + other.motion,
+            acceptance: self.acceptance + other.acceptance,
+        }
+    }
+
     /// The part that a stage belongs to.
     const fn of(&mut self, stage: Stage) -> &mut Duration {
         match stage {
@@ -238,6 +248,16 @@ impl<M: Medium<Message, Point>, N: RobotNode> Network<M, N> {
     /// The nodes, by number.
     pub fn nodes(&self) -> &[N] {
         self.nodes.nodes()
+    }
+
+    /// Where the robots are, by number.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = Point> {
+        self.nodes.nodes().iter().take(self.site.robots).map(Node::body)
+    }
+
+    /// A node senses something.
+    pub(super) fn sense(&mut self, node: usize, sensed: Sense) -> Result<(), NetworkError> {
+        Ok(self.nodes.sense(node, sensed)?)
     }
 
     /// The medium.

@@ -31,6 +31,8 @@ pub enum Sense {
     Position(Point),
     /// At a sample, the position of a robot as its localisation measures it.
     Fix(Point),
+    /// At a sample, where the robots of other fleets are that are in range of the radio.
+    Bodies(Arc<[Point]>),
     /// The tasks that a person wants, in order of announcement.
     Tasks(Arc<[Task]>),
 }

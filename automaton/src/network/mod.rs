@@ -8,15 +8,18 @@ pub mod certificate;
 mod composition;
 pub mod control;
 pub mod duty;
+pub mod fleets;
 pub mod frail;
 mod link;
 pub mod medium;
 pub mod member;
+pub mod merging;
 pub mod message;
 pub mod mission;
 pub mod observer;
 pub mod order;
 pub mod record;
+pub mod renumbering;
 pub mod robot;
 pub mod roll;
 pub mod scenario;
@@ -29,11 +32,13 @@ mod wire;
 pub use access_point::{AccessPoint, attendance_automaton, round_automaton, service_automaton};
 pub use automata::{Automata, NamedRow};
 pub use composition::{KernelTimes, Network, NetworkError, RobotNode};
+pub use fleets::Fleets;
 pub use frail::{Crash, Frail, Trouble};
 pub use link::Link;
 pub use medium::Radio;
 pub use member::{Member, MemberView, Sense};
 pub use message::Message;
+pub use renumbering::Renumbering;
 pub use robot::{
     Robot, RobotView, SATURATED, attachment_automaton, control_automaton, duty_automaton,
     exchange_automaton, mission_automaton,

@@ -126,6 +126,7 @@ impl Snapshot {
             posts: overview.posts(),
             robots: reports.iter().map(RobotSnapshot::from).collect(),
             absent: Vec::new(),
+            fleets: Vec::new(),
         }
         .without(absent)
     }

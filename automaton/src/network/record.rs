@@ -52,9 +52,61 @@ pub struct Snapshot {
     /// The robots and access points that do not run or are not heard, ascending. They are bodies,
     /// and nothing else of them is in the lists above but what each has one entry for every robot.
     pub absent: Vec<usize>,
+    /// What there is one of for each fleet, by access point, where there are several; empty in the snapshot of one
+    /// network. The lists above then hold those of all fleets, and phase and task are those of the first fleet whose
+    /// mission goes on, or of the first.
+    pub fleets: Vec<FleetView>,
+}
+
+/// A mission under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pursuit<'a> {
+    /// The access point of the fleet, where there are several.
+    pub access_point: Option<usize>,
+    /// Where the mission stands.
+    pub phase: Phase,
+    /// The task being pursued.
+    pub task: Option<usize>,
+    /// The primary team, from p₁ to the leader.
+    pub primary_team: &'a [usize],
+}
+
+impl<'a> Pursuit<'a> {
+    fn of(fleet: &'a FleetView) -> Self {
+        let FleetView { access_point, phase, task, ref primary_team, .. } = *fleet;
+        Pursuit { access_point: Some(access_point), phase, task, primary_team }
+    }
+}
+
+/// What there is one of for each fleet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FleetView {
+    /// The access point to which its robots belong.
+    pub access_point: usize,
+    /// Where its mission stands.
+    pub phase: Phase,
+    /// The task that it pursues.
+    pub task: Option<usize>,
+    /// Its active team.
+    pub active_team: Vec<usize>,
+    /// Its primary team.
+    pub primary_team: Vec<usize>,
+    /// Its path Σ.
+    pub path: Vec<usize>,
+    /// The control period from whose beginning on its mission is over, if it is: its robots stand where they are.
+    pub ended: Option<usize>,
 }
 
 impl Snapshot {
+    /// The mission under way, or that of each fleet.
+    pub fn pursuits(&self) -> Vec<Pursuit<'_>> {
+        let (phase, task, primary_team) = (self.phase, self.task, &*self.primary_team);
+        match self.fleets.is_empty() {
+            true => vec![Pursuit { access_point: None, phase, task, primary_team }],
+            false => self.fleets.iter().map(Pursuit::of).collect(),
+        }
+    }
+
     /// The same, where these nodes do not run or are not heard.
     #[must_use]
     pub fn without(mut self, absent: Vec<usize>) -> Self {
@@ -206,12 +258,23 @@ pub struct End {
     pub task: Option<usize>,
     /// What observers add to show that it had to end so, where a mission ends before its tasks are serviced.
     pub certificate: Option<Certificate>,
+    /// How the mission of each fleet ended, by access point, where there are several.
+    pub fleets: Vec<FleetEnd>,
+}
+
+/// How the mission of a fleet ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FleetEnd {
+    /// The access point to which its robots belong.
+    pub access_point: usize,
+    /// How it ended.
+    pub end: End,
 }
 
 impl End {
     /// An end without a certificate.
     pub const fn new(outcome: Outcome, reason: String, task: Option<usize>) -> Self {
-        End { outcome, reason, task, certificate: None }
+        End { outcome, reason, task, certificate: None, fleets: Vec::new() }
     }
 
     /// The end of a mission that has taken as many control periods as it may.

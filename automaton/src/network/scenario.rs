@@ -5,9 +5,10 @@
 //! robots know; making one says everything that is wrong. What does not keep a mission from
 //! starting but may surprise, its [`Remark`]s tell.
 
-mod buckets;
+pub(super) mod buckets;
 mod control;
 mod fault;
+mod fleet;
 mod key_path;
 mod placement;
 mod radio;
@@ -17,9 +18,11 @@ mod valid;
 mod validation;
 
 pub use control::{
-    CONTROL, Control, ControlKey, MOST_PERIODS, MotionSolver, RoutingMethod, Strategy, Values,
+    CONTROL, Control, ControlKey, MOST_PERIODS, MotionSolver, RoutingMethod, Strategy, Teams,
+    Values,
 };
 pub use fault::{Fault, InvalidScenario, Problem};
+pub use fleet::Fleet;
 pub use key_path::{KeyPath, KeyStep};
 pub use radio::{LinkModel, LinkRanges, STEEPEST, STEEPNESS};
 pub use remark::{Late, Remark, TaskRemark};
@@ -81,6 +84,21 @@ pub struct RobotStart {
     /// r_i: the rate at which it generates information, a share of the radio's rate.
     #[serde(default = "default_rate")]
     pub rate: f64,
+    /// The number of the access point that it belongs to, where each has a team of its own; not stated: the nearest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub access_point: Option<usize>,
+}
+
+impl RobotStart {
+    /// A robot that starts here and generates information at this rate.
+    pub const fn at(position: [f64; 2], rate: f64) -> Self {
+        RobotStart { position, rate, access_point: None }
+    }
+
+    /// The same robot, not stated to belong to an access point.
+    const fn of_nearest(self) -> Self {
+        RobotStart { access_point: None, ..self }
+    }
 }
 
 fn default_rate() -> f64 {
@@ -103,12 +121,20 @@ pub struct Task {
     /// For how many control periods, from its service on, it has to be serviced; not stated: for ever.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lasts: Option<u32>,
+    /// The number of the access point that it belongs to, where each has a team of its own; not stated: the nearest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub access_point: Option<usize>,
 }
 
 impl Task {
     /// A task that is asked for from the beginning, and for ever.
     pub const fn at(position: [f64; 2]) -> Self {
-        Task { position, announced: None, withdrawn: None, lasts: None }
+        Task { position, announced: None, withdrawn: None, lasts: None, access_point: None }
+    }
+
+    /// The same task, not stated to belong to an access point.
+    const fn of_nearest(self) -> Self {
+        Task { access_point: None, ..self }
     }
 
     /// The control period from which on the user asks for it.

@@ -1,6 +1,8 @@
 //! What every robot knows from the beginning: the floor plan, the access points, the radio and
 //! the settings.
 
+use std::sync::Arc;
+
 use pleach_continuous::Point;
 use pleach_continuous::geometry::{FreeSpace, FreeSpaceError, Repair, Workspace, WorkspaceError};
 use pleach_continuous::network::reliability::ReliabilityError;
@@ -9,6 +11,7 @@ use pleach_discrete::network::NodeId;
 
 use super::Link;
 use super::automata::Automata;
+use super::renumbering::Renumbering;
 use super::robot::ROUNDS_TO_BE_HEARD;
 use super::scenario::{LinkLengths, Scenario, Settings};
 use crate::builder::BuildError;
@@ -61,6 +64,8 @@ pub struct Site {
     has_own_link: bool,
     /// The automata that every robot runs.
     pub automata: Automata,
+    /// What people call nodes and tasks, where that is not their numbers here.
+    names: Option<Arc<Renumbering>>,
     /// How ways are measured where they are not those of the floor plan.
     #[cfg(feature = "abstraction")]
     measure: Option<std::sync::Arc<dyn Measure>>,
@@ -127,6 +132,7 @@ impl Site {
             link,
             radio,
             automata: Automata::new()?,
+            names: None,
             #[cfg(feature = "abstraction")]
             measure: None,
         })
@@ -200,6 +206,39 @@ impl Site {
     /// The same site where the robots start at other places. Links are as long as before.
     pub(super) fn with_starts(&self, starts: Vec<Point>) -> Self {
         Site { west_to_east: from_west_to_east(&starts), starts, ..self.clone() }
+    }
+
+    /// The site of a fleet, with the same workspace and radio, whose nodes and tasks have these numbers in the whole.
+    /// Links are made for the rates of its robots.
+    pub(super) fn of_fleet(&self, fleet: &Scenario, outward: &Renumbering) -> Self {
+        let settings = Settings::resolve(fleet);
+        let starts: Vec<Point> = fleet.robot.iter().map(|robot| robot.position.into()).collect();
+        let longest = self.radio.distance_at(settings.build_reliability);
+        Site {
+            access_points: fleet.access_point.iter().map(|ap| ap.position.into()).collect(),
+            robots: starts.len(),
+            west_to_east: from_west_to_east(&starts),
+            starts,
+            usual: settings.link_lengths(longest),
+            settings,
+            names: Some(Arc::new(outward.clone())),
+            ..self.clone()
+        }
+    }
+
+    /// The number by which people know a node.
+    pub fn name_of(&self, node: NodeId) -> usize {
+        self.names.as_ref().and_then(|names| names.node(node)).unwrap_or(node)
+    }
+
+    /// The numbers by which people know these nodes.
+    pub(super) fn names_of(&self, nodes: &[NodeId]) -> Vec<usize> {
+        nodes.iter().map(|&node| self.name_of(node)).collect()
+    }
+
+    /// The number by which people know a task.
+    pub fn name_of_task(&self, task: usize) -> usize {
+        self.names.as_ref().and_then(|names| names.task(task)).unwrap_or(task)
     }
 
     /// The same site where links are from the beginning as long as they may be.

@@ -250,7 +250,8 @@ impl Node for User {
                 self.jump(outputs)?;
             }
             Input::Tick { .. } => self.jump(outputs)?,
-            Input::Sensed(Sense::Position(_) | Sense::Fix(_)) | Input::Heard { .. } => {}
+            Input::Sensed(Sense::Position(_) | Sense::Fix(_) | Sense::Bodies(_))
+            | Input::Heard { .. } => {}
         }
         Ok(())
     }

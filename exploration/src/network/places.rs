@@ -216,9 +216,7 @@ impl PlaceGraph {
             access_point: (self.robots..self.nodes())
                 .map(|place| AccessPoint { position: at(place) })
                 .collect(),
-            robot: (0..self.robots)
-                .map(|place| RobotStart { position: at(place), rate: RATE })
-                .collect(),
+            robot: (0..self.robots).map(|place| RobotStart::at(at(place), RATE)).collect(),
             task: self.tasks.iter().map(|&place| Task::at(at(place))).collect(),
         }
     }

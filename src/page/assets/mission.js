@@ -26,6 +26,13 @@ class Mission {
     return this.values[name].at(Math.floor(step));
   }
 
+  /** The mission under way, or that of each fleet. */
+  missions(step) {
+    const one = name => this.value(name, step), names = ["phase", "task", "primary_team", "active_team", "path"];
+    const whole = () => Object.fromEntries([["access_point", null], ...names.map(name => [name, one(name)])]);
+    return "fleets" in this.values ? one("fleets") : [whole()];
+  }
+
   role(robot, step) { return this.values.role.at(Math.floor(step), robot); }
 
   markOf(node, step) {
@@ -130,16 +137,18 @@ class Facts {
   }
 
   ofMission(step) {
-    const { mission } = this, task = mission.value("task", step);
-    const team = mission.value("primary_team", step), path = mission.value("path", step);
-    const held = mission.value("serviced", step);
-    return ["Mission", [
-      ["phase", mission.value("phase", step)],
+    const { mission } = this, held = mission.value("serviced", step);
+    const missions = mission.missions(step).flatMap(({ access_point, phase, task, primary_team, active_team, path }) => [
+      access_point === null ? null : ["access point", mission.nodeName(mission.robots + access_point)],
+      ["phase", phase],
       ["task pursued", task === null ? "none" : String(task)],
-      ["leader", team.length ? `robot ${team.at(-1)}` : "none"],
-      ["primary team", chained(team)],
-      ["active team", chained(mission.value("active_team", step))],
+      ["leader", primary_team.length ? `robot ${primary_team.at(-1)}` : "none"],
+      ["primary team", chained(primary_team)],
+      ["active team", chained(active_team)],
       ["path Σ", chained(path)],
+    ]);
+    return ["Mission", [
+      ...missions,
       ["tasks held", held.length ? held.map(([done, robot]) => `${done} by robot ${robot}`).join(", ") : "none"],
       ["", "Point at a robot for its facts; click to keep it."],
     ]];
@@ -216,8 +225,9 @@ class Facts {
   purpose(robot, step) {
     const { mission } = this;
     const post = mission.value("post", step).find(post => post.holder === robot);
-    const [task, path] = [mission.value("task", step), mission.value("path", step)];
-    if (mission.value("primary_team", step).at(-1) === robot && task !== null) return `task ${task}`;
+    const path = mission.value("path", step);
+    const led = mission.missions(step).find(({ primary_team }) => primary_team.at(-1) === robot);
+    if (led && led.task !== null) return `task ${led.task}`;
     if (post?.task != null) return `post at task ${post.task}`;
     if (post) return post.junction ? "post of a junction" : "post of a node";
     if (path.includes(robot)) return "the next place on path Σ";
@@ -246,7 +256,7 @@ class Facts {
 }
 
 const KNOWN_FIELDS = new Set(["role", "mark", "location", "exchange", "known_phase", "active", "tree", "task", "phase", "active_team", "primary_team",
-  "path", "serviced", "post", "task_state", "geodesic", "absent"]);
+  "path", "serviced", "post", "task_state", "geodesic", "absent", "fleets"]);
 
 Mission.prototype.nodeName = function (node) {
   return node < this.robots ? `robot ${node}` : `AP ${node}`;

@@ -210,14 +210,13 @@ class Plan {
   }
 
   drawGeodesic({ context, view, step, spots }) {
-    const leader = this.mission.value("primary_team", step).at(-1);
-    const way = this.mission.value("geodesic", step);
-    if (!way.length || !spots[leader]) return;
     context.save();
     context.strokeStyle = colours.get("task");
     context.lineWidth = 1.4;
     context.setLineDash([7, 4]);
-    strokeThrough(context, [spots[leader], ...way.map(view.spot)]);
+    for (const [leader, way] of this.mission.value("geodesic", step)) {
+      if (way.length && spots[leader]) strokeThrough(context, [spots[leader], ...way.map(view.spot)]);
+    }
     context.restore();
   }
 

@@ -36,7 +36,7 @@ const ROUNDING: f64 = 1e-6;
 ///     link: LinkRanges::new(0.4, 0.5),
 ///     control: Control { tree_reliability: Some(0.5), ..Control::default() },
 ///     access_point: vec![AccessPoint { position: [0.1, 0.1] }],
-///     robot: vec![RobotStart { position: [0.3, 0.1], rate: 0.01 }],
+///     robot: vec![RobotStart::at([0.3, 0.1], 0.01)],
 ///     task: vec![Task::at([2.1, 0.1])],
 /// })?;
 /// assert_eq!(Spans::of(&scenario)?.least_robots(1), Some(5));

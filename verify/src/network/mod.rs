@@ -41,7 +41,7 @@
 //!     link: LinkRanges::new(0.4, 0.5),
 //!     control: Control::default(),
 //!     access_point: vec![AccessPoint { position: [0.5, 0.2] }],
-//!     robot: vec![RobotStart { position: [0.5, 0.5], rate: 0.075 }],
+//!     robot: vec![RobotStart::at([0.5, 0.5], 0.075)],
 //!     task: Vec::new(),
 //! })?;
 //! let mut snapshot = Snapshot {
@@ -64,6 +64,7 @@
 //!     posts: Vec::new(),
 //!     robots: Vec::new(),
 //!     absent: Vec::new(),
+//!     fleets: Vec::new(),
 //! };
 //! let any_role_change = |_, _| true;
 //! let mut monitor = Monitor::new(&scenario, any_role_change);
@@ -106,7 +107,7 @@ mod violation;
 
 pub use bound::Spans;
 pub use extremes::{Extreme, Extremes};
-pub use judge::{Judge, Referee, Safety};
+pub use judge::{Fleets, Judge, Referee, Safety};
 pub use limits::{Limits, SLACK};
 pub use monitor::{Monitor, RoleTable, audit};
 pub use property::Property;

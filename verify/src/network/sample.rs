@@ -37,7 +37,7 @@ pub(super) fn stated() -> Scenario {
         link: LinkRanges::new(0.4, 0.5),
         control: Control::default(),
         access_point: vec![AccessPoint { position: [0.0, 0.0] }],
-        robot: robots.into_iter().map(|position| RobotStart { position, rate: RATE }).collect(),
+        robot: robots.into_iter().map(|position| RobotStart::at(position, RATE)).collect(),
         task: vec![Task::at([0.3, 0.02]), Task::at([1.5, 0.0])],
     }
 }
@@ -84,6 +84,7 @@ pub(super) fn snapshot(step: usize) -> Snapshot {
         ],
         robots: Vec::new(),
         absent: Vec::new(),
+        fleets: Vec::new(),
     };
     route(&mut snapshot, &[(0, 4, 0.3), (1, 0, 0.15), (2, 4, 0.1), (3, 4, 0.1)]);
     snapshot

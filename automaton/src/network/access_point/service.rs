@@ -492,7 +492,7 @@ fn end_without_robots<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> O
     let mut reason = "no robot is connected to an access point".to_owned();
     let gone = point.gone();
     if !gone.is_empty() {
-        reason.push_str(&format!(" any more: {}", why_absent(&gone)));
+        reason.push_str(&format!(" any more: {}", why_absent(&point.site.names_of(&gone))));
     }
     end(point, effects, Outcome::InsufficientRobots, point.next_task(), reason)
 }
@@ -511,14 +511,18 @@ fn end_serviced<A>(_: &A, point: &AccessPoint, effects: &mut Effects) -> Over {
 
 fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     let task = place.announced.as_ref()?.task;
+    let name = point.site.name_of_task(task);
     let absent: Vec<NodeId> = point.absent_robots().collect();
     let cut_off: Vec<NodeId> = point.wayless(false).collect();
     if !absent.is_empty() || !cut_off.is_empty() {
         let why = match absent.is_empty() {
-            true => format!("robots {cut_off:?} know no way to an access point any more"),
-            false => why_absent(&absent),
+            true => {
+                let cut_off = point.site.names_of(&cut_off);
+                format!("robots {cut_off:?} know no way to an access point any more")
+            }
+            false => why_absent(&point.site.names_of(&absent)),
         };
-        let reason = format!("no robot is left that can go to task {task}: {why}");
+        let reason = format!("no robot is left that can go to task {name}: {why}");
         return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
     }
     if let Some(left) = point.access_points_left() {
@@ -529,7 +533,7 @@ fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects)
         return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
     }
     let reason = format!(
-        "no robot can come within the service radius of task {task}: it lies in a wall, too near \
+        "no robot can come within the service radius of task {name}: it lies in a wall, too near \
          to one, or in a part of the workspace that no robot can enter"
     );
     Some(end(point, effects, Outcome::UnreachableTask, Some(task), reason))
@@ -537,9 +541,10 @@ fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects)
 
 fn end_unanswered(place: &Electing, point: &AccessPoint, effects: &mut Effects) -> Option<Over> {
     let Announced { task, roster, .. } = place.announced.as_ref()?;
-    let missing = point.unanswering(roster);
+    let missing = point.site.names_of(&point.unanswering(roster));
+    let name = point.site.name_of_task(*task);
     let reason = format!(
-        "the election for task {task} cannot end: robots {missing:?} do not answer any more"
+        "the election for task {name} cannot end: robots {missing:?} do not answer any more"
     );
     Some(end(point, effects, Outcome::Blocked, Some(*task), reason))
 }

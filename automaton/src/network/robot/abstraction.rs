@@ -329,6 +329,7 @@ impl Robot {
             consented: _,
             arrival: _,
             resting_places: _,
+            bodies: _,
         } = self;
         let has_reached = self.has_reached_task();
         let waited = match self.counts_rounds() {

@@ -7,7 +7,8 @@
 //! does not take part (`absence`), keeps its place
 //! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
-//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`);
+//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`), off robots of other
+//! fleets (`bodies`);
 //! what its guards see of all this are `facts`. What its automata do stands in `duties`, `mission`, `exchange`,
 //! `lineage` and `control`, and where it goes in `target`; `step` takes inputs, `rounds` counts rounds, `skipped_work`
 //! is what need not be done again, and `view` what observers read.
@@ -16,6 +17,7 @@ mod absence;
 #[cfg(feature = "abstraction")]
 mod abstraction;
 mod attachment;
+mod bodies;
 mod confirmation;
 mod control;
 mod duties;
@@ -87,6 +89,7 @@ use super::record::MissionEvent;
 use super::roll::{Roll, Sightings, Wreck};
 use super::shared::Shared;
 use super::site::Site;
+use bodies::Bodies;
 use duties::Label;
 use hearing::Neighbour;
 pub(super) use hearing::ROUNDS_TO_BE_HEARD;
@@ -274,6 +277,8 @@ pub struct Robot {
     /// Where it has been, from the last place on, each off those before.
     resting_places: VecDeque<Point>,
     still_periods: u32,
+    /// The robots of other fleets near it.
+    bodies: Bodies,
 }
 
 impl Robot {
@@ -381,6 +386,7 @@ impl Robot {
             arrival: position,
             resting_places: VecDeque::from([position]),
             still_periods: 0,
+            bodies: Bodies::default(),
             log: Vec::new(),
             site,
         }

@@ -23,7 +23,7 @@ pub(super) const MARGIN: f64 = 1e-4;
 /// A robot this many ρ behind another stands in a queue.
 const QUEUE: f64 = 2.2;
 /// A robot that stays within this share of ρ or σ, the smaller one, stands still.
-const STILL: f64 = 0.3;
+pub(super) const STILL: f64 = 0.3;
 /// Control periods without progress after which a robot measures its position anew.
 const PERSISTENCE: u32 = 4;
 /// A robot that returns to one of this many previous places counts as standing still.
@@ -181,7 +181,7 @@ impl Robot {
     }
 
     /// Problem (21): cell (18), linearised residual (22), trust region, links of the tree.
-    fn motion_problem(&self, waypoint: Point) -> MotionProblem {
+    pub(super) fn motion_problem(&self, waypoint: Point) -> MotionProblem {
         let step = self.site.settings.step_radius;
         let mut half_planes = self.cell(waypoint, step);
         half_planes.extend(self.sides_of_wrecks());
@@ -203,6 +203,7 @@ impl Robot {
             .iter()
             .filter(|n| !n.is_access_point() && n.distance < near)
             .map(Neighbour::position)
+            .chain(self.bodies.places().filter(|place| (place - self.position).norm() < near))
             .collect();
         let mut half_planes = errors.voronoi_half_planes(self.position, &close, clearance, kept);
         half_planes.extend(match self.has_strayed() {

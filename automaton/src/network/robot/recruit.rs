@@ -142,8 +142,10 @@ impl Robot {
 
     /// How the mission ends without a recruit.
     fn why_unaided(&self, task: usize, standstill: Option<Standstill>) -> (Outcome, String) {
+        let task = self.site.name_of_task(task);
         match standstill.and_then(|team| team.saturated) {
             Some(robot) => {
+                let robot = self.site.name_of(robot);
                 let reason = format!(
                     "the rates cannot be carried to task {task}: the primary team stands still because the \
                      links of robot {robot} carry no more, and no robot is left that can come"

@@ -126,6 +126,7 @@ impl Robot {
                 self.tell_observers(outputs);
             }
             Sense::Fix(position) => self.correct_position(position),
+            Sense::Bodies(places) => self.see_bodies(&places),
             Sense::Tasks(_) => {}
         }
         Ok(())

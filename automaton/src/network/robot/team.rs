@@ -65,22 +65,20 @@ pub(super) fn wait<A>(_: &A, _: &Robot, _: &mut Effects) -> Idle {
 
 /// The active team cannot go on, and a recruit would not help.
 pub(super) fn give_up<A>(phase: &A, robot: &Robot, effects: &mut Effects) -> Ended {
-    let reason = match (robot.duty.place(), robot.team.and_then(|team| team.slack)) {
+    let (name, slack) = (robot.site.name_of(robot.id), robot.team.and_then(|team| team.slack));
+    let reason = match (robot.duty.place(), slack.map(|slack| robot.site.name_of(slack))) {
         (Some(_), _) => format!(
-            "robot {} cannot get to the place of Σ that it should take: something stands in its way",
-            robot.id
+            "robot {name} cannot get to the place of Σ that it should take: something stands in its way"
         ),
         (None, Some(slack)) => format!(
             "the primary team stands still although robot {slack} has room on its link: something \
              stands in its way, and a recruit would not help"
         ),
         (None, None) if robot.is_pending() => format!(
-            "robot {} has joined the primary team but cannot reach the robot that it follows",
-            robot.id
+            "robot {name} has joined the primary team but cannot reach the robot that it follows"
         ),
         (None, None) => format!(
-            "the primary team stands still: robot {}, its last one, does not hear of the leader any more",
-            robot.id
+            "the primary team stands still: robot {name}, its last one, does not hear of the leader any more"
         ),
     };
     let notice = robot.gives_up(robot.current_task(), Outcome::Blocked, reason);
@@ -98,7 +96,7 @@ impl Robot {
     ) -> Notice {
         let stopped: Vec<NodeId> = self.wrecks.iter().map(|wreck| wreck.robot).collect();
         if !stopped.is_empty() {
-            reason.push_str(&format!("; {}", why_absent(&stopped)));
+            reason.push_str(&format!("; {}", why_absent(&self.site.names_of(&stopped))));
         }
         Notice::Ended { outcome, reason: reason.into(), task }
     }
@@ -184,11 +182,13 @@ impl Robot {
         }
     }
 
-    /// ψ of the leader: its target or, where a robot has stopped there, the place within δ of the task that is
-    /// farthest from such robots.
+    /// ψ of the leader: its target or, where a robot has stopped there or one of another fleet rests, the place within δ
+    /// of the task that is farthest from such robots.
     fn leader_goal(&self) -> Option<Point> {
         let (target, task) = (self.target?, self.announcement()?.position);
-        let keep_out: Vec<Disc> = self.keep_out_discs(KEEP_OUT * self.clearance()).collect();
+        let radius = KEEP_OUT * self.clearance();
+        let wrecks = self.keep_out_discs(radius);
+        let keep_out: Vec<Disc> = wrecks.chain(self.discs_of_bodies(radius)).collect();
         if !keep_out.iter().any(|disc| disc.contains(target)) {
             return Some(target);
         }

@@ -11,6 +11,9 @@ use super::motion::ROUNDING;
 
 /// Parked robots are kept at this many ρ when there is a way round.
 pub(super) const KEEP_OUT: f64 = 2.1;
+/// Bodies that rest are kept at this many ρ: gaps between them through which a robot can just pass stay open, since
+/// a body makes no way and takes part in no exchange.
+const KEEP_OUT_OF_BODIES: f64 = 2.0;
 /// A way round parked robots is taken if it is longer by at most this many ρ; otherwise the robot
 /// goes straight on and exchanges duties with the robot in its way.
 const DETOUR_ALLOWANCE: f64 = 8.0;
@@ -22,8 +25,8 @@ const NEARBY: f64 = 0.1;
 const PATIENCE_WITH_WAYS: u32 = 3;
 
 impl Robot {
-    /// a₁ of the way to the goal: of the geodesic, round wrecks, and round parked robots where that is a short
-    /// way round, unless its link holds it back on that side of an obstacle.
+    /// a₁ of the way to the goal: of the geodesic, round wrecks and bodies that rest, and round parked robots
+    /// where that is a short way round, unless its link holds it back on that side of an obstacle.
     pub(super) fn first_waypoint(&mut self, goal: Point) -> Option<Point> {
         let site = Arc::clone(&self.site);
         let free_space: &FreeSpace = &site.free_space;
@@ -32,7 +35,9 @@ impl Robot {
         }
         let direct = free_space.geodesic_to(self.position, self.destination.as_ref()?)?;
         let keep_out = KEEP_OUT * self.clearance();
-        let wrecks: Vec<Disc> = self.keep_out_discs(keep_out).collect();
+        let wrecks = self.keep_out_discs(keep_out);
+        let bodies = self.discs_of_bodies(KEEP_OUT_OF_BODIES * self.clearance());
+        let wrecks: Vec<Disc> = wrecks.chain(bodies).collect();
         let parked: Vec<Disc> = self
             .neighbours
             .iter()
@@ -41,7 +46,7 @@ impl Robot {
             .chain(wrecks.iter().copied())
             .collect();
         let allowance = DETOUR_ALLOWANCE * self.clearance();
-        // A parked robot in the way takes part in an exchange of duties, a wreck in none.
+        // A parked robot in the way takes part in an exchange of duties, a wreck or a body in none.
         let around = |from: Point, direct: Geodesic| {
             let direct = match wrecks.is_empty() {
                 true => direct,

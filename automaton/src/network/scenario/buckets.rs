@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use pleach_continuous::Point;
 
 /// Numbered points in square cells of one width.
-pub(super) struct Buckets {
+pub(in crate::network) struct Buckets {
     width: f64,
     cells: BTreeMap<(i64, i64), Vec<(usize, Point)>>,
 }

@@ -41,6 +41,25 @@ pub enum Strategy {
     Eager,
 }
 
+/// Which robots pursue tasks together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Teams {
+    /// All of them: they pursue one task after another.
+    #[default]
+    One,
+    /// Those of each access point: they pursue its tasks, at the same time as those of the others.
+    PerAccessPoint,
+}
+
+impl Teams {
+    /// Whether there is one team.
+    pub const fn is_one(self) -> bool {
+        matches!(self, Teams::One)
+    }
+}
+
 /// Settings of the control scheme; a key left out takes the default that its text states.
 /// [`CONTROL`] has the range of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -75,8 +94,9 @@ pub struct Control {
     pub routing_reserve: Option<f64>,
     /// κ: how strongly traffic avoids links whose reliability changes with distance. Default 10.
     pub slope_aversion: Option<f64>,
-    /// Reliability of links of the tree when they are made. Default: what all rates together ask of one
-    /// link, from `tree_reliability` to 0.8.
+    /// Reliability of links of the tree when they are made. Default: what all rates of a team together ask of
+    /// one link, from `tree_reliability` to 0.8.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub build_reliability: Option<f64>,
     /// Reliability that a link of the tree never falls below. Default 0.1.
     pub tree_reliability: Option<f64>,
@@ -85,6 +105,9 @@ pub struct Control {
     /// When a recruit is called for. Default `eager`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strategy: Option<Strategy>,
+    /// Which robots pursue tasks together. Default `one`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub teams: Option<Teams>,
 }
 
 /// A key of `[control]`.
@@ -148,6 +171,7 @@ pub const CONTROL: &[ControlKey] = &[
     key("tree_reliability", Values::Reliability(|control| control.tree_reliability)),
     key("motion_solver", Values::OneOf(&["exact", "conic"])),
     key("strategy", Values::OneOf(&["paper", "eager"])),
+    key("teams", Values::OneOf(&["one", "per_access_point"])),
 ];
 
 const fn key(name: &'static str, values: Values) -> ControlKey {

@@ -197,6 +197,26 @@ pub enum Problem {
          the rates, or place more robots or access points in each other's range"
     )]
     RatesAboveAccess { total: f64, most: f64 },
+    /// A robot or task that is stated to belong to an access point where all belong together.
+    #[error(
+        "all robots are one team, which pursues all tasks: leave it out, or set control.teams to \
+         \"per_access_point\""
+    )]
+    AccessPointWithoutUse,
+    /// An access point that is not there.
+    #[error(
+        "there is no access_point[{access_point}]: they are counted from 0, and there are {count}"
+    )]
+    NoSuchAccessPoint { access_point: usize, count: usize },
+    /// A task that no robot may pursue.
+    #[error(
+        "it belongs to access point {access_point}, and no robot does: place robots near that, or state \
+         another access_point for the task"
+    )]
+    NoRobotOf { access_point: usize },
+    /// What keeps the mission of the robots of one access point from starting.
+    #[error("among what belongs to access point {access_point}: {problem}")]
+    OfFleet { access_point: usize, problem: Box<Problem> },
     /// Rates that the links cannot carry.
     #[error(
         "no routing carries the rates from where the robots start: with the best one some robot \

@@ -49,13 +49,8 @@ pub(super) fn start(scenario: &Scenario, site: Site) -> Result<Site, Vec<Fault>>
 
 /// What is wrong with where robots and access points of `scenario` stand in `site`.
 pub(super) fn faults(scenario: &Scenario, site: &Site) -> Vec<Fault> {
-    let ground = Ground {
-        site,
-        robots: scenario.robot.iter().map(|robot| robot.position.into()).collect(),
-        rates: scenario.robot.iter().map(|robot| robot.rate).collect(),
-    };
-    let checks = [Ground::outside, Ground::too_close_to_walls, Ground::robots_too_close];
-    let faults: Vec<_> = checks.iter().flat_map(|check| check(&ground)).collect();
+    let ground = Ground::of(scenario, site);
+    let faults = ground.misplaced();
     if !faults.is_empty() {
         return faults;
     }
@@ -63,6 +58,12 @@ pub(super) fn faults(scenario: &Scenario, site: &Site) -> Vec<Fault> {
         Ok(tree) => ground.overloaded(&tree).into_iter().collect(),
         Err(cut_off) => cut_off,
     }
+}
+
+/// Whether robots and access points stand in the workspace, off walls and off each other, however they are connected.
+pub(super) fn stand(scenario: &Scenario, site: &Site) -> Result<(), Vec<Fault>> {
+    let faults = Ground::of(scenario, site).misplaced();
+    if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
 /// A site and the starts in it.
@@ -80,7 +81,21 @@ struct Attached {
     reliability: f64,
 }
 
-impl Ground<'_> {
+impl<'a> Ground<'a> {
+    fn of(scenario: &Scenario, site: &'a Site) -> Self {
+        Ground {
+            site,
+            robots: scenario.robot.iter().map(|robot| robot.position.into()).collect(),
+            rates: scenario.robot.iter().map(|robot| robot.rate).collect(),
+        }
+    }
+
+    /// Robots and access points in the wrong places, each seen by itself or beside its neighbours.
+    fn misplaced(&self) -> Vec<Fault> {
+        let checks = [Ground::outside, Ground::too_close_to_walls, Ground::robots_too_close];
+        checks.iter().flat_map(|check| check(self)).collect()
+    }
+
     /// Robots and access points outside the boundary or in a hole.
     fn outside(&self) -> Vec<Fault> {
         let access_points = (self.site.access_points.iter().enumerate())

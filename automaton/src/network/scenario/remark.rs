@@ -9,7 +9,8 @@ use pleach_continuous::network::LinkReliability;
 use super::super::robot::ROUNDS_TO_BE_HEARD;
 use super::buckets::Buckets;
 use super::placement::key_of_repair;
-use super::{KeyPath, ValidScenario};
+use super::{Fleet, KeyPath, ValidScenario};
+use crate::network::Site;
 
 /// Something about a valid scenario that its author may not have meant.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,19 +158,37 @@ impl fmt::Display for Remark {
     }
 }
 
+impl Fleet {
+    /// The remarks on its tasks, by their numbers in the whole.
+    fn task_remarks(&self) -> Vec<Remark> {
+        let in_whole = |remark| match remark {
+            Remark::Task { task, remark } => {
+                Some(Remark::Task { task: self.outward().task(task)?, remark })
+            }
+            other => Some(other),
+        };
+        self.scenario().task_remarks().into_iter().filter_map(in_whole).collect()
+    }
+}
+
+impl Site {
+    /// Links that are from the beginning as long as they may be.
+    fn long_links(&self) -> Option<Remark> {
+        self.begins_stretched().then(|| Remark::LongLinks {
+            usual: self.settings.usual_links().build,
+            longest: self.usual.build,
+        })
+    }
+}
+
 impl ValidScenario {
     /// Everything worth a remark, places and times of tasks first, then the outline.
     pub fn remarks(&self) -> Vec<Remark> {
-        let tasks = self.task.iter().enumerate().filter_map(|(task, place)| {
-            let remark = self.task_remark(place.position.into())?;
-            Some(Remark::Task { task, remark })
-        });
+        let tasks = self.task_remarks().into_iter();
         let site = self.site();
         let outline = site.repairs.iter().cloned().map(Remark::Outline);
-        let long = site.begins_stretched().then(|| Remark::LongLinks {
-            usual: site.settings.usual_links().build,
-            longest: site.usual.build,
-        });
+        let mut sites = [self].into_iter().chain(self.fleets().iter().map(Fleet::scenario));
+        let long = sites.find_map(|scenario| scenario.site().long_links());
         let (links, crossing) = self.count_links();
         let walls = (crossing > 0).then_some(Remark::ThroughWalls { crossing, links });
         let rounds = site.settings.rounds_per_period;
@@ -180,6 +199,20 @@ impl ValidScenario {
             .chain(long)
             .chain(walls)
             .chain(few)
+            .collect()
+    }
+
+    /// Tasks that no robot can service, or none of the team that is to.
+    fn task_remarks(&self) -> Vec<Remark> {
+        if !self.fleets().is_empty() {
+            return self.fleets().iter().flat_map(Fleet::task_remarks).collect();
+        }
+        let tasks = self.task.iter().enumerate();
+        tasks
+            .filter_map(|(task, place)| {
+                let remark = self.task_remark(place.position.into())?;
+                Some(Remark::Task { task, remark })
+            })
             .collect()
     }
 

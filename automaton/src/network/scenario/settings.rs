@@ -2,7 +2,7 @@
 
 use pleach_continuous::geometry::Errors;
 
-use super::{Control, LinkRanges, MotionSolver, RoutingMethod, Scenario, Strategy};
+use super::{Control, LinkRanges, MotionSolver, RoutingMethod, Scenario, Strategy, Teams};
 
 /// The settings of the control scheme, none of them left open.
 ///
@@ -44,6 +44,8 @@ pub struct Settings {
     pub motion_solver: MotionSolver,
     /// When a recruit is called for.
     pub strategy: Strategy,
+    /// Which robots pursue tasks together.
+    pub teams: Teams,
 }
 
 impl Settings {
@@ -98,6 +100,7 @@ impl Settings {
             tree_reliability,
             motion_solver: control.motion_solver.unwrap_or_default(),
             strategy: control.strategy.unwrap_or_default(),
+            teams: control.teams.unwrap_or_default(),
         }
     }
 
@@ -202,6 +205,7 @@ impl From<Settings> for Control {
             tree_reliability: Some(settings.tree_reliability),
             motion_solver: Some(settings.motion_solver),
             strategy: Some(settings.strategy),
+            teams: (!settings.teams.is_one()).then_some(settings.teams),
         }
     }
 }
@@ -212,14 +216,15 @@ fn stated_if_any(error: f64) -> Option<f64> {
 }
 
 impl Scenario {
-    /// The same scenario with every default of its radio and control settings written out.
+    /// The same scenario with every default of its radio and control settings written out, but that there is one team,
+    /// and but for `build_reliability` where each team has a default of its own.
     #[must_use]
     pub fn with_defaults(&self) -> Self {
-        Self {
-            link: self.link.with_defaults(),
-            control: Settings::resolve(self).into(),
-            ..self.clone()
+        let mut control: Control = Settings::resolve(self).into();
+        if control.teams.is_some() {
+            control.build_reliability = self.control.build_reliability;
         }
+        Self { link: self.link.with_defaults(), control, ..self.clone() }
     }
 }
 
@@ -239,7 +244,7 @@ mod tests {
             link: LinkRanges::new(0.4, 0.5),
             control,
             access_point: vec![AccessPoint { position: [0.5, 0.2] }],
-            robot: vec![RobotStart { position: [0.6, 0.2], rate: 0.075 }; 13],
+            robot: vec![RobotStart::at([0.6, 0.2], 0.075); 13],
             task: vec![],
         }
     }

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use pleach_continuous::network::LinkReliability;
 use pleach_continuous::network::reliability::check;
 
-use super::{InvalidScenario, KeyPath, Problem, Scenario, Settings, placement};
+use super::fleet::{self, Fleet};
+use super::{InvalidScenario, KeyPath, Problem, Scenario, Settings, Teams, placement};
 use crate::network::Site;
 
 /// A scenario that a mission can start from, with the [`Site`] that its robots know.
@@ -19,6 +20,7 @@ use crate::network::Site;
 pub struct ValidScenario {
     scenario: Scenario,
     site: Arc<Site>,
+    fleets: Arc<[Fleet]>,
 }
 
 impl ValidScenario {
@@ -58,9 +60,17 @@ impl ValidScenario {
         Self::on(scenario, site)
     }
 
-    fn on(scenario: Scenario, site: Site) -> Result<Self, InvalidScenario> {
-        let site = placement::start(&scenario, site)?;
-        Ok(Self { scenario, site: Arc::new(site) })
+    /// A scenario whose values are in range, on its site.
+    pub(super) fn on(scenario: Scenario, site: Site) -> Result<Self, InvalidScenario> {
+        let (site, fleets) = match site.settings.teams {
+            Teams::One => (placement::start(&scenario, site)?, Vec::new()),
+            Teams::PerAccessPoint => {
+                placement::stand(&scenario, &site)?;
+                let fleets = fleet::fleets(&scenario, &site)?;
+                (site, fleets)
+            }
+        };
+        Ok(Self { scenario, site: Arc::new(site), fleets: fleets.into() })
     }
 
     /// The same scenario with robots at other places, one for each. The geometry is not prepared
@@ -79,12 +89,15 @@ impl ValidScenario {
             robot.position = *start;
         }
         scenario.check_values()?;
-        let faults = placement::faults(&scenario, &self.site);
-        if !faults.is_empty() {
-            return Err(faults.into());
-        }
         let site = self.site.with_starts(starts.iter().map(|&start| start.into()).collect());
-        Ok(Self { scenario, site: Arc::new(site) })
+        if !self.fleets.is_empty() {
+            return Self::on(scenario, site);
+        }
+        let faults = placement::faults(&scenario, &site);
+        match faults.is_empty() {
+            true => Ok(Self { scenario, site: Arc::new(site), fleets: Arc::from([]) }),
+            false => Err(faults.into()),
+        }
     }
 
     /// The scenario.
@@ -100,6 +113,11 @@ impl ValidScenario {
     /// What the robots know from the beginning: floor plan, access points, radio, settings.
     pub const fn site(&self) -> &Arc<Site> {
         &self.site
+    }
+
+    /// Its fleets, where each access point has a team of its own, by access point; none where there is one team.
+    pub fn fleets(&self) -> &[Fleet] {
+        &self.fleets
     }
 
     /// The settings with every default filled in.

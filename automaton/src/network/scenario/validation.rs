@@ -2,7 +2,9 @@
 
 use super::control::{CONTROL, FARTHEST, MOST_PERIODS, SHORTEST, Values};
 use super::radio::STEEPEST;
-use super::{Fault, KeyPath, LinkLengths, LinkModel, LinkRanges, Problem, Scenario, Settings};
+use super::{
+    Fault, KeyPath, LinkLengths, LinkModel, LinkRanges, Problem, Scenario, Settings, Teams,
+};
 
 /// Two robots 2ρ apart must both be able to service while they hand over a task; they approach
 /// 2ρ without ever reaching it, so δ is at least this many clearances (2 in Remark 5.5).
@@ -121,7 +123,26 @@ fn values_are_in_range(scenario: &Scenario) -> Vec<Fault> {
         name.into_iter().chain(link).chain(steepness).chain(control).chain(rates).collect();
     faults.extend(table_faults(scenario));
     faults.extend(errand_faults(scenario));
+    faults.extend(owner_faults(scenario));
     faults
+}
+
+/// Access points that robots and tasks are stated to belong to, and cannot.
+fn owner_faults(scenario: &Scenario) -> Vec<Fault> {
+    let robots = scenario.robot.iter().map(|robot| robot.access_point).enumerate();
+    let tasks = scenario.task.iter().map(|task| task.access_point).enumerate();
+    let stated = robots.map(|it| ("robot", it)).chain(tasks.map(|it| ("task", it)));
+    let (count, teams) = (scenario.access_point.len(), scenario.control.teams.unwrap_or_default());
+    let problem = |access_point: usize| match teams {
+        Teams::One => Some(Problem::AccessPointWithoutUse),
+        Teams::PerAccessPoint if access_point < count => None,
+        Teams::PerAccessPoint => Some(Problem::NoSuchAccessPoint { access_point, count }),
+    };
+    let fault = |(table, (row, stated)): (&str, (usize, Option<usize>))| {
+        let key = KeyPath::root().key(table).index(row).key("access_point");
+        Some(problem(stated?)?.at(key))
+    };
+    stated.filter_map(fault).collect()
 }
 
 /// Times of tasks that no user can mean.

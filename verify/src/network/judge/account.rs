@@ -137,6 +137,9 @@ fn hindrances(
             stopped: last.absent.contains(&other),
         })
         .collect();
+    let bodies = judge.bodies.iter().map(|body| (body, (body - here).norm()));
+    let near = bodies.filter(|(_, distance)| *distance <= PASSAGE * clearance);
+    found.extend(near.map(|(&body, distance)| Hindrance::Body { position: body.into(), distance }));
     let wall = limits.workspace().clearance(here);
     found.extend((wall <= TOUCHED * clearance).then_some(Hindrance::Wall { distance: wall }));
     let limit = judge.link_limit();

@@ -301,6 +301,15 @@ fn is_in_the_way(
                 false => Err(format!("whether robot {other} has stopped is told wrongly")),
             }
         }
+        Hindrance::Body { position, distance } => {
+            let there = Point::from(position);
+            if !judge.bodies.contains(&there) {
+                let [x, y] = position;
+                return Err(format!("no robot of another access point is at ({x}, {y})"));
+            }
+            equal("the distance of a robot", distance, (there - here).norm(), SLACK)?;
+            at_most("the distance of a robot", distance, PASSAGE * clearance)
+        }
         Hindrance::Wall { distance } => {
             let truly = limits.workspace().clearance(here);
             equal("the distance of a wall", distance, truly, SLACK)?;

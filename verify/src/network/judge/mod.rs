@@ -14,13 +14,14 @@
 //!
 //! Where messages are lost and nodes stop, robots need not know the same, and observers cannot
 //! conclude what they can without faults. Such a record is held against what no fault may break
-//! ([`Safety`]). The [`Referee`] is the one or the other.
+//! ([`Safety`]). The [`Referee`] is the one or the other, or has one of them for each of several [`Fleets`].
 
 mod account;
 mod certificate;
 mod claims;
 mod clock;
 mod conclusions;
+mod fleets;
 mod ground;
 mod lately;
 mod ledger;
@@ -49,6 +50,7 @@ use super::property::Property;
 use super::violation::{Instant, Violation};
 pub(super) use clock::Clock;
 use conclusions::Conclusions;
+pub use fleets::Fleets;
 use ground::Ground;
 pub use ledger::{Ledger, Stage};
 use places::Places;
@@ -125,6 +127,8 @@ pub struct Judge<'a> {
     recent: VecDeque<Vec<Point>>,
     /// Where each robot went last: one that has given up goes nowhere.
     headings: Vec<Option<Point>>,
+    /// Where the robots of other fleets are at the last snapshot.
+    bodies: Vec<Point>,
 }
 
 impl<'a> Judge<'a> {
@@ -146,8 +150,14 @@ impl<'a> Judge<'a> {
             previous: None,
             recent: VecDeque::with_capacity(RECENT + 1),
             headings: vec![None; robots],
+            bodies: Vec::new(),
             monitor,
         }
+    }
+
+    /// Where the robots of other fleets are at the next snapshot.
+    pub(super) fn show_bodies(&mut self, bodies: Vec<Point>) {
+        self.bodies = bodies;
     }
 
     /// Judges the control period that ends with this snapshot, its events, and the snapshot.

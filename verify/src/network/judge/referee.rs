@@ -3,9 +3,10 @@
 use pleach_automaton::network::certificate::Certificate;
 use pleach_automaton::network::record::{End, Faults, MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::ValidScenario;
+use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
-use super::{Judge, Safety};
+use super::{Fleets, Judge, Safety};
 use crate::network::extremes::Extremes;
 use crate::network::violation::Violation;
 
@@ -17,6 +18,8 @@ pub enum Referee<'a> {
     Whole(Box<Judge<'a>>),
     /// Of a mission with faults.
     Safety(Box<Safety>),
+    /// Of the missions of several fleets.
+    Fleets(Box<Fleets<'a>>),
 }
 
 impl<'a> Referee<'a> {
@@ -27,9 +30,28 @@ impl<'a> Referee<'a> {
         faults: Faults,
         role_table: impl Fn(Role, Role) -> bool + 'a,
     ) -> Self {
+        match scenario.fleets().is_empty() {
+            true => Referee::of_one(scenario, faults, role_table),
+            false => Referee::Fleets(Box::new(Fleets::new(scenario, faults, role_table))),
+        }
+    }
+
+    /// The judge of the mission of one fleet.
+    pub(super) fn of_one(
+        scenario: &ValidScenario,
+        faults: Faults,
+        role_table: impl Fn(Role, Role) -> bool + 'a,
+    ) -> Self {
         match faults.are_none() {
             true => Referee::Whole(Box::new(Judge::new(scenario, role_table))),
             false => Referee::Safety(Box::new(Safety::new(scenario, faults))),
+        }
+    }
+
+    /// Where the robots of other fleets are at the next snapshot.
+    pub(super) fn show_bodies(&mut self, bodies: Vec<Point>) {
+        if let Referee::Whole(judge) = self {
+            judge.show_bodies(bodies);
         }
     }
 
@@ -46,6 +68,7 @@ impl<'a> Referee<'a> {
         match self {
             Referee::Whole(judge) => judge.observe(snapshot, events),
             Referee::Safety(safety) => safety.observe(snapshot, events),
+            Referee::Fleets(fleets) => fleets.observe(snapshot, events),
         }
     }
 
@@ -59,6 +82,7 @@ impl<'a> Referee<'a> {
         match self {
             Referee::Whole(judge) => judge.conclude(end),
             Referee::Safety(safety) => safety.conclude(end),
+            Referee::Fleets(fleets) => fleets.conclude(end),
         }
     }
 
@@ -66,7 +90,15 @@ impl<'a> Referee<'a> {
     pub fn account(&self, end: &End) -> Option<Certificate> {
         match self {
             Referee::Whole(judge) => judge.account(end),
-            Referee::Safety(_) => None,
+            Referee::Safety(_) | Referee::Fleets(_) => None,
+        }
+    }
+
+    /// The same for the mission of the fleet of this access point, where there are several.
+    pub fn account_of_fleet(&self, access_point: usize, end: &End) -> Option<Certificate> {
+        match self {
+            Referee::Fleets(fleets) => fleets.account(access_point, end),
+            Referee::Whole(_) | Referee::Safety(_) => None,
         }
     }
 
@@ -75,6 +107,7 @@ impl<'a> Referee<'a> {
         match self {
             Referee::Whole(judge) => judge.extremes(),
             Referee::Safety(safety) => safety.extremes(),
+            Referee::Fleets(fleets) => fleets.extremes(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The rules of robots, one at a time: a robot, the beacons of its neighbours, and what it makes of them.
 
 mod attachment;
+mod bodies;
 mod eager;
 mod elections;
 mod errands;
