@@ -527,7 +527,7 @@ fn end_without_bid(place: &Electing, point: &AccessPoint, effects: &mut Effects)
     }
     if let Some(left) = point.access_points_left() {
         let reason = format!(
-            "no robot of the access points {left:?} can lead a team to task {task}, and those of the others \
+            "no robot of the access points {left:?} can lead a team to task {name}, and those of the others \
              find no recruit"
         );
         return Some(end(point, effects, Outcome::InsufficientRobots, Some(task), reason));
