@@ -221,6 +221,12 @@ pub const USES: &[Use] = &[
         "verify/src/network/judge/mod.rs",
         "ledger.enter(event)?",
     ),
+    (
+        "observe",
+        "verify/src/network/judge/fleets.rs",
+        "verify/src/network/judge/referee.rs",
+        "fleets.observe(snapshot, events)",
+    ),
     ("first_gap", "verify/src/network/motion.rs", PERIOD, "first_gap(&mut intervals)"),
     ("leads_to_access_point", TREE, INSTANT, "tree::leads_to_access_point(&parents, robot)"),
     (
