@@ -4,11 +4,10 @@
 //! from the beginning ([`Site`]), and the messages of the neighbours that it hears. It is a
 //! [`Node`](crate::node::Node): `step` says what it does with each input, stage by stage of a
 //! control period. The chapters follow that period: it receives beacons (`hearing`) and learns who
-//! does not take part (`absence`), keeps its place
+//! does not take part (`absence`) and where robots of other fleets are (`bodies`), keeps its place
 //! in the tree (`attachment`, `confirmation`, `links`), takes part in the mission (`mission`, `leader`, `recruit`,
 //! `path`, `team`), exchanges duties (`exchange`) with a robot in its way (`partner`) or makes way
-//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`), off robots of other
-//! fleets (`bodies`);
+//! (`yielding`), routes its packets (`routing`, `reservation`) and moves (`way`, `motion`, `negotiation`);
 //! what its guards see of all this are `facts`. What its automata do stands in `duties`, `mission`, `exchange`,
 //! `lineage` and `control`, and where it goes in `target`; `step` takes inputs, `rounds` counts rounds, `skipped_work`
 //! is what need not be done again, and `view` what observers read.
