@@ -341,7 +341,7 @@ fn overload(saturated: &[(usize, f64)], end: &End) -> Option<String> {
     }
     Some(format!(
         "{}; the load is {}, and links carry no more: lower the rates, place robots closer together or \
-             add some",
+         add some",
         end.reason,
         loads.join(", ")
     ))

@@ -74,9 +74,9 @@ impl KernelTimes {
 /// Times that differ by this share of a control period are the same: elapsed time is a sum.
 const SAME: f64 = 1e-6;
 
-/// Control periods for which observers look on when a mission has ended and no robot moves, if robots are still about
-/// to change their places in the tree.
-const LONGEST_SETTLING: usize = 8;
+/// Control periods for which a run goes on at most when the mission has ended and no robot moves, if robots are still
+/// about to change their places in the tree.
+pub const LONGEST_SETTLING: usize = 8;
 
 /// The network of robots. Its nodes are [`Member`]s, or [`Frail`](super::Frail) ones.
 pub struct Network<M = Radio, N: RobotNode = Member> {
@@ -228,6 +228,14 @@ impl<M, N: RobotNode> Network<M, N> {
         running.any(|node| node.member().view().robot().is_some_and(holds))
     }
 
+    /// Whether the network is at rest after this end: no robot moves, and unless the mission has been given up none is
+    /// about to change its place in the tree.
+    fn has_settled(&self, end: &End) -> bool {
+        let is_settling =
+            || self.at_rest <= LONGEST_SETTLING && self.any_robot(|robot| robot.is_settling());
+        self.at_rest > 0 && (end.outcome.is_given_up() || !is_settling())
+    }
+
     /// How the mission has ended, as the user knows it.
     fn known_end(&self) -> Option<End> {
         self.members().find_map(|member| member.view().user())?.known_end()
@@ -276,10 +284,8 @@ impl<M: Medium<Message, Point>, N: RobotNode> System for Network<M, N> {
             return None;
         }
         let limit = self.site.settings.max_steps;
-        let may_settle =
-            || self.at_rest <= LONGEST_SETTLING && self.any_robot(|robot| robot.is_settling());
         self.known_end()
-            .filter(|end| self.at_rest > 0 && (end.outcome.is_given_up() || !may_settle()))
+            .filter(|end| self.has_settled(end))
             .or_else(|| (self.step >= limit).then(|| End::at_step_limit(limit)))
     }
 

@@ -61,7 +61,7 @@ impl<M, N: RobotNode> FleetNetwork<M, N> {
         Some(FleetEnd { access_point: self.fleet.access_point(), end })
     }
 
-    /// The same; that it has ended like this if it has not ended.
+    /// How its mission has ended or, while it goes on, this end.
     fn end_or(&self, end: &End) -> FleetEnd {
         self.end().unwrap_or_else(|| FleetEnd {
             access_point: self.fleet.access_point(),

@@ -31,7 +31,7 @@ mod wire;
 
 pub use access_point::{AccessPoint, attendance_automaton, round_automaton, service_automaton};
 pub use automata::{Automata, NamedRow};
-pub use composition::{KernelTimes, Network, NetworkError, RobotNode};
+pub use composition::{KernelTimes, LONGEST_SETTLING, Network, NetworkError, RobotNode};
 pub use fleets::Fleets;
 pub use frail::{Crash, Frail, Trouble};
 pub use link::Link;

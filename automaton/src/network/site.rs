@@ -266,8 +266,8 @@ impl Site {
         distance <= self.watch_radius
     }
 
-    /// Whether robots at this distance are in contact, if they are up to another one. Robots on places of a graph are
-    /// wherever explorers have them meet.
+    /// Whether robots at this distance are in contact, which they are up to `contact`. Always on a graph of places, where
+    /// explorers decide which robots meet.
     pub fn may_touch(&self, distance: f64, contact: f64) -> bool {
         #[cfg(feature = "abstraction")]
         if self.measure.is_some() {

@@ -2,7 +2,7 @@
 //!
 //! At the beginning of a control period it learns where those in range of the radio are. Each of two robots keeps to
 //! its own side of the half-plane between them (17), and within its cell it moves in a straight line, so that the two
-//! keep 2ρ apart without a word. A body takes part in no exchange of duties and makes no way: where one rests, ways
+//! keep 2ρ apart without a message. A body takes part in no exchange of duties and makes no way: where one rests, ways
 //! lead round it.
 
 use pleach_continuous::Point;
@@ -85,7 +85,7 @@ mod tests {
             assert_eq!(see(&[1.0, 2.0 + f64::from(still)]), (2, vec![]));
         }
         assert_eq!(see(&[1.05, 9.0]), (2, vec![1.05]));
-        assert_eq!(see(&[1.08, 9.0]), (2, vec![1.08]), "it has crept, and is within its leash");
+        assert_eq!(see(&[1.08, 9.0]), (2, vec![1.08]), "it is still within its leash");
         assert_eq!(see(&[1.2]), (1, vec![]), "it has left it");
         assert_eq!(see(&[]), (0, vec![]));
     }

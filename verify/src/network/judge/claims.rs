@@ -138,7 +138,8 @@ fn stands_still(team: &[usize], scene: &Scene) -> Result<(), Dispute> {
     Ok(())
 }
 
-/// A recruit is redundant until it is elected, or a node that bears nothing but the robot that calls.
+/// A recruit is redundant until it is elected, or a node that bears nothing but the robot that calls. It may have
+/// retired in the period in which it is elected.
 fn is_free(robot: usize, path: &[usize], scene: &Scene) -> Result<(), Dispute> {
     let Some(previous) = scene.previous else { return Ok(()) };
     // p₁ may have attached to it, and called, in the period in which it is elected.
@@ -148,8 +149,10 @@ fn is_free(robot: usize, path: &[usize], scene: &Scene) -> Result<(), Dispute> {
             children.map(|(child, _)| child).eq(path.last())
         })
     };
+    let retirement = MissionEvent::RoleChanged { robot, from: Role::Node, to: Role::Redundant };
     match previous.roles[robot] {
         Role::Redundant | Role::Recruit => Ok(()),
+        Role::Node if scene.events.contains(&retirement) => Ok(()),
         Role::Node if path.len() == 2 && bears_caller_alone() => Ok(()),
         role => {
             let sentence = format!("robot {robot}, a {}, is elected recruit", role.name());

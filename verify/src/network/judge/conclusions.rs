@@ -1,5 +1,6 @@
 //! Whether what observers conclude is what the events and the world give.
 
+use pleach_automaton::network::LONGEST_SETTLING;
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
 use pleach_automaton::network::scenario::Strategy;
 use pleach_discrete::Location as _;
@@ -141,9 +142,9 @@ impl Conclusions {
         Err(Dispute::of(Property::Subgroups, robots, sentence))
     }
 
-    /// Whether the mission should have ended: the robots have known that it has for long.
+    /// Whether the mission should have ended: the robots have known that it has for long, and have had the time to settle.
     pub fn overdue(&self, step: usize) -> bool {
-        self.ended.is_some_and(|ended| ended + self.patience < step)
+        self.ended.is_some_and(|ended| ended + self.patience + LONGEST_SETTLING < step)
     }
 
     /// Whether everybody may have heard of the last event.

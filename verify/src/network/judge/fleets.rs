@@ -1,4 +1,4 @@
-//! The judge of several fleets: the mission of each by itself, and what they owe each other.
+//! The judge of several fleets: the mission of each by itself, and the distances between them.
 
 use std::sync::Arc;
 
