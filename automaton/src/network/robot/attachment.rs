@@ -334,6 +334,10 @@ impl Robot {
         {
             return Some(Some(Anchor::Post(awaited)));
         }
+        if self.is_eager() && self.awaited_parent().is_some() {
+            // The newcomer looks for p₁ where its link leads.
+            return None;
+        }
         let (anchor, parent) = self.nearer_parent(self.build_length())?;
         self.reattaches_to = Some(parent);
         Some(Some(anchor))

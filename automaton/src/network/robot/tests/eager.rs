@@ -217,3 +217,25 @@ fn a_robot_on_its_way_takes_the_post_ahead_whatever_follows_the_advance() {
         assert_eq!(serviced, (Phase::Idle, Some(PostId(11))), "{strategy:?}");
     }
 }
+
+/// The newcomer goes to where the link of p₁ leads.
+#[test]
+fn the_first_of_the_team_keeps_its_parent_until_it_is_attached_to_the_newcomer() {
+    let attached = |strategy, newcomer: Option<Beacon>| {
+        let mut robot = following(strategy);
+        robot.holds(primary(30, None, 11));
+        robot.advances_to(east(4.0));
+        robot.is_told(Notice::Advance { joined: Some((PostId(40), PostId(30))) });
+        robot.hears(beacon(1, west(1.0), fixed(11, 13), &[11, 13]));
+        robot.hears(beacon(2, east(0.5), fixed(12, 13), &[12, 13]));
+        newcomer.into_iter().for_each(|beacon| robot.hears(beacon));
+        robot.keep_place().expect("it goes on");
+        robot.desired_parent.flatten()
+    };
+    let at = |post| Some(Anchor::Post(PostId(post)));
+    let newcomer = |away| Some(beacon(3, west(away), primary(40, None, 11), &[40, 11, 13]));
+    assert_eq!(attached(Strategy::Eager, None), None);
+    assert_eq!(attached(Strategy::Eager, newcomer(1.9)), None, "it is too far away");
+    assert_eq!(attached(Strategy::Eager, newcomer(0.5)), at(40));
+    assert_eq!(attached(Strategy::Paper, None), at(12), "the newcomer comes up to it");
+}
