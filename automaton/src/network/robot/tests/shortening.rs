@@ -82,16 +82,26 @@ fn no_way_is_shortened_that_is_contradicted_or_while_a_path_is_sought() {
         None,
         "attached to this robot"
     );
-    let below = beacon(2, west(0.8), fixed(14, 30), &[14, 30, 13, 17]);
-    assert_eq!(
-        choice(holder(Strategy::Eager), [parent(), below]),
-        None,
-        "its own post is on the way"
-    );
     let lost = beacon(2, west(0.8), fixed(14, 15), &[]);
     assert_eq!(choice(holder(Strategy::Eager), [parent(), lost]), None, "it knows no way");
     let mut recruiting = holder(Strategy::Eager);
     let election = RecruitElection { before: None, standstill: None, ahead: false };
     recruiting.mission = Current::new(Mission::RecruitElection(election));
     assert_eq!(choice(recruiting, [parent(), grandparent(0.8)]), None);
+}
+
+/// It goes by the way that it knew before it hears that its parent is attached elsewhere, and the node before to itself.
+#[test]
+fn no_post_is_attached_below_itself() {
+    let mut robot = holder(Strategy::Eager);
+    robot.hears(parent());
+    robot.trace_lineage().expect("its automaton goes on");
+    let moved = beacon(1, west(0.5), fixed(13, 17), &[13, 17]);
+    let heard = |posts: &[u32]| [moved.clone(), beacon(2, west(0.8), fixed(14, posts[1]), posts)];
+    for (posts, chosen) in [(&[14, 15][..], at(14)), (&[14, 30, 13, 17], None)] {
+        let mut robot = robot.clone();
+        heard(posts).into_iter().for_each(|beacon| robot.hears(beacon));
+        robot.keep_place().expect("its automaton goes on");
+        assert_eq!(robot.desired_parent.flatten(), chosen, "{posts:?}");
+    }
 }
