@@ -111,23 +111,7 @@ pub fn run_fleets<M: Medium<Message, Point>, N: RobotNode>(
     fleets: &mut Fleets<M, N>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    run_fleets_with_faults(scenario, Faults::default(), fleets, watchers)
-}
-
-/// The same for fleets in which these faults occur.
-fn run_fleets_with_faults<M: Medium<Message, Point>, N: RobotNode>(
-    scenario: &ValidScenario,
-    faults: Faults,
-    fleets: &mut Fleets<M, N>,
-    watchers: &mut [&mut dyn Watcher],
-) -> Result<Completed, MissionError> {
-    let mut gallery = Gallery::with_faults(scenario, faults, watchers);
-    let end = carry_out(scenario, fleets, &mut gallery)?;
-    let end = match end.outcome {
-        Outcome::Interrupted => fleets.end(&end),
-        _ => end,
-    };
-    Ok(Completed { times: fleets.times(), ..gallery.conclude(end)? })
+    carry_out(scenario, Faults::default(), fleets, watchers)
 }
 
 /// Runs `network`, which is the network of `scenario` over any medium, to its end.
@@ -152,24 +136,72 @@ pub fn run_network_with_faults<M: Medium<Message, Point>, N: RobotNode>(
     network: &mut Network<M, N>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<Completed, MissionError> {
-    let mut gallery = Gallery::with_faults(scenario, faults, watchers);
-    let end = carry_out(scenario, network, &mut gallery)?;
-    Ok(Completed { times: network.times(), ..gallery.conclude(end)? })
+    carry_out(scenario, faults, network, watchers)
 }
 
-/// Runs networks while the gallery looks on, and says how they ended.
-fn carry_out<S: System<Finish = End, Error = NetworkError>>(
+/// What is run as a mission: a network, or those of several fleets.
+trait Runnable: System<Finish = End, Error = NetworkError> {
+    /// What observers see at this instant, if there is anything to be seen, and what has happened in this control
+    /// period.
+    fn seen(&self) -> Option<(Snapshot, Vec<MissionEvent>)>;
+
+    /// How it has ended if a watcher has ended it so.
+    fn interrupted(&self, end: End) -> End;
+
+    /// Time spent in each part so far.
+    fn times(&self) -> KernelTimes;
+}
+
+impl<M: Medium<Message, Point>, N: RobotNode> Runnable for Network<M, N> {
+    fn seen(&self) -> Option<(Snapshot, Vec<MissionEvent>)> {
+        Some((self.snapshot(), self.events()))
+    }
+
+    fn interrupted(&self, end: End) -> End {
+        end
+    }
+
+    fn times(&self) -> KernelTimes {
+        self.times()
+    }
+}
+
+impl<M: Medium<Message, Point>, N: RobotNode> Runnable for Fleets<M, N> {
+    fn seen(&self) -> Option<(Snapshot, Vec<MissionEvent>)> {
+        Some((self.snapshot()?, self.events()))
+    }
+
+    fn interrupted(&self, end: End) -> End {
+        self.end(&end)
+    }
+
+    fn times(&self) -> KernelTimes {
+        self.times()
+    }
+}
+
+/// Runs what these faults occur in, while the judge and the watchers look on.
+fn carry_out<S: Runnable>(
     scenario: &ValidScenario,
-    networks: &mut S,
-    gallery: &mut impl Observer<S>,
-) -> Result<End, MissionError> {
+    faults: Faults,
+    system: &mut S,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<Completed, MissionError> {
+    let mut gallery = Gallery::with_faults(scenario, faults, watchers);
     let settings = scenario.settings();
     let horizon = settings.period * (settings.max_steps as f64 + 1.0);
-    let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(networks, gallery)?;
-    match ending.reason {
-        Reason::Finished(end) | Reason::Interrupted(end) => Ok(end),
-        other => Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") }),
-    }
+    let ending = Executor::new(horizon, JUMPS_PER_PERIOD)?.run(system, &mut gallery)?;
+    let end = match ending.reason {
+        Reason::Finished(end) | Reason::Interrupted(end) => end,
+        other => {
+            return Err(MissionError::Stopped { time: ending.at.t, reason: format!("{other:?}") });
+        }
+    };
+    let end = match end.outcome {
+        Outcome::Interrupted => system.interrupted(end),
+        _ => end,
+    };
+    Ok(Completed { times: system.times(), ..gallery.conclude(end)? })
 }
 
 /// Runs the mission of `scenario` in a storm. It is held against what no fault may break. Where each access point
@@ -187,7 +219,7 @@ pub fn run_in_storm(
             return Err(MissionError::FaultsOfFleets);
         }
         let mut fleets = Fleets::of_networks(scenario, |fleet| storm::network(fleet, storm))?;
-        return run_fleets_with_faults(scenario, storm.faults(), &mut fleets, watchers);
+        return carry_out(scenario, storm.faults(), &mut fleets, watchers);
     }
     let mut network = storm::network(scenario, storm)?;
     run_network_with_faults(scenario, storm.faults(), &mut network, watchers)
@@ -289,12 +321,8 @@ impl<'a, 'w> Gallery<'a, 'w> {
             return End::of_fleets(fleets.map(|(it, told)| self.explain_fleet(it, told)).collect());
         }
         let certificate = self.judge.account(&end);
-        let reason = match end.outcome {
-            Outcome::Blocked | Outcome::StepLimit => overload(&self.saturated, &end),
-            Outcome::InsufficientRobots => shortage(&self.scenario, end.task, &end),
-            _ => None,
-        };
-        End { reason: reason.unwrap_or(end.reason), certificate, ..end }
+        let task = end.task;
+        explained(End { certificate, ..end }, &self.scenario, task, &self.saturated)
     }
 
     /// The same for the end of the mission of a fleet.
@@ -303,18 +331,8 @@ impl<'a, 'w> Gallery<'a, 'w> {
         let certificate = self.judge.account_of_fleet(access_point, &end);
         let is_own = |(robot, _): &&(usize, f64)| fleet.robots().binary_search(robot).is_ok();
         let saturated: Vec<_> = self.saturated.iter().filter(is_own).copied().collect();
-        let reason = match end.outcome {
-            Outcome::Blocked => {
-                beside_bodies(certificate.as_ref(), &end).or_else(|| overload(&saturated, &end))
-            }
-            Outcome::StepLimit => overload(&saturated, &end),
-            Outcome::InsufficientRobots => {
-                let task = end.task.and_then(|task| fleet.inward().task(task));
-                shortage(fleet.scenario(), task, &end)
-            }
-            _ => None,
-        };
-        let end = End { reason: reason.unwrap_or(end.reason), certificate, ..end };
+        let task = end.task.and_then(|task| fleet.inward().task(task));
+        let end = explained(End { certificate, ..end }, fleet.scenario(), task, &saturated);
         FleetEnd { access_point, end }
     }
 
@@ -329,6 +347,23 @@ impl<'a, 'w> Gallery<'a, 'w> {
         let violation = self.judge.observe(snapshot, events).err()?;
         Some(End::new(Outcome::InvariantViolated, violation.to_string(), snapshot.task))
     }
+}
+
+/// An end with what observers add to its reason. Its task has this number in the scenario of its mission, in which
+/// these robots send nearly all the time.
+fn explained(
+    end: End,
+    scenario: &ValidScenario,
+    task: Option<usize>,
+    saturated: &[(usize, f64)],
+) -> End {
+    let reason = match end.outcome {
+        Outcome::Blocked => beside_bodies(&end).or_else(|| overload(saturated, &end)),
+        Outcome::StepLimit => overload(saturated, &end),
+        Outcome::InsufficientRobots => shortage(scenario, task, &end),
+        _ => None,
+    };
+    End { reason: reason.unwrap_or(end.reason), ..end }
 }
 
 /// A mission that gets stuck while robots send all the time may be stuck because of their links: the reason
@@ -358,8 +393,9 @@ fn shortage(scenario: &ValidScenario, task: Option<usize>, end: &End) -> Option<
 }
 
 /// Where robots of other fleets are beside the robots that stand still, the reason names these.
-fn beside_bodies(certificate: Option<&Certificate>, end: &End) -> Option<String> {
-    let (Certificate::Blocked { team } | Certificate::Tried { team, .. }) = certificate? else {
+fn beside_bodies(end: &End) -> Option<String> {
+    let certificate = end.certificate.as_ref()?;
+    let (Certificate::Blocked { team } | Certificate::Tried { team, .. }) = certificate else {
         return None;
     };
     let is_body = |hindrance: &Hindrance| matches!(hindrance, Hindrance::Body { .. });
@@ -370,23 +406,11 @@ fn beside_bodies(certificate: Option<&Certificate>, end: &End) -> Option<String>
     })
 }
 
-impl<M: Medium<Message, Point>, N: RobotNode> Observer<Network<M, N>> for Gallery<'_, '_> {
+impl<S: Runnable> Observer<S> for Gallery<'_, '_> {
     const SEES_JUMPS: bool = false;
 
-    fn flows(&mut self, network: &Network<M, N>, _: HybridTime, _: f64) -> ControlFlow<End> {
-        match self.observe(&network.snapshot(), &network.events()) {
-            None => ControlFlow::Continue(()),
-            Some(end) => ControlFlow::Break(end),
-        }
-    }
-}
-
-impl<M: Medium<Message, Point>, N: RobotNode> Observer<Fleets<M, N>> for Gallery<'_, '_> {
-    const SEES_JUMPS: bool = false;
-
-    fn flows(&mut self, fleets: &Fleets<M, N>, _: HybridTime, _: f64) -> ControlFlow<End> {
-        let snapshot = fleets.snapshot();
-        match snapshot.and_then(|snapshot| self.observe(&snapshot, &fleets.events())) {
+    fn flows(&mut self, system: &S, _: HybridTime, _: f64) -> ControlFlow<End> {
+        match system.seen().and_then(|(snapshot, events)| self.observe(&snapshot, &events)) {
             None => ControlFlow::Continue(()),
             Some(end) => ControlFlow::Break(end),
         }

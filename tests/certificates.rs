@@ -1,12 +1,11 @@
 //! A mission that is given up comes with a certificate, and the judge takes no false one.
 
-use crate::missions::{run, shipped, valid};
+use crate::missions::{run, shipped, traced, valid};
 use pleach::automaton::network::record::Outcome;
 use pleach::automaton::network::scenario::Scenario;
 use pleach::judge::{Verdict, judge};
-use pleach::mission;
 use pleach::scenario_file::read;
-use pleach::trace::{TraceReader, TraceWriter};
+use pleach::trace::TraceReader;
 use pleach::verify::network::Property;
 use serde_json::Value;
 use std::path::Path;
@@ -30,10 +29,7 @@ fn given_up() -> Vec<(Scenario, Outcome, &'static str)> {
 
 /// The lines of the trace of a mission.
 fn trace(scenario: Scenario) -> Vec<String> {
-    let scenario = valid(scenario);
-    let mut writer = TraceWriter::new(Vec::new(), &scenario).unwrap();
-    mission::run(&scenario, &mut [&mut writer]).unwrap();
-    let text = String::from_utf8(writer.finish().unwrap()).unwrap();
+    let text = String::from_utf8(traced(&valid(scenario)).0).unwrap();
     text.lines().map(str::to_owned).collect()
 }
 

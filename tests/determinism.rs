@@ -1,16 +1,12 @@
 //! The same scenario gives the same bytes, whatever the settings.
 
-use crate::missions::{run, shipped, valid};
+use crate::missions::{run, shipped, traced, valid};
 use pleach::automaton::network::scenario::{MotionSolver, RoutingMethod, Scenario};
-use pleach::mission;
-use pleach::trace::TraceWriter;
 use std::thread;
 
 /// The trace of a scenario as its file holds it.
 fn bytes(scenario: &Scenario) -> Vec<u8> {
-    let mut writer = TraceWriter::new(Vec::new(), scenario).unwrap();
-    mission::run(&valid(scenario.clone()), &mut [&mut writer]).unwrap();
-    writer.finish().unwrap()
+    traced(&valid(scenario.clone())).0
 }
 
 /// Two traces of one scenario, written at the same time by two threads.

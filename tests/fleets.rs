@@ -2,7 +2,7 @@
 //! Each mission is held against every property while it runs.
 
 use crate::floor_plans::{Family, scenario};
-use crate::missions::{Period, run, shipped, shipped_mission, valid};
+use crate::missions::{Period, run, shipped, shipped_mission, traced, valid};
 use pleach::automaton::network::Trouble;
 use pleach::automaton::network::record::{End, MissionEvent, Outcome, Snapshot};
 use pleach::automaton::network::scenario::{Scenario, Teams, ValidScenario};
@@ -51,9 +51,8 @@ fn with_tasks_passed_on(scenario: &ValidScenario) -> Scenario {
 
 /// The trace of the mission of a scenario, and its outcome.
 fn trace(scenario: &ValidScenario) -> (Vec<u8>, Outcome) {
-    let mut writer = TraceWriter::new(Vec::new(), scenario).unwrap();
-    let completed = mission::run(scenario, &mut [&mut writer]).unwrap();
-    (writer.finish().unwrap(), completed.end.outcome)
+    let (bytes, completed) = traced(scenario);
+    (bytes, completed.end.outcome)
 }
 
 fn verdict(bytes: &[u8]) -> Verdict {
@@ -122,7 +121,7 @@ fn a_team_that_a_body_blocks_says_so() {
     assert_eq!(task_of_other, Outcome::Serviced, "it has none");
 }
 
-/// Ends a mission when so many control periods have been seen.
+/// Interrupts a mission after this many control periods.
 struct After(usize);
 
 impl Watcher for After {

@@ -14,6 +14,7 @@ use pleach::automaton::{Executor, HybridTime, Observer, Reason};
 use pleach::continuous::Point;
 use pleach::mission::{self, Completed, Watcher};
 use pleach::story;
+use pleach::trace::TraceWriter;
 use pleach::verify::network::Extremes;
 use std::collections::BTreeMap;
 use std::io;
@@ -80,6 +81,13 @@ pub fn run(scenario: Scenario) -> Mission {
     let completed =
         mission::run(&scenario, &mut [&mut recorder]).expect("a mission without errors");
     Mission::new(scenario.into_scenario(), recorder, completed)
+}
+
+/// The trace of the mission of a scenario, and how that was completed.
+pub fn traced(scenario: &ValidScenario) -> (Vec<u8>, Completed) {
+    let mut writer = TraceWriter::new(Vec::new(), scenario).unwrap();
+    let completed = mission::run(scenario, &mut [&mut writer]).unwrap();
+    (writer.finish().unwrap(), completed)
 }
 
 /// The same by this strategy.

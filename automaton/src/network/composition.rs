@@ -238,7 +238,7 @@ impl<M, N: RobotNode> Network<M, N> {
 
     /// How the mission has ended, as the user knows it.
     fn known_end(&self) -> Option<End> {
-        self.members().find_map(|member| member.view().user())?.known_end()
+        self.nodes.nodes().last()?.member().view().user()?.known_end()
     }
 }
 

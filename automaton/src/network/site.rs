@@ -256,44 +256,36 @@ impl Site {
         self.stretched.build > self.usual.build
     }
 
+    /// Whether robots stand on places of a graph, as explorers have it, and no distance says whether they meet.
+    fn is_graph(&self) -> bool {
+        #[cfg(feature = "abstraction")]
+        return self.measure.is_some();
+        #[cfg(not(feature = "abstraction"))]
+        false
+    }
+
     /// Whether robots at this distance move only if they have heard each other in the same control
     /// period: they may come into contact within a few periods. Robots on places of a graph never do.
     pub fn is_near(&self, distance: f64) -> bool {
-        #[cfg(feature = "abstraction")]
-        if self.measure.is_some() {
-            return false;
-        }
-        distance <= self.watch_radius
+        !self.is_graph() && distance <= self.watch_radius
     }
 
     /// Whether robots at this distance are in contact, which they are up to `contact`. Always on a graph of places, where
     /// explorers decide which robots meet.
     pub fn may_touch(&self, distance: f64, contact: f64) -> bool {
-        #[cfg(feature = "abstraction")]
-        if self.measure.is_some() {
-            return true;
-        }
-        distance <= contact
+        self.is_graph() || distance <= contact
     }
 
     /// Whether two robots could come into contact in this control period that were this far apart when one
     /// of them was heard last, so many periods ago.
     pub fn could_meet(&self, distance: f64, periods: u32) -> bool {
-        #[cfg(feature = "abstraction")]
-        if self.measure.is_some() {
-            return false;
-        }
         let way = f64::from(periods) * self.settings.longest_step();
-        distance <= self.settings.meeting_distance() + way
+        !self.is_graph() && distance <= self.settings.meeting_distance() + way
     }
 
     /// Whether a robot that is not heard any more, and was this far away, has not just gone out of range.
     pub fn is_well_in_range(&self, distance: f64) -> bool {
-        #[cfg(feature = "abstraction")]
-        if self.measure.is_some() {
-            return false;
-        }
-        distance <= Self::well_in_range(&self.settings, &self.link)
+        !self.is_graph() && distance <= Self::well_in_range(&self.settings, &self.link)
     }
 
     /// The number of the access point that is this node; none if it is a robot.

@@ -66,10 +66,7 @@ impl<'a> Monitor<'a> {
     pub fn observe(&mut self, snapshot: &Snapshot) -> Result<(), Violation> {
         instant::record(snapshot, &self.limits)?;
         let previous = self.previous.take();
-        let period = match &previous {
-            Some(previous) => Period::between(previous, snapshot)?,
-            None => Period::opening(snapshot),
-        };
+        let period = Period::ending(previous.as_ref(), snapshot)?;
         self.observe_period(&period)?;
         self.observe_instant(snapshot)?;
         self.previous = Some(snapshot.clone());

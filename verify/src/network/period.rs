@@ -41,6 +41,21 @@ impl<'a> Period<'a> {
         if follows { Ok(Period::of(before, after)) } else { Err(Period::gap(before, after)) }
     }
 
+    /// The period that ends with a snapshot: after the previous one, or the opening if there is none.
+    ///
+    /// # Errors
+    ///
+    /// As for [`between`](Self::between).
+    pub fn ending(
+        previous: Option<&'a Snapshot>,
+        snapshot: &'a Snapshot,
+    ) -> Result<Self, Violation> {
+        match previous {
+            Some(previous) => Period::between(previous, snapshot),
+            None => Ok(Period::opening(snapshot)),
+        }
+    }
+
     /// What lies between two snapshots where nodes begin their control periods at different times: a whole period or a
     /// part of one.
     ///

@@ -324,17 +324,18 @@ impl Robot {
     /// Remark 5.6: p₁ attaches to a fixed or redundant robot or an access point that is
     /// nearer to its target, if there is one within d_build.
     fn reattach(&mut self) -> Option<Option<Anchor>> {
-        if self.phase() != Phase::Advance || !self.is_first() && self.awaited_parent().is_none() {
+        let awaited = self.awaited_parent();
+        if self.phase() != Phase::Advance || !self.is_first() && awaited.is_none() {
             return None;
         }
-        if let Some(awaited) = self.awaited_parent()
+        if let Some(awaited) = awaited
             && let Some(newcomer) = self.holder(awaited)
             && self.is_sure_of(newcomer)
             && self.may_build(self.walk_to(newcomer))
         {
             return Some(Some(Anchor::Post(awaited)));
         }
-        if self.is_eager() && self.awaited_parent().is_some() {
+        if self.is_eager() && awaited.is_some() {
             // The newcomer looks for p₁ where its link leads.
             return None;
         }

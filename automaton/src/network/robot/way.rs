@@ -37,20 +37,20 @@ impl Robot {
         let keep_out = KEEP_OUT * self.clearance();
         let wrecks = self.keep_out_discs(keep_out);
         let bodies = self.discs_of_bodies(KEEP_OUT_OF_BODIES * self.clearance());
-        let wrecks: Vec<Disc> = wrecks.chain(bodies).collect();
+        let fixed: Vec<Disc> = wrecks.chain(bodies).collect();
         let parked: Vec<Disc> = self
             .neighbours
             .iter()
             .filter(|neighbour| !neighbour.is_access_point() && neighbour.beacon.parked)
             .map(|n| Disc { center: n.position(), radius: keep_out })
-            .chain(wrecks.iter().copied())
+            .chain(fixed.iter().copied())
             .collect();
         let allowance = DETOUR_ALLOWANCE * self.clearance();
         // A parked robot in the way takes part in an exchange of duties, a wreck or a body in none.
         let around = |from: Point, direct: Geodesic| {
-            let direct = match wrecks.is_empty() {
+            let direct = match fixed.is_empty() {
                 true => direct,
-                false => free_space.detour(from, goal, &wrecks).unwrap_or(direct),
+                false => free_space.detour(from, goal, &fixed).unwrap_or(direct),
             };
             match free_space.detour(from, goal, &parked) {
                 Some(round) if round.length <= direct.length + allowance => round,

@@ -197,8 +197,11 @@ impl Conclusions {
 
     /// These robots, but for those that are exchanging duties: for some rounds both have one duty.
     fn apart(&self, robots: &[usize]) -> Vec<usize> {
-        let exchanges = |robot: usize| self.exchanging.iter().any(|(it, _)| *it == robot);
-        robots.iter().copied().filter(|&robot| !exchanges(robot)).collect()
+        robots.iter().copied().filter(|&robot| !self.is_exchanging(robot)).collect()
+    }
+
+    fn is_exchanging(&self, robot: usize) -> bool {
+        self.exchanging.iter().any(|(it, _)| *it == robot)
     }
 
     fn stage_is_that(&mut self, snapshot: &Snapshot) -> Result<(), Dispute> {
@@ -239,8 +242,8 @@ impl Conclusions {
         let is_dissolving = ledger.primary_team.is_empty()
             && self.primary_team.values().any(|known| is_part(&seen, known));
         // While the leader hands its duty over, nobody may be seen to lead, and then no team is seen.
-        let has_leader = ledger.leader.is_none_or(|leader| !self.apart(&[leader]).is_empty());
-        let is_handed_over = !has_leader && snapshot.primary_team.is_empty();
+        let is_handed_over = snapshot.primary_team.is_empty()
+            && ledger.leader.is_some_and(|leader| self.is_exchanging(leader));
         if seen != self.apart(&ledger.primary_team) && !is_dissolving && !is_handed_over {
             let sentence = format!(
                 "the primary team is reported as {:?}, and the events make it {:?}",
@@ -249,7 +252,7 @@ impl Conclusions {
             return Err(Dispute::of(Property::Teams, &snapshot.primary_team, sentence));
         }
         let leads = |robot: &usize| snapshot.roles[*robot] == Role::Leader;
-        let is_alone = |robot: &usize| !self.apart(&[*robot]).is_empty();
+        let is_alone = |robot: &usize| !self.is_exchanging(*robot);
         if let Some(leader) = ledger.leader.filter(|leader| !leads(leader) && is_alone(leader)) {
             let sentence = format!("robot {leader} is elected, and its role is not leader");
             return Err(Dispute::of(Property::Teams, &[leader], sentence));
@@ -309,7 +312,6 @@ impl Conclusions {
     ) -> Result<(), Dispute> {
         let next: Option<Vec<_>> =
             next.map(|next| next.serviced.iter().map(|(&task, &robot)| (task, robot)).collect());
-        let is_alone = |robot: usize| !self.apart(&[robot]).is_empty();
         // Who has held a task that is over hears so sooner or later.
         let is_open = |(task, _): &&(usize, usize)| !ledger.closed.contains(task);
         let agrees = |known: &Vec<(usize, usize)>| {
@@ -318,7 +320,8 @@ impl Conclusions {
             known.len() == seen.len()
                 && known.iter().zip(&seen).all(|(known, seen)| {
                     known.0 == seen.0
-                        && (known.1 == seen.1 || !is_alone(known.1) && !is_alone(seen.1))
+                        && (known.1 == seen.1
+                            || self.is_exchanging(known.1) && self.is_exchanging(seen.1))
                 })
         };
         if self.serviced.values().chain(&next).any(agrees) {

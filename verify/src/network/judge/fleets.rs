@@ -10,7 +10,7 @@ use pleach_continuous::Point;
 use pleach_discrete::network::Role;
 
 use super::{Dispute, Referee};
-use crate::network::extremes::{Extremes, keep_larger, keep_smaller};
+use crate::network::extremes::{Extreme, Extremes, keep_larger, keep_smaller};
 use crate::network::instant;
 use crate::network::limits::Limits;
 use crate::network::period::{self, Period};
@@ -87,10 +87,7 @@ impl<'a> Fleets<'a> {
 
     /// Robots keep 2ρ apart, whichever fleet they belong to.
     fn keep_apart(&mut self, snapshot: &Snapshot) -> Result<(), Violation> {
-        let period = match &self.previous {
-            Some(previous) => Period::between(previous, snapshot)?,
-            None => Period::opening(snapshot),
-        };
+        let period = Period::ending(self.previous.as_ref(), snapshot)?;
         let nearest = period::separation(&period, &self.limits)?;
         keep_smaller(&mut self.extremes.pair_distance, nearest);
         Ok(())
@@ -245,7 +242,7 @@ impl<'a> FleetJudge<'a> {
 
     fn extremes(&self) -> Extremes {
         let Extremes { clearance, residual, load, .. } = self.referee.extremes().clone();
-        let in_whole = |mut extreme: crate::network::Extreme| {
+        let in_whole = |mut extreme: Extreme| {
             extreme.robots = self.numbers(&extreme.robots);
             extreme
         };

@@ -73,10 +73,7 @@ impl Safety {
 
     fn observe_period(&mut self, snapshot: &Snapshot) -> Result<(), Violation> {
         let Safety { limits, extremes, previous, .. } = self;
-        let period = match previous {
-            Some(previous) => Period::between(previous, snapshot)?,
-            None => Period::opening(snapshot),
-        };
+        let period = Period::ending(previous.as_ref(), snapshot)?;
         keep_smaller(&mut extremes.pair_distance, period::separation(&period, limits)?);
         keep_smaller(&mut extremes.clearance, period::clearance(&period, limits)?);
         period::step_length(&period, limits)?;
