@@ -49,7 +49,7 @@ pub struct Campaign {
     pub in_a_row: bool,
     /// How messages go.
     pub medium: Medium,
-    /// How often a parked robot is in a mover's way.
+    /// How often a parked robot, or a member of the primary team that stands still, is in a mover's way.
     pub contacts: u32,
     /// When recruits are called for.
     pub strategy: Strategy,

@@ -91,6 +91,14 @@ pub const QUICK: &[Campaign] = &[
         ..robots(3, Counts { configurations: 44, states: 183_086, transitions: 282_728 })
     },
     Campaign {
+        name: "two robots in contact that call ahead",
+        graphs: Graphs::Numbered,
+        steps: &[1, 2],
+        contacts: 1,
+        strategy: Strategy::Eager,
+        ..robots(2, Counts { configurations: 0, states: 0, transitions: 0 })
+    },
+    Campaign {
         name: "three robots, a message lost",
         medium: ONE_LOST,
         ..robots(3, Counts { configurations: 44, states: 81_329, transitions: 160_158 })
@@ -136,6 +144,13 @@ pub const THOROUGH: &[Campaign] = &[
         steps: &[1, 2],
         contacts: 1,
         ..robots(3, Counts { configurations: 2_432, states: 2_270_089, transitions: 2_982_291 })
+    },
+    Campaign {
+        name: "three robots in contact that call ahead",
+        steps: &[1, 2],
+        contacts: 1,
+        strategy: Strategy::Eager,
+        ..robots(3, Counts { configurations: 0, states: 0, transitions: 0 })
     },
     Campaign {
         name: "three robots, a task behind the other",

@@ -417,7 +417,8 @@ impl Protocol {
         places.next_steps(here, goal).find(holds)
     }
 
-    /// Whether a robot that is on its way shares its place with a parked one.
+    /// Whether a robot that is on its way shares its place with one that could take its duty over: a parked one, or a
+    /// member of the primary team that stands still.
     fn is_in_contact(&self, state: &State, robot: NodeId) -> bool {
         let body = |node: NodeId| self.nodes.local(state.locals[node]).robot();
         let here = self.place_of(state, robot);
@@ -427,7 +428,7 @@ impl Protocol {
                 other != robot
                     && self.is_running(state, other)
                     && self.place_of(state, other) == here
-                    && body(other).is_some_and(RobotView::is_parked)
+                    && body(other).is_some_and(|it| it.is_parked() || it.stands_in_team())
             })
     }
 

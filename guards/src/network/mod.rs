@@ -50,9 +50,10 @@ pub mod mission {
         disengaged("elected", proposition("election_over"))
     }
 
-    /// The elected leader has past duties: L_b = 1.
+    /// The elected leader has past duties: L_b = 1. It calls once nodes that the last task has left without a branch
+    /// have had time to become redundant: they can come then.
     pub fn bound() -> Guard {
-        disengaged("bound", proposition("bound"))
+        disengaged("bound", proposition("bound") & !proposition("tree_settles"))
     }
 
     /// A local stationary point (Sec. V-A2): the whole primary team has stood still for a while,

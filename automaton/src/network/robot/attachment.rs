@@ -67,16 +67,30 @@ impl Robot {
     }
 
     /// Once a period: for how long no branch has depended on the post, Remark 5.6 (ii). A robot that does not
-    /// hear its parent may be cut off from its branches, too.
+    /// hear its parent may be cut off from its branches, too. A bound leader, whose post depends on it alone, counts
+    /// for how long such posts of others have had time to be given up.
     pub(super) fn count_unused_periods(&mut self) {
-        let unused = self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
-            && !self.bears_branch()
-            && !self.hears_no_parent()
-            && !self.tree_is_frozen()
+        let is_unused = || {
+            self.duty.post().is_some_and(|post| post.is_fixed() && post.task.is_none())
+                && !self.bears_branch()
+                && !self.hears_no_parent()
+        };
+        let unused = !self.tree_is_frozen()
             && !self.is_engaged()
-            && !self.duty.is_bound();
-        self.unused_periods = if unused { self.unused_periods + 1 } else { 0 };
+            && if self.duty.is_bound() { self.is_eager() } else { is_unused() };
+        let enough = PATIENCE_WITH_UNUSED_POSTS + 1;
+        self.unused_periods = if unused { enough.min(self.unused_periods + 1) } else { 0 };
         self.is_quiet &= self.unused_periods < PATIENCE_WITH_UNUSED_POSTS;
+    }
+
+    /// Whether it is a bound leader, and nodes that the last task has left without a branch may not have become
+    /// redundant yet. In the paper's order it does not wait for them.
+    pub(super) fn awaits_retirements(&self) -> bool {
+        let follows_a_task = self.announcement().is_some_and(|known| !known.before.is_empty());
+        self.is_eager()
+            && self.duty.is_bound()
+            && follows_a_task
+            && self.unused_periods <= PATIENCE_WITH_UNUSED_POSTS
     }
 
     /// Whether it looks for another parent for its fixed post, or no branch depends on that any more.

@@ -228,6 +228,8 @@ facts! {
             recruiting: robot.tree_is_frozen(),
             /// A recruit has been called for ahead of a standstill since one joined last, and none could come.
             in_vain: robot.mission.has_called_in_vain(),
+            /// It leads with past duties, and nodes may yet become redundant.
+            tree_settles: robot.awaits_retirements(),
             /// A redundant robot is attached to its post.
             bears_redundant: robot.bears_redundant(),
             /// This round of a sweep is for demands.
@@ -395,6 +397,7 @@ impl Robot {
                 | Duty::AwaitingRelease(AwaitingRelease { held, place }),
             ) => {
                 facts.relieved = *place == shift.path.last_break_point()
+                    && !self.is_being_given_duty()
                     && (shift.subgroups.is_empty() || self.is_relieved_of(held.station.post.id));
             }
             _ => {}

@@ -1,7 +1,8 @@
 //! Exchanging duties with the robot that stands in the way.
 //!
-//! A mover that touches a parked robot nearer to its goal offers it its duty. The parked robot
-//! answers with its own; the mover, which is within δ of the post, takes it; and when the parked
+//! A mover that touches a parked robot nearer to its goal offers it its duty; so does a member of the primary team
+//! that touches one behind it which stands still: in a narrow corridor a team may stand in an order in which it cannot
+//! go on. The parked robot answers with its own; the mover, which is within δ of the post, takes it; and when the parked
 //! robot sees that, it takes the mover's duty: the [`Offers`] of the two. From the offer to the end
 //! neither takes a step of the mission that changes a duty, so that what is taken over is what was offered. While both run, a
 //! post is never without a robot; no duty is ever done by two. With every exchange the way that remains
@@ -13,7 +14,7 @@
 
 use pleach_discrete::network::{Agreement, IdSet, NodeId, Offer, Phase, PostKind, Reply};
 
-use super::super::beacon::Announced;
+use super::super::beacon::{Announced, TeamReport};
 use super::super::duty::{Duty, Shifting};
 use super::Robot;
 use super::hearing::Neighbour;
@@ -29,6 +30,12 @@ const PATIENCE: u32 = 2;
 pub(super) const LAST_RESORT: u32 = 10;
 /// How much farther from the goal, in ρ, such a partner may be.
 const CONCESSION: f64 = 4.0;
+
+/// Whether the second of two members of the primary team stands still behind the first.
+fn stands_behind(ahead: Option<&TeamReport>, behind: Option<&TeamReport>) -> bool {
+    let pair = ahead.zip(behind);
+    pair.is_some_and(|(ahead, behind)| ahead.members < behind.members && behind.stands_still())
+}
 
 impl Robot {
     /// Once a period: a mover that makes no progress looks for a partner among the robots in its way. One that
@@ -80,7 +87,11 @@ impl Robot {
                 let active = self.active_subgroup();
                 active.is_some_and(|active| active.places().contains(&place)) && !self.has_arrived()
             }
-            Duty::Following(_) | Duty::Leading(_) => self.phase() == Phase::Advance,
+            Duty::Following(_) | Duty::Leading(_) => match self.phase() {
+                Phase::Advance => true,
+                Phase::Shift => self.goes_on_while_recruiting(),
+                _ => false,
+            },
             _ => false,
         }
     }
@@ -101,7 +112,11 @@ impl Robot {
         let children_hold = self
             .children_of(station.post.id)
             .all(|child| self.walk_to(child) <= self.hard_length());
-        parked.beacon.parked
+        let makes_room = match self.duty.is_primary() && station.post.is_primary() {
+            true => stands_behind(self.team.as_ref(), parked.beacon.team.as_ref()),
+            false => parked.beacon.parked,
+        };
+        makes_room
             && !self.roll.absent.contains(parked.id())
             && parked.beacon.offer.is_none()
             && parked.beacon.reply.is_none()
@@ -152,7 +167,11 @@ impl Robot {
 
     /// Whether this robot may leave its post to a mover, and go on for it.
     pub(super) fn may_be_relieved(&self) -> bool {
-        self.is_parked()
+        let stands_behind_mover = || {
+            let mover = self.offer_to_answer().and_then(|(mover, _)| self.neighbour(mover));
+            mover.is_some_and(|it| stands_behind(it.beacon.team.as_ref(), self.team.as_ref()))
+        };
+        (self.is_parked() || stands_behind_mover())
             && self.knows_mission()
             && self.offers().offer().is_none()
             && self.duty.station().is_some()
@@ -200,6 +219,12 @@ impl Robot {
     fn refuses_in_vain(&self) -> bool {
         let reply = self.offers().reply();
         self.partner_in_exchange().is_none() && reply.is_some_and(|it| self.is_gone(it.to))
+    }
+
+    /// Whether a robot gives its duty to this one, or has given it and has not taken the other duty yet.
+    pub(super) fn is_being_given_duty(&self) -> bool {
+        let mut replies = self.neighbours.iter().filter_map(|it| it.beacon.reply.as_ref());
+        replies.any(|reply| reply.to == self.id && reply.accepted.is_some())
     }
 
     /// The robot to which it has offered its duty, or has given it.

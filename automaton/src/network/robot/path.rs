@@ -154,14 +154,16 @@ impl Robot {
     }
 
     /// Whether another robot holds `post` and knows its parent: it does not attach to this one any
-    /// more, unless that is the parent, or stands for it as soon as it sets out.
+    /// more, unless that is the parent, or stands for it as soon as it sets out. One that has given its duty to this
+    /// robot, and has not taken the other duty yet, does not hold the post to relieve it.
     pub(super) fn is_relieved_of(&self, post: PostId) -> bool {
         let own = self.duty.post().map(|held| held.id);
-        self.holder(post).is_some_and(|holder| {
-            let is_child = |held: &Post| own.is_some_and(|own| held.is_child_of(own));
-            let is_below = |held: &Post| is_child(held) || self.is_to_follow(held.parent);
-            holder.beacon.parent != Some(self.id) || holder.post().is_some_and(is_below)
-        })
+        !self.is_being_given_duty()
+            && self.holder(post).is_some_and(|holder| {
+                let is_child = |held: &Post| own.is_some_and(|own| held.is_child_of(own));
+                let is_below = |held: &Post| is_child(held) || self.is_to_follow(held.parent);
+                holder.beacon.parent != Some(self.id) || holder.post().is_some_and(is_below)
+            })
     }
 
     /// Whether the robot ahead on Σ has left this post, and waits for this one to follow.

@@ -15,6 +15,7 @@ use super::super::scenario::Strategy;
 use super::Robot;
 use super::hearing::Neighbour;
 use super::mission::{Effects, MissionEffect, end};
+use super::motion::PERSISTENCE;
 use super::way::KEEP_OUT;
 
 /// The leader stops at δ − 2.2ρ from its task, so that a robot 2ρ behind it is within δ as well.
@@ -84,6 +85,13 @@ pub(super) fn give_up<A>(phase: &A, robot: &Robot, effects: &mut Effects) -> End
     let notice = robot.gives_up(robot.current_task(), Outcome::Blocked, reason);
     effects.extend([MissionEffect::Stay, MissionEffect::Issue(notice)]);
     end(phase, robot, effects)
+}
+
+impl TeamReport {
+    /// Whether all members from the leader back to the sender stand still.
+    pub(super) const fn stands_still(&self) -> bool {
+        self.still >= PERSISTENCE
+    }
 }
 
 impl Robot {

@@ -7,7 +7,7 @@ use pleach_discrete::network::{
     ExchangeStage, IdSet, NodeId, NoticeId, Phase, Role, Stage, Subgroup,
 };
 
-use super::super::beacon::{Beacon, Notice};
+use super::super::beacon::{Beacon, Notice, TeamReport};
 use super::super::duty::Duty;
 use super::super::mission::Mission;
 use super::links::TreeLink;
@@ -185,6 +185,11 @@ impl<'a> RobotView<'a> {
     /// parked.
     pub fn is_parked(self) -> bool {
         self.0.is_parked()
+    }
+
+    /// Whether it is of the primary team, and stands still like all others from the leader back to it.
+    pub fn stands_in_team(self) -> bool {
+        self.0.team.as_ref().is_some_and(TeamReport::stands_still)
     }
 }
 

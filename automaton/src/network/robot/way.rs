@@ -5,8 +5,10 @@ use std::sync::Arc;
 use pleach_continuous::Point;
 use pleach_continuous::geometry::segment::Segment;
 use pleach_continuous::geometry::{Disc, FreeSpace, Geodesic};
+use pleach_discrete::network::PostKind;
 
 use super::Robot;
+use super::links::TreeLink;
 use super::motion::ROUNDING;
 
 /// Parked robots are kept at this many ρ when there is a way round.
@@ -101,6 +103,9 @@ impl Robot {
             return None;
         }
         let way = space.taut(self.position, &[back.waypoints, onward.waypoints].concat());
+        if self.is_held_by_link_ahead(path, &way) {
+            return None;
+        }
         let is_obstructed =
             |piece: Segment| parked.iter().any(|disc| piece.distance(disc.center) < disc.radius);
         let allowance = match way.segments(self.position).any(is_obstructed) {
@@ -108,6 +113,22 @@ impl Robot {
             false => HYSTERESIS,
         };
         (by_path > left(onward.length) + allowance * self.clearance()).then_some(way)
+    }
+
+    /// Whether its link to the robot that it follows, which `path` leads to, gets too long on `way`: half-way round
+    /// the obstacle, where the two are equally long.
+    pub(super) fn is_held_by_link_ahead(&self, path: &Geodesic, way: &Geodesic) -> bool {
+        let limit = self.link_ahead().map(|link| link.limit);
+        limit.is_some_and(|limit| (path.length + way.length) / 2.0 > limit)
+    }
+
+    /// Its link to the robot of the primary team that it follows.
+    fn link_ahead(&self) -> Option<TreeLink> {
+        let PostKind::Primary { follows: Some(ahead) } = self.duty.post()?.kind else {
+            return None;
+        };
+        let ahead = self.holder(ahead)?.id();
+        self.tree_links().into_iter().find(|link| link.to == ahead)
     }
 
     /// Whether the waypoint of the period before can still be used. One that it has almost

@@ -1,7 +1,8 @@
 //! Whether an event is true of the world at the instant for which it is recorded.
 
 use pleach_automaton::network::record::{MissionEvent, Snapshot};
-use pleach_discrete::network::{Phase, Role};
+use pleach_automaton::network::scenario::Strategy;
+use pleach_discrete::network::Role;
 
 use super::ledger::Ledger;
 use super::walk::Walk;
@@ -98,7 +99,10 @@ pub(super) fn is_true(event: &MissionEvent, ledger: &Ledger, scene: &Scene) -> R
         MissionEvent::SubgroupArrived { subgroup, .. } => {
             ledger.walk.as_ref().map_or(Ok(()), |walk| has_come(walk, *subgroup, scene))
         }
-        MissionEvent::DutiesExchanged { mover, parked } => touch(*mover, *parked, scene),
+        MissionEvent::DutiesExchanged { mover, parked } => {
+            goes_on(*mover, ledger, scene)?;
+            touch(*mover, *parked, scene)
+        }
         MissionEvent::Reattached { robot, parent } => is_attached(*robot, *parent, ledger, scene),
         MissionEvent::RouteInfeasible { robot } => is_infeasible(*robot, scene),
         _ => Ok(()),
@@ -247,6 +251,19 @@ pub(super) fn has_come(walk: &Walk, subgroup: usize, scene: &Scene) -> Result<()
     Ok(())
 }
 
+/// With the strategy of the paper the primary team stands still while Σ is walked.
+fn goes_on(mover: usize, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
+    let strategy = scene.limits.settings().strategy;
+    if strategy == Strategy::Eager || !ledger.is_of_waiting_team(mover) {
+        return Ok(());
+    }
+    let team = &ledger.primary_team;
+    let sentence = format!(
+        "robot {mover} gives its duty away while the primary team {team:?} waits for a recruit"
+    );
+    Err(Dispute::of(Property::Events, &[mover], sentence))
+}
+
 fn touch(mover: usize, parked: usize, scene: &Scene) -> Result<(), Dispute> {
     let positions = &scene.snapshot.positions;
     let distance = (positions[mover] - positions[parked]).norm();
@@ -290,38 +307,6 @@ fn is_infeasible(robot: usize, scene: &Scene) -> Result<(), Dispute> {
          not less than {bound:.6}"
     );
     Err(Dispute::of(Property::Events, &[robot], sentence).measuring(residual, bound))
-}
-
-/// The teams that events name are those at the end of the period, when observers complete them.
-///
-/// # Errors
-///
-/// The first that is not, as [`Property::Events`].
-pub(super) fn teams_are_those(
-    events: &[MissionEvent],
-    ledger: &Ledger,
-    snapshot: &Snapshot,
-) -> Result<(), Dispute> {
-    for event in events {
-        let (MissionEvent::Stationary { team, .. } | MissionEvent::JoinedPrimary { team, .. }) =
-            event
-        else {
-            continue;
-        };
-        // With the mission the team ends, and its members leave it one by one; so they do when their task is
-        // taken back.
-        let outdated = ledger.outdated.as_ref().map(|outdated| &outdated.primary_team);
-        let is_dissolving = snapshot.phase == Phase::Ended && is_part(team, &ledger.primary_team)
-            || outdated.is_some_and(|known| is_part(team, known));
-        if *team != ledger.primary_team && !is_dissolving {
-            let sentence = format!(
-                "an event names the primary team {team:?}, which is {:?}",
-                ledger.primary_team
-            );
-            return Err(Dispute::of(Property::Events, team, sentence));
-        }
-    }
-    Ok(())
 }
 
 /// Whether the robots stand in `whole` in this order.

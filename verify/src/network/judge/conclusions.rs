@@ -174,7 +174,7 @@ impl Conclusions {
             let sentence = format!("the phase is “{}” after the end", snapshot.phase.name());
             return Err(Dispute::of(Property::Stage, &[], sentence));
         }
-        self.stage_is_that(snapshot)?;
+        self.stage_is_that(ledger, scene)?;
         // Robots may act on the arrival of a subgroup before the one that tells of it knows.
         let under_way = ledger.walk.as_ref().filter(|walk| {
             walk.is_under_way && claims::has_come(walk, walk.arrived, scene).is_ok()
@@ -204,7 +204,13 @@ impl Conclusions {
         self.exchanging.iter().any(|(it, _)| *it == robot)
     }
 
-    fn stage_is_that(&mut self, snapshot: &Snapshot) -> Result<(), Dispute> {
+    /// Whether no team is seen because the leader hands its duty over: nobody may be seen to lead then.
+    fn is_unseen(&self, team: &[usize], ledger: &Ledger) -> bool {
+        team.is_empty() && ledger.leader.is_some_and(|leader| self.is_exchanging(leader))
+    }
+
+    fn stage_is_that(&mut self, ledger: &Ledger, scene: &Scene) -> Result<(), Dispute> {
+        let Scene { snapshot, limits, .. } = scene;
         if !self.task.values().any(|task| *task == snapshot.task) {
             let sentence = format!(
                 "the task is reported as {:?}, and the events make it {:?}",
@@ -217,10 +223,18 @@ impl Conclusions {
         // A robot may know that an election is over before its winner tells observers.
         let is_ahead = foreshadows(*self.stage.current(), snapshot.phase)
             && snapshot.step - *self.ahead.get_or_insert(snapshot.step) <= self.patience;
+        // With the eager strategy a leader that awaits its release calls when the tree has settled.
+        let is_eager = limits.settings().strategy == Strategy::Eager;
+        let is_settling = is_eager
+            && ledger.awaits_release
+            && snapshot.phase == Phase::Advance
+            && self
+                .last_event
+                .is_none_or(|last| snapshot.step <= last + self.patience + LONGEST_SETTLING);
         if is_known {
             self.ahead = None;
         }
-        if !is_known && !is_ahead {
+        if !is_known && !is_ahead && !is_settling {
             let sentence = format!(
                 "the phase is reported as “{}”, and the mission is {:?}",
                 snapshot.phase.name(),
@@ -241,9 +255,7 @@ impl Conclusions {
         // The members of a team that is dissolved leave it one by one, as they hear of it.
         let is_dissolving = ledger.primary_team.is_empty()
             && self.primary_team.values().any(|known| is_part(&seen, known));
-        // While the leader hands its duty over, nobody may be seen to lead, and then no team is seen.
-        let is_handed_over = snapshot.primary_team.is_empty()
-            && ledger.leader.is_some_and(|leader| self.is_exchanging(leader));
+        let is_handed_over = self.is_unseen(&snapshot.primary_team, ledger);
         if seen != self.apart(&ledger.primary_team) && !is_dissolving && !is_handed_over {
             let sentence = format!(
                 "the primary team is reported as {:?}, and the events make it {:?}",
@@ -274,6 +286,41 @@ impl Conclusions {
             self.active_team.current()
         );
         Err(Dispute::of(Property::ActiveTeam, &snapshot.active_team, sentence))
+    }
+
+    /// The teams that events name are those at the end of the period, when observers complete them.
+    ///
+    /// # Errors
+    ///
+    /// The first that is not, as [`Property::Events`].
+    pub(super) fn named_teams_are_those(
+        &self,
+        events: &[MissionEvent],
+        ledger: &Ledger,
+        snapshot: &Snapshot,
+    ) -> Result<(), Dispute> {
+        for event in events {
+            let (MissionEvent::Stationary { team, .. } | MissionEvent::JoinedPrimary { team, .. }) =
+                event
+            else {
+                continue;
+            };
+            // With the mission the team ends, and its members leave it one by one; so they do when their task is
+            // taken back.
+            let outdated = ledger.outdated.as_ref().map(|outdated| &outdated.primary_team);
+            let is_dissolving = snapshot.phase == Phase::Ended
+                && is_part(team, &ledger.primary_team)
+                || outdated.is_some_and(|known| is_part(team, known));
+            let is_that = self.apart(team) == self.apart(&ledger.primary_team);
+            if !is_that && !is_dissolving && !self.is_unseen(team, ledger) {
+                let sentence = format!(
+                    "an event names the primary team {team:?}, which is {:?}",
+                    ledger.primary_team
+                );
+                return Err(Dispute::of(Property::Events, team, sentence));
+            }
+        }
+        Ok(())
     }
 
     fn path_is_that(

@@ -113,6 +113,11 @@ impl Ledger {
         }
     }
 
+    /// Whether the robot is of the primary team while Σ is walked: with the eager strategy it goes on meanwhile.
+    pub fn is_of_waiting_team(&self, robot: usize) -> bool {
+        self.stage() == Stage::Shifting && self.primary_team.contains(&robot)
+    }
+
     /// Enters an event.
     ///
     /// # Errors
@@ -511,7 +516,9 @@ impl Ledger {
 
     /// Two robots take each other's place in everything.
     fn exchange(&mut self, mover: usize, parked: usize) -> Result<(), Dispute> {
-        let may_give = self.active_team().contains(&mover) || self.dismissed.contains(&mover);
+        let may_give = self.active_team().contains(&mover)
+            || self.dismissed.contains(&mover)
+            || self.is_of_waiting_team(mover);
         if mover == parked || !may_give {
             let sentence = format!(
                 "robot {mover} gives its duty to robot {parked} and is not of the active team {:?}",

@@ -334,7 +334,7 @@ impl<'a> Judge<'a> {
         snapshot: &Snapshot,
         events: &[MissionEvent],
     ) -> Result<(), Dispute> {
-        claims::teams_are_those(events, &self.ledger, snapshot)?;
+        self.conclusions.named_teams_are_those(events, &self.ledger, snapshot)?;
         let scene = Scene {
             snapshot,
             events,

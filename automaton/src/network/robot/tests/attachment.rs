@@ -2,8 +2,9 @@
 
 use pleach_discrete::network::{Anchor, IdSet, PostId, Role};
 
-use super::super::super::duty::{Hop, PathPlace, Waiting};
+use super::super::super::duty::{Bound, Hop, PathPlace, Waiting};
 use super::super::super::roll::{Absent, Roll};
+use super::super::super::scenario::Strategy;
 use super::super::attachment::PATIENCE_WITH_UNUSED_POSTS;
 use super::*;
 
@@ -462,6 +463,32 @@ fn a_node_on_which_no_branch_depends_counts_the_periods() {
     let mut cut_off = cut_off();
     (0..PATIENCE_WITH_UNUSED_POSTS).for_each(|_| cut_off.count_unused_periods());
     assert_eq!(cut_off.unused_periods, 0, "its branches may be cut off from it as well");
+}
+
+/// Nodes that the last task has left without a branch become redundant meanwhile, and can come then.
+#[test]
+fn a_bound_leader_waits_for_nodes_to_retire_before_it_calls() {
+    let waits = |strategy: Strategy, before: &[Point]| {
+        let mut scenario = hall();
+        scenario.control.strategy = Some(strategy);
+        let mut robot = robot_of(&scenario);
+        robot.advances_to(east(3.0));
+        let (id, known) = robot.announced.clone().expect("it knows the task");
+        robot.announced =
+            Some((id, Shared::new(Announcement { before: before.into(), ..(*known).clone() })));
+        let held = Held { station: Station { post: fixed(20, 13), reference: HERE }, left: None };
+        robot.duty = Current::new(Duty::Bound(Bound(held)));
+        (0..9)
+            .take_while(|_| {
+                let waits = robot.awaits_retirements();
+                robot.count_unused_periods();
+                waits
+            })
+            .count() as u32
+    };
+    assert_eq!(waits(Strategy::Eager, &[east(1.0)]), PATIENCE_WITH_UNUSED_POSTS + 1);
+    assert_eq!(waits(Strategy::Eager, &[]), 0, "no task has been serviced");
+    assert_eq!(waits(Strategy::Paper, &[east(1.0)]), 0);
 }
 
 #[test]

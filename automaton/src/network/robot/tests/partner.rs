@@ -2,13 +2,21 @@
 
 use pleach_discrete::network::{Offer, Reply};
 
+use super::super::super::beacon::TeamReport;
 use super::super::super::roll::Absent;
+use super::super::super::scenario::Strategy;
 use super::*;
 
 /// The leader, which has not got on for this long, 0.09 west of a parked robot that bears `held`; the
 /// task is far to the east.
 fn stuck(periods: u32) -> Robot {
-    let mut robot = robot();
+    stuck_by(Strategy::default(), periods)
+}
+
+fn stuck_by(strategy: Strategy, periods: u32) -> Robot {
+    let mut scenario = hall();
+    scenario.control.strategy = Some(strategy);
+    let mut robot = robot_of(&scenario);
     robot.holds(primary(30, None, 13));
     robot.advances_to(east(3.0));
     robot.still_periods = periods;
@@ -206,6 +214,76 @@ fn only_robots_on_a_way_hand_their_duty_over() {
     follower.hears(parked(BESIDE));
     follower.holds(primary(30, Some(31), 13));
     assert_eq!(partner(&mut follower), Some(1));
+}
+
+/// With the eager strategy the team goes on while subgroups shift, so that a robot on Σ may be in its way.
+#[test]
+fn a_team_that_goes_on_hands_over_to_parked_robots_that_are_not_of_it() {
+    let finds = |strategy: Strategy, post: Post| {
+        let mut robot = stuck_by(strategy, 5);
+        let path = Arc::new(Path { hops: Vec::new(), releases_leader: false });
+        let shift = Shift { path, subgroups: Arc::default(), arrived: 0 };
+        robot.mission = Current::new(Mission::Shift(shift));
+        robot.hears(Beacon { parked: true, ..beacon(1, east(BESIDE), post, &[11, 13]) });
+        partner(&mut robot)
+    };
+    assert_eq!(finds(Strategy::Eager, redundant(11, 13)), Some(1));
+    assert_eq!(finds(Strategy::Paper, redundant(11, 13)), None);
+    assert_eq!(finds(Strategy::Eager, primary(11, Some(30), 13)), None);
+}
+
+/// For a round both hold the post of the one that gives it: it is held by none that relieves the other.
+#[test]
+fn a_robot_that_is_being_given_a_post_is_not_relieved_of_it() {
+    let relieved = |reply: Option<Reply<Duty>>| {
+        let mut robot = robot();
+        robot.holds(fixed(20, 13));
+        let giver = beacon(1, east(BESIDE), fixed(20, 13), &[20, 13]);
+        robot.hears(Beacon { reply, ..giver });
+        robot.is_relieved_of(PostId(20))
+    };
+    let reply = |to: NodeId, accepted: Option<Duty>| Some(Reply { to, number: 1, accepted });
+    let duty = holding(fixed(20, 13), east(BESIDE));
+    assert!(relieved(None));
+    assert!(!relieved(reply(0, Some(duty))));
+    assert!(relieved(reply(0, None)), "it has refused");
+    assert!(relieved(reply(2, Some(duty))), "it gives it to another");
+}
+
+/// Two members of one team, which both mean to move, stand in the wrong order in a narrow corridor.
+#[test]
+fn a_member_that_stands_behind_is_a_partner() {
+    let report = |members: u32, still: u32| {
+        Some(TeamReport { still, slack: None, saturated: None, remaining: 3.0, members })
+    };
+    let finds = |own: u32, other: u32, still: u32| {
+        let mut robot = stuck(5);
+        robot.team = report(own, 5);
+        let team = report(other, still);
+        robot.hears(Beacon {
+            team,
+            ..beacon(1, east(BESIDE), primary(31, Some(30), 13), &[31, 13])
+        });
+        partner(&mut robot)
+    };
+    assert_eq!(finds(1, 2, 4), Some(1));
+    assert_eq!(finds(1, 2, 3), None, "it may go on");
+    assert_eq!((finds(2, 1, 9), finds(2, 2, 9)), (None, None), "it is ahead, or level");
+    let makes_room = |own: u32, still: u32| {
+        let mut robot = robot();
+        robot.holds(primary(31, Some(30), 13));
+        robot.advances_to(east(3.0));
+        robot.team = report(own, still);
+        let duty = holding(primary(30, None, 31), west(BESIDE));
+        let mut mover = beacon(1, west(BESIDE), primary(30, None, 31), &[30, 31, 13]);
+        mover.offer = Some(Offer { to: 0, number: 1, duty });
+        (mover.announced, mover.team) = (robot.announced.clone(), report(1, 5));
+        robot.hears(mover);
+        robot.may_be_relieved()
+    };
+    assert!(makes_room(2, 4));
+    assert!(!makes_room(2, 3), "it may go on");
+    assert!(!makes_room(1, 4), "it is not behind");
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Which way a robot goes: round parked robots, and constant where two ways are alike.
 
+use pleach_continuous::geometry::Geodesic;
+
 use super::*;
 
 /// Robot 0 on its way to a goal 2 to the east, with these robots parked.
@@ -120,6 +122,23 @@ fn a_robot_whose_link_leads_farther_on_the_other_side_goes_there() {
             .is_some_and(|corner| corner.y < 7.45)
             && first.y < 7.45
     );
+}
+
+/// Half-way round the other side of an obstacle the link to the robot that it follows is as long as by either side.
+#[test]
+fn a_robot_that_follows_another_goes_only_where_their_link_lasts() {
+    let mut robot = robot();
+    robot.holds(primary(30, Some(31), 13));
+    let ahead = primary(31, None, 30);
+    robot.hears(Beacon { parent: Some(0), ..beacon(1, east(1.0), ahead, &[31, 30, 13]) });
+    let limit = robot.build_length();
+    let way = |length: f64| Geodesic { length, waypoints: vec![east(1.0)] };
+    let holds = |robot: &Robot, by: f64| robot.is_held_by_link_ahead(&way(1.0), &way(by));
+    assert!(
+        holds(&robot, 2.0 * limit - 1.0 + LITTLE) && !holds(&robot, 2.0 * limit - 1.0 - LITTLE)
+    );
+    robot.holds(primary(31, None, 13));
+    assert!(!holds(&robot, 10.0 * limit), "it follows none");
 }
 
 #[test]
