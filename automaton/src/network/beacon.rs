@@ -82,6 +82,9 @@ pub struct Announcement {
     /// The access points whose robots compete to lead.
     #[serde(with = "wire")]
     pub eligible: Arc<IdSet>,
+    /// Whether the election is repeated among the robots of all access points, since a team that found no recruit can be
+    /// attached to another tree.
+    pub again: bool,
 }
 
 impl Announcement {
@@ -112,6 +115,8 @@ pub struct TeamReport {
     pub remaining: f64,
     /// How many members there are from the leader back to the sender.
     pub members: u32,
+    /// Whether a member hears a node of another tree over which its way to an access point would be shorter.
+    pub near_other_tree: bool,
 }
 
 /// The public state of a node.

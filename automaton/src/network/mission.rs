@@ -61,6 +61,8 @@ pub struct Standstill {
     pub remaining: f64,
     /// A member whose links carry no more.
     pub saturated: Option<NodeId>,
+    /// Whether a member hears a node of another tree to which it could be attached on a shorter way.
+    pub near_other_tree: bool,
 }
 
 /// The data of [`Phase::PathAgreement`].

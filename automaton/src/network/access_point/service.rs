@@ -316,6 +316,7 @@ impl AccessPoint {
             before: requested.positions(self.known_tasks.len().max(task)),
             roster: self.present_roster(),
             eligible: Arc::new((0..self.site.access_points.len()).collect()),
+            again: false,
         })
     }
 

@@ -13,7 +13,7 @@ use pleach_discrete::network::{Activity, Anchor, IdSet, Lineage, NodeId, Phase, 
 use crate::automaton::TransitionError;
 use crate::located::Place as _;
 
-use super::super::beacon::{Notice, Reports};
+use super::super::beacon::{Announcement, Notice, Reports};
 use super::super::shared::renew;
 use super::Robot;
 use super::hearing::Neighbour;
@@ -83,13 +83,13 @@ impl Robot {
         self.is_quiet &= self.unused_periods < PATIENCE_WITH_UNUSED_POSTS;
     }
 
-    /// Whether it is a bound leader, and nodes that the last task has left without a branch may not have become
+    /// Whether it is a bound leader, and nodes that the last task or team has left without a branch may not have become
     /// redundant yet. In the paper's order it does not wait for them.
     pub(super) fn awaits_retirements(&self) -> bool {
-        let follows_a_task = self.announcement().is_some_and(|known| !known.before.is_empty());
+        let may_retire = |known: &Announcement| known.again || !known.before.is_empty();
         self.is_eager()
             && self.duty.is_bound()
-            && follows_a_task
+            && self.announcement().is_some_and(may_retire)
             && self.unused_periods <= PATIENCE_WITH_UNUSED_POSTS
     }
 
@@ -218,7 +218,24 @@ impl Robot {
                 break;
             }
         }
-        farthest.map(Some)
+        farthest.or_else(|| self.node_of_other_tree()).map(Some)
+    }
+
+    /// The node of the tree of another access point, within d_build, over which the way from its post is shortest, if it
+    /// is shorter than its own.
+    pub(super) fn node_of_other_tree(&self) -> Option<Anchor> {
+        let (own, way) = (self.duty.post()?.id, self.lineage()?);
+        let nodes = self.neighbours.iter().filter_map(|node| {
+            let other = node.beacon.lineage.as_ref()?;
+            let is_shorter = other.root() != way.root()
+                && other.hops() + 1 < way.hops()
+                && !other.contains(own)
+                && self.confirms(other)
+                && self.may_attach_to(node)
+                && self.may_build(self.walk_to(node));
+            self.anchor_of(node).filter(|_| is_shorter).map(|anchor| (other.hops(), anchor))
+        });
+        nodes.min_by_key(|&(hops, _)| hops).map(|(_, anchor)| anchor)
     }
 
     fn choose_parent(&self) -> Option<Option<Anchor>> {

@@ -86,30 +86,25 @@ pub(super) fn end_unaided(
     robot: &Robot,
     effects: &mut Effects,
 ) -> RecruitElection {
-    let stranded = robot.election.as_ref().is_some_and(|election| election.best().is_some());
-    let own_root = robot.lineage().map(|lineage| lineage.root());
     if phase.ahead {
         effects.extend([
             MissionEffect::Report(MissionEvent::CalledInVain { robot: robot.id }),
             MissionEffect::Issue(Notice::Advance { joined: None }),
         ]);
-    } else if let Some(known) = robot.announcement() {
-        let task = known.task;
-        let others: IdSet = known.eligible.iter().filter(|&root| Some(root) != own_root).collect();
-        if stranded && !others.is_empty() {
-            effects.push(MissionEffect::Report(MissionEvent::ElectionRepeated { task }));
-            let announcement = Announcement { eligible: Arc::new(others), ..known.clone() };
-            effects.push(MissionEffect::Issue(Notice::Task(Shared::new(announcement))));
-        } else if robot.could_stretch() {
-            effects.extend([
-                MissionEffect::Stretch,
-                MissionEffect::Report(MissionEvent::LinksStretched { robot: robot.id }),
-                MissionEffect::Issue(Notice::Advance { joined: None }),
-            ]);
-        } else {
-            let (outcome, reason) = robot.why_unaided(task, phase.standstill);
-            effects.push(MissionEffect::Issue(robot.gives_up(Some(task), outcome, reason)));
-        }
+    } else if let Some(announcement) = robot.announcement_to_others(phase.standstill) {
+        effects.extend([
+            MissionEffect::Report(MissionEvent::ElectionRepeated { task: announcement.task }),
+            MissionEffect::Issue(Notice::Task(Shared::new(announcement))),
+        ]);
+    } else if robot.could_stretch() {
+        effects.extend([
+            MissionEffect::Stretch,
+            MissionEffect::Report(MissionEvent::LinksStretched { robot: robot.id }),
+            MissionEffect::Issue(Notice::Advance { joined: None }),
+        ]);
+    } else if let Some(task) = robot.current_task() {
+        let (outcome, reason) = robot.why_unaided(task, phase.standstill);
+        effects.push(MissionEffect::Issue(robot.gives_up(Some(task), outcome, reason)));
     }
     phase.clone()
 }
@@ -136,8 +131,33 @@ impl Robot {
         self.mission.recruit_election().is_some() && went_on_alone
     }
 
+    /// Its task as it is announced again where no robot of its tree can come: to those of the trees that have not been
+    /// asked, if there is a redundant one; or once to all, if its team can be attached to another tree, and most of its
+    /// robots can come to the aid of one of those then.
+    pub(super) fn announcement_to_others(
+        &self,
+        standstill: Option<Standstill>,
+    ) -> Option<Announcement> {
+        let known = self.announcement()?;
+        let own_root = self.lineage().map(|lineage| lineage.root());
+        let others: IdSet = known.eligible.iter().filter(|&root| Some(root) != own_root).collect();
+        let is_any_stranded = self.election.as_ref().is_some_and(|it| it.best().is_some());
+        if is_any_stranded && !others.is_empty() {
+            return Some(Announcement { eligible: Arc::new(others), ..known.clone() });
+        }
+        let is_near_other = standstill.is_some_and(|team| team.near_other_tree);
+        (is_near_other && !known.again).then(|| {
+            let eligible = Arc::new((0..self.site.access_points.len()).collect());
+            Announcement { eligible, again: true, ..known.clone() }
+        })
+    }
+
     fn standstill(&self) -> Option<Standstill> {
-        self.team.map(|TeamReport { remaining, saturated, .. }| Standstill { remaining, saturated })
+        self.team.map(|TeamReport { remaining, saturated, near_other_tree, .. }| Standstill {
+            remaining,
+            saturated,
+            near_other_tree,
+        })
     }
 
     /// How the mission ends without a recruit.

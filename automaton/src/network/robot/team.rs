@@ -232,6 +232,7 @@ impl Robot {
         let own_slack = self.is_slack().then_some(self.id);
         let own_saturated = self.is_saturated().then_some(self.id);
         let still = self.still_periods;
+        let near_other_tree = self.is_eager() && self.node_of_other_tree().is_some();
         self.team = match self.duty.post().map(|post| post.kind) {
             Some(PostKind::Primary { follows: Some(ahead) }) => {
                 self.holder(ahead).and_then(|n| n.beacon.team).map(|front| TeamReport {
@@ -239,6 +240,7 @@ impl Robot {
                     slack: front.slack.or(own_slack),
                     saturated: front.saturated.or(own_saturated),
                     members: front.members.saturating_add(1),
+                    near_other_tree: front.near_other_tree || near_other_tree,
                     ..front
                 })
             }
@@ -248,6 +250,7 @@ impl Robot {
                 saturated: own_saturated,
                 remaining: self.remaining(),
                 members: 1,
+                near_other_tree,
             }),
         };
     }

@@ -3,7 +3,7 @@
 
 use pleach_discrete::network::{Bid, Election, IdSet, NoticeId};
 
-use super::super::super::mission::{Idle, LeaderElection, RecruitElection};
+use super::super::super::mission::{Idle, LeaderElection, RecruitElection, Standstill};
 use super::*;
 
 /// Robot 0 hears that the task at `place` is announced; its way leads to the access point.
@@ -334,4 +334,21 @@ fn an_announcement_is_learnt_after_the_notices_by_it() {
     robot.mission = Current::new(Mission::Idle(Idle));
     robot.measures();
     assert!(!robot.facts.overtaken, "it has no task to give up");
+}
+
+/// A team that stands near a node of another tree can be attached there, and most of its robots come to another's aid.
+#[test]
+fn where_no_robot_can_come_to_a_team_near_another_tree_all_are_asked_once_more() {
+    let asked = |near_other_tree: bool, again: bool| {
+        let mut robot = robot();
+        robot.knows_task(east(3.0));
+        let (id, known) = robot.announced.clone().expect("it knows the task");
+        robot.announced = Some((id, Shared::new(Announcement { again, ..(*known).clone() })));
+        let standstill = Standstill { remaining: 1.0, saturated: None, near_other_tree };
+        let next = robot.announcement_to_others(Some(standstill));
+        next.map(|next| (next.eligible.iter().collect::<Vec<_>>(), next.again))
+    };
+    assert_eq!(asked(true, false), Some((vec![0], true)));
+    assert_eq!(asked(true, true), None, "that was done");
+    assert_eq!(asked(false, false), None);
 }

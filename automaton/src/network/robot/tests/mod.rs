@@ -178,6 +178,7 @@ impl Robot {
             before: Arc::default(),
             roster: Arc::new((0..ROBOTS).collect()),
             eligible: Arc::new([0].into_iter().collect()),
+            again: false,
         };
         let announcement = Shared::new(announcement);
         self.announced = Some((self.notice_id(), announcement));

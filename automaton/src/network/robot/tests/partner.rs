@@ -254,7 +254,15 @@ fn a_robot_that_is_being_given_a_post_is_not_relieved_of_it() {
 #[test]
 fn a_member_that_stands_behind_is_a_partner() {
     let report = |members: u32, still: u32| {
-        Some(TeamReport { still, slack: None, saturated: None, remaining: 3.0, members })
+        let near_other_tree = false;
+        Some(TeamReport {
+            still,
+            slack: None,
+            saturated: None,
+            remaining: 3.0,
+            members,
+            near_other_tree,
+        })
     };
     let finds = |own: u32, other: u32, still: u32| {
         let mut robot = stuck(5);

@@ -72,6 +72,29 @@ fn only_relays_are_passed_over() {
     assert_eq!(choice(holder(Strategy::Eager), heard), at(14));
 }
 
+/// Its own way has four links. So far from here it hears the first node of another way, which leads over these posts to
+/// another access point.
+#[test]
+fn a_fixed_post_is_attached_to_another_tree_where_its_way_is_shorter() {
+    let build = robot().build_length();
+    let finds = |strategy: Strategy, posts: &[u32], away: f64| {
+        let extended =
+            |way: Lineage, post: &u32| way.extended_by(PostId(*post)).expect("they differ");
+        let way = posts.iter().rev().fold(Lineage::of_access_point(1), extended);
+        let node = beacon(4, east(away), fixed(posts[0], posts[1]), &[]);
+        choice(holder(strategy), [parent(), Beacon { lineage: Some(Arc::new(way)), ..node }])
+    };
+    assert_eq!(finds(Strategy::Eager, &[40, 41], build - LITTLE), at(40));
+    assert_eq!(finds(Strategy::Eager, &[40, 41], build + LITTLE), None);
+    assert_eq!(finds(Strategy::Eager, &[40, 41, 42], build - LITTLE), None, "it is as long");
+    assert_eq!(
+        finds(Strategy::Eager, &[40, 30], build - LITTLE),
+        None,
+        "it leads over its own post"
+    );
+    assert_eq!(finds(Strategy::Paper, &[40, 41], build - LITTLE), None);
+}
+
 #[test]
 fn no_way_is_shortened_that_is_contradicted_or_while_a_path_is_sought() {
     let newer = beacon(2, west(0.8), fixed(14, 17), &[14, 17]);

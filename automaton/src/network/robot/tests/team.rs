@@ -128,7 +128,7 @@ fn a_leader_on_whose_post_a_branch_depends_is_bound_to_it() {
 }
 
 fn report(still: u32, slack: Option<NodeId>, saturated: Option<NodeId>) -> TeamReport {
-    TeamReport { still, slack, saturated, remaining: 1.5, members: 2 }
+    TeamReport { still, slack, saturated, remaining: 1.5, members: 2, near_other_tree: false }
 }
 
 /// A report goes from the leader back to p₁: the member that moved last, and the first that has room.
