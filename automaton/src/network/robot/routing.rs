@@ -128,6 +128,7 @@ impl Robot {
             });
         }
         self.expected_link = 0;
+        self.dual_step_size = self.safe_dual_step();
         self.upstream = self.tree_parent();
         self.inflow = 0.0;
         self.inflows.clear();
@@ -214,6 +215,7 @@ impl Robot {
             }
             link.iterate = link.share;
         }
+        self.planned_outflow = self.outflow();
         self.has_untold_flows = true;
     }
 
@@ -298,7 +300,7 @@ impl Robot {
         self.inflow = self.inflows.iter().map(|(_, flow)| flow).sum();
     }
 
-    fn outflow(&self) -> f64 {
+    pub(super) fn outflow(&self) -> f64 {
         self.links.iter().map(RouteLink::flow).sum()
     }
 
@@ -307,11 +309,13 @@ impl Robot {
         self.outflow() - self.inflow - self.rate
     }
 
-    /// The dual iteration (14), or that of ADAL.
+    /// The dual iteration (14), or that of ADAL. Its own flows are as they have been planned, so that it need not look
+    /// at its links.
     pub(super) fn dual_step(&mut self) {
         self.add_up_inflow();
-        let (residual, reserve) = (self.balance(), self.site.settings.routing_reserve);
-        let step = self.safe_dual_step();
+        debug_assert!(self.plan_stands(), "robot {} goes by an old plan", self.id);
+        let residual = self.planned_outflow - self.inflow - self.rate;
+        let (step, reserve) = (self.dual_step_size, self.site.settings.routing_reserve);
         match &mut self.routing {
             RoutingState::Adal(state) => {
                 state.dual_step(residual, reserve, &AdalSettings::default())
@@ -328,7 +332,7 @@ impl Robot {
     }
 
     /// ε of (14), from the links that meet in this robot's equation.
-    fn safe_dual_step(&self) -> f64 {
+    pub(super) fn safe_dual_step(&self) -> f64 {
         let robots = self.site.robots;
         safe_step(self.links.iter().map(|link| LinkCurvature {
             reliability: link.reliability,
@@ -467,6 +471,7 @@ impl Robot {
             self.has_shortage_news |= had_share;
             self.has_untold_flows |= had_share;
             self.links[at].share = 0.0;
+            self.planned_outflow = self.outflow();
         }
     }
 
