@@ -303,7 +303,7 @@ impl Robot {
             upstream: _,
             expected_link: _,
             dual_step_size: _,
-            planned_outflow: _,
+            told_outflow: _,
             inflow: _,
             inflows: _,
             demands: _,

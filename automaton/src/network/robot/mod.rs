@@ -160,8 +160,8 @@ pub struct Robot {
     routing: routing::RoutingState,
     /// ε of (14) over its links in this period.
     dual_step_size: f64,
-    /// What it plans to send over them.
-    planned_outflow: f64,
+    /// What it sends over them in all, as it has told last.
+    told_outflow: f64,
     /// The parent to which it sends its demand in this period.
     upstream: Option<NodeId>,
     rate: f64,
@@ -361,7 +361,7 @@ impl Robot {
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
             dual_step_size: 0.0,
-            planned_outflow: 0.0,
+            told_outflow: 0.0,
             upstream: None,
             expected_link: 0,
             inflow: 0.0,

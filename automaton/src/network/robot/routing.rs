@@ -215,7 +215,6 @@ impl Robot {
             }
             link.iterate = link.share;
         }
-        self.planned_outflow = self.outflow();
         self.has_untold_flows = true;
     }
 
@@ -280,6 +279,7 @@ impl Robot {
                 outputs.send(link.to, Message::Flow(flow));
             }
         }
+        self.told_outflow = self.outflow();
     }
 
     /// A neighbour tells the flow that it sends to this robot.
@@ -309,12 +309,15 @@ impl Robot {
         self.outflow() - self.inflow - self.rate
     }
 
-    /// The dual iteration (14), or that of ADAL. Its own flows are as they have been planned, so that it need not look
-    /// at its links.
+    /// The dual iteration (14), or that of ADAL. Where its flows are those that it has told, it need not look at its
+    /// links.
     pub(super) fn dual_step(&mut self) {
         self.add_up_inflow();
-        debug_assert!(self.plan_stands(), "robot {} goes by an old plan", self.id);
-        let residual = self.planned_outflow - self.inflow - self.rate;
+        if self.has_untold_flows {
+            self.told_outflow = self.outflow();
+        }
+        debug_assert!(self.outflow_stands(), "robot {} overlooks a change of its flows", self.id);
+        let residual = self.told_outflow - self.inflow - self.rate;
         let (step, reserve) = (self.dual_step_size, self.site.settings.routing_reserve);
         match &mut self.routing {
             RoutingState::Adal(state) => {
@@ -471,7 +474,6 @@ impl Robot {
             self.has_shortage_news |= had_share;
             self.has_untold_flows |= had_share;
             self.links[at].share = 0.0;
-            self.planned_outflow = self.outflow();
         }
     }
 

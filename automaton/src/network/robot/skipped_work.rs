@@ -15,8 +15,8 @@ impl Robot {
     }
 
     /// Whether what it knows of its links for the dual iteration is what these say.
-    pub(super) fn plan_stands(&self) -> bool {
-        let known = [self.planned_outflow, self.dual_step_size];
+    pub(super) fn outflow_stands(&self) -> bool {
+        let known = [self.told_outflow, self.dual_step_size];
         known.map(f64::to_bits) == [self.outflow(), self.safe_dual_step()].map(f64::to_bits)
     }
 
