@@ -17,6 +17,7 @@
 //! behind the feature `network`, which is on by default; without it the framework needs neither
 //! geometry nor a solver.
 
+mod abreast;
 pub mod automaton;
 pub mod builder;
 mod chance;

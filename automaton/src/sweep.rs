@@ -1,10 +1,8 @@
 //! Many runs at once: parameter studies on all processors.
 
-use std::num::NonZero;
-use std::sync::Mutex;
-use std::sync::PoisonError;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
+use std::sync::{Mutex, PoisonError};
+
+use crate::abreast::{abreast, threads};
 
 /// What `run` makes of each case, in the order of the cases, whatever the number of threads.
 ///
@@ -48,27 +46,14 @@ pub fn sweep<T: Sync, R: Send>(
     mut progress: impl FnMut(usize, usize) + Send,
     run: impl Fn(&T) -> R + Sync,
 ) -> Vec<R> {
-    let next = AtomicUsize::new(0);
     let done = Mutex::new((Vec::with_capacity(cases.len()), &mut progress));
-    let work = || {
-        while let Some((number, case)) = {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            cases.get(number).map(|case| (number, case))
-        } {
-            let result = run(case);
-            // A panic in `run` ends the sweep; what others have added is whole.
-            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
-            let (results, progress) = &mut *done;
-            results.push((number, result));
-            progress(results.len(), cases.len());
-        }
-    };
-    let threads = thread::available_parallelism().map_or(1, NonZero::get).min(cases.len());
-    thread::scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(work);
-        }
-        work();
+    abreast(threads().min(cases.len()), cases.iter().enumerate(), |(number, case)| {
+        let result = run(case);
+        // A panic in `run` ends the sweep; what others have added is whole.
+        let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+        let (results, progress) = &mut *done;
+        results.push((number, result));
+        progress(results.len(), cases.len());
     });
     let (mut results, _) = done.into_inner().unwrap_or_else(PoisonError::into_inner);
     results.sort_by_key(|(number, _)| *number);

@@ -6,7 +6,7 @@ use pleach_discrete::network::NodeId;
 
 use super::message::Message;
 use super::site::Site;
-use crate::node::{Delivery, Destination, Envelope, Medium};
+use crate::node::{Delivery, Destination, Envelope, Mail, Medium};
 
 /// A synchronous medium in memory: every message arrives at once, over links with R_ij > 0, over
 /// the wire between access points and over that from the user to the first of them.
@@ -23,7 +23,7 @@ pub struct Radio {
     sent: Vec<Envelope<Message>>,
     /// Whether one of the messages sent may be answered at once.
     expects_answer: bool,
-    mail: Mail,
+    mail: Mail<Message>,
     delivered: u64,
 }
 
@@ -124,25 +124,14 @@ impl Medium<Message, Point> for Radio {
         })
     }
 
-    /// Node by node, unless a node may answer at once: answers have the order of what they answer.
-    fn deliver_to_each<E>(
-        &mut self,
-        mut hand_over: impl FnMut(Delivery<'_, Message>) -> Result<(), E>,
-    ) -> Result<(), E> {
-        if self.expects_answer {
-            return self.deliver(hand_over);
-        }
-        let Radio { audiences, sent, mail, delivered, .. } = self;
-        mail.sort(sent, audiences);
-        *delivered += mail.letters.len() as u64;
-        let result = mail.letters_by_node().try_for_each(|(to, letters)| {
-            letters.iter().try_for_each(|&letter| {
-                let Envelope { from, message, .. } = &sent[letter];
-                hand_over(Delivery { from: *from, to, message })
-            })
-        });
-        sent.clear();
-        result
+    /// Unless a node may answer at once: answers have the order of what they answer.
+    fn mail(&mut self) -> Option<&Mail<Message>> {
+        let Radio { audiences, sent, expects_answer: false, mail, delivered, .. } = self else {
+            return None;
+        };
+        mail.sort(sent, audiences.ends.len(), |envelope| audiences.receivers_of(envelope));
+        *delivered += mail.len() as u64;
+        Some(mail)
     }
 }
 
@@ -172,47 +161,6 @@ impl Audiences {
                 Err(_) => &[],
             },
         }
-    }
-}
-
-/// Messages sorted by the nodes that hear them: each node has its own together.
-#[derive(Debug, Default)]
-struct Mail {
-    /// The places of the messages among those sent.
-    letters: Vec<usize>,
-    /// Where those of each node end.
-    ends: Vec<usize>,
-}
-
-impl Mail {
-    /// Sorts these messages; those of a node stay in the order in which they were sent.
-    fn sort(&mut self, sent: &[Envelope<Message>], audiences: &Audiences) {
-        let Mail { letters, ends } = self;
-        ends.clear();
-        ends.resize(audiences.ends.len(), 0);
-        let receivers = || sent.iter().map(|envelope| audiences.receivers_of(envelope));
-        receivers().flatten().for_each(|&to| ends[to] += 1);
-        let mut count = 0;
-        for end in ends.iter_mut() {
-            // Until its messages are entered, each node's end is where they begin.
-            count += std::mem::replace(end, count);
-        }
-        letters.resize(count, 0);
-        for (letter, receivers) in receivers().enumerate() {
-            for &to in receivers {
-                letters[ends[to]] = letter;
-                ends[to] += 1;
-            }
-        }
-    }
-
-    /// The messages of each node, by its number.
-    fn letters_by_node(&self) -> impl Iterator<Item = (NodeId, &[usize])> {
-        let mut begin = 0;
-        self.ends
-            .iter()
-            .enumerate()
-            .map(move |(node, &end)| (node, &self.letters[std::mem::replace(&mut begin, end)..end]))
     }
 }
 
@@ -290,7 +238,10 @@ mod tests {
                 Ok::<(), Infallible>(())
             };
             let Ok(()) = match by_node {
-                true => radio.deliver_to_each(hand_over),
+                true => {
+                    let mail = radio.mail().expect("nobody answers at once");
+                    (0..NODES).flat_map(|node| mail.of(node)).try_for_each(hand_over)
+                }
                 false => radio.deliver(hand_over),
             };
             assert_eq!(radio.time_to_arrival(), None);

@@ -10,10 +10,15 @@
 //! given to the medium at its end. So a message that takes no time is heard, and all that is said
 //! in answer, before any clock ticks again. Steps of different nodes in one round do not see each
 //! other: the ticks of a round are one joint jump, and so are its deliveries.
+//!
+//! Since they do not, nodes may take their steps at once, on several threads. And where no node answers what it hears,
+//! so that ticks follow, each node that is due ticks right after it has heard its mail, while its state is in the
+//! cache. Both are still jumps of their own, and nothing but the time that they take tells the difference.
 
 use std::convert::Infallible;
 
-use super::{Input, Medium, Node, NodeId, Observed, Outputs};
+use super::rows::{Rows, Seat, Steps};
+use super::{Medium, Node, NodeId, Observed};
 use crate::Participants;
 use crate::executor::{Round, System};
 
@@ -41,56 +46,31 @@ pub struct Traffic {
 /// another past the medium.
 #[derive(Debug)]
 pub struct Ensemble<N: Node, M> {
-    nodes: Vec<N>,
+    rows: Rows<N>,
     medium: M,
-    outputs: Outputs<N::Message, N::Report>,
     bodies: Vec<N::Body>,
     has_moved: bool,
-    seats: Vec<Seat>,
-    /// The round at this instant in which each node ticks next, if it hears nothing until then.
-    ticks: Vec<Option<usize>>,
-    /// The nodes that take part in the current jump.
-    participants: Vec<NodeId>,
-    /// The round of ticks at this instant that comes next, from 1.
+    /// The round of ticks at this instant that comes next, or is under way, from 1.
     round: usize,
-}
-
-/// What the ensemble keeps of each node.
-#[derive(Clone, Copy, Debug, Default)]
-struct Seat {
-    traffic: Traffic,
-    /// Whether the node takes part in the current jump.
-    takes_part: bool,
-    /// The round at this instant in which it has ticked last; 0 if in none.
-    ticked: usize,
+    /// How many deliveries there have been.
+    deliveries: usize,
 }
 
 impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     /// These nodes, numbered from 0, over this medium.
     pub fn new(nodes: Vec<N>, medium: M) -> Self {
-        let mut ensemble = Ensemble {
-            bodies: Vec::with_capacity(nodes.len()),
-            seats: vec![Seat::default(); nodes.len()],
-            ticks: vec![None; nodes.len()],
-            participants: Vec::new(),
-            outputs: Outputs::of(0),
-            has_moved: true,
-            round: 1,
-            nodes,
-            medium,
-        };
-        ensemble.begin_instant();
-        ensemble
+        let rows = Rows::new(nodes);
+        Ensemble { rows, medium, bodies: Vec::new(), has_moved: true, round: 1, deliveries: 0 }
     }
 
     /// The number of nodes.
     pub fn len(&self) -> usize {
-        self.nodes.len()
+        self.rows.nodes.len()
     }
 
     /// Whether there is no node.
     pub fn is_empty(&self) -> bool {
-        self.nodes.is_empty()
+        self.rows.nodes.is_empty()
     }
 
     /// The medium.
@@ -106,97 +86,72 @@ impl<N: Node, M: Medium<N::Message, N::Body>> Ensemble<N, M> {
     /// The error of the node.
     pub fn sense(&mut self, node: NodeId, sensed: N::Sense) -> Result<(), N::Error> {
         self.update_medium();
-        if let Some(known) = self.nodes.get_mut(node) {
-            known.step(Input::Sensed(sensed), self.outputs.now_of(node))?;
-            self.ask(node);
-            self.send();
-        }
+        self.rows.sense(node, sensed)?;
+        self.rows.send(&mut self.medium);
         Ok(())
     }
 
     /// What the nodes have told observers since the last call, in its order.
     pub fn drain_reports(&mut self) -> std::vec::Drain<'_, (NodeId, N::Report)> {
-        self.outputs.drain_reports()
+        self.rows.drain_reports()
     }
 
     /// Tells the medium where the nodes are, if time has passed.
     fn update_medium(&mut self) {
         if std::mem::take(&mut self.has_moved) {
             self.bodies.clear();
-            self.bodies.extend(self.nodes.iter().map(Node::body));
+            self.bodies.extend(self.rows.nodes.iter().map(Node::body));
             self.medium.update(&self.bodies);
         }
     }
 
-    /// A node has changed: asks it when it ticks next.
-    fn ask(&mut self, id: NodeId) {
-        let node = &self.nodes[id];
-        let is_due = node.time_to_tick().is_some_and(|wait| wait <= 0.0);
-        self.ticks[id] = is_due.then(|| self.seats[id].ticked + 1 + node.rounds_to_pass());
-    }
-
-    fn send(&mut self) {
-        for envelope in self.outputs.drain_sent() {
-            self.seats[envelope.from].traffic.sent += 1;
-            self.medium.send(envelope);
-        }
-    }
-
-    /// Says whether anything was heard.
+    /// Delivers what arrives now, and says whether anything was heard. Where messages are not answered, nodes that
+    /// are due in the round of ticks that follows take it as well.
     fn deliver(&mut self) -> Result<bool, N::Error> {
-        let Ensemble { nodes, medium, outputs, seats, participants, .. } = self;
-        medium.deliver_to_each(|delivery| {
-            let known = nodes.get_mut(delivery.to).zip(seats.get_mut(delivery.to));
-            let Some((node, seat)) = known else { return Ok(()) };
-            if !std::mem::replace(&mut seat.takes_part, true) {
-                participants.push(delivery.to);
-            }
-            seat.traffic.heard += 1;
-            let input = Input::Heard { from: delivery.from, message: delivery.message };
-            node.step(input, outputs.now_of(delivery.to))
-        })?;
-        (0..self.participants.len()).for_each(|at| self.ask(self.participants[at]));
-        Ok(!self.participants.is_empty())
+        if !self.medium.time_to_arrival().is_some_and(|wait| wait <= 0.0) {
+            return Ok(false);
+        }
+        self.deliveries += 1;
+        let Ensemble { rows, medium, round, deliveries, .. } = self;
+        if let Some(mail) = medium.mail() {
+            rows.take(&Steps { mail: Some((mail, *deliveries)), round: *round })?;
+        } else {
+            medium.deliver(|delivery| rows.hear(delivery, *deliveries))?;
+        }
+        rows.send(medium);
+        Ok(rows.seats.iter().any(|seat| seat.heard == *deliveries))
     }
 
     /// Says whether any clock was due.
     fn tick(&mut self) -> Result<bool, N::Error> {
-        let Some(next) = self.ticks.iter().flatten().copied().min() else { return Ok(false) };
+        let Some(next) = self.rows.seats.iter().filter_map(|seat| seat.ticks).min() else {
+            return Ok(false);
+        };
         // What a node has heard may make it tick earlier than it has said, and not in the past.
-        let round = next.max(self.round);
-        for id in 0..self.nodes.len() {
-            if self.ticks[id].is_some_and(|ticks| ticks <= round) {
-                let seat = &mut self.seats[id];
-                let passed = round - seat.ticked - 1;
-                (seat.takes_part, seat.ticked) = (true, round);
-                self.participants.push(id);
-                self.nodes[id].step(Input::Tick { passed }, self.outputs.now_of(id))?;
-                self.ask(id);
-            }
-        }
-        self.round = round + 1;
+        self.round = next.max(self.round);
+        self.rows.take(&Steps { mail: None, round: self.round })?;
+        self.rows.send(&mut self.medium);
         Ok(true)
     }
 
-    /// Time has passed, or begins.
-    fn begin_instant(&mut self) {
-        self.round = 1;
-        for id in 0..self.nodes.len() {
-            self.seats[id].ticked = 0;
-            self.ask(id);
-        }
+    /// Whether nodes have ticked in this round.
+    fn has_ticked(&self) -> bool {
+        self.rows.seats.iter().any(|seat| seat.ticked == self.round)
     }
 
-    fn record(&mut self, round: &mut Round<'_, NodeJump>, jump: NodeJump) {
-        let Ensemble { seats, participants, .. } = self;
+    /// Records a jump of the nodes in whose seats this holds.
+    fn record(
+        &self,
+        round: &mut Round<'_, NodeJump>,
+        jump: NodeJump,
+        takes_part: impl Fn(&Seat) -> bool,
+    ) {
         round.jumped_by(jump, || {
-            participants.sort_unstable();
-            match participants.len() == seats.len() {
-                true => Participants::All,
-                false => Participants::Some(participants.as_slice().into()),
-            }
+            let seats = self.rows.seats.iter().enumerate();
+            let by: Box<[NodeId]> =
+                seats.filter(|(_, seat)| takes_part(seat)).map(|(id, _)| id).collect();
+            if by.len() == self.len() { Participants::All } else { Participants::Some(by) }
         });
-        participants.drain(..).for_each(|id| seats[id].takes_part = false);
     }
 }
 
@@ -204,31 +159,31 @@ impl<N: Node, M> Ensemble<N, M> {
     /// How much a node has sent and heard since the messages were last counted anew; observers
     /// ask for it, and nothing if there is no such node.
     pub fn traffic(&self, node: NodeId) -> Traffic {
-        self.seats.get(node).map_or_else(Traffic::default, |seat| seat.traffic)
+        self.rows.seats.get(node).map_or_else(Traffic::default, |seat| seat.traffic)
     }
 
     /// Counts messages anew.
     pub fn forget_traffic(&mut self) {
-        self.seats.iter_mut().for_each(|seat| seat.traffic = Traffic::default());
+        self.rows.seats.iter_mut().for_each(|seat| seat.traffic = Traffic::default());
     }
 }
 
 impl<N: Node, M> Ensemble<N, M> {
     /// The nodes, by number, for the program that has set them up.
     pub fn nodes(&self) -> &[N] {
-        &self.nodes
+        &self.rows.nodes
     }
 }
 
 impl<N: Node + Observed, M> Ensemble<N, M> {
     /// What observers see of each node, by number.
     pub fn views(&self) -> impl ExactSizeIterator<Item = N::View<'_>> {
-        self.nodes.iter().map(Observed::view)
+        self.rows.nodes.iter().map(Observed::view)
     }
 
     /// What observers see of one node, if there is one with this number.
     pub fn view(&self, node: NodeId) -> Option<N::View<'_>> {
-        self.nodes.get(node).map(Observed::view)
+        self.rows.nodes.get(node).map(Observed::view)
     }
 }
 
@@ -243,28 +198,24 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
 
     fn jump(&mut self, round: &mut Round<'_, NodeJump>) -> Result<(), N::Error> {
         self.update_medium();
-        let arrives = self.medium.time_to_arrival().is_some_and(|wait| wait <= 0.0);
-        if arrives && self.deliver()? {
-            self.send();
-            self.record(round, NodeJump::Heard);
-        } else if self.tick()? {
-            self.send();
-            self.record(round, NodeJump::Ticked);
+        if !self.has_ticked() && self.deliver()? {
+            self.record(round, NodeJump::Heard, |seat| seat.heard == self.deliveries);
+        } else if self.has_ticked() || self.tick()? {
+            self.record(round, NodeJump::Ticked, |seat| seat.ticked == self.round);
+            self.round += 1;
         }
         Ok(())
     }
 
     fn time_to_jump(&self) -> Result<Option<f64>, N::Error> {
-        let ticks = self.nodes.iter().filter_map(Node::time_to_tick);
+        let ticks = self.rows.nodes.iter().filter_map(Node::time_to_tick);
         Ok(ticks.chain(self.medium.time_to_arrival()).reduce(f64::min))
     }
 
     fn flow(&mut self, duration: f64) -> Result<(), N::Error> {
-        self.nodes.iter_mut().for_each(|node| node.flow(duration));
+        (self.has_moved, self.round) = (true, 1);
         self.medium.flow(duration);
-        self.has_moved = true;
-        self.begin_instant();
-        self.nodes.iter().try_for_each(Node::check_invariant)
+        self.rows.flow(duration)
     }
 }
 
@@ -272,8 +223,8 @@ impl<N: Node, M: Medium<N::Message, N::Body>> System for Ensemble<N, M> {
 #[allow(clippy::unwrap_used)] // a test that panics has failed
 mod tests {
     use super::*;
-    use crate::node::FullMesh;
-    use crate::{Executor, Reason, Trace};
+    use crate::node::{Delivery, Destination, Envelope, FullMesh, Input, Mail, Outputs};
+    use crate::{Executor, Reason, Trace, TraceEntry};
 
     /// Passes a number on to the next node, one more each time, and rests at a limit; the first
     /// node begins once a second.
@@ -421,7 +372,7 @@ mod tests {
             |is_patient| Clerk { is_patient, rounds: 0, has_news: false, ticks: Vec::new() };
         let mut ensemble = Ensemble::new(vec![clerk(true), clerk(false)], FullMesh::new());
         Executor::new(1.0, 100).unwrap().run(&mut ensemble, &mut ()).unwrap();
-        let ticks: Vec<_> = ensemble.nodes.iter().map(|clerk| clerk.ticks.clone()).collect();
+        let ticks: Vec<_> = ensemble.rows.nodes.iter().map(|clerk| clerk.ticks.clone()).collect();
         assert_eq!(ticks, [vec![4, 6], vec![1, 2, 3, 4, 5, 6]]);
     }
 
@@ -431,7 +382,7 @@ mod tests {
         let (mut ensemble, mut trace) =
             (Ensemble::new(vec![patient], FullMesh::new()), Trace::new());
         Executor::new(1.0, 100).unwrap().run(&mut ensemble, &mut trace).unwrap();
-        assert_eq!((trace.entries().len(), &ensemble.nodes[0].ticks[..]), (1, &[6][..]));
+        assert_eq!((trace.entries().len(), &ensemble.rows.nodes[0].ticks[..]), (1, &[6][..]));
     }
 
     /// What a person asks of a node is told to every other, and observers hear of it in order.
@@ -444,6 +395,158 @@ mod tests {
         assert_eq!(ensemble.drain_reports().collect::<Vec<_>>(), [(0, 4), (2, 4)]);
         assert_eq!(ensemble.view(1), Some(&[][..]));
         assert_eq!(ensemble.view(3), None);
+    }
+
+    /// Adds up what it hears, weighted by when, and tells its sum in each of some rounds of one instant.
+    #[derive(Clone, Debug, PartialEq)]
+    struct Adder {
+        sum: u64,
+        rounds: u64,
+        is_lonely: bool,
+    }
+
+    impl Node for Adder {
+        type Message = u64;
+        type Sense = ();
+        type Report = u64;
+        type Body = ();
+        type Error = Infallible;
+
+        fn step(
+            &mut self,
+            input: Input<'_, u64, ()>,
+            outputs: &mut Outputs<u64, u64>,
+        ) -> Result<(), Infallible> {
+            match input {
+                Input::Heard { message, .. } => {
+                    self.sum = self.sum.wrapping_mul(31).wrapping_add(*message + self.rounds);
+                }
+                Input::Sensed(()) => {}
+                Input::Tick { passed } => {
+                    self.rounds += passed as u64 + 1;
+                    outputs.report(self.sum);
+                    match self.is_lonely {
+                        true => outputs.send(usize::MAX, self.sum),
+                        false => outputs.broadcast(self.sum),
+                    }
+                }
+            }
+            Ok(())
+        }
+
+        fn time_to_tick(&self) -> Option<f64> {
+            (self.rounds < 4).then_some(0.0)
+        }
+
+        /// Every third of those that have heard nothing lets rounds pass.
+        fn rounds_to_pass(&self) -> usize {
+            if self.sum.is_multiple_of(3) && self.rounds < 2 { 1 } else { 0 }
+        }
+
+        fn flow(&mut self, _: f64) {}
+
+        fn body(&self) {}
+    }
+
+    /// The same mesh; nobody answers at once.
+    struct Sorted {
+        audience: Vec<NodeId>,
+        sent: Vec<Envelope<u64>>,
+        mail: Mail<u64>,
+    }
+
+    impl Medium<u64, ()> for Sorted {
+        fn update(&mut self, bodies: &[()]) {
+            self.audience = (0..bodies.len()).collect();
+        }
+
+        fn send(&mut self, envelope: Envelope<u64>) {
+            self.sent.push(envelope);
+        }
+
+        fn time_to_arrival(&self) -> Option<f64> {
+            (!self.sent.is_empty()).then_some(0.0)
+        }
+
+        fn flow(&mut self, _: f64) {}
+
+        fn deliver<E>(
+            &mut self,
+            mut hand_over: impl FnMut(Delivery<'_, u64>) -> Result<(), E>,
+        ) -> Result<(), E> {
+            for Envelope { from, to, message } in self.sent.drain(..) {
+                let receivers = receivers_of(&self.audience, to);
+                receivers
+                    .iter()
+                    .try_for_each(|&to| hand_over(Delivery { from, to, message: &message }))?;
+            }
+            Ok(())
+        }
+
+        fn mail(&mut self) -> Option<&Mail<u64>> {
+            let Sorted { audience, sent, mail } = self;
+            mail.sort(sent, audience.len(), |envelope| receivers_of(audience, envelope.to));
+            Some(mail)
+        }
+    }
+
+    fn receivers_of(audience: &[NodeId], to: Destination) -> &[NodeId] {
+        match to {
+            Destination::Everyone => audience,
+            Destination::One(_) => &[],
+        }
+    }
+
+    /// Where nodes hear their mail and tick in one go, on one thread or on several, nothing differs from jumps that
+    /// are taken one after another.
+    #[test]
+    fn mail_is_heard_as_messages_are_that_are_delivered_one_after_another() {
+        struct InTurn(Sorted);
+
+        impl Medium<u64, ()> for InTurn {
+            fn update(&mut self, bodies: &[()]) {
+                self.0.update(bodies);
+            }
+
+            fn send(&mut self, envelope: Envelope<u64>) {
+                self.0.send(envelope);
+            }
+
+            fn time_to_arrival(&self) -> Option<f64> {
+                self.0.time_to_arrival()
+            }
+
+            fn flow(&mut self, _: f64) {}
+
+            fn deliver<E>(
+                &mut self,
+                hand_over: impl FnMut(Delivery<'_, u64>) -> Result<(), E>,
+            ) -> Result<(), E> {
+                self.0.deliver(hand_over)
+            }
+        }
+
+        type Outcome = (Vec<Adder>, Vec<TraceEntry<NodeJump>>, Vec<(NodeId, u64)>, Vec<Traffic>);
+
+        fn outcome(nodes: &[Adder], medium: impl Medium<u64, ()>, threads: usize) -> Outcome {
+            let mut ensemble = Ensemble::new(nodes.to_vec(), medium);
+            ensemble.rows.threads = threads;
+            let mut trace = Trace::new();
+            Executor::new(1.0, 100).unwrap().run(&mut ensemble, &mut trace).unwrap();
+            let reports = ensemble.drain_reports().collect();
+            let traffic = (0..nodes.len()).map(|node| ensemble.traffic(node)).collect();
+            (ensemble.nodes().to_vec(), trace.entries().to_vec(), reports, traffic)
+        }
+
+        let sorted = || Sorted { audience: Vec::new(), sent: Vec::new(), mail: Mail::new() };
+        for is_lonely in [false, true] {
+            let adder = |id: u64| Adder { sum: id, rounds: 0, is_lonely };
+            let nodes: Vec<Adder> = (0..60).map(adder).collect();
+            let in_turn = outcome(&nodes, InTurn(sorted()), 1);
+            assert!(in_turn.1.len() >= if is_lonely { 4 } else { 8 });
+            assert_eq!(outcome(&nodes, sorted(), 1), in_turn);
+            assert_eq!(outcome(&nodes, sorted(), 3), in_turn);
+        }
     }
 
     /// Burns for one second, its invariant, and is never put out.

@@ -1,6 +1,6 @@
 //! The medium: what becomes of messages between their senders and their receivers.
 
-use super::{Destination, Envelope, NodeId};
+use super::{Destination, Envelope, Mail, NodeId};
 
 /// A message that arrives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,18 +40,10 @@ pub trait Medium<M, B> {
         hand_over: impl FnMut(Delivery<'_, M>) -> Result<(), E>,
     ) -> Result<(), E>;
 
-    /// The same where it does not matter which of two nodes hears first, as in an
-    /// [`Ensemble`](super::Ensemble): each node hears what is for it in that order, and what nodes send in answer
-    /// has that order as well. A medium may serve one node after another, whose state is so touched only once.
-    ///
-    /// # Errors
-    ///
-    /// The first error of `hand_over`.
-    fn deliver_to_each<E>(
-        &mut self,
-        hand_over: impl FnMut(Delivery<'_, M>) -> Result<(), E>,
-    ) -> Result<(), E> {
-        self.deliver(hand_over)
+    /// In place of that, all that arrives now, for each node what it would hear in that order. A medium offers it only
+    /// where no node says anything, to other nodes or to observers, until its next tick.
+    fn mail(&mut self) -> Option<&Mail<M>> {
+        None
     }
 }
 

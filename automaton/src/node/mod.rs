@@ -16,11 +16,14 @@
 //! [view](Observed), and nodes cannot ask each other for it.
 
 mod ensemble;
+mod mail;
 mod medium;
 mod outputs;
+mod rows;
 mod weather;
 
 pub use ensemble::{Ensemble, NodeJump, Traffic};
+pub use mail::Mail;
 pub use medium::{Delivery, FullMesh, Medium};
 pub use outputs::{Destination, Envelope, Outputs};
 pub use weather::{Partition, Unreliable, Weather};
@@ -47,18 +50,18 @@ pub enum Input<'a, M, S> {
     },
 }
 
-/// A component of an [`Ensemble`].
-pub trait Node {
+/// A component of an [`Ensemble`]. Nodes may take their steps of a round on several threads.
+pub trait Node: Send {
     /// What nodes tell each other.
-    type Message;
+    type Message: Send + Sync;
     /// What the node senses, or what a person asks of it.
     type Sense;
     /// What the node tells observers; no node reads it.
-    type Report;
+    type Report: Send;
     /// What the physical world knows of the node, such as its position.
     type Body;
     /// What can go wrong.
-    type Error;
+    type Error: Send;
 
     /// Takes one input; what the node has to say goes to `outputs`.
     ///

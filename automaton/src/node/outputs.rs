@@ -43,6 +43,11 @@ impl<M, R> Outputs<M, R> {
         self
     }
 
+    /// Takes over the reports that other nodes make after these.
+    pub(super) fn append_reports(&mut self, later: &mut Self) {
+        self.reports.append(&mut later.reports);
+    }
+
     /// Sends a message to every node that hears this one.
     pub fn broadcast(&mut self, message: M) {
         self.sent.push(Envelope { from: self.node, to: Destination::Everyone, message });

@@ -302,6 +302,8 @@ impl Robot {
             links: _,
             upstream: _,
             expected_link: _,
+            dual_step_size: _,
+            told_outflow: _,
             inflow: _,
             inflows: _,
             demands: _,

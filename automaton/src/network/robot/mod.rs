@@ -158,6 +158,10 @@ pub struct Robot {
     /// The link whose other end is expected to tell its multiplier next.
     expected_link: usize,
     routing: routing::RoutingState,
+    /// ε of (14) over its links in this period.
+    dual_step_size: f64,
+    /// What it sends over them in all, as it has told last.
+    told_outflow: f64,
     /// The parent to which it sends its demand in this period.
     upstream: Option<NodeId>,
     rate: f64,
@@ -356,6 +360,8 @@ impl Robot {
             followed_post: None,
             routing: routing::RoutingState::new(site.settings.routing_method),
             links: Vec::new(),
+            dual_step_size: 0.0,
+            told_outflow: 0.0,
             upstream: None,
             expected_link: 0,
             inflow: 0.0,

@@ -186,15 +186,10 @@ impl Robot {
     /// heard in this control period, or it could not move since, because this robot sends to it and has not
     /// consented.
     pub(super) fn knows_place_of(&self, node: NodeId) -> bool {
-        self.knows_place_of_neighbour(node, self.neighbour(node))
-    }
-
-    /// The same of a node that it may hear.
-    pub(super) fn knows_place_of_neighbour(&self, node: NodeId, known: Option<&Neighbour>) -> bool {
         if node >= self.site.robots {
             return true;
         }
-        let Some(known) = known else { return false };
+        let Some(known) = self.neighbour(node) else { return false };
         let has_consented =
             |&(mover, period): &(NodeId, u32)| mover == node && period >= known.heard_in;
         known.heard_in == self.period

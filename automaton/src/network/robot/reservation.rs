@@ -17,8 +17,6 @@
 //! A grant says until when it holds, which is never longer than the flows of the receiver last that carry it:
 //! where grants are not renewed, flows end at those who send first.
 
-use std::collections::BTreeSet;
-
 use pleach_discrete::network::NodeId;
 use pleach_discrete::network::reservation::{Spare, holds, renewed};
 use serde::{Deserialize, Serialize};
@@ -135,6 +133,14 @@ impl HeldFlow {
         self.wanted.min(self.granted)
     }
 
+    fn can_rise(&self) -> bool {
+        self.allowed() > self.flow
+    }
+
+    fn can_fall(&self) -> bool {
+        self.wanted < self.flow
+    }
+
     /// Raises the flow to what is allowed, by at most `most`; returns by how much.
     fn raise(&mut self, most: f64) -> f64 {
         self.change_to(self.allowed().min(self.flow + most).max(self.flow))
@@ -166,6 +172,9 @@ fn replace_flows(links: &mut [&mut RouteLink], promised: u32) -> f64 {
     let mut taken_over = 0.0;
     let count = links.len();
     for (more, less) in (0..count).flat_map(|more| (0..count).map(move |less| (more, less))) {
+        if !links[more].held.can_rise() || !links[less].held.can_fall() {
+            continue;
+        }
         let Ok([more, less]) = links.get_disjoint_mut([more, less]) else { continue };
         let lasts = |link: &RouteLink| holds(link.held.until, promised);
         if more.reliability < less.reliability || lasts(less) && !lasts(more) {
@@ -186,19 +195,19 @@ impl Robot {
         let knows_load = self.knows_load();
         self.reservations.retain(|kept| holds(kept.until, period));
         for at in 0..self.links.len() {
-            let to = self.links[at].to;
-            let known = self.neighbour(to);
-            let heard_in = known.map_or(0, |known| known.heard_in);
-            let can_raise = knows_load && self.knows_place_of_neighbour(to, known);
-            let link = &mut self.links[at];
+            let link = &self.links[at];
+            let to = link.to;
             // Where flows are not reported, the plan can be none.
             let planned = link.flow().clamp(0.0, link.reliability);
-            let held = &mut link.held;
+            let can_raise = planned != 0.0 && knows_load && self.knows_place_of(to);
             if to >= robots {
                 // An access point takes everything, as long as it is there.
-                let until = heard_in.saturating_add(patience);
-                (held.granted, held.until) = (f64::INFINITY, until);
+                let heard_in = self.neighbour(to).map_or(0, |known| known.heard_in);
+                let held = &mut self.links[at].held;
+                (held.granted, held.until) = (f64::INFINITY, heard_in.saturating_add(patience));
             }
+            let link = &mut self.links[at];
+            let held = &mut link.held;
             if !holds(held.until, period) {
                 (held.flow, held.granted) = (0.0, 0.0);
             }
@@ -392,10 +401,9 @@ impl Robot {
 
     /// The last control period up to which flows last that carry this much.
     fn lasts_until(&self, carried: f64) -> u32 {
-        let ends = self.links_in_use().filter(|link| link.held.flow > 0.0);
-        let ends: BTreeSet<u32> = ends.map(|link| link.held.until).collect();
+        let flows = self.links_in_use().filter(|link| link.held.flow > 0.0);
         let lasts = |&end: &u32| self.lasting_outflow(end) >= carried - SAME_FLOW;
-        ends.into_iter().rev().find(lasts).unwrap_or(self.period)
+        flows.map(|link| link.held.until).filter(lasts).max().unwrap_or(self.period)
     }
 
     /// The last control period for which it has granted a flow; what it grants more may be used as long.

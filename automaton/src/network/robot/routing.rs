@@ -128,6 +128,7 @@ impl Robot {
             });
         }
         self.expected_link = 0;
+        self.dual_step_size = self.safe_dual_step();
         self.upstream = self.tree_parent();
         self.inflow = 0.0;
         self.inflows.clear();
@@ -278,6 +279,7 @@ impl Robot {
                 outputs.send(link.to, Message::Flow(flow));
             }
         }
+        self.told_outflow = self.outflow();
     }
 
     /// A neighbour tells the flow that it sends to this robot.
@@ -298,7 +300,7 @@ impl Robot {
         self.inflow = self.inflows.iter().map(|(_, flow)| flow).sum();
     }
 
-    fn outflow(&self) -> f64 {
+    pub(super) fn outflow(&self) -> f64 {
         self.links.iter().map(RouteLink::flow).sum()
     }
 
@@ -307,11 +309,16 @@ impl Robot {
         self.outflow() - self.inflow - self.rate
     }
 
-    /// The dual iteration (14), or that of ADAL.
+    /// The dual iteration (14), or that of ADAL. Where its flows are those that it has told, it need not look at its
+    /// links.
     pub(super) fn dual_step(&mut self) {
         self.add_up_inflow();
-        let (residual, reserve) = (self.balance(), self.site.settings.routing_reserve);
-        let step = self.safe_dual_step();
+        if self.has_untold_flows {
+            self.told_outflow = self.outflow();
+        }
+        debug_assert!(self.outflow_stands(), "robot {} overlooks a change of its flows", self.id);
+        let residual = self.told_outflow - self.inflow - self.rate;
+        let (step, reserve) = (self.dual_step_size, self.site.settings.routing_reserve);
         match &mut self.routing {
             RoutingState::Adal(state) => {
                 state.dual_step(residual, reserve, &AdalSettings::default())
@@ -328,7 +335,7 @@ impl Robot {
     }
 
     /// ε of (14), from the links that meet in this robot's equation.
-    fn safe_dual_step(&self) -> f64 {
+    pub(super) fn safe_dual_step(&self) -> f64 {
         let robots = self.site.robots;
         safe_step(self.links.iter().map(|link| LinkCurvature {
             reliability: link.reliability,

@@ -1,8 +1,8 @@
-//! What a robot leaves out: it processes messages, tells its state and evaluates its guards only where
-//! something has changed.
+//! What a robot leaves out: it processes messages, tells its state, evaluates its guards and goes through its links only
+//! where something has changed.
 //!
 //! That is right if doing it would change nothing. Builds with debug assertions look wherever guards,
-//! facts or a beacon are left out; with the feature `abstraction`, also whether processing messages again, on a
+//! facts, a beacon or links are left out; with the feature `abstraction`, also whether processing messages again, on a
 //! copy, would change anything. Explorers ask that of every state of a robot.
 
 use super::Robot;
@@ -12,6 +12,12 @@ impl Robot {
     /// Whether its facts are as it has measured them, and no guard holds.
     pub(super) fn facts_stand(&self) -> bool {
         self.facts_now() == self.facts && self.is_at_rest()
+    }
+
+    /// Whether what it knows of its links for the dual iteration is what these say.
+    pub(super) fn outflow_stands(&self) -> bool {
+        let known = [self.told_outflow, self.dual_step_size];
+        known.map(f64::to_bits) == [self.outflow(), self.safe_dual_step()].map(f64::to_bits)
     }
 
     /// Whether no transition of the mission or of its duty can be taken.

@@ -1,0 +1,76 @@
+//! Mail: the messages that arrive in one round, sorted by the nodes that hear them.
+
+use super::{Delivery, Envelope, NodeId};
+
+/// Messages sorted by the nodes that hear them. Each node has its own together, in the order in which they were sent,
+/// so that its state is touched once a round.
+#[derive(Clone, Debug)]
+pub struct Mail<M> {
+    sent: Vec<Envelope<M>>,
+    /// The places of the messages among those sent.
+    letters: Vec<usize>,
+    /// Where those of each node end.
+    ends: Vec<usize>,
+}
+
+impl<M> Mail<M> {
+    /// Nothing arrives.
+    pub const fn new() -> Self {
+        Mail { sent: Vec::new(), letters: Vec::new(), ends: Vec::new() }
+    }
+
+    /// Takes these messages in place of those before, and sorts them; `receivers_of` tells which of so many nodes hear
+    /// a message.
+    pub fn sort<'a>(
+        &mut self,
+        messages: &mut Vec<Envelope<M>>,
+        nodes: usize,
+        receivers_of: impl Fn(&Envelope<M>) -> &'a [NodeId],
+    ) {
+        let Mail { sent, letters, ends } = self;
+        sent.clear();
+        std::mem::swap(sent, messages);
+        ends.clear();
+        ends.resize(nodes, 0);
+        let receivers: Vec<&[NodeId]> = sent.iter().map(receivers_of).collect();
+        receivers.iter().copied().flatten().for_each(|&to| ends[to] += 1);
+        let mut count = 0;
+        for end in ends.iter_mut() {
+            // Until its messages are entered, each node's end is where they begin.
+            count += std::mem::replace(end, count);
+        }
+        letters.resize(count, 0);
+        for (letter, receivers) in receivers.into_iter().enumerate() {
+            for &to in receivers {
+                letters[ends[to]] = letter;
+                ends[to] += 1;
+            }
+        }
+    }
+
+    /// How many messages arrive, counted for each node that hears them.
+    pub const fn len(&self) -> usize {
+        self.letters.len()
+    }
+
+    /// Whether nothing arrives.
+    pub const fn is_empty(&self) -> bool {
+        self.letters.is_empty()
+    }
+
+    /// What a node hears.
+    pub fn of(&self, to: NodeId) -> impl ExactSizeIterator<Item = Delivery<'_, M>> {
+        let end = |node: NodeId| self.ends.get(node).copied().unwrap_or(self.letters.len());
+        let begin = to.checked_sub(1).map_or(0, end);
+        self.letters[begin..end(to)].iter().map(move |&letter| {
+            let Envelope { from, message, .. } = &self.sent[letter];
+            Delivery { from: *from, to, message }
+        })
+    }
+}
+
+impl<M> Default for Mail<M> {
+    fn default() -> Self {
+        Mail::new()
+    }
+}
